@@ -1,0 +1,62 @@
+//! Checking what a person can break: one error type for every number that comes from outside.
+//!
+//! A setting is checked where it enters (a flag, a preset, a save, a panel), and the message always
+//! has the same three parts: the field, the value it had, what is allowed.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+/// A value from outside that is not allowed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{field} is {value}; allowed: {allowed}")]
+pub struct Invalid {
+    /// The dotted name of the field, as presets and saves spell it.
+    pub field: String,
+    /// The value that was given.
+    pub value: String,
+    /// What would have been accepted.
+    pub allowed: String,
+}
+
+impl Invalid {
+    /// Names a field, the value it had, and what is allowed there.
+    pub fn new(field: impl Into<String>, value: impl Display, allowed: impl Into<String>) -> Self {
+        Self { field: field.into(), value: value.to_string(), allowed: allowed.into() }
+    }
+
+    /// The same complaint about a field that sits inside `parent`.
+    pub fn inside(mut self, parent: &str) -> Self {
+        self.field = format!("{parent}.{}", self.field);
+        self
+    }
+}
+
+/// Accepts `value` if it lies in `range`. A float that is not a number lies in no range.
+pub fn within<T: PartialOrd + Display>(
+    field: &str,
+    value: T,
+    range: RangeInclusive<T>,
+) -> Result<(), Invalid> {
+    if range.contains(&value) {
+        Ok(())
+    } else {
+        Err(Invalid::new(field, value, format!("{} to {}", range.start(), range.end())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_has_the_field_the_value_and_the_range() {
+        let error = within("duration_s", -1.0, 0.1..=600.0).unwrap_err().inside("trial");
+        assert_eq!(error.to_string(), "trial.duration_s is -1; allowed: 0.1 to 600");
+    }
+
+    #[test]
+    fn not_a_number_is_in_no_range() {
+        assert!(within("x", f32::NAN, f32::MIN..=f32::MAX).is_err());
+        assert!(within("x", f32::INFINITY, f32::MIN..=f32::MAX).is_err());
+    }
+}

@@ -1,0 +1,268 @@
+//! The flags, and how they override a preset.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+use super::CliError;
+use crate::check::{Invalid, within};
+use crate::evolve::Settings;
+use crate::run::{THREADS_RANGE, available_cores};
+use crate::save::{DEFAULT_PRESET, load_preset};
+
+/// A five-block snake evolves until it climbs a staircase.
+///
+/// Without arguments a window opens, with a champion climbing and a fresh run evolving behind it.
+#[derive(Debug, Parser)]
+#[command(name = "snakes", version, subcommand_precedence_over_arg = true)]
+pub struct Args {
+    /// Work in the terminal: no window, no display needed
+    #[arg(long, global = true)]
+    pub no_render: bool,
+    /// Print JSON, one object a line
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// A preset's name (see `snakes presets`) or the path of your own preset file
+    #[arg(long, global = true, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// Seed of the run; the same seed gives the same bits [default: 1]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    seed: Option<String>,
+    /// Individuals per generation
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    population: Option<String>,
+    /// Generations in the run
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    generations: Option<String>,
+    /// How many of the best become parents
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    parents: Option<String>,
+    /// Mutation range of the second generation, in N·m; it halves with each further one
+    #[arg(long, value_name = "NM", allow_negative_numbers = true)]
+    mutation_range: Option<String>,
+    /// Torque points that take effect per second
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    points_per_s: Option<String>,
+    /// Length of each simulation, in simulated seconds
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    duration: Option<String>,
+    /// Physics steps per simulated second
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    steps_per_s: Option<String>,
+    /// Solver substeps within a physics step
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    substeps: Option<String>,
+    /// Gravity, in m/s²
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    gravity: Option<String>,
+    /// Worker threads [default: all cores; with a window, all but one]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
+    threads: Option<String>,
+    /// Folder to write this run's champions to
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Folder of saved champions [default: ./saves if there is one, else the platform's data folder]
+    #[arg(long, global = true, value_name = "DIR")]
+    pub saves: Option<PathBuf>,
+    /// Size of the window in pixels
+    #[arg(long, global = true, value_name = "WIDTHxHEIGHT")]
+    window_size: Option<String>,
+    /// Close the window after that many frames and print the time each took
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
+    exit_after_frames: Option<String>,
+    /// What to do instead of evolving
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Replay a saved champion exactly; with --no-render, check it against its record
+    Replay {
+        /// The saved champion
+        file: PathBuf,
+    },
+    /// Measure how fast the simulation is on this machine
+    Bench,
+    /// List the presets
+    Presets,
+}
+
+/// What the arguments ask for.
+pub enum Parsed {
+    /// A mode of the program.
+    Run(Box<Args>),
+    /// Only a text: help or version.
+    Print(String),
+}
+
+/// Parses the arguments, turning clap's page of complaint into one line.
+pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, CliError> {
+    match Args::try_parse_from(arguments) {
+        Ok(args) => Ok(Parsed::Run(Box::new(args))),
+        Err(error) => match error.kind() {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                Ok(Parsed::Print(error.render().to_string()))
+            }
+            _ => Err(CliError::Usage(one_line(&error.render().to_string()))),
+        },
+    }
+}
+
+/// The complaint itself, up to the first blank line, on one line.
+fn one_line(text: &str) -> String {
+    let complaint = text.split("\n\n").next().unwrap_or(text);
+    let words: Vec<&str> = complaint.trim_start_matches("error: ").split_whitespace().collect();
+    format!("{} (see snakes --help)", words.join(" "))
+}
+
+/// Reads a number, or says what would have been one.
+fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
+    text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), allowed))
+}
+
+const WHOLE: &str = "a whole number from 0 up";
+const DECIMAL: &str = "a number";
+
+impl Args {
+    /// The preset's name and its settings, with the flags' values put in and everything checked.
+    pub fn settings(&self) -> Result<(String, Settings), CliError> {
+        let preset = load_preset(self.preset.as_deref().unwrap_or(DEFAULT_PRESET))?;
+        let mut settings = preset.settings;
+        let Settings { trial, genome, evolution } = &mut settings;
+        for (flag, given, target) in [
+            ("population", &self.population, &mut evolution.population),
+            ("generations", &self.generations, &mut evolution.generations),
+            ("parents", &self.parents, &mut evolution.parents),
+            ("steps-per-s", &self.steps_per_s, &mut trial.physics.steps_per_s),
+            ("substeps", &self.substeps, &mut trial.physics.substeps),
+        ] {
+            if let Some(text) = given {
+                *target = number(flag, text, WHOLE)?;
+            }
+        }
+        for (flag, given, target) in [
+            ("mutation-range", &self.mutation_range, &mut evolution.mutation_range_nm),
+            ("points-per-s", &self.points_per_s, &mut genome.points_per_s),
+            ("duration", &self.duration, &mut trial.duration_s),
+            ("gravity", &self.gravity, &mut trial.physics.gravity_m_s2),
+        ] {
+            if let Some(text) = given {
+                *target = number(flag, text, DECIMAL)?;
+            }
+        }
+        settings.check()?;
+        Ok((preset.name, settings))
+    }
+
+    /// The seed of the run.
+    pub fn seed(&self) -> Result<u64, CliError> {
+        let allowed = "a whole number from 0 to 18446744073709551615";
+        let given = self.seed.as_deref();
+        Ok(given.map_or(Ok(1), |text| number("seed", text, allowed))?)
+    }
+
+    /// Worker threads without a window.
+    pub fn threads(&self) -> Result<usize, CliError> {
+        self.threads_or(available_cores())
+    }
+
+    /// Worker threads beside a window: a core is left free for it.
+    #[cfg(feature = "studio")]
+    pub fn studio_threads(&self) -> Result<usize, CliError> {
+        self.threads_or(available_cores().saturating_sub(1).max(1))
+    }
+
+    fn threads_or(&self, default: usize) -> Result<usize, CliError> {
+        let Some(text) = &self.threads else { return Ok(default) };
+        let threads = number("threads", text, "a whole number from 1 to 1024")?;
+        within("threads", threads, THREADS_RANGE)?;
+        Ok(threads)
+    }
+
+    /// The window's size in pixels.
+    #[cfg(feature = "studio")]
+    pub fn window_size(&self) -> Result<(u32, u32), CliError> {
+        let Some(text) = &self.window_size else { return Ok((1280, 720)) };
+        let allowed = "WIDTHxHEIGHT, such as 1280x720";
+        let wrong = || Invalid::new("window-size", format!("{text:?}"), allowed);
+        let (width, height) = text.split_once('x').ok_or_else(wrong)?;
+        let (width, height) =
+            (number("window-size", width, allowed)?, number("window-size", height, allowed)?);
+        within("window-size.width", width, 320..=16_384)?;
+        within("window-size.height", height, 240..=16_384)?;
+        Ok((width, height))
+    }
+
+    /// After how many frames to close the window by itself.
+    #[cfg(feature = "studio")]
+    pub fn exit_after_frames(&self) -> Result<Option<u32>, CliError> {
+        let Some(text) = &self.exit_after_frames else { return Ok(None) };
+        let frames = number("exit-after-frames", text, "a whole number from 1 up")?;
+        within("exit-after-frames", frames, 1..=u32::MAX)?;
+        Ok(Some(frames))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn args(words: &str) -> Result<Args, CliError> {
+        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
+        match parse(arguments.map(OsString::from))? {
+            Parsed::Run(args) => Ok(*args),
+            Parsed::Print(_) => unreachable!("no help was asked for"),
+        }
+    }
+
+    fn refusal(words: &str) -> String {
+        let complaint = args(words).and_then(|args| {
+            args.seed()?;
+            args.threads()?;
+            args.settings().map(drop)
+        });
+        complaint.expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn the_flags_are_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn flags_override_the_preset() {
+        let args = args("--no-render --seed 7 --population 20 --duration 2.5").expect("allowed");
+        let (preset, settings) = args.settings().expect("allowed");
+        assert_eq!(preset, "report");
+        assert_eq!(settings.evolution.population, 20);
+        assert_eq!(settings.trial.duration_s, 2.5);
+        assert_eq!(args.seed().expect("allowed"), 7);
+    }
+
+    #[test]
+    fn wrong_values_are_refused_with_field_value_and_range() {
+        for (words, message) in [
+            ("--population 0", "evolution.population is 0; allowed: 1 to 100000"),
+            ("--population -3", "population is \"-3\"; allowed: a whole number from 0 up"),
+            ("--duration -1", "trial.duration_s is -1; allowed: 0.1 to 600"),
+            ("--duration NaN", "trial.duration_s is NaN; allowed: 0.1 to 600"),
+            ("--seed twelve", "seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615"),
+            ("--preset nosuch", "preset is \"nosuch\"; allowed: report, quick, or a file"),
+            ("--threads 0", "threads is 0; allowed: 1 to 1024"),
+        ] {
+            assert_eq!(refusal(words), message, "{words}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_flag_is_one_line() {
+        let message = refusal("--polulation 3");
+        assert!(message.contains("--polulation") && !message.contains('\n'), "{message}");
+    }
+}

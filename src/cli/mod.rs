@@ -1,0 +1,168 @@
+//! The command line: flags in, one of the program's modes out, an exit code at the end.
+//!
+//! Exit codes: 0 done, 1 failed, 2 used wrongly. Every error is one line on standard error.
+
+mod args;
+mod error;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Duration;
+
+use indicatif::ProgressBar;
+
+use args::{Args, Command};
+pub use error::CliError;
+
+use crate::check::Invalid;
+use crate::run::bench::{BenchReport, bench};
+use crate::run::{Control, Experiment, headless};
+use crate::save::{SavesFolder, load_preset, shipped_presets};
+
+/// Runs the program with the given arguments, the program's name first.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let result = args::parse(arguments).and_then(|parsed| match parsed {
+        args::Parsed::Run(args) => dispatch(*args),
+        args::Parsed::Print(text) => print(&text),
+    });
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Nothing is left to do if even standard error is gone.
+            let _ = writeln!(io::stderr(), "error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn dispatch(args: Args) -> Result<(), CliError> {
+    match &args.command {
+        Some(Command::Presets) => print_presets(args.json),
+        Some(Command::Bench) => print_bench(&args),
+        Some(Command::Replay { file }) if args.no_render => {
+            Ok(headless::replay(file, args.json, &mut io::stdout().lock())?)
+        }
+        None if args.no_render => evolve(&args),
+        None | Some(Command::Replay { .. }) => open_studio(&args),
+    }
+}
+
+/// The headless experiment.
+fn evolve(args: &Args) -> Result<(), CliError> {
+    let (preset, settings) = args.settings()?;
+    let threads = args.threads()?;
+    let seed = args.seed()?;
+    let saves = SavesFolder::find(args.out.as_deref().or(args.saves.as_deref()));
+    let evolution = &settings.evolution;
+    let _ = writeln!(
+        io::stderr(),
+        "preset {preset}, seed {seed}: {} generations of {}, {threads} threads",
+        evolution.generations,
+        evolution.population
+    );
+    let control = Arc::new(Control::default());
+    let cancelled = Arc::clone(&control);
+    // Without a handler the key ends the program at once; what is saved by then is whole.
+    let _ = ctrlc::set_handler(move || cancelled.cancel());
+    let experiment = Experiment::new(&preset, seed, settings);
+    let mut out = io::stdout();
+    Ok(headless::evolve(experiment, saves, threads, args.json, &control, &mut out)?)
+}
+
+#[cfg(feature = "studio")]
+fn open_studio(args: &Args) -> Result<(), CliError> {
+    use crate::studio;
+    let (preset, settings) = args.settings()?;
+    let champion = match &args.command {
+        Some(Command::Replay { file }) => {
+            Some(crate::save::load_champion(file).map_err(headless::HeadlessError::from)?)
+        }
+        _ => None,
+    };
+    let options = studio::Options {
+        preset,
+        settings,
+        seed: args.seed()?,
+        threads: args.studio_threads()?,
+        saves: SavesFolder::find(args.out.as_deref().or(args.saves.as_deref())),
+        champion,
+        window_size: args.window_size()?,
+        exit_after_frames: args.exit_after_frames()?,
+    };
+    Ok(studio::run(options)?)
+}
+
+#[cfg(not(feature = "studio"))]
+fn open_studio(_: &Args) -> Result<(), CliError> {
+    Err(CliError::NoStudio)
+}
+
+fn print_presets(json: bool) -> Result<(), CliError> {
+    let presets = shipped_presets().map_err(headless::HeadlessError::from)?;
+    let mut text = String::new();
+    for preset in presets {
+        if json {
+            text += &format!("{}\n", serde_json::json!({"name": preset.name, "about": preset.about}));
+        } else {
+            text += &format!("{:<10}{}\n", preset.name, preset.about);
+        }
+    }
+    print(&text)
+}
+
+fn print_bench(args: &Args) -> Result<(), CliError> {
+    let settings = match &args.preset {
+        Some(name) => load_preset(name)?.settings,
+        None => load_preset(crate::save::DEFAULT_PRESET)?.settings,
+    };
+    let bar = ProgressBar::new(100);
+    let report = bench(&settings, args.threads()?, BENCH_DURATION, |share| {
+        bar.set_position((share * 100.0) as u64);
+    });
+    bar.finish_and_clear();
+    let report = report.map_err(headless::HeadlessError::from)?;
+    if args.json {
+        let line = serde_json::to_string(&report).map_err(io::Error::other);
+        return print(&format!("{}\n", line.map_err(headless::HeadlessError::from)?));
+    }
+    print(&bench_table(&report))
+}
+
+/// "A few seconds": twenty-odd rounds of all contestants.
+const BENCH_DURATION: Duration = Duration::from_secs(6);
+
+fn bench_table(report: &BenchReport) -> String {
+    format!(
+        "threads                  {}\n\
+         steps_per_s              {:.0}\n\
+         sim_s_per_s              {:.1}  ({:.1} per thread)\n\
+         one thread               {:.1} sim_s_per_s\n\
+         bare rapier, one thread  {:.1} sim_s_per_s\n\
+         ratio to bare rapier     {:.3}\n\
+         scaling over one thread  {:.3}\n",
+        report.threads,
+        report.steps_per_s,
+        report.sim_s_per_s,
+        report.sim_s_per_s_per_thread,
+        report.one_thread_sim_s_per_s,
+        report.bare_rapier_sim_s_per_s,
+        report.ratio_to_bare_rapier,
+        report.scaling,
+    )
+}
+
+/// Writes to standard output. A reader that has had enough (`snakes presets | head -1`) is no error.
+fn print(text: &str) -> Result<(), CliError> {
+    match io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other.map_err(headless::HeadlessError::from)?),
+    }
+}
+
+impl From<Invalid> for CliError {
+    fn from(invalid: Invalid) -> Self {
+        Self::Usage(invalid.to_string())
+    }
+}

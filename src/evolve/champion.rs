@@ -1,0 +1,30 @@
+//! An individual worth keeping, and where it comes from.
+
+use crate::genome::Genome;
+use crate::score::{Evaluation, Trial};
+
+/// An individual worth keeping, with all that is needed to see it again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Champion {
+    /// The individual.
+    pub genome: Genome,
+    /// The conditions under which it was scored.
+    pub trial: Trial,
+    /// What it reached.
+    pub evaluation: Evaluation,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+/// The place of an individual in the run that found it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    /// Name of the preset.
+    pub preset: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Generation; the first is 1.
+    pub generation: u32,
+    /// Index within the generation; the first is 0.
+    pub individual: u32,
+}

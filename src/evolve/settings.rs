@@ -1,0 +1,60 @@
+//! All that determines an experiment's bits.
+
+use serde::{Deserialize, Serialize};
+
+use super::HalvingSettings;
+use crate::check::Invalid;
+use crate::genome::GenomeSpace;
+use crate::score::Trial;
+
+/// The settings of an experiment. Equal settings and an equal seed give equal bits.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Under which conditions genomes are scored.
+    pub trial: Trial,
+    /// What genomes may be.
+    pub genome: GenomeSpace,
+    /// How the search goes.
+    pub evolution: HalvingSettings,
+}
+
+impl Settings {
+    /// Checks every field against its range, and that a generation fits into memory.
+    pub fn check(&self) -> Result<(), Invalid> {
+        self.trial.check().map_err(|error| error.inside("trial"))?;
+        self.genome.check().map_err(|error| error.inside("genome"))?;
+        self.evolution.check().map_err(|error| error.inside("evolution"))?;
+        let points = self.genome.points(self.trial.duration_s);
+        let torques_each = 2 * self.trial.agent.joints() * points;
+        let largest = LARGEST_GENERATION_TORQUES / torques_each.max(1);
+        if self.evolution.population as usize > largest {
+            let allowed = format!("1 to {largest} with {torques_each} torque points each");
+            return Err(Invalid::new("evolution.population", self.evolution.population, allowed));
+        }
+        Ok(())
+    }
+}
+
+/// Torque points in one generation: 500 million of them take 2 GB.
+const LARGEST_GENERATION_TORQUES: usize = 500_000_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_allowed() {
+        assert_eq!(Settings::default().check(), Ok(()));
+    }
+
+    #[test]
+    fn a_generation_that_would_not_fit_into_memory_is_refused() {
+        let mut settings = Settings::default();
+        settings.trial.duration_s = 600.0;
+        settings.genome.points_per_s = 1000.0;
+        settings.evolution.population = 10_000;
+        let error = settings.check().unwrap_err();
+        assert!(error.to_string().starts_with("evolution.population is 10000; allowed: 1 to 104"));
+    }
+}

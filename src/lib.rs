@@ -1,0 +1,60 @@
+//! Snakes & Stairs: a five-block snake evolves until it climbs a staircase.
+//!
+//! Read this file from top to bottom and you have read the pipeline. Each module uses those above
+//! it, never those below.
+//!
+//! # Invariants
+//! 1. **One scoring path.** Headless runs, the studio, replays and tests all advance a
+//!    [`score::Rollout`], which goes through [`world::Simulation::step`] with one constant step.
+//! 2. **The same seed and settings give the same bits**: for any number of threads, in debug and
+//!    release, with and without the studio, on any x86-64 machine. Random numbers come from streams
+//!    named after run seed, generation, individual and purpose ([`rng::stream`]), never from the order
+//!    of arrival; results are in the order of the individuals before a strategy sees them.
+//! 3. **No transcendental function of the standard library in the core**: they differ from one C
+//!    library to the next. `libm` only; `clippy.toml` lists them.
+//! 4. **The viewer only looks.** The frame rate, a moved window or a slow panel cannot change a result.
+//! 5. **Panels send messages; one system applies them.**
+//! 6. **Whatever a person can break is checked where it enters**, and the error names the field, the
+//!    value and what is allowed ([`check::Invalid`]).
+//! 7. **A number has its unit in its name**: `duration_s`, `bend_limit_rad`, `torque_nm`.
+//!
+//! A test (`tests/it/architecture.rs`) checks those that a scan of the source can.
+//!
+//! # Axes
+//! x across the stairs, y towards and up the stairs, z up, in the core and in the window alike: the
+//! studio's camera has z up, so that what the engine's own tools draw lies where the blocks are.
+
+pub mod check;
+pub mod rng;
+
+/// Stairs, surface, snake, and one `Simulation` that steps them; built on rapier3d.
+pub mod world;
+
+/// What evolves.
+pub mod genome;
+
+/// From genes to torques.
+pub mod control;
+
+/// A `Trial`, a `Rollout` of one genome through it, and what it scored.
+pub mod score;
+
+/// Strategies behind ask and tell.
+pub mod evolve;
+
+/// Files: champions and presets.
+pub mod save;
+
+/// Experiments on worker threads, and the headless mode.
+pub mod run;
+
+/// The window.
+#[cfg(feature = "studio")]
+pub mod studio;
+
+/// The command line.
+pub mod cli;
+
+/// Version of everything that decides the bits of a run: physics, controllers, random streams,
+/// strategies. Raised by hand whenever a change alters them on purpose; saves record it.
+pub const ENGINE_VERSION: u32 = 1;

@@ -1,0 +1,154 @@
+//! How fast the simulation is: our scoring path against bare rapier, one thread against many, all in
+//! one run and in turn, so that a noisy machine slows them alike.
+
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::pool;
+use crate::control::SignalPlayer;
+use crate::evolve::Settings;
+use crate::genome::Genome;
+use crate::rng::{Purpose, stream};
+use crate::score::{Trial, evaluate};
+use crate::world::{JointTorque, Simulation};
+
+/// What the bench measured. Rates are medians over its rounds, ratios medians of per-round ratios.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BenchReport {
+    /// Worker threads of the many-threads figures.
+    pub threads: usize,
+    /// Physics steps per wall second, all threads together.
+    pub steps_per_s: f64,
+    /// Simulated seconds per wall second, all threads together.
+    pub sim_s_per_s: f64,
+    /// Simulated seconds per wall second and thread.
+    pub sim_s_per_s_per_thread: f64,
+    /// Simulated seconds per wall second on one thread.
+    pub one_thread_sim_s_per_s: f64,
+    /// The same worlds and torques on one thread, stepped by rapier alone: no checks, no trace.
+    pub bare_rapier_sim_s_per_s: f64,
+    /// Our one-thread rate over bare rapier's.
+    pub ratio_to_bare_rapier: f64,
+    /// The many-threads rate over the one-thread rate.
+    pub scaling: f64,
+}
+
+/// Genomes evaluated per thread in a round: about a tenth of a second.
+const GENOMES: u32 = 20;
+
+/// Measures the scene of `settings` for about `duration`, calling `progress` with the share done.
+///
+/// # Errors
+/// The threads could not be started.
+pub fn bench(
+    settings: &Settings,
+    threads: usize,
+    duration: Duration,
+    mut progress: impl FnMut(f64),
+) -> Result<BenchReport, rayon::ThreadPoolBuildError> {
+    let trial = &settings.trial;
+    let genomes: Vec<Genome> = (0..GENOMES)
+        .map(|individual| {
+            let mut rng = stream(1, 1, individual, Purpose::Birth);
+            settings.genome.birth(trial.agent.joints(), trial.duration_s, &mut rng)
+        })
+        .collect();
+    let (one, many) = (pool(1)?, pool(threads)?);
+    let started = Instant::now();
+    let mut rounds: Vec<Round> = Vec::new();
+    loop {
+        rounds.push(Round {
+            ours: steps_per_s(&one, 1, &genomes, |genome| evaluate(genome, trial).steps),
+            bare: steps_per_s(&one, 1, &genomes, |genome| step_bare(genome, trial)),
+            many: steps_per_s(&many, threads, &genomes, |genome| evaluate(genome, trial).steps),
+        });
+        let elapsed = started.elapsed();
+        progress((elapsed.as_secs_f64() / duration.as_secs_f64()).min(1.0));
+        if elapsed >= duration {
+            break;
+        }
+    }
+    // The first round warms the caches.
+    if rounds.len() > 1 {
+        rounds.remove(0);
+    }
+    let median_of = |value: fn(&Round) -> f64| median(rounds.iter().map(value).collect());
+    let step_s = f64::from(trial.physics.step_s());
+    let many = median_of(|round| round.many);
+    Ok(BenchReport {
+        threads,
+        steps_per_s: many,
+        sim_s_per_s: many * step_s,
+        sim_s_per_s_per_thread: many * step_s / threads as f64,
+        one_thread_sim_s_per_s: median_of(|round| round.ours) * step_s,
+        bare_rapier_sim_s_per_s: median_of(|round| round.bare) * step_s,
+        ratio_to_bare_rapier: median_of(|round| round.ours / round.bare),
+        scaling: median_of(|round| round.many / round.ours),
+    })
+}
+
+/// Steps per second of the three contestants, measured one after the other.
+struct Round {
+    ours: f64,
+    bare: f64,
+    many: f64,
+}
+
+/// Runs every genome once per thread of the pool and returns steps per wall second.
+fn steps_per_s(
+    pool: &ThreadPool,
+    threads: usize,
+    genomes: &[Genome],
+    run: impl Fn(&Genome) -> u32 + Sync,
+) -> f64 {
+    let started = Instant::now();
+    let steps: u64 = pool.install(|| {
+        let copies = rayon::iter::repeat_n(genomes, threads).flatten();
+        copies.map(|genome| u64::from(run(genome))).sum()
+    });
+    steps as f64 / started.elapsed().as_secs_f64()
+}
+
+/// The same world and torques as `evaluate`, without health checks, pose copies and trace.
+fn step_bare(genome: &Genome, trial: &Trial) -> u32 {
+    let mut simulation = Simulation::new(&trial.world_plan(genome));
+    let player = SignalPlayer::new(genome.signals.clone(), trial.physics.steps_per_s);
+    let mut torques = vec![JointTorque::default(); trial.agent.joints()];
+    for step in 0..trial.steps() {
+        player.torques(step, &mut torques);
+        simulation.apply(&torques);
+        simulation.physics_mut().step();
+    }
+    trial.steps()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bare_loop_computes_the_very_motion_that_is_scored() {
+        let settings = Settings::default();
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = settings.genome.birth(4, 5.0, &mut rng);
+        assert_eq!(step_bare(&genome, &settings.trial), evaluate(&genome, &settings.trial).steps);
+    }
+
+    #[test]
+    fn a_bench_reports_rates_and_ratios() {
+        let mut settings = Settings::default();
+        settings.trial.duration_s = 0.1;
+        let report = bench(&settings, 2, Duration::ZERO, |_| ()).expect("threads");
+        assert_eq!(report.threads, 2);
+        assert!(report.steps_per_s > 0.0 && report.ratio_to_bare_rapier > 0.0);
+        assert!((report.sim_s_per_s * 60.0 / report.steps_per_s - 1.0).abs() < 1e-6);
+    }
+}

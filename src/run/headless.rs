@@ -1,0 +1,236 @@
+//! The program without a window: an experiment as a table or as JSON lines, a replay as a verdict.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::{ThreadPool, ThreadPoolBuildError};
+use serde_json::{Value, json};
+
+use super::{Control, Experiment, GenerationReport, Keeper, pool};
+use crate::ENGINE_VERSION;
+use crate::evolve::Champion;
+use crate::save::{SaveError, SavesFolder, load_champion};
+use crate::score::evaluate;
+
+/// Why a headless command failed.
+#[derive(Debug, thiserror::Error)]
+pub enum HeadlessError {
+    /// A file could not be read or written.
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    /// The threads could not be started.
+    #[error("threads: cannot be started: {0}")]
+    Threads(#[from] ThreadPoolBuildError),
+    /// Standard output was closed or is full.
+    #[error("standard output: cannot be written: {0}")]
+    Output(#[from] io::Error),
+    /// The interrupt key was pressed; what was found so far is saved.
+    #[error("cancelled; the best so far is saved")]
+    Cancelled,
+    /// A replay came out differently than recorded.
+    #[error("{path}: replay differs from the record: {difference}")]
+    Differs {
+        /// The save.
+        path: PathBuf,
+        /// What differs, and why that may be.
+        difference: String,
+    },
+    /// Every agent of every generation was disqualified.
+    #[error("no champion: every agent of every generation was disqualified")]
+    NoChampion,
+}
+
+/// Runs an experiment to its end and prints it to `out`, a line per generation. The best so far is
+/// saved after each generation.
+///
+/// # Errors
+/// See [`HeadlessError`]. The folder is tried before the first evaluation.
+pub fn evolve(
+    mut experiment: Experiment,
+    saves: SavesFolder,
+    threads: usize,
+    json: bool,
+    control: &Arc<Control>,
+    out: &mut dyn Write,
+) -> Result<(), HeadlessError> {
+    saves.prepare()?;
+    let pool = pool(threads)?;
+    if !json {
+        writeln!(out, "{TABLE_HEAD}")?;
+        out.flush()?;
+    }
+    let mut keeper = Keeper::new(saves);
+    while !experiment.is_over() {
+        let report = with_progress(&mut experiment, &pool, control)?;
+        keeper.keep_best(&experiment)?;
+        let line = if json { json_line(&report).to_string() } else { table_row(&report) };
+        writeln!(out, "{line}")?;
+        out.flush()?;
+    }
+    let run_hash = format!("{:016x}", experiment.run_hash());
+    let best = experiment.best();
+    if json {
+        let last = json!({
+            "done": true,
+            "run_hash": run_hash,
+            "best": best.map(|best| best.evaluation.fitness_m),
+            "champion": keeper.kept(),
+        });
+        writeln!(out, "{last}")?;
+    } else if let (Some(best), Some(path)) = (best, keeper.kept()) {
+        writeln!(out, "\nchampion  {}", about(best))?;
+        writeln!(out, "saved to  {}", path.display())?;
+        writeln!(out, "run hash  {run_hash}")?;
+    }
+    best.map(|_| ()).ok_or(HeadlessError::NoChampion)
+}
+
+/// Runs one generation with a progress bar on the terminal; where standard error is no terminal, none
+/// is drawn.
+fn with_progress(
+    experiment: &mut Experiment,
+    pool: &ThreadPool,
+    control: &Arc<Control>,
+) -> Result<GenerationReport, HeadlessError> {
+    let population = experiment.settings().evolution.population;
+    let bar = ProgressBar::new(population.into());
+    // The template is a constant; if it were wrong, the default bar would do.
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_message(format!("generation {}", experiment.finished() + 1));
+    let result = std::thread::scope(|scope| {
+        let (finished, watched) = std::sync::mpsc::channel::<()>();
+        let (bar, control_seen) = (&bar, control);
+        scope.spawn(move || {
+            // Ends when the sender is dropped.
+            while watched.recv_timeout(Duration::from_millis(100))
+                == Err(std::sync::mpsc::RecvTimeoutError::Timeout)
+            {
+                bar.set_position(control_seen.done().into());
+            }
+        });
+        let result = experiment.run_generation(pool, control);
+        drop(finished);
+        result
+    });
+    bar.finish_and_clear();
+    result.map_err(|_| HeadlessError::Cancelled)
+}
+
+/// Re-simulates a saved champion and compares it with its record, bit for bit.
+///
+/// # Errors
+/// The file cannot be used, or fitness or trace differ from what was recorded.
+pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), HeadlessError> {
+    let loaded = load_champion(path)?;
+    let recorded = loaded.champion.evaluation;
+    let found = evaluate(&loaded.champion.genome, &loaded.champion.trial);
+    let same_fitness = found.fitness_m.to_bits() == recorded.fitness_m.to_bits();
+    let matches = same_fitness && found.trace_hash == recorded.trace_hash;
+    let meaning = loaded.champion.trial.meaning(f64::from(found.fitness_m));
+    if json {
+        let line = json!({
+            "fitness": found.fitness_m,
+            "trace_hash": format!("{:016x}", found.trace_hash),
+            "recorded_fitness": recorded.fitness_m,
+            "recorded_trace_hash": format!("{:016x}", recorded.trace_hash),
+            "steps": found.steps,
+            "disqualified": found.disqualified.map(|reason| reason.words()),
+            "meaning": meaning,
+            "engine": loaded.engine,
+            "matches": matches,
+        });
+        writeln!(out, "{line}")?;
+    } else {
+        writeln!(out, "fitness     {:.6} m, {meaning}", found.fitness_m)?;
+        writeln!(out, "trace_hash  {:016x}", found.trace_hash)?;
+        if matches {
+            writeln!(out, "equal to the record, bit for bit")?;
+        }
+    }
+    if matches {
+        return Ok(());
+    }
+    let engine = if loaded.is_of_this_engine() {
+        "the file was edited, or this machine computes other bits".to_owned()
+    } else {
+        format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
+    };
+    let difference = format!(
+        "fitness {} m and trace {:016x}, recorded {} m and {:016x} ({engine})",
+        found.fitness_m, found.trace_hash, recorded.fitness_m, recorded.trace_hash,
+    );
+    Err(HeadlessError::Differs { path: path.to_owned(), difference })
+}
+
+const TABLE_HEAD: &str =
+    "generation     mean     best   median  std.dev.  disqualified  meaning of the mean";
+
+fn table_row(report: &GenerationReport) -> String {
+    let generation = report.generation;
+    let disqualified = report.disqualified;
+    let numbers = match report.statistics {
+        Some(s) => format!("{:>9.2}{:>9.2}{:>9.2}{:>10.2}", s.mean, s.best, s.median, s.std),
+        None => format!("{:>9}{:>9}{:>9}{:>10}", "-", "-", "-", "-"),
+    };
+    format!("{generation:>10}{numbers}{disqualified:>14}  {}", report.meaning)
+}
+
+fn json_line(report: &GenerationReport) -> Value {
+    let statistics = report.statistics;
+    json!({
+        "generation": report.generation,
+        "mean": statistics.map(|s| s.mean),
+        "best": statistics.map(|s| s.best),
+        "median": statistics.map(|s| s.median),
+        "std": statistics.map(|s| s.std),
+        "worst": statistics.map(|s| s.worst),
+        "disqualified": report.disqualified,
+        "evaluations": report.evaluations,
+        "elapsed_s": report.elapsed_s,
+        "meaning": report.meaning,
+        "hash": format!("{:016x}", report.hash),
+    })
+}
+
+/// A champion in one line.
+fn about(champion: &Champion) -> String {
+    let fitness_m = f64::from(champion.evaluation.fitness_m);
+    format!(
+        "y = {fitness_m:.2} m: {} (generation {}, individual {})",
+        champion.trial.meaning(fitness_m),
+        champion.origin.generation,
+        champion.origin.individual,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Statistics;
+
+    #[test]
+    fn a_row_stands_under_its_head() {
+        let statistics = Statistics { mean: -7.225, best: 1.5, median: -7.0, std: 0.25, worst: -9.0 };
+        let report = GenerationReport {
+            generation: 1,
+            evaluations: 500,
+            disqualified: 12,
+            statistics: Some(statistics),
+            meaning: "starting position".to_owned(),
+            hash: 0,
+            elapsed_s: 0.0,
+            champion: None,
+        };
+        let row = table_row(&report);
+        for (number, column) in [("-7.22", "mean"), ("1.50", "best"), ("12", "disqualified")] {
+            let end_of = |line: &str, word: &str| line.find(word).map(|at| at + word.len());
+            assert_eq!(end_of(&row, number), end_of(TABLE_HEAD, column), "{row}\n{TABLE_HEAD}");
+        }
+        assert_eq!(row.find("starting"), TABLE_HEAD.find("meaning"));
+    }
+}

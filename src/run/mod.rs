@@ -1,0 +1,17 @@
+//! An experiment going on: worker threads, pause and cancel, statistics, and the headless mode.
+
+mod background;
+pub mod bench;
+mod control;
+mod experiment;
+pub mod headless;
+mod keeper;
+mod report;
+mod threads;
+
+pub use background::{Background, Event};
+pub use control::{Cancelled, Control};
+pub use experiment::Experiment;
+pub use keeper::Keeper;
+pub use report::{GenerationReport, Statistics};
+pub use threads::{THREADS_RANGE, available_cores, pool};

@@ -1,0 +1,101 @@
+//! What a generation was like, in numbers.
+
+use xxhash_rust::xxh3::Xxh3Default;
+
+use crate::evolve::Champion;
+use crate::score::Evaluation;
+
+/// The result of one generation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GenerationReport {
+    /// The first is 1.
+    pub generation: u32,
+    /// Individuals that were evaluated.
+    pub evaluations: u32,
+    /// How many of them were disqualified.
+    pub disqualified: u32,
+    /// Fitness statistics over the others; none if all were disqualified.
+    pub statistics: Option<Statistics>,
+    /// What the mean means, in the words of the report's Table 1.
+    pub meaning: String,
+    /// Hash over the bits of every evaluation, in the order of the individuals.
+    pub hash: u64,
+    /// Wall-clock time the generation took, in seconds. Not part of any hash.
+    pub elapsed_s: f64,
+    /// The best individual; none if all were disqualified.
+    pub champion: Option<Champion>,
+}
+
+/// Statistics over the agents of one generation that were not disqualified, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statistics {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Greatest fitness.
+    pub best: f64,
+    /// Median; of an even number, the mean of the two middle ones.
+    pub median: f64,
+    /// Standard deviation of the whole population (divided by n).
+    pub std: f64,
+    /// Least fitness.
+    pub worst: f64,
+}
+
+impl Statistics {
+    /// The statistics of the healthy ones among `evaluations`, in a fixed order of summation.
+    pub fn of(evaluations: &[Evaluation]) -> Option<Self> {
+        let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
+        let mut fitness: Vec<f64> = healthy.map(|e| f64::from(e.fitness_m)).collect();
+        fitness.sort_by(f64::total_cmp);
+        let (&worst, &best) = (fitness.first()?, fitness.last()?);
+        let count = fitness.len() as f64;
+        let mean = fitness.iter().sum::<f64>() / count;
+        let variance = fitness.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count;
+        let (low, high) = (fitness[(fitness.len() - 1) / 2], fitness[fitness.len() / 2]);
+        Some(Self { mean, best, median: (low + high) / 2.0, std: variance.sqrt(), worst })
+    }
+}
+
+/// The hash of a generation: every evaluation's bits, in the order of the individuals.
+pub fn generation_hash(evaluations: &[Evaluation]) -> u64 {
+    let mut hash = Xxh3Default::new();
+    for evaluation in evaluations {
+        hash.update(&evaluation.trace_hash.to_le_bytes());
+        hash.update(&evaluation.fitness_m.to_bits().to_le_bytes());
+        hash.update(&evaluation.steps.to_le_bytes());
+        hash.update(&[u8::from(evaluation.disqualified.is_some())]);
+    }
+    hash.digest()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Disqualification;
+
+    fn evaluation(fitness_m: f32, disqualified: Option<Disqualification>) -> Evaluation {
+        Evaluation { fitness_m, disqualified, trace_hash: 0, steps: 1 }
+    }
+
+    #[test]
+    fn statistics_leave_the_disqualified_out() {
+        let evaluations = [
+            evaluation(4.0, None),
+            evaluation(180.0, Some(Disqualification::TooFast)),
+            evaluation(-2.0, None),
+            evaluation(1.0, None),
+            evaluation(5.0, None),
+        ];
+        let statistics = Statistics::of(&evaluations).expect("four are healthy");
+        assert_eq!((statistics.mean, statistics.median), (2.0, 2.5));
+        assert_eq!((statistics.best, statistics.worst), (5.0, -2.0));
+        assert_eq!(statistics.std, 7.5_f64.sqrt());
+        assert_eq!(Statistics::of(&evaluations[1..2]), None);
+    }
+
+    #[test]
+    fn the_hash_depends_on_the_order_of_the_individuals() {
+        let [a, b] = [evaluation(1.0, None), evaluation(2.0, None)];
+        assert_ne!(generation_hash(&[a, b]), generation_hash(&[b, a]));
+    }
+}

@@ -1,0 +1,193 @@
+//! Reading and writing champions, whichever format they are in.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ron::ser::PrettyConfig;
+use serde::Deserialize;
+
+use super::SaveError;
+use super::files::{parse, read_text, write_whole};
+use super::v1::{ChampionV1, FORMAT, KIND};
+use crate::ENGINE_VERSION;
+use crate::check::Invalid;
+use crate::evolve::Champion;
+
+/// A champion read from a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedChampion {
+    /// The champion, with what was recorded of it.
+    pub champion: Champion,
+    /// The engine that recorded it. Another one than [`ENGINE_VERSION`] may compute other bits.
+    pub engine: u32,
+}
+
+/// The part of a file that says what it is; everything else is skipped.
+#[derive(Deserialize)]
+struct Header {
+    #[serde(default)]
+    kind: String,
+    #[serde(default)]
+    format: u32,
+}
+
+/// Reads a champion.
+///
+/// # Errors
+/// The file is unreadable, too large, damaged, of another kind, newer, or has a value out of range.
+pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
+    read(path, &read_text(path)?)
+}
+
+/// Writes a champion so that a person can read it, whole or not at all.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn store_champion(path: &Path, champion: &Champion) -> Result<(), SaveError> {
+    let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
+    let file = ChampionV1::from(champion.clone());
+    let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| SaveError::Unwritable {
+        path: path.to_owned(),
+        source: std::io::Error::other(error),
+    })?;
+    let origin = &champion.origin;
+    let header = format!(
+        "// A champion of Snakes & Stairs: preset {}, seed {}, generation {}, individual {}.\n\
+         // It reached y = {:.2} m: it {}.\n\
+         // See it again, exactly: snakes replay FILE (with --no-render to check it in a terminal)\n",
+        origin.preset,
+        origin.seed,
+        origin.generation,
+        origin.individual,
+        champion.evaluation.fitness_m,
+        champion.trial.meaning(f64::from(champion.evaluation.fitness_m)),
+    );
+    write_whole(path, &format!("{header}{text}\n"))
+}
+
+/// The champion that comes with the program.
+///
+/// # Errors
+/// The embedded file is broken, which a test rules out.
+pub fn shipped_champion() -> Result<LoadedChampion, SaveError> {
+    read(Path::new("first-climber.ron"), include_str!("../../saves/first-climber.ron"))
+}
+
+/// The `.ron` files of a folder, sorted by name. A folder that is not there has none.
+pub fn list_champions(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "ron"))
+        .collect();
+    paths.sort();
+    paths
+}
+
+fn read(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
+    let header: Header = parse(path, text)?;
+    if header.kind != KIND {
+        let found = format!("{:.60?}", header.kind);
+        return Err(SaveError::Foreign { path: path.to_owned(), found, expected: KIND });
+    }
+    match header.format {
+        1..=FORMAT => {}
+        0 => {
+            let source = Invalid::new("format", "0 or missing", format!("1 to {FORMAT}"));
+            return Err(SaveError::Invalid { path: path.to_owned(), source });
+        }
+        found => return Err(SaveError::Newer { path: path.to_owned(), found, newest: FORMAT }),
+    }
+    let file: ChampionV1 = parse(path, text)?;
+    let engine = file.engine;
+    let champion = Champion::try_from(file)
+        .map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    Ok(LoadedChampion { champion, engine })
+}
+
+impl LoadedChampion {
+    /// Whether this program computes the same bits as the one that recorded the champion.
+    pub fn is_of_this_engine(&self) -> bool {
+        self.engine == ENGINE_VERSION
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+    use crate::run::{Control, Experiment, pool};
+    use crate::score::evaluate;
+
+    fn champion() -> Champion {
+        let mut settings = Settings::default();
+        settings.evolution.population = 4;
+        settings.trial.duration_s = 1.0;
+        let mut experiment = Experiment::new("test", 5, settings);
+        let report = experiment.run_generation(&pool(1).expect("a pool"), &Control::default());
+        report.expect("not cancelled").champion.expect("somebody was healthy")
+    }
+
+    #[test]
+    fn a_champion_comes_back_from_its_file_in_every_bit() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("champion.ron");
+        let champion = champion();
+        store_champion(&path, &champion).expect("written");
+        let loaded = load_champion(&path).expect("read");
+        assert_eq!(loaded.champion, champion);
+        assert!(loaded.is_of_this_engine());
+        assert_eq!(list_champions(folder.path()), [path], "and nothing else is left in the folder");
+    }
+
+    #[test]
+    fn the_shipped_champion_does_what_it_did_when_it_was_found() {
+        let LoadedChampion { champion, engine } = shipped_champion().expect("well formed");
+        assert_eq!(engine, ENGINE_VERSION);
+        assert_eq!(evaluate(&champion.genome, &champion.trial), champion.evaluation);
+        let climbed = champion.trial.stairs.steps_climbed(champion.evaluation.fitness_m.into());
+        assert!(climbed >= 3, "a champion to open with climbs; this one climbed {climbed}");
+    }
+
+    /// What `load_champion` says to a champion's text after `edit`.
+    fn refusal(edit: impl FnOnce(String) -> String) -> String {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("champion.ron");
+        store_champion(&path, &champion()).expect("written");
+        let text = fs::read_to_string(&path).expect("read");
+        let edited = edit(text.clone());
+        assert_ne!(text, edited, "the edit did nothing");
+        fs::write(&path, edited).expect("written");
+        let message = load_champion(&path).expect_err("refused").to_string();
+        assert_eq!(message.lines().count(), 1, "{message}");
+        message
+    }
+
+    #[test]
+    fn a_bad_champion_is_refused_with_field_value_and_range() {
+        let says = |message: String, parts: &[&str]| {
+            parts.iter().for_each(|part| assert!(message.contains(part), "{part:?} in {message}"));
+        };
+        says(refusal(|text| text[..text.len() / 2].to_owned()), &["damaged or incomplete at line"]);
+        says(
+            refusal(|text| text.replace("format: 1", "format: 9")),
+            &["format is 9", "allowed: 1 to 1", "newer version"],
+        );
+        says(
+            refusal(|text| text.replace("snakes-and-stairs champion", "chess opening")),
+            &["kind is \"chess opening\"", "allowed: \"snakes-and-stairs champion\""],
+        );
+        says(
+            refusal(|text| text.replace("duration_s: 1.0", "duration_s: -1.0")),
+            &["trial.duration_s is -1", "allowed: 0.1 to 600"],
+        );
+        says(
+            refusal(|text| text.replace("limbs: 5", "limbs: 6")),
+            &["genome.signals.joints is 4 joints", "allowed: 5"],
+        );
+        says(
+            refusal(|text| text.replace("friction: 1.0", "friction: NaN")),
+            &["trial.surface.friction is NaN", "allowed: 0 to 1000"],
+        );
+    }
+}

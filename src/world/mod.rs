@@ -1,0 +1,21 @@
+//! The physical world: stairs, surface, snake, and one [`Simulation`] that steps them.
+//!
+//! Axes: x across the stairs, y towards and up the stairs, z up. Units: metres, kilograms, seconds,
+//! radians, newton metres. Built on rapier3d with every body, collider and joint inserted in a fixed
+//! order. What never enters here: a window, a file, a thread, a clock, a hash-ordered loop.
+
+mod body;
+mod health;
+mod physics;
+mod simulation;
+mod stairs;
+mod surface;
+
+pub use body::{BodyPlan, JointPlan, LimbPlan, Softness};
+pub use health::{Disqualification, HealthLimits};
+pub use physics::PhysicsSettings;
+pub use rapier3d::math::{Pose, Rotation, Vector};
+pub use rapier3d::pipeline::PhysicsWorld;
+pub use simulation::{JointTorque, Simulation, WorldPlan};
+pub use stairs::{StairBox, Stairs};
+pub use surface::Surface;

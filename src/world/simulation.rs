@@ -1,0 +1,256 @@
+//! One snake on one staircase, advanced by one constant step at a time.
+//!
+//! Everything that scores, replays, shows or tests a snake goes through [`Simulation::step`].
+
+use rapier3d::prelude::*;
+
+use super::{
+    BodyPlan, Disqualification, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld, Stairs,
+    Surface,
+};
+
+/// All that determines a world: build it twice and step it with the same torques, and the two agree
+/// in every bit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorldPlan {
+    /// Step length, substeps, gravity.
+    pub physics: PhysicsSettings,
+    /// The staircase.
+    pub stairs: Stairs,
+    /// The material of ground and stairs.
+    pub surface: Surface,
+    /// When the agent is disqualified.
+    pub health: HealthLimits,
+    /// The snake.
+    pub body: BodyPlan,
+    /// Where the middle of the straight snake starts on the y axis, in metres.
+    pub start_y_m: f32,
+}
+
+/// The torques a controller commands at one joint, in N·m, positive by the right-hand rule about the
+/// joint's own axes. They act on the rear limb, and their opposites on the front limb.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct JointTorque {
+    /// About the front limb's x axis.
+    pub bend_nm: f32,
+    /// About the front limb's y axis.
+    pub twist_nm: f32,
+}
+
+/// A running world.
+pub struct Simulation {
+    physics: PhysicsWorld,
+    /// Bodies of the limbs, head first.
+    limbs: Vec<RigidBodyHandle>,
+    joints: Vec<JointPlan>,
+    /// Distance from a limb's centre to its front and rear joint anchors, in metres.
+    half_lengths_m: Vec<f32>,
+    health: HealthLimits,
+    arena_front_y_m: f32,
+    torques_in_world: Vec<Vector>,
+}
+
+/// A snake this far below the ground has fallen through it; only a broken contact does that.
+const LOWEST_Z_M: f32 = -2.0;
+/// The snake's own friction, which the surface's multiplies; and friction of limb on limb.
+const LIMB_FRICTION: f32 = 1.0;
+
+impl Simulation {
+    /// Builds the world: ground, stairs from the lowest up, limbs from the head, joints from the head.
+    ///
+    /// The order of insertion is part of the bits of every run.
+    pub fn new(plan: &WorldPlan) -> Self {
+        let mut physics = PhysicsWorld {
+            gravity: Vector::new(0.0, 0.0, -plan.physics.gravity_m_s2),
+            integration_parameters: IntegrationParameters {
+                dt: plan.physics.step_s(),
+                num_solver_iterations: plan.physics.substeps as usize,
+                ..Default::default()
+            },
+            ..Default::default()
+        };
+
+        let material = |collider: ColliderBuilder| {
+            collider
+                .friction(plan.surface.friction)
+                .friction_combine_rule(CoefficientCombineRule::Multiply)
+                .restitution(plan.surface.bounce)
+                .restitution_combine_rule(CoefficientCombineRule::Max)
+        };
+        let up = SharedShape::halfspace(Vector::Z);
+        physics.insert_collider(material(ColliderBuilder::new(up)), None);
+        for stair in plan.stairs.boxes() {
+            let min = Vector::from(stair.min_m);
+            let half = (Vector::from(stair.max_m) - min) / 2.0;
+            let shape = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(min + half);
+            physics.insert_collider(material(shape), None);
+        }
+
+        let limbs = insert_limbs(&mut physics, plan);
+        insert_joints(&mut physics, &limbs, &plan.body);
+
+        Self {
+            physics,
+            torques_in_world: vec![Vector::ZERO; limbs.len()],
+            limbs,
+            joints: plan.body.joints.clone(),
+            half_lengths_m: plan.body.limbs.iter().map(|limb| limb.length_m / 2.0).collect(),
+            health: plan.health.clone(),
+            arena_front_y_m: plan.stairs.end_y_m() + 10.0,
+        }
+    }
+
+    /// Applies the torques, one per joint from the head, clamped to each joint's limits, and advances
+    /// the world by one step.
+    ///
+    /// # Errors
+    /// The reason why this step disqualified the agent. The world must not be stepped further then.
+    pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
+        self.apply(torques);
+        self.physics.step();
+        self.check_health()
+    }
+
+    /// The pose of each limb's centre, head first.
+    pub fn poses(&self) -> impl ExactSizeIterator<Item = Pose> + '_ {
+        self.limbs.iter().map(|&limb| *self.physics.bodies[limb].position())
+    }
+
+    /// Handles of the limbs in the physics world's body set, head first.
+    pub fn limb_handles(&self) -> &[RigidBodyHandle] {
+        &self.limbs
+    }
+
+    /// The engine's state, for those who look: debug drawing, picking, the bench.
+    pub fn physics(&self) -> &PhysicsWorld {
+        &self.physics
+    }
+
+    /// The engine's state, to be lent to another owner between steps and given back unchanged. The
+    /// stage keeps it in its rapier context so that the window's tools see the very world that scores.
+    pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
+        &mut self.physics
+    }
+
+    /// Sets the torque of each limb: the sum of the couples of its joints.
+    pub(crate) fn apply(&mut self, torques: &[JointTorque]) {
+        self.torques_in_world.fill(Vector::ZERO);
+        for (index, (joint, torque)) in self.joints.iter().zip(torques).enumerate() {
+            let bend_nm =
+                torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
+            let twist_nm =
+                torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
+            let front = self.physics.bodies[self.limbs[index]].rotation();
+            let couple = *front * Vector::new(bend_nm, twist_nm, 0.0);
+            self.torques_in_world[index] -= couple;
+            self.torques_in_world[index + 1] += couple;
+        }
+        for (&limb, &torque) in self.limbs.iter().zip(&self.torques_in_world) {
+            let body = &mut self.physics.bodies[limb];
+            body.reset_torques(false);
+            body.add_torque(torque, false);
+        }
+    }
+
+    /// Looks for what disqualifies: see [`HealthLimits`].
+    fn check_health(&self) -> Result<(), Disqualification> {
+        // Rapier rolls a body with a non-finite state back and reports it here.
+        if !self.physics.quarantine().is_empty() {
+            return Err(Disqualification::NotFinite);
+        }
+        let speed_limit_squared = self.health.speed_m_s * self.health.speed_m_s;
+        let drift_limit_squared = self.health.joint_drift_m * self.health.joint_drift_m;
+        let mut rear_anchor_of_previous: Option<Vector> = None;
+        for (&limb, &half_length_m) in self.limbs.iter().zip(&self.half_lengths_m) {
+            let body = &self.physics.bodies[limb];
+            let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
+            if !(centre.is_finite() && speed_squared.is_finite()) {
+                return Err(Disqualification::NotFinite);
+            }
+            if speed_squared > speed_limit_squared {
+                return Err(Disqualification::TooFast);
+            }
+            if centre.x.abs() > self.health.arena_half_width_m
+                || centre.y < -self.health.arena_back_m
+                || centre.y > self.arena_front_y_m
+                || centre.z < LOWEST_Z_M
+            {
+                return Err(Disqualification::LeftArena);
+            }
+            let forward = *body.rotation() * Vector::new(0.0, half_length_m, 0.0);
+            if let Some(rear_anchor) = rear_anchor_of_previous
+                && rear_anchor.distance_squared(centre + forward) > drift_limit_squared
+            {
+                return Err(Disqualification::JointBroke);
+            }
+            rear_anchor_of_previous = Some(centre - forward);
+        }
+        Ok(())
+    }
+}
+
+/// Inserts the straight snake, head first, lying on the ground.
+fn insert_limbs(physics: &mut PhysicsWorld, plan: &WorldPlan) -> Vec<RigidBodyHandle> {
+    let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
+    plan.body
+        .limbs
+        .iter()
+        .map(|limb| {
+            let centre = Vector::new(0.0, front_y_m - limb.length_m / 2.0, limb.height_m / 2.0);
+            front_y_m -= limb.length_m;
+            let body = RigidBodyBuilder::dynamic()
+                .translation(centre)
+                .angular_damping(plan.body.angular_damping_per_s)
+                .can_sleep(false);
+            let collider = ColliderBuilder::cuboid(
+                limb.width_m / 2.0,
+                limb.length_m / 2.0,
+                limb.height_m / 2.0,
+            )
+            .density(limb.density_kg_m3)
+            .friction(LIMB_FRICTION)
+            .restitution(0.0);
+            physics.insert(body, collider).0
+        })
+        .collect()
+}
+
+/// Joins neighbours, head first. See [`universal_joint`].
+fn insert_joints(physics: &mut PhysicsWorld, limbs: &[RigidBodyHandle], body: &BodyPlan) {
+    for (index, joint) in body.joints.iter().enumerate() {
+        let front_half_m = body.limbs[index].length_m / 2.0;
+        let rear_half_m = body.limbs[index + 1].length_m / 2.0;
+        let joint = universal_joint(joint, front_half_m, rear_half_m);
+        physics.insert_impulse_joint(limbs[index], limbs[index + 1], joint);
+    }
+}
+
+/// A universal joint between the rear face of the front limb and the front face of the rear limb.
+///
+/// Rapier has no such joint among its multibodies, so it is an impulse joint with all axes locked but
+/// the rotations about x (bend) and y (twist). Its lock keeps the z part of the relative quaternion at
+/// zero, which makes it a constant-velocity universal joint. With `q` that quaternion the bend is
+/// `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`; both limits are symmetric (asymmetric ones would
+/// make rapier call the C library's sine, whose bits differ between machines).
+///
+/// The damping is a motor that wants zero joint rate, which the solver integrates implicitly.
+fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> GenericJoint {
+    let locked = JointAxesMask::LIN_AXES | JointAxesMask::ANG_Z;
+    let mut joint = GenericJointBuilder::new(locked)
+        .local_anchor1(Vector::new(0.0, -front_half_m, 0.0))
+        .local_anchor2(Vector::new(0.0, rear_half_m, 0.0))
+        .limits(JointAxis::AngX, [-plan.bend_limit_rad, plan.bend_limit_rad])
+        .limits(JointAxis::AngY, [-plan.twist_limit_rad, plan.twist_limit_rad])
+        // Neighbours touch with a whole face; their contact would block the bend.
+        .contacts_enabled(false)
+        .build();
+    joint.softness = SpringCoefficients {
+        natural_frequency: plan.softness.frequency_hz,
+        damping_ratio: plan.softness.damping_ratio,
+    };
+    for axis in [JointAxis::AngX, JointAxis::AngY] {
+        joint.set_motor_model(axis, MotorModel::ForceBased);
+        joint.set_motor_velocity(axis, 0.0, plan.damping_nms_per_rad);
+    }
+    joint
+}

@@ -1,0 +1,157 @@
+//! The staircase: its shape, and what a position on it means.
+
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
+
+/// A straight staircase that rises towards +y, with a landing behind its last step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stairs {
+    /// Number of steps. The report has ten.
+    pub steps: u32,
+    /// Height of one step, in metres. The report has 0.5.
+    pub rise_m: f32,
+    /// Depth of one step along y, in metres. From Table 1 of the report: one step per 2 m.
+    pub tread_m: f32,
+    /// Width across x, in metres. The report has 5.
+    pub width_m: f32,
+    /// Where the first riser stands on the y axis, in metres. From Table 1: the snake, 10 m long,
+    /// touches the stairs with its centre at -2, so the riser is at 3.
+    pub first_riser_y_m: f32,
+    /// Depth of the landing behind the last tread, in metres. Long enough by default that the
+    /// whole snake (10 m) stands on it.
+    pub landing_m: f32,
+}
+
+impl Default for Stairs {
+    fn default() -> Self {
+        Self {
+            steps: 10,
+            rise_m: 0.5,
+            tread_m: 2.0,
+            width_m: 5.0,
+            first_riser_y_m: 3.0,
+            landing_m: 14.0,
+        }
+    }
+}
+
+/// One box of the staircase, in core axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StairBox {
+    /// The lower corner: least x, y and z, in metres.
+    pub min_m: [f32; 3],
+    /// The upper corner: greatest x, y and z, in metres.
+    pub max_m: [f32; 3],
+}
+
+impl Stairs {
+    /// Checks every field against its range.
+    pub fn check(&self) -> Result<(), Invalid> {
+        within("steps", self.steps, 0..=100)?;
+        within("rise_m", self.rise_m, 0.01..=5.0)?;
+        within("tread_m", self.tread_m, 0.1..=20.0)?;
+        within("width_m", self.width_m, 1.0..=100.0)?;
+        within("first_riser_y_m", self.first_riser_y_m, -100.0..=100.0)?;
+        within("landing_m", self.landing_m, 0.0..=100.0)
+    }
+
+    /// Where riser number `index` (0 is the first) stands on the y axis, in metres.
+    pub fn riser_y_m(&self, index: u32) -> f32 {
+        self.first_riser_y_m + index as f32 * self.tread_m
+    }
+
+    /// Where the landing ends on the y axis, in metres.
+    pub fn end_y_m(&self) -> f32 {
+        self.riser_y_m(self.steps) + self.landing_m
+    }
+
+    /// The steps as solid boxes that stand on the ground, lowest first.
+    ///
+    /// The landing belongs to the box of the last step: a seam between two level boxes would let
+    /// a sliding block trip over an edge that is not there.
+    pub fn boxes(&self) -> Vec<StairBox> {
+        (0..self.steps)
+            .map(|index| {
+                let is_last = index + 1 == self.steps;
+                let back_y_m = if is_last { self.end_y_m() } else { self.riser_y_m(index + 1) };
+                StairBox {
+                    min_m: [-self.width_m / 2.0, self.riser_y_m(index), 0.0],
+                    max_m: [self.width_m / 2.0, back_y_m, self.rise_m * (index + 1) as f32],
+                }
+            })
+            .collect()
+    }
+
+    /// How many steps a snake has climbed whose centre stands at `y_m`.
+    ///
+    /// Table 1 of the report counts a step as climbed where the centre is within a fifth of a metre
+    /// of the riser or past it, and rounds to the nearest: 3.84 is one step, 5.79 two, 8.05 three.
+    /// The rule that gives all three is: the centre has passed the riser.
+    pub fn steps_climbed(&self, y_m: f64) -> u32 {
+        (0..self.steps).filter(|&index| y_m >= f64::from(self.riser_y_m(index))).count() as u32
+    }
+
+    /// What it means, in words, that the centre of a snake `snake_length_m` long that started at
+    /// `start_y_m` now stands at `y_m`. These are the words of the report's Table 1.
+    pub fn meaning(&self, y_m: f64, start_y_m: f64, snake_length_m: f64) -> String {
+        let to_first_riser_m = f64::from(self.first_riser_y_m) - snake_length_m / 2.0;
+        let climbed = self.steps_climbed(y_m);
+        if self.steps > 0 && y_m >= f64::from(self.riser_y_m(self.steps)) {
+            "stands on the landing".to_owned()
+        } else if climbed == 1 {
+            "climbs 1 step".to_owned()
+        } else if climbed > 1 {
+            format!("climbs {climbed} steps")
+        } else if y_m >= to_first_riser_m - REACH_TOLERANCE_M {
+            "reaches the stairs".to_owned()
+        } else if y_m > start_y_m + START_TOLERANCE_M {
+            "slightly forward".to_owned()
+        } else if y_m >= start_y_m - START_TOLERANCE_M {
+            "starting position".to_owned()
+        } else {
+            "moved backwards".to_owned()
+        }
+    }
+}
+
+/// Table 1 calls a mean of -2.05 "reaches the stairs", where the head touches at exactly -2.
+const REACH_TOLERANCE_M: f64 = 0.1;
+/// A mean this near the start is "starting position": Table 1's own -7.23 has no digits to spare.
+const START_TOLERANCE_M: f64 = 0.25;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_words_of_table_1_follow_from_the_geometry() {
+        let stairs = Stairs::default();
+        let table_1 = [
+            (-7.23, "starting position"),
+            (-5.94, "slightly forward"),
+            (-2.05, "reaches the stairs"),
+            (3.84, "climbs 1 step"),
+            (5.79, "climbs 2 steps"),
+            (8.05, "climbs 3 steps"),
+        ];
+        for (mean_y_m, words) in table_1 {
+            assert_eq!(stairs.meaning(mean_y_m, -7.23, 10.0), words, "at {mean_y_m}");
+        }
+        assert_eq!(stairs.meaning(-9.0, -7.23, 10.0), "moved backwards");
+        assert_eq!(stairs.meaning(22.9, -7.23, 10.0), "climbs 10 steps");
+        assert_eq!(stairs.meaning(23.0, -7.23, 10.0), "stands on the landing");
+    }
+
+    #[test]
+    fn ten_boxes_rise_half_a_metre_every_two() {
+        let boxes = Stairs::default().boxes();
+        assert_eq!(boxes.len(), 10);
+        assert_eq!(boxes[0].min_m, [-2.5, 3.0, 0.0]);
+        assert_eq!(boxes[0].max_m, [2.5, 5.0, 0.5]);
+        assert_eq!(boxes[9].min_m[1], 21.0);
+        assert_eq!(boxes[9].max_m[2], 5.0);
+        assert_eq!(boxes[9].max_m[1], 37.0, "the landing belongs to the last step");
+    }
+}
