@@ -1,6 +1,6 @@
 //! An experiment on a thread of its own, for a window that must not wait.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
@@ -29,7 +29,8 @@ pub enum Event {
 pub struct Background {
     control: Arc<Control>,
     pause_after_generation: Arc<AtomicBool>,
-    events: Receiver<Event>,
+    /// Behind a lock so that a window may keep this where several threads can see it.
+    events: Mutex<Receiver<Event>>,
     population: u32,
     thread: Option<JoinHandle<()>>,
 }
@@ -53,6 +54,7 @@ impl Background {
             let (control, pause_after) = (Arc::clone(&control), Arc::clone(&pause_after_generation));
             move || work(experiment, &pool, keeper, &control, &pause_after, &sender)
         })?;
+        let events = Mutex::new(events);
         Ok(Self { control, pause_after_generation, events, population, thread: Some(thread) })
     }
 
@@ -85,7 +87,7 @@ impl Background {
 
     /// The next event, if there is one.
     pub fn poll(&self) -> Option<Event> {
-        self.events.try_recv().ok()
+        self.events.lock().unwrap_or_else(PoisonError::into_inner).try_recv().ok()
     }
 }
 
@@ -144,7 +146,8 @@ mod tests {
     }
 
     fn next(background: &Background) -> Event {
-        background.events.recv_timeout(Duration::from_secs(60)).expect("an event in time")
+        let events = background.events.lock().expect("no panic");
+        events.recv_timeout(Duration::from_secs(60)).expect("an event in time")
     }
 
     #[test]

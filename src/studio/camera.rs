@@ -1,0 +1,190 @@
+//! The camera: orbit, pan, zoom, follow.
+//!
+//! The world keeps the core's axes, so the camera has z up instead of everything being turned.
+
+use bevy::camera::visibility::RenderLayers;
+use bevy::camera::{CameraOutputMode, Viewport};
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::pbr::{DistanceFog, FogFalloff};
+use bevy::prelude::*;
+use bevy::render::render_resource::BlendState;
+use bevy::window::PrimaryWindow;
+use bevy_egui::input::EguiWantsInput;
+use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
+
+use super::panels::StageArea;
+use super::stage::Stage;
+use super::{Frame, look};
+
+/// Where the camera is, relative to what it looks at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct View {
+    /// Turn about z, in radians: 0 looks from +x, so that the stairs rise to the right.
+    yaw_rad: f32,
+    /// Height above the horizon, in radians.
+    pitch_rad: f32,
+    /// Distance from the target, in metres.
+    distance_m: f32,
+    /// What is looked at, beside the snake if the camera follows it, in metres.
+    offset: Vec3,
+}
+
+impl Default for View {
+    /// From the right side, a little behind and above: stairs and snake at a glance.
+    fn default() -> Self {
+        Self { yaw_rad: -0.55, pitch_rad: 0.38, distance_m: 21.0, offset: Vec3::new(0.0, 2.0, 0.5) }
+    }
+}
+
+/// How the camera moves.
+#[derive(Resource, Debug)]
+pub(super) struct CameraRig {
+    /// The view that was asked for.
+    pub view: View,
+    /// Whether the snake is kept in view.
+    pub follows: bool,
+    /// What is followed, smoothed, in metres.
+    anchor: Option<Vec3>,
+}
+
+impl Default for CameraRig {
+    fn default() -> Self {
+        Self { view: View::default(), follows: true, anchor: None }
+    }
+}
+
+/// The camera that draws the stage.
+#[derive(Component)]
+pub(super) struct StageCamera;
+
+/// A full drag across 1000 pixels turns by this much, in radians.
+const TURN_RAD_PER_PIXEL: f32 = 0.006;
+/// A drag moves the target by this share of the distance per pixel.
+const PAN_PER_PIXEL: f32 = 0.0012;
+/// Zoom factor per wheel line.
+const ZOOM_PER_LINE: f32 = 0.12;
+/// Pixels of a trackpad's scroll that count as a wheel line.
+const PIXELS_PER_LINE: f32 = 40.0;
+/// Nearest and farthest distance, in metres.
+const DISTANCE_M: std::ops::RangeInclusive<f32> = 2.0..=150.0;
+/// Highest and lowest pitch, in radians: never quite overhead, never below the ground.
+const PITCH_RAD: std::ops::RangeInclusive<f32> = 0.02..=1.55;
+/// Share of the way to the snake that the camera covers per second is 1 - e^-this.
+const FOLLOW_PER_S: f32 = 4.0;
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<CameraRig>()
+        .add_systems(Startup, set_up)
+        .add_systems(Update, (steer, follow, place, fit_to_area).chain().in_set(Frame::Draw));
+}
+
+/// One camera for the stage, beside the panel, and one for egui, over the whole window.
+fn set_up(mut commands: Commands, mut egui_settings: ResMut<EguiGlobalSettings>) {
+    egui_settings.auto_create_primary_context = false;
+    commands.spawn((
+        StageCamera,
+        Camera3d::default(),
+        Tonemapping::None,
+        Msaa::Sample4,
+        DistanceFog {
+            color: look::SKY,
+            falloff: FogFalloff::Linear { start: 50.0, end: 190.0 },
+            ..default()
+        },
+    ));
+    commands.spawn((
+        PrimaryEguiContext,
+        Camera2d,
+        RenderLayers::none(),
+        Msaa::Off,
+        Camera {
+            order: 1,
+            output_mode: CameraOutputMode::Write {
+                blend_state: Some(BlendState::ALPHA_BLENDING),
+                clear_color: ClearColorConfig::None,
+            },
+            clear_color: ClearColorConfig::Custom(Color::NONE),
+            ..default()
+        },
+    ));
+}
+
+/// Turns drags and the wheel into a new view, unless a panel has the pointer.
+fn steer(
+    mut rig: ResMut<CameraRig>,
+    buttons: Res<ButtonInput<MouseButton>>,
+    keys: Res<ButtonInput<KeyCode>>,
+    motion: Res<AccumulatedMouseMotion>,
+    scroll: Res<AccumulatedMouseScroll>,
+    egui: Res<EguiWantsInput>,
+) {
+    if egui.wants_any_pointer_input() {
+        return;
+    }
+    let view = &mut rig.view;
+    let drag = motion.delta;
+    let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
+    let pans = buttons.any_pressed([MouseButton::Right, MouseButton::Middle]);
+    if pans || (shift && buttons.pressed(MouseButton::Left)) {
+        let turn = Quat::from_rotation_z(view.yaw_rad);
+        let (right, up) = (turn * Vec3::Y, Vec3::Z);
+        view.offset += (up * drag.y - right * drag.x) * view.distance_m * PAN_PER_PIXEL;
+        view.offset = view.offset.clamp(Vec3::splat(-60.0), Vec3::splat(60.0));
+    } else if buttons.pressed(MouseButton::Left) {
+        view.yaw_rad -= drag.x * TURN_RAD_PER_PIXEL;
+        let pitch_rad = view.pitch_rad + drag.y * TURN_RAD_PER_PIXEL;
+        view.pitch_rad = pitch_rad.clamp(*PITCH_RAD.start(), *PITCH_RAD.end());
+    }
+    let lines = match scroll.unit {
+        MouseScrollUnit::Line => scroll.delta.y,
+        MouseScrollUnit::Pixel => scroll.delta.y / PIXELS_PER_LINE,
+    };
+    let factor = 1.0 - lines.clamp(-4.0, 4.0) * ZOOM_PER_LINE;
+    let distance_m = view.distance_m * factor;
+    view.distance_m = distance_m.clamp(*DISTANCE_M.start(), *DISTANCE_M.end());
+}
+
+/// Keeps the middle of the snake in view.
+fn follow(mut rig: ResMut<CameraRig>, stages: Query<&Stage>, time: Res<Time<Real>>) {
+    let Some(stage) = stages.iter().next() else { return };
+    let poses: Vec<_> = stage.drawn_poses().collect();
+    let Some(middle) = poses.get(poses.len() / 2) else { return };
+    // Sideways wobble is the snake's own; following it would make the viewer seasick.
+    let goal = Vec3::new(0.0, middle.translation.y, middle.translation.z.max(0.0));
+    match rig.anchor {
+        None => rig.anchor = Some(goal),
+        Some(anchor) if rig.follows => {
+            let share = 1.0 - (1.0 + FOLLOW_PER_S * time.delta_secs()).recip();
+            rig.anchor = Some(anchor.lerp(goal, share));
+        }
+        Some(_) => {}
+    }
+}
+
+fn place(rig: Res<CameraRig>, mut camera: Single<&mut Transform, With<StageCamera>>) {
+    let View { yaw_rad, pitch_rad, distance_m, offset } = rig.view;
+    let target = rig.anchor.unwrap_or_default() + offset;
+    let turn = Quat::from_rotation_z(yaw_rad) * Quat::from_rotation_y(-pitch_rad);
+    let eye = target + turn * Vec3::X * distance_m;
+    **camera = Transform::from_translation(eye).looking_at(target, Vec3::Z);
+}
+
+/// Draws the stage beside the panel, not under it.
+fn fit_to_area(
+    area: Res<StageArea>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    mut camera: Single<&mut Camera, With<StageCamera>>,
+) {
+    let physical = window.physical_size();
+    let left = ((area.left_points * window.scale_factor()) as u32).min(physical.x.saturating_sub(1));
+    let size = UVec2::new(physical.x.saturating_sub(left), physical.y);
+    if size.x == 0 || size.y == 0 {
+        return;
+    }
+    camera.viewport = Some(Viewport {
+        physical_position: UVec2::new(left, 0),
+        physical_size: size,
+        ..default()
+    });
+}

@@ -1,0 +1,100 @@
+//! What a person can ask for, and the one place where it is done.
+
+use bevy::prelude::*;
+
+use super::camera::{CameraRig, View};
+use super::evolution::Evolution;
+use super::notice::Notices;
+use super::stage::{Exhibit, ShowExhibit, Stage};
+use super::{Frame, Opening};
+
+/// Something a panel or a key asks for.
+#[derive(Message, Debug, Clone, PartialEq)]
+pub(super) enum Command {
+    /// Evolve until paused or finished; after the end of a run, begin the next.
+    Start,
+    /// Hold evolution.
+    Pause,
+    /// Evolve to the end of the current generation.
+    SingleGeneration,
+    /// Throw the current run away and prepare a fresh one.
+    Reset,
+    /// Use this seed for the next run.
+    SetSeed(u64),
+    /// Use this population for the next run.
+    SetPopulation(u32),
+    /// Put the champion that the studio opened with on the stage.
+    ShowOpening,
+    /// Put the champion of this generation on the stage; the first is 1.
+    ShowGeneration(u32),
+    /// Hold or resume what is on the stage.
+    TogglePlayback,
+    /// Play what is on the stage from its start.
+    Restart,
+    /// Let the camera follow the snake, or stop it.
+    ToggleFollow,
+    /// Put the camera where it was at the start.
+    ResetCamera,
+    /// Show or hide the physics engine's own drawing.
+    ToggleWireframe,
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_message::<Command>().add_systems(Update, apply.in_set(Frame::Apply));
+}
+
+/// Does what was asked for, in the order in which it was asked.
+fn apply(
+    mut asked: MessageReader<Command>,
+    mut evolution: ResMut<Evolution>,
+    mut notices: ResMut<Notices>,
+    mut rig: ResMut<CameraRig>,
+    mut wireframe: ResMut<bevy_rapier3d::render::DebugRenderContext>,
+    mut stages: Query<&mut Stage>,
+    mut show: MessageWriter<ShowExhibit>,
+    opening: Res<Opening>,
+) {
+    for command in asked.read() {
+        let done = match command {
+            Command::Start => evolution.start(),
+            Command::Pause => evolution.pause(),
+            Command::SingleGeneration => evolution.single_generation(),
+            Command::Reset => evolution.reset(),
+            Command::SetSeed(seed) => evolution.set_seed(*seed),
+            Command::SetPopulation(population) => evolution.set_population(*population),
+            Command::ShowOpening => {
+                show.write(ShowExhibit(Exhibit::opening(&opening.0)));
+                Ok(())
+            }
+            Command::ShowGeneration(generation) => {
+                let champion = evolution.champion_of(*generation);
+                show.write_batch(champion.map(|champion| ShowExhibit(Exhibit::found(champion))));
+                Ok(())
+            }
+            Command::TogglePlayback => {
+                stages.iter_mut().for_each(|mut stage| stage.toggle_playback());
+                Ok(())
+            }
+            Command::Restart => {
+                stages.iter_mut().for_each(|mut stage| stage.ask_for_restart());
+                Ok(())
+            }
+            Command::ToggleFollow => {
+                rig.follows = !rig.follows;
+                Ok(())
+            }
+            Command::ResetCamera => {
+                rig.view = View::default();
+                rig.follows = true;
+                Ok(())
+            }
+            Command::ToggleWireframe => {
+                wireframe.enabled = !wireframe.enabled;
+                Ok(())
+            }
+        };
+        if let Err(problem) = done {
+            notices.problem(problem);
+        }
+    }
+}

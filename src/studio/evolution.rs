@@ -1,0 +1,259 @@
+//! The experiment behind the window: started, held, reset; its reports kept for the panels.
+
+use std::sync::Arc;
+
+use bevy::prelude::*;
+use rayon::ThreadPool;
+
+use super::notice::Notices;
+use super::stage::{Exhibit, ShowExhibit, Stage};
+use super::{Frame, Options, StudioError};
+use crate::check::Invalid;
+use crate::evolve::{Champion, Settings};
+use crate::run::headless::HeadlessError;
+use crate::run::{Background, Event, Experiment, GenerationReport, Keeper, pool};
+use crate::save::SavesFolder;
+
+/// What every run of this session shares.
+#[derive(Resource, Debug, Clone)]
+pub(super) struct Engine {
+    pool: Arc<ThreadPool>,
+    saves: SavesFolder,
+    preset: String,
+    seed: u64,
+    settings: Settings,
+}
+
+impl Engine {
+    /// Starts the worker threads.
+    pub fn new(options: &Options) -> Result<Self, StudioError> {
+        let pool = pool(options.threads).map_err(HeadlessError::from)?;
+        Ok(Self {
+            pool: Arc::new(pool),
+            saves: options.saves.clone(),
+            preset: options.preset.clone(),
+            seed: options.seed,
+            settings: options.settings.clone(),
+        })
+    }
+}
+
+/// Where a run stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Status {
+    /// Prepared, nothing evaluated yet.
+    Ready,
+    /// Evaluating.
+    Running,
+    /// Held.
+    Paused,
+    /// All generations are done.
+    Finished,
+}
+
+/// The current run and what it found.
+#[derive(Resource, Debug)]
+pub(super) struct Evolution {
+    engine: Engine,
+    /// Seed and settings of the current run; the engine's are those of the next.
+    seed: u64,
+    settings: Settings,
+    background: Option<Background>,
+    reports: Vec<GenerationReport>,
+    run_hash: Option<u64>,
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Evolution>()
+        .add_systems(Startup, start_at_once)
+        .add_systems(Update, take_in.in_set(Frame::TakeIn));
+}
+
+impl FromWorld for Evolution {
+    fn from_world(world: &mut World) -> Self {
+        Self::new(world.resource::<Engine>().clone())
+    }
+}
+
+impl Evolution {
+    /// A prepared run.
+    pub fn new(engine: Engine) -> Self {
+        Self {
+            seed: engine.seed,
+            settings: engine.settings.clone(),
+            engine,
+            background: None,
+            reports: Vec::new(),
+            run_hash: None,
+        }
+    }
+
+    /// Where the run stands.
+    pub fn status(&self) -> Status {
+        match &self.background {
+            _ if self.run_hash.is_some() => Status::Finished,
+            None => Status::Ready,
+            Some(background) if background.is_paused() => Status::Paused,
+            Some(_) => Status::Running,
+        }
+    }
+
+    /// Name of the preset.
+    pub fn preset(&self) -> &str {
+        &self.engine.preset
+    }
+
+    /// Seed of the current run.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Seed of the next run.
+    pub fn next_seed(&self) -> u64 {
+        self.engine.seed
+    }
+
+    /// Settings of the current run.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Population of the next run.
+    pub fn next_population(&self) -> u32 {
+        self.engine.settings.evolution.population
+    }
+
+    /// Whether seed or settings were changed since the run was prepared.
+    pub fn next_run_differs(&self) -> bool {
+        self.seed != self.engine.seed || self.settings != self.engine.settings
+    }
+
+    /// Reports of the finished generations, the first generation first.
+    pub fn reports(&self) -> &[GenerationReport] {
+        &self.reports
+    }
+
+    /// Finished evaluations of the current generation, and how many it has.
+    pub fn progress(&self) -> (u32, u32) {
+        match &self.background {
+            Some(background) => background.progress(),
+            None => (0, self.settings.evolution.population),
+        }
+    }
+
+    /// Hash of the run, once it is finished.
+    pub fn run_hash(&self) -> Option<u64> {
+        self.run_hash
+    }
+
+    /// The best of a generation; the first generation is 1.
+    pub fn champion_of(&self, generation: u32) -> Option<&Champion> {
+        let index = (generation as usize).checked_sub(1)?;
+        self.reports.get(index)?.champion.as_ref()
+    }
+
+    /// Evolves until held or finished. After the end of a run it begins the next one.
+    pub fn start(&mut self) -> Result<(), String> {
+        self.begin_next_if_over()?;
+        self.background()?.resume();
+        Ok(())
+    }
+
+    /// Holds evolution.
+    pub fn pause(&mut self) -> Result<(), String> {
+        if self.status() == Status::Running {
+            self.background()?.pause();
+        }
+        Ok(())
+    }
+
+    /// Evolves to the end of the current generation.
+    pub fn single_generation(&mut self) -> Result<(), String> {
+        self.begin_next_if_over()?;
+        self.background()?.run_single_generation();
+        Ok(())
+    }
+
+    /// Throws the current run away and prepares the next.
+    pub fn reset(&mut self) -> Result<(), String> {
+        *self = Self::new(self.engine.clone());
+        Ok(())
+    }
+
+    /// Sets the seed of the next run; a run that has not begun takes it at once.
+    pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
+        self.engine.seed = seed;
+        self.take_over_if_ready()
+    }
+
+    /// Sets the population of the next run; a run that has not begun takes it at once.
+    pub fn set_population(&mut self, population: u32) -> Result<(), String> {
+        let mut settings = self.engine.settings.clone();
+        settings.evolution.population = population;
+        settings.check().map_err(|error: Invalid| error.to_string())?;
+        self.engine.settings = settings;
+        self.take_over_if_ready()
+    }
+
+    fn take_over_if_ready(&mut self) -> Result<(), String> {
+        if self.status() == Status::Ready { self.reset() } else { Ok(()) }
+    }
+
+    fn begin_next_if_over(&mut self) -> Result<(), String> {
+        if self.status() == Status::Finished { self.reset() } else { Ok(()) }
+    }
+
+    /// The run's thread, started if it was not.
+    fn background(&mut self) -> Result<&Background, String> {
+        let background = match self.background.take() {
+            Some(background) => background,
+            None => {
+                let settings = self.settings.clone();
+                let experiment = Experiment::new(&self.engine.preset, self.seed, settings);
+                let keeper = Keeper::new(self.engine.saves.clone());
+                Background::start(experiment, Arc::clone(&self.engine.pool), keeper)
+                    .map_err(|error| format!("evolution could not be started: {error}"))?
+            }
+        };
+        Ok(self.background.insert(background))
+    }
+}
+
+/// A fresh run evolves from the first moment.
+fn start_at_once(mut evolution: ResMut<Evolution>, mut notices: ResMut<Notices>) {
+    if let Err(problem) = evolution.start() {
+        notices.problem(problem);
+    }
+}
+
+/// Takes in what the background found. A champion that beats the one on show takes its place.
+fn take_in(
+    mut evolution: ResMut<Evolution>,
+    mut notices: ResMut<Notices>,
+    mut show: MessageWriter<ShowExhibit>,
+    stages: Query<&Stage>,
+) {
+    let Some(background) = &evolution.background else { return };
+    let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
+    let mut to_beat_m = stages.iter().map(|stage| stage.exhibit().fitness_m()).fold(f32::MIN, f32::max);
+    for event in events {
+        match event {
+            Event::Generation(report) => {
+                if let Some(champion) = &report.champion
+                    && champion.evaluation.fitness_m > to_beat_m
+                {
+                    to_beat_m = champion.evaluation.fitness_m;
+                    let exhibit = Exhibit::found(champion);
+                    notices.news(format!("New champion. {}", exhibit.caption()));
+                    show.write(ShowExhibit(exhibit));
+                }
+                evolution.reports.push(report);
+            }
+            Event::Finished { run_hash } => {
+                evolution.run_hash = Some(run_hash);
+                notices.news("The run is finished.".to_owned());
+            }
+            Event::NotSaved(problem) => notices.problem(format!("Not saved: {problem}")),
+        }
+    }
+}

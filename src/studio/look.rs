@@ -1,0 +1,90 @@
+//! The one look of the studio: palette and spacing. Nothing else in the studio names a colour.
+
+use bevy::prelude::Color;
+use bevy_egui::egui::{self, Color32, CornerRadius, Frame, Margin, Stroke};
+
+/// Background of the panel.
+pub const PANEL: Color32 = Color32::from_rgb(0x1d, 0x21, 0x2b);
+/// Background of a card or a field within it.
+pub const FIELD: Color32 = Color32::from_rgb(0x28, 0x2e, 0x3b);
+/// A field under the pointer.
+pub const FIELD_HOVERED: Color32 = Color32::from_rgb(0x36, 0x3e, 0x4f);
+/// Text.
+pub const TEXT: Color32 = Color32::from_rgb(0xec, 0xef, 0xf4);
+/// Text that explains.
+pub const TEXT_WEAK: Color32 = Color32::from_rgb(0xa3, 0xac, 0xbd);
+/// What can be pressed, what is new, the best.
+pub const ACCENT: Color32 = Color32::from_rgb(0x4f, 0x9d, 0xf7);
+/// The mean, beside the best.
+pub const SECOND: Color32 = Color32::from_rgb(0xf2, 0xb1, 0x4b);
+/// What went wrong.
+pub const PROBLEM: Color32 = Color32::from_rgb(0xf0, 0x6a, 0x5f);
+
+/// The report's red, for the first, third and fifth limb.
+pub const RED_LIMB: Color = Color::srgb(0.83, 0.12, 0.12);
+/// The report's blue, for the second and fourth limb.
+pub const BLUE_LIMB: Color = Color::srgb(0.10, 0.26, 0.80);
+/// Sky, and what the ground fades into.
+pub const SKY: Color = Color::srgb(0.74, 0.83, 0.92);
+/// The ground.
+pub const GROUND: Color = Color::srgb(0.50, 0.56, 0.50);
+/// Every other step.
+pub const STAIR: Color = Color::srgb(0.80, 0.76, 0.69);
+/// The steps between them.
+pub const STAIR_OTHER: Color = Color::srgb(0.71, 0.67, 0.60);
+/// The report's two lights are white.
+pub const LIGHT: Color = Color::WHITE;
+
+/// The unit of spacing, in points.
+pub const GAP: f32 = 8.0;
+/// Width of the left panel, in points.
+pub const PANEL_WIDTH: f32 = 320.0;
+/// Width of a message over the stage, in points.
+pub const NOTICE_WIDTH: f32 = 340.0;
+/// Largest width of the caption under the stage, in points.
+pub const CAPTION_WIDTH: f32 = 520.0;
+/// Height of the chart, in points.
+pub const CHART_HEIGHT: f32 = 170.0;
+/// Corner radius of cards and buttons, in points.
+const CORNER: CornerRadius = CornerRadius::same(6);
+
+/// A card with a coloured edge.
+pub fn card(edge: Color32) -> Frame {
+    Frame::new()
+        .fill(PANEL.gamma_multiply(0.94))
+        .stroke(Stroke::new(1.0, edge))
+        .corner_radius(CORNER)
+        .inner_margin(Margin::symmetric(12, 8))
+}
+
+/// Dresses egui.
+pub fn apply(context: &egui::Context) {
+    context.set_theme(egui::Theme::Dark);
+    context.all_styles_mut(|style| {
+        style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
+        style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
+        style.spacing.interact_size.y = GAP * 3.0;
+        let visuals = &mut style.visuals;
+        visuals.panel_fill = PANEL;
+        visuals.window_fill = PANEL;
+        visuals.extreme_bg_color = FIELD;
+        visuals.override_text_color = Some(TEXT);
+        visuals.weak_text_color = Some(TEXT_WEAK);
+        visuals.selection.bg_fill = ACCENT.gamma_multiply(0.45);
+        visuals.selection.stroke = Stroke::new(1.0, TEXT);
+        for widget in [
+            &mut visuals.widgets.noninteractive,
+            &mut visuals.widgets.inactive,
+            &mut visuals.widgets.hovered,
+            &mut visuals.widgets.active,
+            &mut visuals.widgets.open,
+        ] {
+            widget.corner_radius = CORNER;
+        }
+        visuals.widgets.inactive.weak_bg_fill = FIELD;
+        visuals.widgets.inactive.bg_fill = FIELD;
+        visuals.widgets.hovered.weak_bg_fill = FIELD_HOVERED;
+        visuals.widgets.active.weak_bg_fill = ACCENT.gamma_multiply(0.6);
+        visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, FIELD_HOVERED);
+    });
+}

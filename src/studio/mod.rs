@@ -1,0 +1,146 @@
+//! The window: a stage that shows one rollout, a panel that steers an experiment.
+//!
+//! One concern is one file with one `plugin` function. The studio has no physics of its own: the stage
+//! advances the very [`crate::score::Rollout`] that scores, and evolution runs on threads of its own
+//! ([`crate::run::Background`]). Panels and keys send a [`command::Command`]; one system applies them.
+//!
+//! What happens in a frame, in this order, is [`Frame`].
+
+mod camera;
+mod command;
+mod evolution;
+mod frame_times;
+mod keys;
+mod look;
+mod notice;
+mod panels;
+mod scene;
+mod snake;
+mod stage;
+mod start_up;
+mod title;
+
+use bevy::log::{Level, LogPlugin};
+use bevy::prelude::*;
+use bevy::window::{PresentMode, WindowResolution};
+use bevy::winit::WinitSettings;
+
+use crate::evolve::{Champion, Settings};
+use crate::run::headless::HeadlessError;
+use crate::save::{LoadedChampion, SaveError, SavesFolder, shipped_champion};
+
+/// With what the studio opens.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Name of the preset that evolution starts from.
+    pub preset: String,
+    /// Its settings, checked.
+    pub settings: Settings,
+    /// Seed of the first run.
+    pub seed: u64,
+    /// Worker threads for evolution.
+    pub threads: usize,
+    /// Where champions are saved.
+    pub saves: SavesFolder,
+    /// The champion to open with; without one, the shipped one.
+    pub champion: Option<LoadedChampion>,
+    /// Size of the window, in pixels.
+    pub window_size: (u32, u32),
+    /// After how many frames to close by itself.
+    pub exit_after_frames: Option<u32>,
+}
+
+/// Why the studio could not open, or ended badly.
+#[derive(Debug, thiserror::Error)]
+pub enum StudioError {
+    /// There is no display, or no graphics driver.
+    #[error("no window can be opened ({0}); use --no-render to work in the terminal")]
+    NoWindow(String),
+    /// The champion to open with could not be read.
+    #[error(transparent)]
+    Champion(#[from] SaveError),
+    /// The threads could not be started.
+    #[error(transparent)]
+    Threads(#[from] HeadlessError),
+    /// The window closed with an error.
+    #[error("the studio ended with an error (exit code {0})")]
+    Ended(u8),
+}
+
+/// What happens in a frame, in this order.
+#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Frame {
+    /// What evolution found meanwhile is taken in.
+    TakeIn,
+    /// Keys and the last frame's panels have asked for something; it is done.
+    Apply,
+    /// The stage catches up with the clock.
+    Advance,
+    /// What is on the stage is drawn where it is now.
+    Draw,
+}
+
+/// The champion on show when the studio opens.
+#[derive(Resource, Debug, Clone)]
+struct Opening(Champion);
+
+/// Opens the studio and returns when its window is closed.
+///
+/// # Errors
+/// See [`StudioError`].
+pub fn run(options: Options) -> Result<(), StudioError> {
+    let opening = match options.champion.clone() {
+        Some(loaded) => loaded,
+        None => shipped_champion()?,
+    };
+    let engine = evolution::Engine::new(&options)?;
+    let exit_after = options.exit_after_frames;
+    let exit = start_up::guarded(move || {
+        let mut app = App::new();
+        app.add_plugins(
+            DefaultPlugins
+                .set(WindowPlugin { primary_window: Some(window(&options)), ..default() })
+                .set(LogPlugin { level: Level::WARN, ..default() }),
+        )
+        // A champion that climbs while the presenter types elsewhere goes on climbing.
+        .insert_resource(WinitSettings::continuous())
+        .insert_resource(Opening(opening.champion))
+        .insert_resource(engine)
+        .configure_sets(
+            Update,
+            (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain(),
+        )
+        .add_plugins((
+            command::plugin,
+            evolution::plugin,
+            stage::plugin,
+            scene::plugin,
+            snake::plugin,
+            camera::plugin,
+            keys::plugin,
+            notice::plugin,
+            panels::plugin,
+            title::plugin,
+            start_up::plugin,
+        ));
+        if let Some(frames) = exit_after {
+            frame_times::plugin(&mut app, frames);
+        }
+        app.run()
+    })?;
+    match exit {
+        AppExit::Success => Ok(()),
+        AppExit::Error(code) => Err(StudioError::Ended(code.get())),
+    }
+}
+
+fn window(options: &Options) -> Window {
+    let (width, height) = options.window_size;
+    Window {
+        title: "Snakes & Stairs".to_owned(),
+        name: Some("snakes-and-stairs".to_owned()),
+        resolution: WindowResolution::new(width, height),
+        present_mode: PresentMode::AutoVsync,
+        ..default()
+    }
+}

@@ -1,0 +1,82 @@
+//! Short messages over the stage: what was found, what went wrong.
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+
+use super::look;
+
+/// The messages on show, the oldest first.
+#[derive(Resource, Debug, Default)]
+pub(super) struct Notices(Vec<Notice>);
+
+#[derive(Debug)]
+struct Notice {
+    text: String,
+    is_problem: bool,
+    shown_for: Duration,
+}
+
+/// How long a message stays.
+const LIFETIME: Duration = Duration::from_secs(8);
+/// More than this many at once would cover the stage; the oldest goes.
+const MOST: usize = 4;
+
+impl Notices {
+    /// Something good to know.
+    pub fn news(&mut self, text: String) {
+        self.push(text, false);
+    }
+
+    /// Something that went wrong.
+    pub fn problem(&mut self, text: String) {
+        error!("{text}");
+        self.push(text, true);
+    }
+
+    fn push(&mut self, text: String, is_problem: bool) {
+        self.0.push(Notice { text, is_problem, shown_for: Duration::ZERO });
+        let surplus = self.0.len().saturating_sub(MOST);
+        self.0.drain(..surplus);
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Notices>().add_systems(EguiPrimaryContextPass, draw);
+}
+
+fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time<Real>>) -> Result {
+    notices.0.iter_mut().for_each(|notice| notice.shown_for += time.delta());
+    notices.0.retain(|notice| notice.shown_for < LIFETIME);
+    let context = contexts.ctx_mut()?;
+    egui::Area::new(egui::Id::new("notices"))
+        .anchor(egui::Align2::RIGHT_TOP, [-look::GAP * 2.0, look::GAP * 2.0])
+        .interactable(false)
+        .show(context, |ui| {
+            ui.spacing_mut().item_spacing.y = look::GAP;
+            for notice in notices.0.iter().rev() {
+                let edge = if notice.is_problem { look::PROBLEM } else { look::ACCENT };
+                look::card(edge).show(ui, |ui| {
+                    ui.set_max_width(look::NOTICE_WIDTH);
+                    ui.label(egui::RichText::new(&notice.text).color(look::TEXT));
+                });
+            }
+        });
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_latest_notices_are_kept() {
+        let mut notices = Notices::default();
+        for number in 0..10 {
+            notices.news(number.to_string());
+        }
+        let texts: Vec<&str> = notices.0.iter().map(|notice| notice.text.as_str()).collect();
+        assert_eq!(texts, ["6", "7", "8", "9"]);
+    }
+}

@@ -1,0 +1,83 @@
+//! The best of every generation, to click and replay.
+
+use bevy_egui::egui;
+
+use super::title;
+use crate::run::GenerationReport;
+use crate::studio::command::Command;
+use crate::studio::look;
+
+/// The list.
+#[derive(Debug, Default)]
+pub(super) struct ChampionsPanel;
+
+impl ChampionsPanel {
+    /// Draws the list and adds what was asked for. `shown` is what is on the stage: the generation of
+    /// the current run it is from, or none of it.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        reports: &[GenerationReport],
+        shown: Option<Option<u32>>,
+        asked: &mut Vec<Command>,
+    ) {
+        title(ui, "Champions");
+        let hint = "Click to replay";
+        if row(ui, shown == Some(None), "Saved champion", "").on_hover_text(hint).clicked() {
+            asked.push(Command::ShowOpening);
+        }
+        for report in reports {
+            let generation = report.generation;
+            let name = format!("Generation {generation}");
+            let Some(champion) = &report.champion else {
+                ui.label(egui::RichText::new(format!("{name}: all disqualified")).color(look::TEXT_WEAK));
+                continue;
+            };
+            let fitness_m = champion.evaluation.fitness_m;
+            let meaning = champion.trial.meaning(f64::from(fitness_m));
+            let reached = format!("{fitness_m:.2} m, {meaning}");
+            let is_shown = shown == Some(Some(generation));
+            if row(ui, is_shown, &name, &reached).on_hover_text(hint).clicked() {
+                asked.push(Command::ShowGeneration(generation));
+            }
+        }
+        if reports.is_empty() {
+            let hint = "The best of each generation will appear here.";
+            ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK));
+        }
+    }
+}
+
+/// A clickable row over the whole width: a name at the left, what it reached at the right.
+fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, reached: &str) -> egui::Response {
+    let reached = egui::RichText::new(reached).color(look::TEXT_WEAK);
+    let button = egui::Button::new(name).right_text(reached).selected(is_shown);
+    ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+    use crate::run::{Control, Experiment, pool};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn a_click_on_a_generation_shows_its_champion() {
+        let mut settings = Settings::default();
+        settings.evolution.population = 4;
+        settings.trial.duration_s = 0.5;
+        let mut experiment = Experiment::new("test", 1, settings);
+        let pool = pool(1).expect("a pool");
+        let mut report = || experiment.run_generation(&pool, &Control::default()).expect("done");
+        let reports = [report(), report()];
+        let mut harness = Harness::new_ui_state(
+            |ui, asked| ChampionsPanel.ui(ui, &reports, Some(None), asked),
+            Vec::new(),
+        );
+        harness.get_by_label_contains("Generation 2").click();
+        harness.run();
+        assert_eq!(*harness.state(), [Command::ShowGeneration(2)]);
+    }
+}

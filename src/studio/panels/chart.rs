@@ -1,0 +1,61 @@
+//! Fitness over the generations: the best and the mean.
+
+use bevy_egui::egui;
+use egui_plot::{Corner, HoverPosition, Legend, Line, Plot, PlotPoints, Points};
+
+use super::title;
+use crate::run::GenerationReport;
+use crate::studio::look;
+
+/// The chart.
+#[derive(Debug, Default)]
+pub(super) struct ChartPanel;
+
+impl ChartPanel {
+    /// Draws best and mean of the finished generations.
+    pub fn ui(&mut self, ui: &mut egui::Ui, reports: &[GenerationReport]) {
+        title(ui, "Fitness");
+        let hint = "How far the centre of the snake came, in metres, by generation";
+        ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK).small());
+        let series = |value: fn(&crate::run::Statistics) -> f64| -> Vec<[f64; 2]> {
+            let known = reports.iter().filter_map(|report| {
+                let statistics = report.statistics.as_ref()?;
+                Some([f64::from(report.generation), value(statistics)])
+            });
+            known.collect()
+        };
+        let lines = [
+            ("best", series(|statistics| statistics.best), look::ACCENT),
+            ("mean", series(|statistics| statistics.mean), look::SECOND),
+        ];
+        Plot::new("fitness")
+            .height(look::CHART_HEIGHT)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .include_x(1.0)
+            .include_x(6.0)
+            .include_y(-8.0)
+            .include_y(10.0)
+            .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 5.0]))
+            .legend(Legend::default().position(Corner::RightBottom))
+            .label_formatter(label)
+            .show(ui, |plot| {
+                for (name, points, color) in lines {
+                    plot.line(Line::new(name, PlotPoints::from(points.clone())).color(color).width(2.0));
+                    plot.points(Points::new(name, points).color(color).radius(3.5));
+                }
+            });
+    }
+}
+
+/// What stands beside the pointer over a point.
+fn label(position: &HoverPosition<'_>) -> Option<String> {
+    match position {
+        HoverPosition::NearDataPoint { plot_name, position, .. } => {
+            Some(format!("generation {:.0}\n{plot_name} {:.2} m", position.x, position.y))
+        }
+        HoverPosition::Elsewhere { .. } => None,
+    }
+}

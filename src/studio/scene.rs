@@ -1,0 +1,119 @@
+//! What stands still: sky, lights, ground, and the stairs of the trial on show.
+
+use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap};
+use bevy::prelude::*;
+
+use super::stage::Stage;
+use super::{Frame, look};
+use crate::world::StairBox;
+
+/// The meshes and materials that everything is built of.
+#[derive(Resource, Debug)]
+pub(super) struct Props {
+    /// A cube of one metre; a transform makes any box of it.
+    pub cube: Handle<Mesh>,
+    /// Of the first, third, ... limb.
+    pub red: Handle<StandardMaterial>,
+    /// Of the second, fourth, ... limb.
+    pub blue: Handle<StandardMaterial>,
+    stair: Handle<StandardMaterial>,
+    stair_other: Handle<StandardMaterial>,
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.insert_resource(ClearColor(look::SKY))
+        .insert_resource(GlobalAmbientLight { color: look::LIGHT, brightness: AMBIENT_CD_M2, ..default() })
+        .insert_resource(DirectionalLightShadowMap { size: SHADOW_MAP_PIXELS })
+        .init_resource::<Props>()
+        .add_systems(Startup, set_up)
+        .add_systems(Update, build_stairs.in_set(Frame::Draw));
+}
+
+/// Ambient light, in cd/m²: enough to see the shadowed sides.
+const AMBIENT_CD_M2: f32 = 420.0;
+/// The directional light, in lux.
+const SUN_LUX: f32 = 7_500.0;
+/// Shadows end this far from the camera, in metres: the length of the whole staircase.
+const SHADOW_DISTANCE_M: f32 = 60.0;
+/// Pixels along a side of the shadow map.
+const SHADOW_MAP_PIXELS: usize = 2048;
+/// Half the side of the drawn ground, in metres. The physical ground has no end; the fog hides this one.
+const GROUND_HALF_M: f32 = 250.0;
+
+impl FromWorld for Props {
+    fn from_world(world: &mut World) -> Self {
+        let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(1.0));
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let mut material = |base_color, perceptual_roughness| {
+            materials.add(StandardMaterial { base_color, perceptual_roughness, ..default() })
+        };
+        Self {
+            cube,
+            red: material(look::RED_LIMB, 0.55),
+            blue: material(look::BLUE_LIMB, 0.55),
+            stair: material(look::STAIR, 0.9),
+            stair_other: material(look::STAIR_OTHER, 0.9),
+        }
+    }
+}
+
+/// A transform that makes the unit cube a box.
+pub(super) fn box_transform(centre: Vec3, size: Vec3) -> Transform {
+    Transform::from_translation(centre).with_scale(size)
+}
+
+fn set_up(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    commands.spawn((
+        DirectionalLight {
+            color: look::LIGHT,
+            illuminance: SUN_LUX,
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        // From behind the viewer's right shoulder, so that both treads and risers are lit and differ.
+        Transform::from_xyz(9.0, -12.0, 16.0).looking_at(Vec3::ZERO, Vec3::Z),
+        CascadeShadowConfigBuilder {
+            num_cascades: 1,
+            maximum_distance: SHADOW_DISTANCE_M,
+            ..default()
+        }
+        .build(),
+    ));
+    commands.spawn((
+        Mesh3d(meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)))),
+        MeshMaterial3d(materials.add(StandardMaterial {
+            base_color: look::GROUND,
+            perceptual_roughness: 1.0,
+            reflectance: 0.1,
+            ..default()
+        })),
+    ));
+}
+
+/// Builds the stairs of a stage that is new.
+fn build_stairs(
+    stages: Query<(Entity, &Stage), Added<Stage>>,
+    props: Res<Props>,
+    mut commands: Commands,
+) {
+    for (entity, stage) in &stages {
+        commands.entity(entity).insert((Transform::default(), Visibility::default())).with_children(
+            |parent| {
+                let boxes = stage.trial().stairs.boxes();
+                for (index, StairBox { min_m, max_m }) in boxes.into_iter().enumerate() {
+                    let (min, max) = (Vec3::from(min_m), Vec3::from(max_m));
+                    let material = if index % 2 == 0 { &props.stair } else { &props.stair_other };
+                    parent.spawn((
+                        Mesh3d(props.cube.clone()),
+                        MeshMaterial3d(material.clone()),
+                        box_transform((min + max) / 2.0, max - min),
+                    ));
+                }
+            },
+        );
+    }
+}

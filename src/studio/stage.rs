@@ -1,0 +1,314 @@
+//! The stage: one rollout, played in real time.
+//!
+//! Between frames the physics world lives in a bevy_rapier3d context, so that its debug drawing and
+//! picking see the very bodies that are scored. To advance, the world is lent back to the rollout,
+//! which takes whole constant steps; the frame only decides how many. What is drawn lies between the
+//! last two steps.
+
+use bevy::prelude::*;
+use bevy_rapier3d::plugin::context::{
+    RapierContextColliders, RapierContextJoints, RapierContextSimulation, RapierRigidBodySet,
+};
+use bevy_rapier3d::render::RapierDebugRenderPlugin;
+use std::mem::swap;
+
+use super::{Frame, Opening};
+use crate::evolve::Champion;
+use crate::score::{Evaluation, Rollout};
+use crate::world::{PhysicsWorld, Pose};
+
+/// A champion with the words under it.
+#[derive(Debug, Clone)]
+pub(super) struct Exhibit {
+    champion: Champion,
+    /// The generation of the current run it is from; none for the one the studio opened with.
+    generation: Option<u32>,
+}
+
+impl Exhibit {
+    /// The champion the studio opened with.
+    pub fn opening(champion: &Champion) -> Self {
+        Self { champion: champion.clone(), generation: None }
+    }
+
+    /// A champion that the current run found.
+    pub fn found(champion: &Champion) -> Self {
+        let generation = Some(champion.origin.generation);
+        Self { champion: champion.clone(), generation }
+    }
+
+    /// The generation of the current run it is from.
+    pub fn generation(&self) -> Option<u32> {
+        self.generation
+    }
+
+    /// What it reached, in metres.
+    pub fn fitness_m(&self) -> f32 {
+        self.champion.evaluation.fitness_m
+    }
+
+    /// What it is and what it reached, in a line.
+    pub fn caption(&self) -> String {
+        let fitness_m = self.fitness_m();
+        let meaning = self.champion.trial.meaning(f64::from(fitness_m));
+        match self.generation {
+            Some(generation) => format!("Generation {generation}: {fitness_m:.2} m, {meaning}"),
+            None => format!("Saved champion: {fitness_m:.2} m, {meaning}"),
+        }
+    }
+}
+
+/// Asks for an exhibit to be put on the stage, in place of what is there.
+#[derive(Message, Debug, Clone)]
+pub(super) struct ShowExhibit(pub Exhibit);
+
+/// A rollout on show. Its entity carries the physics context.
+#[derive(Component)]
+pub(super) struct Stage {
+    exhibit: Exhibit,
+    rollout: Rollout,
+    /// Poses before the last step, head first.
+    before: Vec<Pose>,
+    /// How much time has been shown beyond the last but one step, in seconds.
+    owed_s: f32,
+    step_s: f32,
+    is_playing: bool,
+    restart: bool,
+    /// How long the end has been on show, in seconds.
+    rested_s: f32,
+}
+
+/// How long the end stays on show before the rollout starts again, in seconds.
+const REST_S: f32 = 1.5;
+/// The most time a single frame may make up for, in seconds. After a longer pause (a moved window, a
+/// sleeping laptop) the stage goes on where it was instead of racing.
+const MOST_CATCH_UP_S: f32 = 0.5;
+
+/// The context's parts, as one bundle spawns them and one query finds them.
+type Context<'a> = (
+    &'a mut RapierContextSimulation,
+    &'a mut RapierContextColliders,
+    &'a mut RapierContextJoints,
+    &'a mut RapierRigidBodySet,
+);
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_message::<ShowExhibit>()
+        .add_plugins(RapierDebugRenderPlugin::default().disabled())
+        .add_systems(Startup, show_opening)
+        .add_systems(Update, (put_on_stage, advance).chain().in_set(Frame::Advance));
+}
+
+impl Stage {
+    /// A stage at the start of the exhibit's rollout.
+    pub fn new(exhibit: Exhibit) -> Self {
+        let champion = &exhibit.champion;
+        let rollout = Rollout::new(&champion.genome, &champion.trial);
+        Self {
+            before: rollout.poses().to_vec(),
+            step_s: champion.trial.physics.step_s(),
+            rollout,
+            exhibit,
+            owed_s: 0.0,
+            is_playing: true,
+            restart: false,
+            rested_s: 0.0,
+        }
+    }
+
+    /// What is on show.
+    pub fn exhibit(&self) -> &Exhibit {
+        &self.exhibit
+    }
+
+    /// The champion's trial: the stairs to draw, the limbs' sizes.
+    pub fn trial(&self) -> &crate::score::Trial {
+        &self.exhibit.champion.trial
+    }
+
+    /// Simulated time of the last step, in seconds.
+    pub fn time_s(&self) -> f32 {
+        self.rollout.step() as f32 * self.step_s
+    }
+
+    /// Length of the rollout, in simulated seconds.
+    pub fn duration_s(&self) -> f32 {
+        self.trial().duration_s
+    }
+
+    /// What there is to say of the rollout so far; at its end, the score.
+    pub fn evaluation(&self) -> Evaluation {
+        self.rollout.evaluation()
+    }
+
+    /// Whether time passes on the stage.
+    pub fn is_playing(&self) -> bool {
+        self.is_playing
+    }
+
+    /// Holds or resumes.
+    pub fn toggle_playback(&mut self) {
+        self.is_playing = !self.is_playing;
+    }
+
+    /// Starts from the beginning with the next frame.
+    pub fn ask_for_restart(&mut self) {
+        self.restart = true;
+    }
+
+    /// The limbs' poses between the last two steps, head first: where to draw them.
+    pub fn drawn_poses(&self) -> impl Iterator<Item = Pose> + '_ {
+        let share = (self.owed_s / self.step_s).clamp(0.0, 1.0);
+        let pairs = self.before.iter().zip(self.rollout.poses());
+        pairs.map(move |(before, after)| before.lerp(after, share))
+    }
+
+    /// Lets `elapsed_s` of real time pass: takes as many whole steps as fit. The world must have been
+    /// lent to the rollout.
+    fn pass(&mut self, elapsed_s: f32) {
+        self.owed_s += elapsed_s.min(MOST_CATCH_UP_S);
+        while self.owed_s >= self.step_s && !self.rollout.is_over() {
+            self.owed_s -= self.step_s;
+            self.before.copy_from_slice(self.rollout.poses());
+            self.rollout.advance();
+        }
+        if self.rollout.is_over() {
+            self.owed_s = self.step_s;
+            self.rested_s += elapsed_s;
+        }
+    }
+}
+
+/// Puts the exhibit the studio opens with on the stage.
+fn show_opening(opening: Res<Opening>, mut show: MessageWriter<ShowExhibit>) {
+    show.write(ShowExhibit(Exhibit::opening(&opening.0)));
+}
+
+/// Replaces what is on the stage.
+fn put_on_stage(
+    mut asked: MessageReader<ShowExhibit>,
+    stages: Query<Entity, With<Stage>>,
+    mut commands: Commands,
+) {
+    // Of several requests in a frame only the last is seen.
+    let Some(ShowExhibit(exhibit)) = asked.read().last() else { return };
+    stages.iter().for_each(|stage| commands.entity(stage).despawn());
+    spawn(&mut commands, Stage::new(exhibit.clone()));
+}
+
+/// Spawns a stage whose physics world lives in a context of its own.
+fn spawn(commands: &mut Commands, mut stage: Stage) {
+    let entity = commands.spawn_empty().id();
+    let physics = stage.rollout.simulation_mut().physics_mut();
+    // The engine's tools find the owner of a collider here. It plays no part in the physics.
+    for (_, collider) in physics.colliders.iter_mut() {
+        collider.user_data = u128::from(entity.to_bits());
+    }
+    let (mut simulation, mut colliders, mut joints, mut bodies) = Default::default();
+    exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
+    commands.entity(entity).insert((simulation, colliders, joints, bodies, stage));
+}
+
+/// Lets time pass on the stage.
+fn advance(mut stages: Query<(&mut Stage, Context)>, time: Res<Time<Real>>, mut show: MessageWriter<ShowExhibit>) {
+    for (mut stage, (mut simulation, mut colliders, mut joints, mut bodies)) in &mut stages {
+        if stage.restart || stage.rested_s > REST_S {
+            show.write(ShowExhibit(stage.exhibit.clone()));
+            stage.restart = false;
+            stage.rested_s = 0.0;
+            continue;
+        }
+        if stage.is_playing {
+            let mut lend = |stage: &mut Stage| {
+                let physics = stage.rollout.simulation_mut().physics_mut();
+                exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
+            };
+            lend(&mut stage);
+            stage.pass(time.delta_secs());
+            lend(&mut stage);
+        }
+    }
+}
+
+/// Swaps a physics world with the one in a context: lends it out, or gives it back.
+fn exchange(
+    physics: &mut PhysicsWorld,
+    simulation: &mut RapierContextSimulation,
+    colliders: &mut RapierContextColliders,
+    joints: &mut RapierContextJoints,
+    bodies: &mut RapierRigidBodySet,
+) {
+    swap(&mut physics.integration_parameters, &mut simulation.integration_parameters);
+    swap(&mut physics.physics_pipeline, &mut simulation.pipeline);
+    swap(&mut physics.islands, &mut simulation.islands);
+    swap(&mut physics.broad_phase, &mut simulation.broad_phase);
+    swap(&mut physics.narrow_phase, &mut simulation.narrow_phase);
+    swap(&mut physics.ccd_solver, &mut simulation.ccd_solver);
+    swap(&mut physics.colliders, &mut colliders.colliders);
+    swap(&mut physics.impulse_joints, &mut joints.impulse_joints);
+    swap(&mut physics.multibody_joints, &mut joints.multibody_joints);
+    swap(&mut physics.bodies, &mut bodies.bodies);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::score::evaluate;
+    use bevy::time::TimeUpdateStrategy;
+    use std::time::Duration;
+
+    /// A stage without a window, whose frames last as long as `frames_s` says, in turn.
+    fn play(frames_s: &[f32], until: impl Fn(&Stage) -> bool) -> App {
+        let opening = shipped_champion().expect("well formed").champion;
+        let mut app = App::new();
+        app.add_plugins(MinimalPlugins)
+            .add_message::<ShowExhibit>()
+            .insert_resource(Opening(opening))
+            .add_systems(Startup, show_opening)
+            .add_systems(Update, (put_on_stage, advance).chain());
+        for frame_s in frames_s.iter().cycle().take(10_000) {
+            let length = Duration::from_secs_f32(*frame_s);
+            app.insert_resource(TimeUpdateStrategy::ManualDuration(length));
+            app.update();
+            let mut stages = app.world_mut().query::<&Stage>();
+            if stages.iter(app.world()).any(&until) {
+                return app;
+            }
+        }
+        panic!("the stage never got there");
+    }
+
+    #[test]
+    fn a_replay_on_the_stage_has_the_bits_of_the_headless_run_at_any_frame_rate() {
+        let opening = shipped_champion().expect("well formed").champion;
+        let headless = evaluate(&opening.genome, &opening.trial);
+        for frames_s in [&[1.0 / 60.0][..], &[0.25], &[0.004, 0.1, 0.031]] {
+            let mut app = play(frames_s, |stage| stage.rollout.is_over());
+            let mut stages = app.world_mut().query::<&Stage>();
+            let stage = stages.single(app.world()).expect("one stage");
+            assert_eq!(stage.evaluation(), headless, "with frames of {frames_s:?} s");
+        }
+    }
+
+    #[test]
+    fn between_frames_the_world_is_in_the_rapier_context() {
+        let mut app = play(&[0.1], |stage| stage.rollout.step() > 20);
+        let mut contexts = app.world_mut().query::<(&Stage, &RapierRigidBodySet)>();
+        let (stage, bodies) = contexts.single(app.world()).expect("one stage");
+        assert_eq!(stage.rollout.simulation().physics().bodies.len(), 0);
+        let in_context = stage.rollout.simulation().limb_handles().iter();
+        let poses: Vec<Pose> = in_context.map(|&limb| *bodies.bodies[limb].position()).collect();
+        assert_eq!(poses, stage.rollout.poses());
+    }
+
+    #[test]
+    fn it_draws_between_the_last_two_steps() {
+        let mut app = play(&[0.0251], |stage| stage.rollout.step() > 60);
+        let mut stages = app.world_mut().query::<&Stage>();
+        let stage = stages.single(app.world()).expect("one stage");
+        let (before, after) = (stage.before[0].translation.y, stage.rollout.poses()[0].translation.y);
+        let drawn = stage.drawn_poses().next().expect("a head").translation.y;
+        assert!((drawn - before) * (drawn - after) <= 0.0, "{drawn} between {before} and {after}");
+    }
+}

@@ -1,0 +1,45 @@
+//! The window's title says where things stand, for a taskbar, a screen reader or a script.
+
+use bevy::prelude::*;
+use bevy::window::PrimaryWindow;
+
+use super::Frame;
+use super::evolution::{Evolution, Status};
+use super::stage::Stage;
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_systems(Update, update.in_set(Frame::Draw));
+}
+
+fn update(
+    evolution: Res<Evolution>,
+    stages: Query<&Stage>,
+    mut window: Single<&mut Window, With<PrimaryWindow>>,
+) {
+    let status = match evolution.status() {
+        Status::Ready => "ready",
+        Status::Running => "running",
+        Status::Paused => "paused",
+        Status::Finished => "finished",
+    };
+    let shown = match stages.iter().next() {
+        None => "nothing".to_owned(),
+        Some(stage) => {
+            let what = match stage.exhibit().generation() {
+                Some(generation) => format!("generation {generation}"),
+                None => "saved champion".to_owned(),
+            };
+            if stage.is_playing() { what } else { format!("{what}, held") }
+        }
+    };
+    let title = format!(
+        "Snakes & Stairs - {}, seed {} - {} of {} generations, {status} - showing {shown}",
+        evolution.preset(),
+        evolution.seed(),
+        evolution.reports().len(),
+        evolution.settings().evolution.generations,
+    );
+    if window.title != title {
+        window.title = title;
+    }
+}
