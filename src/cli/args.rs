@@ -252,7 +252,10 @@ mod tests {
             ("--population -3", "population is \"-3\"; allowed: a whole number from 0 up"),
             ("--duration -1", "trial.duration_s is -1; allowed: 0.1 to 600"),
             ("--duration NaN", "trial.duration_s is NaN; allowed: 0.1 to 600"),
-            ("--seed twelve", "seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615"),
+            (
+                "--seed twelve",
+                "seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615",
+            ),
             ("--preset nosuch", "preset is \"nosuch\"; allowed: report, quick, or a file"),
             ("--threads 0", "threads is 0; allowed: 1 to 1024"),
         ] {

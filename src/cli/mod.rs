@@ -104,7 +104,8 @@ fn print_presets(json: bool) -> Result<(), CliError> {
     let mut text = String::new();
     for preset in presets {
         if json {
-            text += &format!("{}\n", serde_json::json!({"name": preset.name, "about": preset.about}));
+            text +=
+                &format!("{}\n", serde_json::json!({"name": preset.name, "about": preset.about}));
         } else {
             text += &format!("{:<10}{}\n", preset.name, preset.about);
         }

@@ -5,8 +5,8 @@ use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::signal::{JointSignals, Signals, random_walk, shifted};
 use super::Genome;
+use super::signal::{JointSignals, Signals, random_walk, shifted};
 use crate::check::{Invalid, within};
 
 /// What a genome may be: ranges, lists, the density of points.
@@ -62,7 +62,11 @@ impl GenomeSpace {
             ("twist_limits_rad", &self.twist_limits_rad),
         ] {
             if limits.is_empty() || limits.len() > 100 {
-                return Err(Invalid::new(field, format!("{} values", limits.len()), "1 to 100 values"));
+                return Err(Invalid::new(
+                    field,
+                    format!("{} values", limits.len()),
+                    "1 to 100 values",
+                ));
             }
             limits.iter().try_for_each(|&limit| within(field, limit, 0.0..=LARGEST_LIMIT_RAD))?;
         }
@@ -83,7 +87,8 @@ impl GenomeSpace {
     pub fn birth(&self, joints: usize, duration_s: f32, rng: &mut ChaCha8Rng) -> Genome {
         let points = self.points(duration_s);
         // `check` refuses empty lists; a list that is empty all the same means a joint held fast.
-        let choose = |limits: &[f32], rng: &mut ChaCha8Rng| limits.choose(rng).copied().unwrap_or(0.0);
+        let choose =
+            |limits: &[f32], rng: &mut ChaCha8Rng| limits.choose(rng).copied().unwrap_or(0.0);
         let bend_limit_rad = choose(&self.bend_limits_rad, rng);
         let twist_limit_rad = choose(&self.twist_limits_rad, rng);
         let density_kg_m3 = rng.random_range(self.density_min_kg_m3..=self.density_max_kg_m3);

@@ -1,8 +1,8 @@
 //! An experiment on a thread of its own, for a window that must not wait.
 
-use std::sync::{Arc, Mutex, PoisonError};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 
 use rayon::ThreadPool;
@@ -51,7 +51,8 @@ impl Background {
         let population = experiment.settings().evolution.population;
         let (sender, events) = channel();
         let thread = thread::Builder::new().name("experiment".to_owned()).spawn({
-            let (control, pause_after) = (Arc::clone(&control), Arc::clone(&pause_after_generation));
+            let (control, pause_after) =
+                (Arc::clone(&control), Arc::clone(&pause_after_generation));
             move || work(experiment, &pool, keeper, &control, &pause_after, &sender)
         })?;
         let events = Mutex::new(events);

@@ -215,7 +215,8 @@ mod tests {
 
     #[test]
     fn a_row_stands_under_its_head() {
-        let statistics = Statistics { mean: -7.225, best: 1.5, median: -7.0, std: 0.25, worst: -9.0 };
+        let statistics =
+            Statistics { mean: -7.225, best: 1.5, median: -7.0, std: 0.25, worst: -9.0 };
         let report = GenerationReport {
             generation: 1,
             evaluations: 500,

@@ -46,9 +46,8 @@ pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
 pub fn store_champion(path: &Path, champion: &Champion) -> Result<(), SaveError> {
     let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
     let file = ChampionV1::from(champion.clone());
-    let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| SaveError::Unwritable {
-        path: path.to_owned(),
-        source: std::io::Error::other(error),
+    let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| {
+        SaveError::Unwritable { path: path.to_owned(), source: std::io::Error::other(error) }
     })?;
     let origin = &champion.origin;
     let header = format!(

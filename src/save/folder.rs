@@ -48,10 +48,7 @@ pub fn champion_file_name(origin: &Origin, settings: &Settings) -> String {
     let fingerprint = xxh3_64(format!("{ENGINE_VERSION} {settings}").as_bytes()) as u32;
     let preset: String =
         origin.preset.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
-    format!(
-        "{preset}-seed{}-{fingerprint:08x}-generation{}.ron",
-        origin.seed, origin.generation
-    )
+    format!("{preset}-seed{}-{fingerprint:08x}-generation{}.ron", origin.seed, origin.generation)
 }
 
 #[cfg(test)]

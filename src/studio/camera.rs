@@ -177,14 +177,12 @@ fn fit_to_area(
     mut camera: Single<&mut Camera, With<StageCamera>>,
 ) {
     let physical = window.physical_size();
-    let left = ((area.left_points * window.scale_factor()) as u32).min(physical.x.saturating_sub(1));
+    let left =
+        ((area.left_points * window.scale_factor()) as u32).min(physical.x.saturating_sub(1));
     let size = UVec2::new(physical.x.saturating_sub(left), physical.y);
     if size.x == 0 || size.y == 0 {
         return;
     }
-    camera.viewport = Some(Viewport {
-        physical_position: UVec2::new(left, 0),
-        physical_size: size,
-        ..default()
-    });
+    camera.viewport =
+        Some(Viewport { physical_position: UVec2::new(left, 0), physical_size: size, ..default() });
 }

@@ -235,7 +235,8 @@ fn take_in(
 ) {
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
-    let mut to_beat_m = stages.iter().map(|stage| stage.exhibit().fitness_m()).fold(f32::MIN, f32::max);
+    let mut to_beat_m =
+        stages.iter().map(|stage| stage.exhibit().fitness_m()).fold(f32::MIN, f32::max);
     for event in events {
         match event {
             Event::Generation(report) => {

@@ -1,5 +1,6 @@
 //! What a frame costs: CPU time of the main thread and wall time, over a given number of frames.
 
+use std::io::{self, Write};
 use std::time::{Duration, Instant};
 
 use bevy::ecs::system::NonSendMarker;
@@ -32,8 +33,11 @@ fn measure(_: NonSendMarker, mut times: ResMut<FrameTimes>, mut exit: MessageWri
     }
     if times.cpu.len() as u32 == times.frames {
         let skipped = WARM_UP_FRAMES.min(times.cpu.len() / 2);
-        eprintln!("main thread CPU per frame: {}", summary(&mut times.cpu[skipped..]));
-        eprintln!("wall time per frame: {}", summary(&mut times.wall[skipped..]));
+        let cpu = summary(&mut times.cpu[skipped..]);
+        let wall = summary(&mut times.wall[skipped..]);
+        // Nothing is left to do if standard error is gone.
+        let _ =
+            writeln!(io::stderr(), "main thread CPU per frame: {cpu}\nwall time per frame: {wall}");
         exit.write(AppExit::Success);
     }
 }
@@ -45,7 +49,10 @@ fn summary(times: &mut [Duration]) -> String {
         times[index].as_secs_f64() * 1000.0
     };
     let (median, p95, most) = (at(0.5), at(0.95), at(1.0));
-    format!("median {median:.2} ms, 95 % {p95:.2} ms, most {most:.2} ms over {} frames", times.len())
+    format!(
+        "median {median:.2} ms, 95 % {p95:.2} ms, most {most:.2} ms over {} frames",
+        times.len()
+    )
 }
 
 /// CPU time that the calling thread has used so far.

@@ -106,10 +106,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(WinitSettings::continuous())
         .insert_resource(Opening(opening.champion))
         .insert_resource(engine)
-        .configure_sets(
-            Update,
-            (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain(),
-        )
+        .configure_sets(Update, (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain())
         .add_plugins((
             command::plugin,
             evolution::plugin,

@@ -22,7 +22,11 @@ pub(super) struct Props {
 
 pub(super) fn plugin(app: &mut App) {
     app.insert_resource(ClearColor(look::SKY))
-        .insert_resource(GlobalAmbientLight { color: look::LIGHT, brightness: AMBIENT_CD_M2, ..default() })
+        .insert_resource(GlobalAmbientLight {
+            color: look::LIGHT,
+            brightness: AMBIENT_CD_M2,
+            ..default()
+        })
         .insert_resource(DirectionalLightShadowMap { size: SHADOW_MAP_PIXELS })
         .init_resource::<Props>()
         .add_systems(Startup, set_up)
@@ -101,8 +105,10 @@ fn build_stairs(
     mut commands: Commands,
 ) {
     for (entity, stage) in &stages {
-        commands.entity(entity).insert((Transform::default(), Visibility::default())).with_children(
-            |parent| {
+        commands
+            .entity(entity)
+            .insert((Transform::default(), Visibility::default()))
+            .with_children(|parent| {
                 let boxes = stage.trial().stairs.boxes();
                 for (index, StairBox { min_m, max_m }) in boxes.into_iter().enumerate() {
                     let (min, max) = (Vec3::from(min_m), Vec3::from(max_m));
@@ -113,7 +119,6 @@ fn build_stairs(
                         box_transform((min + max) / 2.0, max - min),
                     ));
                 }
-            },
-        );
+            });
     }
 }

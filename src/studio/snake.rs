@@ -15,11 +15,7 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// Builds the limbs of a stage that is new.
-fn build(
-    stages: Query<(Entity, &Stage), Added<Stage>>,
-    props: Res<Props>,
-    mut commands: Commands,
-) {
+fn build(stages: Query<(Entity, &Stage), Added<Stage>>, props: Res<Props>, mut commands: Commands) {
     for (entity, stage) in &stages {
         let agent = &stage.trial().agent;
         let size = Vec3::new(agent.limb_width_m, agent.limb_length_m, agent.limb_height_m);

@@ -210,7 +210,11 @@ fn spawn(commands: &mut Commands, mut stage: Stage) {
 }
 
 /// Lets time pass on the stage.
-fn advance(mut stages: Query<(&mut Stage, Context)>, time: Res<Time<Real>>, mut show: MessageWriter<ShowExhibit>) {
+fn advance(
+    mut stages: Query<(&mut Stage, Context)>,
+    time: Res<Time<Real>>,
+    mut show: MessageWriter<ShowExhibit>,
+) {
     for (mut stage, (mut simulation, mut colliders, mut joints, mut bodies)) in &mut stages {
         if stage.restart || stage.rested_s > REST_S {
             show.write(ShowExhibit(stage.exhibit.clone()));
@@ -307,7 +311,8 @@ mod tests {
         let mut app = play(&[0.0251], |stage| stage.rollout.step() > 60);
         let mut stages = app.world_mut().query::<&Stage>();
         let stage = stages.single(app.world()).expect("one stage");
-        let (before, after) = (stage.before[0].translation.y, stage.rollout.poses()[0].translation.y);
+        let (before, after) =
+            (stage.before[0].translation.y, stage.rollout.poses()[0].translation.y);
         let drawn = stage.drawn_poses().next().expect("a head").translation.y;
         assert!((drawn - before) * (drawn - after) <= 0.0, "{drawn} between {before} and {after}");
     }

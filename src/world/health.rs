@@ -51,12 +51,7 @@ pub struct HealthLimits {
 
 impl Default for HealthLimits {
     fn default() -> Self {
-        Self {
-            joint_drift_m: 0.1,
-            speed_m_s: 25.0,
-            arena_half_width_m: 12.0,
-            arena_back_m: 30.0,
-        }
+        Self { joint_drift_m: 0.1, speed_m_s: 25.0, arena_half_width_m: 12.0, arena_back_m: 30.0 }
     }
 }
 

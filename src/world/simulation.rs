@@ -136,8 +136,7 @@ impl Simulation {
     pub(crate) fn apply(&mut self, torques: &[JointTorque]) {
         self.torques_in_world.fill(Vector::ZERO);
         for (index, (joint, torque)) in self.joints.iter().zip(torques).enumerate() {
-            let bend_nm =
-                torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
+            let bend_nm = torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
             let twist_nm =
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
             let front = self.physics.bodies[self.limbs[index]].rotation();

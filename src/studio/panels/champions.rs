@@ -30,7 +30,9 @@ impl ChampionsPanel {
             let generation = report.generation;
             let name = format!("Generation {generation}");
             let Some(champion) = &report.champion else {
-                ui.label(egui::RichText::new(format!("{name}: all disqualified")).color(look::TEXT_WEAK));
+                ui.label(
+                    egui::RichText::new(format!("{name}: all disqualified")).color(look::TEXT_WEAK),
+                );
                 continue;
             };
             let fitness_m = champion.evaluation.fitness_m;

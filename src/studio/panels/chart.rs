@@ -43,7 +43,9 @@ impl ChartPanel {
             .label_formatter(label)
             .show(ui, |plot| {
                 for (name, points, color) in lines {
-                    plot.line(Line::new(name, PlotPoints::from(points.clone())).color(color).width(2.0));
+                    plot.line(
+                        Line::new(name, PlotPoints::from(points.clone())).color(color).width(2.0),
+                    );
                     plot.points(Points::new(name, points).color(color).radius(3.5));
                 }
             });

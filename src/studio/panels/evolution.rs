@@ -34,8 +34,14 @@ impl EvolutionPanel {
             };
             button(ui, start, "Evolve in the background (E)", command);
             let single = egui::Button::new("One generation");
-            button(ui, single, "Evolve to the end of a generation, then pause (G)", Command::SingleGeneration);
-            let hint = "Throw this run away and prepare a fresh one with the seed and population below";
+            button(
+                ui,
+                single,
+                "Evolve to the end of a generation, then pause (G)",
+                Command::SingleGeneration,
+            );
+            let hint =
+                "Throw this run away and prepare a fresh one with the seed and population below";
             button(ui, egui::Button::new("Reset"), hint, Command::Reset);
         });
         self.progress(ui, run);

@@ -1,0 +1,155 @@
+//! Bad input: one line that names the field, the value and what is allowed; exit code 2 for wrong
+//! usage, 1 for failure; nothing overwritten, nothing half-written.
+
+use std::fs;
+use std::path::Path;
+
+use super::program::{folder, json_lines, run};
+
+/// Runs the program, which must fail with `code` and one line, and returns the line.
+fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
+    let output = run(folder, arguments);
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    let message = message.trim_end().to_owned();
+    assert_eq!(output.status.code(), Some(code), "snakes {arguments}: {message}");
+    assert_eq!(message.lines().count(), 1, "snakes {arguments}: {message}");
+    assert!(output.stdout.is_empty(), "snakes {arguments} printed on standard output");
+    message
+}
+
+#[test]
+fn an_unknown_preset() {
+    let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
+    assert_eq!(message, "error: preset is \"nosuch\"; allowed: report, quick, or a file");
+}
+
+#[test]
+fn a_population_of_zero() {
+    let message = refusal(folder().path(), "--no-render --population 0", 2);
+    assert_eq!(message, "error: evolution.population is 0; allowed: 1 to 100000");
+}
+
+#[test]
+fn a_negative_duration() {
+    let message = refusal(folder().path(), "--no-render --duration -2", 2);
+    assert_eq!(message, "error: trial.duration_s is -2; allowed: 0.1 to 600");
+}
+
+#[test]
+fn a_seed_that_is_no_number() {
+    let message = refusal(folder().path(), "--no-render --seed twelve", 2);
+    let allowed = "allowed: a whole number from 0 to 18446744073709551615";
+    assert_eq!(message, format!("error: seed is \"twelve\"; {allowed}"));
+}
+
+#[test]
+fn an_unknown_flag() {
+    let message = refusal(folder().path(), "--no-render --polulation 3", 2);
+    assert!(message.contains("--polulation"), "{message}");
+}
+
+#[test]
+fn a_save_that_is_not_there() {
+    let message = refusal(folder().path(), "replay nosuch.ron --no-render", 1);
+    assert!(message.starts_with("error: nosuch.ron: cannot be read: "), "{message}");
+}
+
+#[test]
+fn a_save_that_is_a_folder() {
+    let message = refusal(folder().path(), "replay . --no-render", 1);
+    assert!(message.starts_with("error: .: cannot be read: "), "{message}");
+}
+
+/// What replaying the shipped champion says after `edit`.
+fn refusal_of_save(edit: impl FnOnce(&str) -> String) -> String {
+    let folder = folder();
+    let edited = edit(include_str!("../../saves/first-climber.ron"));
+    fs::write(folder.path().join("save.ron"), &edited).expect("written");
+    let message = refusal(folder.path(), "replay save.ron --no-render", 1);
+    let kept = fs::read_to_string(folder.path().join("save.ron")).expect("read");
+    assert_eq!(kept, edited, "the file is left as it was");
+    message
+}
+
+#[test]
+fn a_truncated_save() {
+    let message = refusal_of_save(|text| text[..text.len() * 2 / 3].to_owned());
+    assert!(message.starts_with("error: save.ron: damaged or incomplete at line "), "{message}");
+}
+
+#[test]
+fn a_foreign_save() {
+    let message = refusal_of_save(|_| "(name: \"opening\", moves: [\"e4\", \"e5\"])".to_owned());
+    let allowed = "allowed: \"snakes-and-stairs champion\"";
+    assert_eq!(message, format!("error: save.ron: kind is \"\"; {allowed}"));
+    let message = refusal_of_save(|_| "\u{7f}ELF\u{1}\u{2}".to_owned());
+    assert!(message.starts_with("error: save.ron: damaged or incomplete at line 1"), "{message}");
+}
+
+#[test]
+fn a_newer_save() {
+    let message = refusal_of_save(|text| text.replace("format: 1,", "format: 2,"));
+    let reason = "(a newer version of Snakes & Stairs wrote this file)";
+    assert_eq!(message, format!("error: save.ron: format is 2; allowed: 1 to 1 {reason}"));
+}
+
+#[test]
+fn a_save_with_a_value_out_of_range() {
+    let message = refusal_of_save(|text| text.replace("steps_per_s: 60", "steps_per_s: 0"));
+    assert_eq!(message, "error: save.ron: trial.physics.steps_per_s is 0; allowed: 20 to 1000");
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_written() {
+    let folder = folder();
+    fs::write(folder.path().join("taken"), "a file, no folder").expect("written");
+    // What is refused is refused before the first evaluation: standard output stays empty.
+    let message = {
+        let output = run(folder.path(), "--no-render --json --out taken");
+        assert_eq!(output.status.code(), Some(1));
+        assert!(output.stdout.is_empty());
+        String::from_utf8(output.stderr).expect("UTF-8")
+    };
+    let last = message.lines().last().expect("a line");
+    assert!(last.starts_with("error: taken: cannot be written: "), "{message}");
+    let kept = fs::read_to_string(folder.path().join("taken")).expect("read");
+    assert_eq!(kept, "a file, no folder");
+}
+
+#[test]
+fn a_preset_file_with_an_unknown_and_with_a_missing_field() {
+    let folder = folder();
+    let quick = include_str!("../../assets/presets/quick.ron");
+    for (edit, complaint) in [
+        (quick.replace("friction: 1.0", "fricton: 1.0"), "fricton"),
+        (quick.replace("start_y_m: -7.23,", ""), "start_y_m"),
+    ] {
+        fs::write(folder.path().join("own.ron"), edit).expect("written");
+        let message = refusal(folder.path(), "--no-render --preset own.ron", 1);
+        assert!(message.contains("own.ron: ") && message.contains(complaint), "{message}");
+    }
+}
+
+#[test]
+fn running_twice_overwrites_nothing_else() {
+    let folder = folder();
+    let run_with = |population: u32| {
+        let arguments = format!(
+            "--no-render --json --population {population} --generations 1 --duration 0.5 --out out"
+        );
+        json_lines(folder.path(), &arguments);
+        let files = fs::read_dir(folder.path().join("out")).expect("a folder");
+        files.count()
+    };
+    assert_eq!(run_with(4), 1);
+    assert_eq!(run_with(4), 1, "the same run writes the same file");
+    assert_eq!(run_with(5), 2, "another run writes another");
+}
+
+#[test]
+fn without_a_display_the_studio_says_so_in_one_line() {
+    let message = refusal(folder().path(), "", 1);
+    assert!(message.contains("--no-render"), "{message}");
+    #[cfg(feature = "studio")]
+    assert!(message.starts_with("error: no window can be opened ("), "{message}");
+}

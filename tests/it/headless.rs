@@ -1,0 +1,149 @@
+//! The program without a window, from the outside.
+
+use serde_json::json;
+
+use super::program::{folder, json_lines, run, stdout_of};
+
+const SMALL: &str = "--no-render --population 8 --generations 3 --duration 1 --seed 4";
+
+#[test]
+fn a_run_prints_a_table_and_ends_with_a_champion_that_replay_confirms() {
+    let folder = folder();
+    let table = stdout_of(folder.path(), &format!("{SMALL} --out out"));
+    let rows: Vec<&str> = table.lines().collect();
+    assert!(rows[0].starts_with("generation     mean     best   median"), "{table}");
+    for (row, generation) in rows[1..4].iter().zip(["1", "2", "3"]) {
+        assert_eq!(row.split_whitespace().next(), Some(generation), "{table}");
+    }
+    let path = rows.iter().find_map(|row| row.strip_prefix("saved to  ")).expect("a champion file");
+    let replay = stdout_of(folder.path(), &format!("replay {path} --no-render"));
+    assert!(replay.contains("equal to the record, bit for bit"), "{replay}");
+}
+
+#[test]
+fn json_lines_have_the_documented_fields() {
+    let folder = folder();
+    let lines = json_lines(folder.path(), &format!("{SMALL} --json --out out"));
+    assert_eq!(lines.len(), 4);
+    for line in &lines[..3] {
+        let keys = line.as_object().expect("an object").keys().map(String::as_str);
+        let mut keys: Vec<&str> = keys.collect();
+        keys.sort_unstable();
+        assert_eq!(
+            keys,
+            [
+                "best",
+                "disqualified",
+                "elapsed_s",
+                "evaluations",
+                "generation",
+                "hash",
+                "mean",
+                "meaning",
+                "median",
+                "std",
+                "worst"
+            ]
+        );
+        assert_eq!(line["evaluations"], json!(8));
+    }
+    let last = &lines[3];
+    assert_eq!(last["done"], json!(true));
+    assert_eq!(last["run_hash"].as_str().map(str::len), Some(16));
+    let best = lines[..3].iter().map(|line| line["best"].as_f64().expect("a number"));
+    assert_eq!(last["best"].as_f64(), best.reduce(f64::max));
+    let champion = last["champion"].as_str().expect("a path");
+    let replay = json_lines(folder.path(), &format!("replay {champion} --no-render --json"));
+    assert_eq!(replay[0]["matches"], json!(true));
+    assert_eq!(replay[0]["trace_hash"], replay[0]["recorded_trace_hash"]);
+    assert_eq!(replay[0]["fitness"], last["best"]);
+}
+
+#[test]
+fn a_replay_that_differs_from_its_record_fails() {
+    let folder = folder();
+    let lines = json_lines(folder.path(), &format!("{SMALL} --json --out out"));
+    let path = folder.path().join(lines[3]["champion"].as_str().expect("a path"));
+    let text = std::fs::read_to_string(&path).expect("read");
+    let other_density = text.replace("density_kg_m3: 2.", "density_kg_m3: 3.");
+    assert_ne!(text, other_density);
+    std::fs::write(&path, other_density).expect("written");
+    let output = run(folder.path(), &format!("replay {} --no-render --json", path.display()));
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("replay differs from the record"), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("\"matches\":false"));
+}
+
+#[test]
+fn saves_in_the_working_directory_are_used_if_there_are_some_else_the_data_folder() {
+    let folder = folder();
+    let champion = |folder| {
+        let lines = json_lines(folder, &format!("{SMALL} --json"));
+        lines[3]["champion"].as_str().expect("a path").to_owned()
+    };
+    let elsewhere = champion(folder.path());
+    assert!(elsewhere.contains("data/snakes-and-stairs/saves"), "{elsewhere}");
+    std::fs::create_dir(folder.path().join("saves")).expect("created");
+    let here = champion(folder.path());
+    assert!(here.starts_with("saves/"), "{here}");
+}
+
+#[test]
+fn presets_are_listed_with_what_they_are() {
+    let folder = folder();
+    let list = stdout_of(folder.path(), "presets");
+    assert!(list.lines().any(|line| line.starts_with("report") && line.len() > 80), "{list}");
+    assert!(list.lines().any(|line| line.starts_with("quick")), "{list}");
+}
+
+#[test]
+fn a_persons_own_preset_file_is_used() {
+    let folder = folder();
+    let quick = include_str!("../../assets/presets/quick.ron");
+    let own = quick
+        .replace("name: \"quick\"", "name: \"own\"")
+        .replace("population: 60", "population: 5");
+    std::fs::write(folder.path().join("own.ron"), own).expect("written");
+    let arguments = "--no-render --json --preset own.ron --generations 1 --duration 0.5 --out out";
+    let lines = json_lines(folder.path(), arguments);
+    assert_eq!(lines[0]["evaluations"], json!(5));
+    assert!(lines[1]["champion"].as_str().expect("a path").contains("own-seed1-"));
+}
+
+#[test]
+fn the_bench_reports_its_figures() {
+    let folder = folder();
+    let figures = &json_lines(folder.path(), "bench --threads 1 --json")[0];
+    for field in ["steps_per_s", "sim_s_per_s", "sim_s_per_s_per_thread", "ratio_to_bare_rapier"] {
+        assert!(figures[field].as_f64().expect(field) > 0.0, "{figures}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_interrupt_key_ends_a_run_in_good_order_and_keeps_its_best() {
+    use super::program::snakes;
+    use std::io::{BufRead, BufReader, Read};
+    use std::process::Stdio;
+
+    let folder = folder();
+    let arguments =
+        "--no-render --json --population 200 --generations 10000 --duration 1 --out out";
+    let mut child = snakes(folder.path(), arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut lines = BufReader::new(child.stdout.take().expect("piped")).lines();
+    assert!(lines.next().expect("a generation").expect("a line").contains("\"generation\":1"));
+    let pid = child.id().to_string();
+    std::process::Command::new("kill").args(["-INT", &pid]).status().expect("kill");
+    let _ = lines.by_ref().count();
+    let mut stderr = String::new();
+    child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("read");
+    assert_eq!(child.wait().expect("ended").code(), Some(1), "{stderr}");
+    assert!(stderr.contains("cancelled; the best so far is saved"), "{stderr}");
+    assert!(std::fs::read_dir(folder.path().join("out")).expect("a folder").count() >= 1);
+}

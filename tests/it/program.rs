@@ -1,0 +1,40 @@
+//! Running the program and reading what it says.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A command line of the program under test, in a folder of its own.
+pub fn snakes(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_snakes"));
+    command.args(arguments.split_whitespace()).current_dir(folder);
+    // A test must not find the display or the saves of the person who runs it.
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
+    command.env("HOME", folder).env("XDG_DATA_HOME", folder.join("data"));
+    command
+}
+
+/// Runs the program to its end.
+pub fn run(folder: &Path, arguments: &str) -> Output {
+    snakes(folder, arguments).output().expect("the program starts")
+}
+
+/// Runs the program, which must succeed, and returns its standard output.
+pub fn stdout_of(folder: &Path, arguments: &str) -> String {
+    let output = run(folder, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "snakes {arguments}: {:?}\n{stderr}", output.status);
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// The JSON objects of a run's standard output, one a line.
+pub fn json_lines(folder: &Path, arguments: &str) -> Vec<Value> {
+    let text = stdout_of(folder, arguments);
+    text.lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
+}
+
+/// A fresh folder that goes away with the value.
+pub fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}

@@ -1,0 +1,148 @@
+//! The real window on a virtual display, with real keys and clicks.
+//!
+//! Needs Debian's `xvfb`, `xdotool`, `mesa-vulkan-drivers` and `libvulkan1`. Where they are missing the
+//! tests are skipped, and each says so with the number skipped so far; with
+//! `SNAKES_WINDOW_TESTS=required` in the environment a skip is a failure.
+
+mod display;
+
+use display::{Picture, Studio};
+use std::time::Duration;
+
+/// Where the panel ends and the stage begins, in pixels.
+const STAGE_LEFT: u32 = 320;
+
+/// How many pixels of the stage, without the caption below and the messages above, look like `is`.
+fn count_on_stage(picture: &Picture, is: fn(&[u8; 3]) -> bool) -> usize {
+    let pixels = picture.region(STAGE_LEFT, 60, 480, 440);
+    pixels.iter().filter(|pixel| is(pixel)).count()
+}
+
+fn is_red(&[red, green, blue]: &[u8; 3]) -> bool {
+    red > 90 && u32::from(red) > 2 * u32::from(green) && u32::from(red) > 2 * u32::from(blue)
+}
+
+fn is_blue(&[red, green, blue]: &[u8; 3]) -> bool {
+    blue > 90 && u32::from(blue) * 2 > 3 * u32::from(green) && u32::from(blue) > 2 * u32::from(red)
+}
+
+/// How many pixels of the middle of the stage differ between two pictures.
+fn difference(before: &Picture, after: &Picture) -> usize {
+    let region = |picture: &Picture| picture.region(STAGE_LEFT, 60, 480, 440);
+    region(before).iter().zip(region(after)).filter(|(a, b)| **a != *b).count()
+}
+
+#[test]
+fn it_opens_on_a_red_and_blue_snake_that_moves_while_a_run_evolves() {
+    let Some(studio) = Studio::open("opens", "--preset quick") else { return };
+    studio.wait_for_title("showing saved champion");
+    let first = studio.picture_with(|picture| {
+        count_on_stage(picture, is_red) > 300 && count_on_stage(picture, is_blue) > 300
+    });
+    studio.picture_with(|picture| difference(&first, picture) > 500);
+    studio.wait_for_title("4 of 4 generations, finished");
+}
+
+#[test]
+fn space_holds_the_stage_and_lets_it_go() {
+    let Some(studio) = Studio::open("space", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.key("space");
+    studio.wait_for_title(", held");
+    let held = studio.still_picture();
+    std::thread::sleep(Duration::from_secs(1));
+    assert_eq!(difference(&held, &studio.picture()), 0, "what is held does not move");
+    studio.key("space");
+    studio.wait_for_title_without(", held");
+    studio.picture_with(|picture| difference(&held, picture) > 500);
+}
+
+#[test]
+fn the_keys_of_evolution_start_pause_and_single_step_it() {
+    let Some(studio) = Studio::open("evolution-keys", "--preset quick --generations 1000") else {
+        return;
+    };
+    studio.wait_for_title("running");
+    studio.key("e");
+    studio.wait_for_title("paused");
+    let before = studio.generations();
+    studio.key("g");
+    studio.wait_for_title(&format!("{} of 1000 generations, paused", before + 1));
+    studio.key("1");
+    studio.wait_for_title("showing generation 1");
+    studio.key("0");
+    studio.wait_for_title("showing saved champion");
+    studio.key("e");
+    studio.wait_for_title("running");
+    studio.wait_for_title(&format!(" {} of 1000", before + 3));
+}
+
+#[test]
+fn the_buttons_and_the_list_do_what_they_say() {
+    let Some(studio) = Studio::open("buttons", "--preset quick --generations 1000") else { return };
+    studio.wait_for_title("running");
+    studio.click_button("Pause");
+    studio.wait_for_title("paused");
+    let before = studio.generations();
+    studio.click_button("One generation");
+    studio.wait_for_title(&format!("{} of 1000 generations, paused", before + 1));
+    studio.click_champion(1);
+    studio.wait_for_title("showing generation 1");
+    studio.click_champion(0);
+    studio.wait_for_title("showing saved champion");
+    studio.click_button("Reset");
+    studio.wait_for_title("0 of 1000 generations, ready");
+    studio.click_button("Start");
+    studio.wait_for_title("running");
+}
+
+#[test]
+fn a_typed_seed_begins_another_run() {
+    let Some(studio) = Studio::open("seed", "--preset quick") else { return };
+    studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
+    studio.type_seed("77");
+    studio.click_button("Reset");
+    studio.wait_for_title("seed 77 - 0 of 4 generations, ready");
+    // The keys of the stage must not react to what is typed into a field.
+    studio.wait_for_title_without(", held");
+}
+
+#[test]
+fn the_mouse_moves_the_camera_and_home_puts_it_back() {
+    let Some(studio) = Studio::open("camera", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.key("space");
+    studio.wait_for_title(", held");
+    let home = studio.still_picture();
+    studio.drag(1, (600, 300), (700, 340));
+    let turned = studio.still_picture();
+    assert!(difference(&home, &turned) > 2000, "a drag turns the camera");
+    studio.drag(3, (600, 300), (640, 340));
+    let moved = studio.still_picture();
+    assert!(difference(&turned, &moved) > 2000, "a drag with the right button moves it");
+    studio.wheel_up((600, 300));
+    let zoomed = studio.still_picture();
+    assert!(difference(&moved, &zoomed) > 2000, "the wheel zooms");
+    studio.key("Home");
+    studio.picture_with(|picture| difference(&home, picture) < 200);
+    studio.key("d");
+    studio.picture_with(|picture| difference(&home, picture) > 300);
+    studio.key("d");
+    studio.picture_with(|picture| difference(&home, picture) < 200);
+}
+
+#[test]
+fn closing_the_window_ends_the_program_well() {
+    let Some(studio) = Studio::open("close", "--preset quick") else { return };
+    studio.wait_for_title("showing");
+    assert_eq!(studio.close(), Some(0));
+}
+
+#[test]
+fn a_saved_champion_opens_in_the_studio() {
+    let save = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
+    let Some(studio) = Studio::open("replay", &format!("replay {save} --preset quick")) else {
+        return;
+    };
+    studio.wait_for_title("showing saved champion");
+}
