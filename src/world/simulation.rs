@@ -253,3 +253,6 @@ fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> Gen
     }
     joint
 }
+
+#[cfg(test)]
+mod tests;

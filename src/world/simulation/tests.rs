@@ -1,0 +1,238 @@
+//! The world against what the report states and what closed forms say.
+
+use super::super::{LimbPlan, Softness};
+use super::*;
+
+/// A snake of `limbs` blocks without damping, in the world of the report.
+fn plan(limbs: usize) -> WorldPlan {
+    let limb = LimbPlan { width_m: 1.0, length_m: 2.0, height_m: 1.0, density_kg_m3: 2.5 };
+    let joint = JointPlan {
+        bend_limit_rad: 1.0,
+        twist_limit_rad: 0.9,
+        max_bend_torque_nm: 1000.0,
+        max_twist_torque_nm: 1000.0,
+        damping_nms_per_rad: 0.0,
+        softness: Softness::default(),
+    };
+    WorldPlan {
+        physics: PhysicsSettings::default(),
+        stairs: Stairs::default(),
+        surface: Surface::default(),
+        health: HealthLimits::default(),
+        body: BodyPlan {
+            limbs: vec![limb; limbs],
+            joints: vec![joint; limbs - 1],
+            angular_damping_per_s: 0.0,
+        },
+        start_y_m: -7.23,
+    }
+}
+
+/// The same snake where nothing touches it and nothing pulls at it.
+fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
+    let mut plan = plan(limbs);
+    plan.physics.gravity_m_s2 = 0.0;
+    let mut simulation = Simulation::new(&plan);
+    for limb in simulation.limbs.clone() {
+        let body = &mut simulation.physics.bodies[limb];
+        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
+        body.set_translation(above, true);
+    }
+    (plan, simulation)
+}
+
+/// Bend and twist of a joint, in radians, by the formulas of [`universal_joint`].
+fn angles(simulation: &Simulation, joint: usize) -> [f32; 3] {
+    let rotation = |limb: usize| *simulation.physics.bodies[simulation.limbs[limb]].rotation();
+    let relative = rotation(joint).inverse() * rotation(joint + 1);
+    [relative.x, relative.y, relative.z].map(|part| 2.0 * libm::atanf(part / relative.w))
+}
+
+#[test]
+fn the_straight_snake_lies_where_table_1_starts() {
+    let simulation = Simulation::new(&plan(5));
+    let centres: Vec<Vector> = simulation.poses().map(|pose| pose.translation).collect();
+    assert_eq!(centres[2], Vector::new(0.0, -7.23, 0.5));
+    let head_to_stairs = 3.0 - (centres[0].y + 1.0);
+    assert!((head_to_stairs - 5.23).abs() < 1e-5, "{head_to_stairs}");
+    assert!((centres[0].y - centres[4].y - 8.0).abs() < 1e-5);
+}
+
+#[test]
+fn the_density_gives_the_mass() {
+    let simulation = Simulation::new(&plan(2));
+    let mass_kg = simulation.physics.bodies[simulation.limbs[0]].mass();
+    assert!((mass_kg - 5.0).abs() < 1e-4, "{mass_kg} kg");
+}
+
+#[test]
+fn torques_are_couples_that_turn_nothing_as_a_whole() {
+    let (_, mut simulation) = weightless(5);
+    let torques: Vec<JointTorque> = (0..4)
+        .map(|joint| JointTorque { bend_nm: 3.0 - joint as f32, twist_nm: joint as f32 })
+        .collect();
+    for _ in 0..30 {
+        simulation.step(&torques).expect("healthy");
+    }
+    let bodies = simulation.limbs.iter().map(|&limb| &simulation.physics.bodies[limb]);
+    let momentum: Vector = bodies.clone().map(|body| body.linvel() * body.mass()).sum();
+    let fastest = bodies.map(|body| body.linvel().length()).fold(0.0, f32::max);
+    assert!(fastest > 0.1, "it moves: {fastest} m/s");
+    assert!(momentum.length() < 0.01, "but not away: {momentum} kg m/s");
+}
+
+#[test]
+fn a_bend_torque_bends_and_a_twist_torque_twists_and_nothing_else() {
+    for (torque, moved) in [
+        (JointTorque { bend_nm: 2.0, twist_nm: 0.0 }, 0),
+        (JointTorque { bend_nm: 0.0, twist_nm: 2.0 }, 1),
+    ] {
+        let (_, mut simulation) = weightless(2);
+        for _ in 0..20 {
+            simulation.step(&[torque]).expect("healthy");
+        }
+        let angles = angles(&simulation, 0);
+        for (axis, angle) in angles.into_iter().enumerate() {
+            if axis == moved {
+                assert!(angle > 0.05, "axis {axis} of {angles:?}");
+            } else {
+                assert!(angle.abs() < 1e-3, "axis {axis} of {angles:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_joint_pushed_into_its_limits_stops_there() {
+    let tolerance_rad = 0.03;
+    for sign in [1.0, -1.0] {
+        let (plan, mut simulation) = weightless(2);
+        let push = JointTorque { bend_nm: 20.0 * sign, twist_nm: 20.0 * sign };
+        for _ in 0..240 {
+            simulation.step(&[push]).expect("healthy");
+        }
+        let joint = &plan.body.joints[0];
+        let [bend, twist, third] = angles(&simulation, 0);
+        assert!((bend * sign - joint.bend_limit_rad).abs() < tolerance_rad, "bend {bend}");
+        assert!((twist * sign - joint.twist_limit_rad).abs() < tolerance_rad, "twist {twist}");
+        assert!(third.abs() < tolerance_rad, "the locked axis turned by {third}");
+    }
+}
+
+#[test]
+fn a_torque_beyond_the_joints_limit_is_clamped() {
+    let turned_by = |bend_nm| {
+        let (mut plan, _) = weightless(2);
+        plan.body.joints[0].max_bend_torque_nm = 2.0;
+        let mut simulation = Simulation::new(&plan);
+        simulation.step(&[JointTorque { bend_nm, twist_nm: 0.0 }]).expect("healthy");
+        angles(&simulation, 0)[0]
+    };
+    assert!(turned_by(2.0) > 0.0);
+    assert_eq!(turned_by(2.0), turned_by(5000.0));
+    assert!(turned_by(1.0) < turned_by(2.0));
+}
+
+#[test]
+fn joint_damping_slows_the_joint_as_its_formula_says() {
+    let decay = |damping_nms_per_rad: f32| {
+        let (mut plan, _) = weightless(2);
+        plan.body.joints[0].damping_nms_per_rad = damping_nms_per_rad;
+        plan.physics.steps_per_s = 1000;
+        let mut simulation = Simulation::new(&plan);
+        let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
+        let spin = Vector::new(0.0, 1.0, 0.0);
+        simulation.physics.bodies[front].set_angvel(spin, true);
+        simulation.physics.bodies[rear].set_angvel(-spin, true);
+        for limb in [front, rear] {
+            let body = &mut simulation.physics.bodies[limb];
+            let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
+            body.set_translation(above, true);
+        }
+        for _ in 0..100 {
+            simulation.step(&[JointTorque::default()]).expect("healthy");
+        }
+        simulation.physics.bodies[front].angvel().y
+    };
+    // Twist: the joint rate is 2 w, the torque on each limb c * 2 w, so w decays with
+    // exp(-2 c t / I), where I = m (width² + height²) / 12 = 5/6 kg m².
+    let expected = |c: f32| libm::expf(-2.0 * c * 0.1 / (5.0 / 6.0));
+    for c in [0.5, 1.0, 2.0] {
+        let (found, expected) = (decay(c), expected(c));
+        assert!((found / expected - 1.0).abs() < 0.02, "c = {c}: {found} for {expected}");
+    }
+}
+
+#[test]
+fn a_softer_joint_gives_way_under_the_same_pull() {
+    let drift_m = |frequency_hz| {
+        let (mut plan, _) = weightless(2);
+        plan.body.joints[0].softness = Softness { frequency_hz, damping_ratio: 1.0 };
+        plan.health.joint_drift_m = 10.0;
+        plan.health.speed_m_s = 1000.0;
+        let mut simulation = Simulation::new(&plan);
+        let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
+        for _ in 0..60 {
+            let pull = Vector::new(0.0, 50.0, 0.0);
+            simulation.physics.bodies[front].reset_forces(true);
+            simulation.physics.bodies[front].add_force(pull, true);
+            simulation.physics.bodies[rear].reset_forces(true);
+            simulation.physics.bodies[rear].add_force(-pull, true);
+            simulation.step(&[JointTorque::default()]).expect("healthy");
+        }
+        let centre = |limb| simulation.physics.bodies[limb].translation().y;
+        centre(front) - centre(rear) - 2.0
+    };
+    let (hard, soft) = (drift_m(1.0e6), drift_m(2.0));
+    assert!(hard.abs() < 0.001, "hard: {hard} m");
+    assert!(soft > 0.02, "soft: {soft} m");
+}
+
+#[test]
+fn gravity_pulls_as_it_is_set() {
+    let fallen_m = |gravity_m_s2| {
+        let mut plan = plan(2);
+        plan.physics.gravity_m_s2 = gravity_m_s2;
+        let mut simulation = Simulation::new(&plan);
+        let head = simulation.limbs[0];
+        for limb in simulation.limbs.clone() {
+            let body = &mut simulation.physics.bodies[limb];
+            let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
+            body.set_translation(above, true);
+        }
+        for _ in 0..60 {
+            simulation.step(&[JointTorque::default()]).expect("healthy");
+        }
+        30.5 - simulation.physics.bodies[head].translation().z
+    };
+    for gravity in [1.62, 9.81] {
+        let (fallen, expected) = (fallen_m(gravity), gravity / 2.0);
+        assert!((fallen / expected - 1.0).abs() < 0.02, "{fallen} m for {expected} m");
+    }
+}
+
+#[test]
+fn each_way_of_breaking_the_physics_disqualifies() {
+    let broken_by = |break_it: fn(&mut RigidBody)| {
+        let mut simulation = Simulation::new(&plan(5));
+        let head = simulation.limbs[0];
+        break_it(&mut simulation.physics.bodies[head]);
+        let still = [JointTorque::default(); 4];
+        (0..600).find_map(|_| simulation.step(&still).err())
+    };
+    let poison = |body: &mut RigidBody| body.set_linvel(Vector::splat(f32::NAN), true);
+    assert_eq!(broken_by(poison), Some(Disqualification::NotFinite));
+    let shoot = |body: &mut RigidBody| body.set_linvel(Vector::new(0.0, 0.0, 500.0), true);
+    assert_eq!(broken_by(shoot), Some(Disqualification::TooFast));
+    let tear = |body: &mut RigidBody| {
+        body.set_translation(body.translation() + Vector::new(0.0, 3.0, 1.0), true);
+    };
+    assert_eq!(broken_by(tear), Some(Disqualification::JointBroke));
+    assert_eq!(broken_by(|_| ()), None, "a snake that lies still is healthy");
+
+    let mut beyond = plan(5);
+    beyond.health.arena_back_m = 10.0;
+    let mut simulation = Simulation::new(&beyond);
+    let result = simulation.step(&[JointTorque::default(); 4]);
+    assert_eq!(result, Err(Disqualification::LeftArena), "the tail lies at -11.23");
+}
