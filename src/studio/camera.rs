@@ -5,7 +5,7 @@
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraOutputMode, Viewport};
 use bevy::core_pipeline::tonemapping::Tonemapping;
-use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::pbr::{DistanceFog, FogFalloff};
 use bevy::prelude::*;
 use bevy::render::render_resource::BlendState;
@@ -115,15 +115,22 @@ fn steer(
     mut rig: ResMut<CameraRig>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
-    motion: Res<AccumulatedMouseMotion>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    mut last_cursor: Local<Option<Vec2>>,
     scroll: Res<AccumulatedMouseScroll>,
     egui: Res<EguiWantsInput>,
 ) {
+    // The cursor, not the device: a tablet or a remote desktop reports no relative motion.
+    let cursor = window.cursor_position();
+    let drag = match (last_cursor.take(), cursor) {
+        (Some(last), Some(now)) => now - last,
+        _ => Vec2::ZERO,
+    };
+    *last_cursor = cursor;
     if egui.wants_any_pointer_input() {
         return;
     }
     let view = &mut rig.view;
-    let drag = motion.delta;
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     let pans = buttons.any_pressed([MouseButton::Right, MouseButton::Middle]);
     if pans || (shift && buttons.pressed(MouseButton::Left)) {

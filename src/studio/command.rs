@@ -37,6 +37,8 @@ pub(super) enum Command {
     ResetCamera,
     /// Show or hide the physics engine's own drawing.
     ToggleWireframe,
+    /// Close the window.
+    Quit,
 }
 
 pub(super) fn plugin(app: &mut App) {
@@ -52,6 +54,7 @@ fn apply(
     mut wireframe: ResMut<bevy_rapier3d::render::DebugRenderContext>,
     mut stages: Query<&mut Stage>,
     mut show: MessageWriter<ShowExhibit>,
+    mut exit: MessageWriter<AppExit>,
     opening: Res<Opening>,
 ) {
     for command in asked.read() {
@@ -86,6 +89,10 @@ fn apply(
             Command::ResetCamera => {
                 rig.view = View::default();
                 rig.follows = true;
+                Ok(())
+            }
+            Command::Quit => {
+                exit.write(AppExit::Success);
                 Ok(())
             }
             Command::ToggleWireframe => {

@@ -8,7 +8,7 @@ use super::command::Command;
 use super::evolution::{Evolution, Status};
 
 /// The keys, as they are listed for a person: name, effect.
-pub(super) const KEYS: [(&str, &str); 8] = [
+pub(super) const KEYS: [(&str, &str); 10] = [
     ("Space", "hold or play the stage"),
     ("R", "play from the start"),
     ("E", "start or pause evolution"),
@@ -16,7 +16,9 @@ pub(super) const KEYS: [(&str, &str); 8] = [
     ("1 ... 9", "show the champion of a generation"),
     ("0", "show the first champion again"),
     ("F", "follow the snake, or not"),
-    ("Home, D", "reset the camera, physics lines"),
+    ("Home", "put the camera back"),
+    ("D", "the physics engine's own lines"),
+    ("Ctrl Q", "quit"),
 ];
 
 const DIGITS: [KeyCode; 10] = [
@@ -46,8 +48,13 @@ fn read(
     if egui.wants_any_keyboard_input() {
         return;
     }
+    let control = [KeyCode::ControlLeft, KeyCode::ControlRight, KeyCode::SuperLeft];
+    // On a slow frame both keys may be down and up again before anybody looks.
+    let control = keys.any_pressed(control) || keys.any_just_pressed(control);
     for key in keys.get_just_pressed() {
         let command = match key {
+            KeyCode::KeyQ if control => Command::Quit,
+            _ if control => continue,
             KeyCode::Space => Command::TogglePlayback,
             KeyCode::KeyR => Command::Restart,
             KeyCode::KeyE if evolution.status() == Status::Running => Command::Pause,

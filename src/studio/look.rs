@@ -27,7 +27,9 @@ pub const BLUE_LIMB: Color = Color::srgb(0.10, 0.26, 0.80);
 /// Sky, and what the ground fades into.
 pub const SKY: Color = Color::srgb(0.74, 0.83, 0.92);
 /// The ground.
-pub const GROUND: Color = Color::srgb(0.50, 0.56, 0.50);
+pub const GROUND: Color = Color::srgb(0.53, 0.59, 0.53);
+/// The lines on the ground.
+pub const GRID: Color = Color::srgba(0.0, 0.0, 0.0, 0.16);
 /// Every other step.
 pub const STAIR: Color = Color::srgb(0.80, 0.76, 0.69);
 /// The steps between them.

@@ -1,6 +1,8 @@
 //! What stands still: sky, lights, ground, and the stairs of the trial on show.
 
+use bevy::asset::RenderAssetUsages;
 use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap};
+use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 
 use super::stage::Stage;
@@ -34,15 +36,21 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// Ambient light, in cd/m²: enough to see the shadowed sides.
-const AMBIENT_CD_M2: f32 = 420.0;
+const AMBIENT_CD_M2: f32 = 320.0;
 /// The directional light, in lux.
-const SUN_LUX: f32 = 7_500.0;
+const SUN_LUX: f32 = 3_600.0;
 /// Shadows end this far from the camera, in metres: the length of the whole staircase.
 const SHADOW_DISTANCE_M: f32 = 60.0;
 /// Pixels along a side of the shadow map.
 const SHADOW_MAP_PIXELS: usize = 2048;
 /// Half the side of the drawn ground, in metres. The physical ground has no end; the fog hides this one.
 const GROUND_HALF_M: f32 = 250.0;
+/// Half the side of the grid, in metres: beyond it the lines would flicker.
+const GRID_HALF_M: f32 = 60.0;
+/// Distance between the grid's lines, in metres: a tread of the report's stairs.
+const GRID_CELL_M: f32 = 2.0;
+/// Just above the ground, in metres, so that neither hides the other.
+const GRID_HEIGHT_M: f32 = 0.01;
 
 impl FromWorld for Props {
     fn from_world(world: &mut World) -> Self {
@@ -96,6 +104,33 @@ fn set_up(
             ..default()
         })),
     ));
+    commands.spawn((
+        Mesh3d(meshes.add(grid())),
+        MeshMaterial3d(materials.add(StandardMaterial {
+            base_color: look::GRID,
+            unlit: true,
+            // A dark veil, so that a line in the shadow is darker than the shadow.
+            alpha_mode: AlphaMode::Blend,
+            ..default()
+        })),
+    ));
+}
+
+/// Lines on the ground, a tread apart in both directions: without them nothing tells how far it went.
+fn grid() -> Mesh {
+    let mut points = Vec::new();
+    let mut line = |from: [f32; 2], to: [f32; 2]| {
+        points.extend([from, to].map(|[x, y]| [x, y, GRID_HEIGHT_M]));
+    };
+    let cells = (GRID_HALF_M / GRID_CELL_M) as i32;
+    for cell in -cells..=cells {
+        let at = cell as f32 * GRID_CELL_M;
+        // Along y the lines run through the first riser, at y = 3.
+        line([at - 1.0, 1.0 - GRID_HALF_M], [at - 1.0, 1.0 + GRID_HALF_M]);
+        line([-1.0 - GRID_HALF_M, at + 1.0], [GRID_HALF_M - 1.0, at + 1.0]);
+    }
+    Mesh::new(PrimitiveTopology::LineList, RenderAssetUsages::RENDER_WORLD)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, points)
 }
 
 /// Builds the stairs of a stage that is new.

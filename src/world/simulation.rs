@@ -232,7 +232,10 @@ fn insert_joints(physics: &mut PhysicsWorld, limbs: &[RigidBodyHandle], body: &B
 /// `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`; both limits are symmetric (asymmetric ones would
 /// make rapier call the C library's sine, whose bits differ between machines).
 ///
-/// The damping is a motor that wants zero joint rate, which the solver integrates implicitly.
+/// The damping is a motor that wants zero joint rate, which the solver integrates implicitly. Rapier takes
+/// a motor without damping for an infinitely stiff one, so an undamped joint's motor gets no force. It
+/// stays, because joints without motors are solved four at a time, by code that calls the C library's
+/// arc tangent.
 fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> GenericJoint {
     let locked = JointAxesMask::LIN_AXES | JointAxesMask::ANG_Z;
     let mut joint = GenericJointBuilder::new(locked)
@@ -250,6 +253,9 @@ fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> Gen
     for axis in [JointAxis::AngX, JointAxis::AngY] {
         joint.set_motor_model(axis, MotorModel::ForceBased);
         joint.set_motor_velocity(axis, 0.0, plan.damping_nms_per_rad);
+        if plan.damping_nms_per_rad == 0.0 {
+            joint.set_motor_max_force(axis, 0.0);
+        }
     }
     joint
 }

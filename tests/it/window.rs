@@ -132,10 +132,9 @@ fn the_mouse_moves_the_camera_and_home_puts_it_back() {
 }
 
 #[test]
-fn closing_the_window_ends_the_program_well() {
-    let Some(studio) = Studio::open("close", "--preset quick") else { return };
-    studio.wait_for_title("showing");
-    assert_eq!(studio.close(), Some(0));
+fn the_quit_key_ends_the_program_well() {
+    let Some(studio) = Studio::open("quit", "--preset quick") else { return };
+    assert_eq!(studio.quit(), Some(0));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use bevy_egui::egui;
 
 use super::title;
+use crate::evolve::Champion;
 use crate::run::GenerationReport;
 use crate::studio::command::Command;
 use crate::studio::look;
@@ -17,13 +18,15 @@ impl ChampionsPanel {
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
+        opening: &Champion,
         reports: &[GenerationReport],
         shown: Option<Option<u32>>,
         asked: &mut Vec<Command>,
     ) {
         title(ui, "Champions");
         let hint = "Click to replay";
-        if row(ui, shown == Some(None), "Saved champion", "").on_hover_text(hint).clicked() {
+        let saved = row(ui, shown == Some(None), "Saved champion", &reached(opening));
+        if saved.on_hover_text(hint).clicked() {
             asked.push(Command::ShowOpening);
         }
         for report in reports {
@@ -35,11 +38,8 @@ impl ChampionsPanel {
                 );
                 continue;
             };
-            let fitness_m = champion.evaluation.fitness_m;
-            let meaning = champion.trial.meaning(f64::from(fitness_m));
-            let reached = format!("{fitness_m:.2} m, {meaning}");
             let is_shown = shown == Some(Some(generation));
-            if row(ui, is_shown, &name, &reached).on_hover_text(hint).clicked() {
+            if row(ui, is_shown, &name, &reached(champion)).on_hover_text(hint).clicked() {
                 asked.push(Command::ShowGeneration(generation));
             }
         }
@@ -48,6 +48,12 @@ impl ChampionsPanel {
             ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK));
         }
     }
+}
+
+/// What a champion reached, in a few words.
+fn reached(champion: &Champion) -> String {
+    let fitness_m = champion.evaluation.fitness_m;
+    format!("{fitness_m:.2} m, {}", champion.trial.meaning(f64::from(fitness_m)))
 }
 
 /// A clickable row over the whole width: a name at the left, what it reached at the right.
@@ -74,8 +80,9 @@ mod tests {
         let pool = pool(1).expect("a pool");
         let mut report = || experiment.run_generation(&pool, &Control::default()).expect("done");
         let reports = [report(), report()];
+        let opening = reports[0].champion.as_ref().expect("somebody was healthy");
         let mut harness = Harness::new_ui_state(
-            |ui, asked| ChampionsPanel.ui(ui, &reports, Some(None), asked),
+            |ui, asked| ChampionsPanel.ui(ui, opening, &reports, Some(None), asked),
             Vec::new(),
         );
         harness.get_by_label_contains("Generation 2").click();

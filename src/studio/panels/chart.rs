@@ -1,7 +1,7 @@
 //! Fitness over the generations: the best and the mean.
 
 use bevy_egui::egui;
-use egui_plot::{Corner, HoverPosition, Legend, Line, Plot, PlotPoints, Points};
+use egui_plot::{AxisHints, HoverPosition, Line, Plot, PlotPoints, Points};
 
 use super::title;
 use crate::run::GenerationReport;
@@ -15,8 +15,12 @@ impl ChartPanel {
     /// Draws best and mean of the finished generations.
     pub fn ui(&mut self, ui: &mut egui::Ui, reports: &[GenerationReport]) {
         title(ui, "Fitness");
-        let hint = "How far the centre of the snake came, in metres, by generation";
-        ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK).small());
+        ui.horizontal(|ui| {
+            let text = |text: &str, color| egui::RichText::new(text).color(color);
+            ui.label(text("Distance in m by generation:", look::TEXT_WEAK));
+            ui.label(text("best", look::ACCENT).strong());
+            ui.label(text("mean", look::SECOND).strong());
+        });
         let series = |value: fn(&crate::run::Statistics) -> f64| -> Vec<[f64; 2]> {
             let known = reports.iter().filter_map(|report| {
                 let statistics = report.statistics.as_ref()?;
@@ -36,10 +40,10 @@ impl ChartPanel {
             .allow_boxed_zoom(false)
             .include_x(1.0)
             .include_x(6.0)
+            .custom_x_axes(vec![AxisHints::new_x().label_spacing(14.0..=28.0)])
             .include_y(-8.0)
             .include_y(10.0)
             .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 5.0]))
-            .legend(Legend::default().position(Corner::RightBottom))
             .label_formatter(label)
             .show(ui, |plot| {
                 for (name, points, color) in lines {

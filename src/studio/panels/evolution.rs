@@ -55,7 +55,11 @@ impl EvolutionPanel {
         let (text, share) = match run.status() {
             Status::Finished => (format!("All {generations} generations done"), 1.0),
             status => {
-                let held = if status == Status::Running { "" } else { ", held" };
+                let held = match status {
+                    Status::Ready => ", ready to start",
+                    Status::Paused => ", paused",
+                    Status::Running | Status::Finished => "",
+                };
                 let text = format!("Generation {} of {generations}{held}", finished + 1);
                 (text, done as f32 / population as f32)
             }
@@ -73,7 +77,9 @@ impl EvolutionPanel {
         ui.horizontal(|ui| {
             let label = ui.label("Seed");
             let mut text = self.seed_text.clone().unwrap_or_else(|| run.next_seed().to_string());
-            let field = egui::TextEdit::singleline(&mut text).desired_width(look::GAP * 11.0);
+            let field = egui::TextEdit::singleline(&mut text)
+                .desired_width(look::GAP * 10.0)
+                .margin(egui::Margin::symmetric(8, 4));
             let response = ui
                 .add(field)
                 .labelled_by(label.id)

@@ -9,6 +9,7 @@ mod evolution;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
+use super::Opening;
 use super::command::Command;
 use super::evolution::Evolution;
 use super::keys::KEYS;
@@ -47,6 +48,7 @@ fn draw(
     mut panels: ResMut<Panels>,
     mut area: ResMut<StageArea>,
     evolution: Res<Evolution>,
+    opening: Res<Opening>,
     stages: Query<&Stage>,
     mut send: MessageWriter<Command>,
 ) -> Result {
@@ -75,7 +77,7 @@ fn draw(
                 panels.evolution.ui(ui, &evolution, &mut asked);
                 panels.chart.ui(ui, evolution.reports());
                 let shown = stage.map(|stage| stage.exhibit().generation());
-                panels.champions.ui(ui, evolution.reports(), shown, &mut asked);
+                panels.champions.ui(ui, &opening.0, evolution.reports(), shown, &mut asked);
                 keys(ui);
             });
         });
@@ -123,10 +125,11 @@ fn keys(ui: &mut egui::Ui) {
 
 /// What is on the stage, how far it has come, and when.
 fn caption(context: &egui::Context, stage: &Stage, left_points: f32) {
-    let centre = egui::pos2(
-        (left_points + context.viewport_rect().right()) / 2.0,
-        context.viewport_rect().bottom() - look::GAP * 2.0,
-    );
+    let window = context.viewport_rect();
+    let centre =
+        egui::pos2((left_points + window.right()) / 2.0, window.bottom() - look::GAP * 2.0);
+    // In a small window the caption must not cover the panel.
+    let room = window.right() - left_points - look::GAP * 8.0;
     egui::Area::new(egui::Id::new("caption"))
         .fixed_pos(centre)
         .pivot(egui::Align2::CENTER_BOTTOM)
@@ -134,7 +137,7 @@ fn caption(context: &egui::Context, stage: &Stage, left_points: f32) {
         .show(context, |ui| {
             look::card(look::FIELD_HOVERED).show(ui, |ui| {
                 ui.vertical_centered(|ui| {
-                    ui.set_max_width(look::CAPTION_WIDTH);
+                    ui.set_max_width(look::CAPTION_WIDTH.min(room));
                     ui.label(egui::RichText::new(stage.exhibit().caption()).size(15.0));
                     let evaluation = stage.evaluation();
                     let state = match (evaluation.disqualified, stage.is_playing()) {

@@ -180,7 +180,7 @@ fn a_softer_joint_gives_way_under_the_same_pull() {
             simulation.physics.bodies[rear].add_force(-pull, true);
             simulation.step(&[JointTorque::default()]).expect("healthy");
         }
-        let centre = |limb| simulation.physics.bodies[limb].translation().y;
+        let centre = |limb: RigidBodyHandle| simulation.physics.bodies[limb].translation().y;
         centre(front) - centre(rear) - 2.0
     };
     let (hard, soft) = (drift_m(1.0e6), drift_m(2.0));
@@ -213,22 +213,25 @@ fn gravity_pulls_as_it_is_set() {
 
 #[test]
 fn each_way_of_breaking_the_physics_disqualifies() {
-    let broken_by = |break_it: fn(&mut RigidBody)| {
-        let mut simulation = Simulation::new(&plan(5));
+    let broken_by = |speed_limit_m_s, break_it: fn(&mut RigidBody)| {
+        let mut plan = plan(5);
+        plan.health.speed_m_s = speed_limit_m_s;
+        let mut simulation = Simulation::new(&plan);
         let head = simulation.limbs[0];
         break_it(&mut simulation.physics.bodies[head]);
         let still = [JointTorque::default(); 4];
         (0..600).find_map(|_| simulation.step(&still).err())
     };
     let poison = |body: &mut RigidBody| body.set_linvel(Vector::splat(f32::NAN), true);
-    assert_eq!(broken_by(poison), Some(Disqualification::NotFinite));
+    assert_eq!(broken_by(25.0, poison), Some(Disqualification::NotFinite));
     let shoot = |body: &mut RigidBody| body.set_linvel(Vector::new(0.0, 0.0, 500.0), true);
-    assert_eq!(broken_by(shoot), Some(Disqualification::TooFast));
+    assert_eq!(broken_by(25.0, shoot), Some(Disqualification::TooFast));
     let tear = |body: &mut RigidBody| {
         body.set_translation(body.translation() + Vector::new(0.0, 3.0, 1.0), true);
     };
-    assert_eq!(broken_by(tear), Some(Disqualification::JointBroke));
-    assert_eq!(broken_by(|_| ()), None, "a snake that lies still is healthy");
+    // Rapier pulls a torn joint together at once, at a speed that is a reason of its own.
+    assert_eq!(broken_by(1000.0, tear), Some(Disqualification::JointBroke));
+    assert_eq!(broken_by(25.0, |_| ()), None, "a snake that lies still is healthy");
 
     let mut beyond = plan(5);
     beyond.health.arena_back_m = 10.0;

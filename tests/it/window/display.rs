@@ -179,9 +179,8 @@ impl Studio {
     pub fn type_seed(&self, text: &str) {
         self.xdotool(&["mousemove", "90", SEED_Y]);
         std::thread::sleep(A_FRAME);
+        // A double click selects the number that stands there.
         self.xdotool(&["click", "--repeat", "2", "--delay", "60", "1"]);
-        std::thread::sleep(A_FRAME);
-        self.xdotool(&["key", "ctrl+a"]);
         std::thread::sleep(A_FRAME);
         self.xdotool(&["type", "--delay", "200", text]);
         self.key("Return");
@@ -190,9 +189,8 @@ impl Studio {
     fn click(&self, x: &str, y: &str) {
         self.xdotool(&["mousemove", x, y]);
         std::thread::sleep(A_FRAME);
-        self.xdotool(&["mousedown", "1"]);
-        std::thread::sleep(A_FRAME);
-        self.xdotool(&["mouseup", "1"]);
+        // Press and release at once: egui takes a button held for longer for something else.
+        self.xdotool(&["click", "1"]);
         std::thread::sleep(A_FRAME);
     }
 
@@ -246,9 +244,9 @@ impl Studio {
         }
     }
 
-    /// Closes the window as its close button would; the program's exit code.
-    pub fn close(self) -> Option<i32> {
-        self.xdotool(&["windowquit", &self.window]);
+    /// Quits by the keyboard; the program's exit code.
+    pub fn quit(self) -> Option<i32> {
+        self.xdotool(&["key", "ctrl+q"]);
         let started = Instant::now();
         loop {
             let status = self.program.lock().expect("no panic").try_wait().expect("a status");
@@ -288,7 +286,7 @@ impl Studio {
 /// Where things are in the panel, in pixels at a scale of 1.
 const BUTTONS_Y: &str = "123";
 const SEED_Y: &str = "205";
-const CHAMPIONS_Y: u32 = 490;
+const CHAMPIONS_Y: u32 = 504;
 const ROW_HEIGHT: u32 = 31;
 
 impl Drop for Studio {
