@@ -1,6 +1,5 @@
 //! What a step and an evaluation cost. Compare with `cargo bench -- --save-baseline before` and
 //! `cargo bench -- --baseline before`; `snakes bench` gives the ratio to bare rapier.
-#![expect(missing_docs, reason = "criterion's macros generate public items")]
 
 use std::hint::black_box;
 

@@ -13,7 +13,7 @@ use super::{Control, Experiment, GenerationReport, Keeper};
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
     /// A generation is finished.
-    Generation(GenerationReport),
+    Generation(Box<GenerationReport>),
     /// All generations are finished.
     Finished {
         /// Hash over the whole run.
@@ -119,7 +119,7 @@ fn work(
         if let Err(error) = keeper.keep_best(&experiment) {
             let _ = events.send(Event::NotSaved(error.to_string()));
         }
-        let _ = events.send(Event::Generation(report));
+        let _ = events.send(Event::Generation(Box::new(report)));
     }
     let _ = events.send(Event::Finished { run_hash: experiment.run_hash() });
 }

@@ -248,7 +248,7 @@ fn take_in(
                     notices.news(format!("New champion. {}", exhibit.caption()));
                     show.write(ShowExhibit(exhibit));
                 }
-                evolution.reports.push(report);
+                evolution.reports.push(*report);
             }
             Event::Finished { run_hash } => {
                 evolution.run_hash = Some(run_hash);

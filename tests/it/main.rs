@@ -1,4 +1,5 @@
 //! Whole-program tests: one binary, one module per concern.
+#![expect(clippy::expect_used, reason = "a helper of a test fails by panicking, as tests do")]
 
 mod architecture;
 mod bad_input;

@@ -3,6 +3,7 @@
 //! Needs Debian's `xvfb`, `xdotool`, `mesa-vulkan-drivers` and `libvulkan1`. Where they are missing the
 //! tests are skipped, and each says so with the number skipped so far; with
 //! `SNAKES_WINDOW_TESTS=required` in the environment a skip is a failure.
+#![expect(clippy::panic, reason = "a helper of a test fails by panicking, as tests do")]
 
 mod display;
 
