@@ -113,11 +113,13 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, Cl
     }
 }
 
-/// The complaint itself, up to the first blank line, on one line.
+/// The complaint itself and clap's tip, if it has one, on one line.
 fn one_line(text: &str) -> String {
-    let complaint = text.split("\n\n").next().unwrap_or(text);
-    let words: Vec<&str> = complaint.trim_start_matches("error: ").split_whitespace().collect();
-    format!("{} (see snakes --help)", words.join(" "))
+    let paragraphs = text.split("\n\n").enumerate();
+    let kept = paragraphs.filter(|(index, text)| *index == 0 || text.trim().starts_with("tip:"));
+    let words: Vec<&str> = kept.flat_map(|(_, text)| text.split_whitespace()).collect();
+    let line = words.join(" ");
+    format!("{} (see snakes --help)", line.trim_start_matches("error: "))
 }
 
 /// Reads a number, or says what would have been one.
@@ -267,5 +269,6 @@ mod tests {
     fn an_unknown_flag_is_one_line() {
         let message = refusal("--polulation 3");
         assert!(message.contains("--polulation") && !message.contains('\n'), "{message}");
+        assert!(message.contains("tip: a similar argument exists: '--population'"), "{message}");
     }
 }

@@ -58,7 +58,7 @@ fn evolve(args: &Args) -> Result<(), CliError> {
     let evolution = &settings.evolution;
     let _ = writeln!(
         io::stderr(),
-        "preset {preset}, seed {seed}: {} generations of {}, {threads} threads",
+        "preset {preset}, seed {seed}: generations {}, population {}, threads {threads}",
         evolution.generations,
         evolution.population
     );

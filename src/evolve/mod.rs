@@ -8,7 +8,7 @@ mod halving;
 mod settings;
 
 pub use champion::{Champion, Origin};
-pub use halving::{Halving, HalvingSettings};
+pub use halving::{Halving, HalvingSettings, LARGEST_POPULATION};
 pub use settings::Settings;
 
 use crate::genome::Genome;

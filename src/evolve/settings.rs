@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::HalvingSettings;
 use crate::check::Invalid;
-use crate::genome::GenomeSpace;
+use crate::genome::{GenomeSpace, LARGEST_GENOME_TORQUES};
 use crate::score::Trial;
 
 /// The settings of an experiment. Equal settings and an equal seed give equal bits.
@@ -27,6 +27,12 @@ impl Settings {
         self.evolution.check().map_err(|error| error.inside("evolution"))?;
         let points = self.genome.points(self.trial.duration_s);
         let torques_each = 2 * self.trial.agent.joints() * points;
+        if torques_each > LARGEST_GENOME_TORQUES {
+            let value =
+                format!("{} ({torques_each} torque points in all)", self.genome.points_per_s);
+            let allowed = format!("what makes at most {LARGEST_GENOME_TORQUES} torque points");
+            return Err(Invalid::new("genome.points_per_s", value, allowed));
+        }
         let largest = LARGEST_GENERATION_TORQUES / torques_each.max(1);
         if self.evolution.population as usize > largest {
             let allowed = format!("1 to {largest} with {torques_each} torque points each");
@@ -52,9 +58,12 @@ mod tests {
     fn a_generation_that_would_not_fit_into_memory_is_refused() {
         let mut settings = Settings::default();
         settings.trial.duration_s = 600.0;
-        settings.genome.points_per_s = 1000.0;
+        settings.genome.points_per_s = 100.0;
         settings.evolution.population = 10_000;
-        let error = settings.check().unwrap_err();
-        assert!(error.to_string().starts_with("evolution.population is 10000; allowed: 1 to 104"));
+        let error = settings.check().unwrap_err().to_string();
+        assert!(error.starts_with("evolution.population is 10000; allowed: 1 to 1041"), "{error}");
+        settings.genome.points_per_s = 1000.0;
+        let error = settings.check().unwrap_err().to_string();
+        assert!(error.starts_with("genome.points_per_s is 1000 (4800000 torque points"), "{error}");
     }
 }

@@ -7,7 +7,9 @@ mod signal;
 mod space;
 
 pub use signal::{JointSignals, Signals};
-pub use space::{DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_LIMIT_RAD, POINTS_PER_S_RANGE};
+pub use space::{
+    DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD, POINTS_PER_S_RANGE,
+};
 
 /// One individual.
 #[derive(Debug, Clone, PartialEq)]

@@ -51,10 +51,14 @@ pub const DENSITY_RANGE_KG_M3: std::ops::RangeInclusive<f32> = 0.1..=20_000.0;
 /// The range of torque points per second. Beyond the physics' own rate more points do nothing.
 pub const POINTS_PER_S_RANGE: std::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
+/// The most torque points in a genome, over all its signals: such a genome still makes a save of less
+/// than the 10 MiB that are read again.
+pub const LARGEST_GENOME_TORQUES: usize = 600_000;
+
 impl GenomeSpace {
     /// Checks every field against its range.
     pub fn check(&self) -> Result<(), Invalid> {
-        within("torque_range_nm", self.torque_range_nm, 0.0..=1.0e6)?;
+        within("torque_range_nm", self.torque_range_nm, 0.001..=1.0e6)?;
         within("torque_step_nm", self.torque_step_nm, 0.0..=1.0e6)?;
         within("points_per_s", self.points_per_s, POINTS_PER_S_RANGE)?;
         for (field, limits) in [
@@ -112,7 +116,7 @@ impl GenomeSpace {
         for torque_nm in child.signals.all_mut().flatten() {
             *torque_nm = shifted(*torque_nm, shift_nm, self.torque_range_nm, rng);
         }
-        let share = if self.torque_range_nm > 0.0 { shift_nm / self.torque_range_nm } else { 0.0 };
+        let share = (shift_nm / self.torque_range_nm).min(1.0);
         let shift_kg_m3 = share * (self.density_max_kg_m3 - self.density_min_kg_m3);
         child.density_kg_m3 = (child.density_kg_m3 + rng.random_range(-shift_kg_m3..=shift_kg_m3))
             .clamp(self.density_min_kg_m3, self.density_max_kg_m3);

@@ -1,9 +1,9 @@
 //! An experiment on a thread of its own, for a window that must not wait.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::{self, JoinHandle};
+use std::thread;
 
 use rayon::ThreadPool;
 
@@ -21,10 +21,12 @@ pub enum Event {
     },
     /// The best champion could not be saved; the run goes on.
     NotSaved(String),
+    /// The run broke off by an error of the program, and will say no more.
+    BrokeOff,
 }
 
-/// An experiment that goes on in the background. Dropping it cancels it and waits for its thread,
-/// which takes at most one evaluation.
+/// An experiment that goes on in the background. Dropping it cancels it; its thread ends by itself
+/// after the evaluations that are under way.
 #[derive(Debug)]
 pub struct Background {
     control: Arc<Control>,
@@ -32,7 +34,7 @@ pub struct Background {
     /// Behind a lock so that a window may keep this where several threads can see it.
     events: Mutex<Receiver<Event>>,
     population: u32,
-    thread: Option<JoinHandle<()>>,
+    has_ended: AtomicBool,
 }
 
 impl Background {
@@ -50,13 +52,19 @@ impl Background {
         let pause_after_generation = Arc::new(AtomicBool::new(false));
         let population = experiment.settings().evolution.population;
         let (sender, events) = channel();
-        let thread = thread::Builder::new().name("experiment".to_owned()).spawn({
+        thread::Builder::new().name("experiment".to_owned()).spawn({
             let (control, pause_after) =
                 (Arc::clone(&control), Arc::clone(&pause_after_generation));
             move || work(experiment, &pool, keeper, &control, &pause_after, &sender)
         })?;
         let events = Mutex::new(events);
-        Ok(Self { control, pause_after_generation, events, population, thread: Some(thread) })
+        Ok(Self {
+            control,
+            pause_after_generation,
+            events,
+            population,
+            has_ended: AtomicBool::new(false),
+        })
     }
 
     /// Goes on until paused or finished.
@@ -88,17 +96,24 @@ impl Background {
 
     /// The next event, if there is one.
     pub fn poll(&self) -> Option<Event> {
-        self.events.lock().unwrap_or_else(PoisonError::into_inner).try_recv().ok()
+        match self.events.lock().unwrap_or_else(PoisonError::into_inner).try_recv() {
+            Ok(event) => {
+                let is_last = matches!(event, Event::Finished { .. });
+                self.has_ended.fetch_or(is_last, Ordering::Relaxed);
+                Some(event)
+            }
+            Err(TryRecvError::Empty) => None,
+            // The thread is gone. Unless it has said that it finished, it did not get there.
+            Err(TryRecvError::Disconnected) => {
+                (!self.has_ended.swap(true, Ordering::Relaxed)).then_some(Event::BrokeOff)
+            }
+        }
     }
 }
 
 impl Drop for Background {
     fn drop(&mut self) {
         self.control.cancel();
-        if let Some(thread) = self.thread.take() {
-            // A thread that panicked has nothing more to tell.
-            let _ = thread.join();
-        }
     }
 }
 
@@ -165,6 +180,19 @@ mod tests {
     }
 
     #[test]
+    fn a_run_whose_thread_is_gone_says_so_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let background = start(&folder);
+        background.control.cancel();
+        let event = std::iter::from_fn(|| {
+            thread::sleep(Duration::from_millis(5));
+            Some(background.poll())
+        });
+        assert_eq!(event.take(2000).flatten().next(), Some(Event::BrokeOff));
+        assert_eq!(background.poll(), None);
+    }
+
+    #[test]
     fn in_the_background_a_run_has_the_same_hash() {
         let folder = tempfile::tempdir().expect("a folder");
         let background = start(&folder);
@@ -180,6 +208,7 @@ mod tests {
             experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
         }
         assert_eq!(run_hash, experiment.run_hash());
-        assert!(!crate::save::list_champions(folder.path()).is_empty(), "the best was saved");
+        let saved = std::fs::read_dir(folder.path()).expect("a folder").count();
+        assert!(saved > 0, "the best was saved");
     }
 }

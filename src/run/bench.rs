@@ -37,7 +37,7 @@ pub struct BenchReport {
 }
 
 /// Genomes evaluated per thread in a round: about a tenth of a second.
-const GENOMES: u32 = 20;
+const GENOMES: usize = 20;
 
 /// Measures the scene of `settings` for about `duration`, calling `progress` with the share done.
 ///
@@ -50,11 +50,14 @@ pub fn bench(
     mut progress: impl FnMut(f64),
 ) -> Result<BenchReport, rayon::ThreadPoolBuildError> {
     let trial = &settings.trial;
-    let genomes: Vec<Genome> = (0..GENOMES)
+    // The disqualified stop early; without them both contestants take the same steps.
+    let genomes: Vec<Genome> = (0..10 * GENOMES as u32)
         .map(|individual| {
             let mut rng = stream(1, 1, individual, Purpose::Birth);
             settings.genome.birth(trial.agent.joints(), trial.duration_s, &mut rng)
         })
+        .filter(|genome| evaluate(genome, trial).disqualified.is_none())
+        .take(GENOMES)
         .collect();
     let (one, many) = (pool(1)?, pool(threads)?);
     let started = Instant::now();
@@ -62,7 +65,10 @@ pub fn bench(
     loop {
         rounds.push(Round {
             ours: steps_per_s(&one, 1, &genomes, |genome| evaluate(genome, trial).steps),
-            bare: steps_per_s(&one, 1, &genomes, |genome| step_bare(genome, trial)),
+            bare: steps_per_s(&one, 1, &genomes, |genome| {
+                step_bare(genome, trial);
+                trial.steps()
+            }),
             many: steps_per_s(&many, threads, &genomes, |genome| evaluate(genome, trial).steps),
         });
         let elapsed = started.elapsed();
@@ -112,8 +118,9 @@ fn steps_per_s(
     steps as f64 / started.elapsed().as_secs_f64()
 }
 
-/// The same world and torques as `evaluate`, without health checks, pose copies and trace.
-fn step_bare(genome: &Genome, trial: &Trial) -> u32 {
+/// The same world and torques as `evaluate`, without health checks, pose copies and trace: what any
+/// program would do that drives this snake with rapier. Returns the world at the end.
+fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
     let mut simulation = Simulation::new(&trial.world_plan(genome));
     let player = SignalPlayer::new(genome.signals.clone(), trial.physics.steps_per_s);
     let mut torques = vec![JointTorque::default(); trial.agent.joints()];
@@ -122,7 +129,7 @@ fn step_bare(genome: &Genome, trial: &Trial) -> u32 {
         simulation.apply(&torques);
         simulation.physics_mut().step();
     }
-    trial.steps()
+    simulation
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -133,13 +140,19 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::score::Rollout;
+    use crate::world::Pose;
 
     #[test]
     fn the_bare_loop_computes_the_very_motion_that_is_scored() {
         let settings = Settings::default();
         let mut rng = stream(1, 1, 0, Purpose::Birth);
         let genome = settings.genome.birth(4, 5.0, &mut rng);
-        assert_eq!(step_bare(&genome, &settings.trial), evaluate(&genome, &settings.trial).steps);
+        let bare: Vec<Pose> = step_bare(&genome, &settings.trial).poses().collect();
+        let mut rollout = Rollout::new(&genome, &settings.trial);
+        while rollout.advance() {}
+        assert_eq!(rollout.evaluation().disqualified, None);
+        assert_eq!(bare, rollout.poses());
     }
 
     #[test]

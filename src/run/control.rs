@@ -11,8 +11,8 @@ pub struct Cancelled;
 /// Shared between the workers of a run and whoever watches it.
 ///
 /// Workers pass a gate before each evaluation. Pausing and cancelling therefore take effect within
-/// one evaluation (some milliseconds), and cannot change a result: they decide when an evaluation
-/// happens, not what it is.
+/// one evaluation (some milliseconds with the shipped presets), and cannot change a result: they decide
+/// when an evaluation happens, not what it is.
 #[derive(Debug, Default)]
 pub struct Control {
     done: AtomicU32,

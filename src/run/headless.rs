@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::{ThreadPool, ThreadPoolBuildError};
 use serde_json::{Value, json};
 
-use super::{Control, Experiment, GenerationReport, Keeper, pool};
+use super::{Cancelled, Control, Experiment, GenerationReport, Keeper, pool};
 use crate::ENGINE_VERSION;
 use crate::evolve::Champion;
 use crate::save::{SaveError, SavesFolder, load_champion};
@@ -27,9 +27,15 @@ pub enum HeadlessError {
     /// Standard output was closed or is full.
     #[error("standard output: cannot be written: {0}")]
     Output(#[from] io::Error),
-    /// The interrupt key was pressed; what was found so far is saved.
-    #[error("cancelled; the best so far is saved")]
-    Cancelled,
+    /// The interrupt key was pressed.
+    #[error("cancelled; {}", match kept {
+        Some(path) => format!("the best so far is saved to {}", path.display()),
+        None => "the first generation was not finished, nothing is saved".to_owned(),
+    })]
+    Cancelled {
+        /// Where the best so far is.
+        kept: Option<PathBuf>,
+    },
     /// A replay came out differently than recorded.
     #[error("{path}: replay differs from the record: {difference}")]
     Differs {
@@ -64,7 +70,8 @@ pub fn evolve(
     }
     let mut keeper = Keeper::new(saves);
     while !experiment.is_over() {
-        let report = with_progress(&mut experiment, &pool, control)?;
+        let report = with_progress(&mut experiment, &pool, control)
+            .map_err(|_| HeadlessError::Cancelled { kept: keeper.kept().map(Path::to_owned) })?;
         keeper.keep_best(&experiment)?;
         let line = if json { json_line(&report).to_string() } else { table_row(&report) };
         writeln!(out, "{line}")?;
@@ -94,7 +101,7 @@ fn with_progress(
     experiment: &mut Experiment,
     pool: &ThreadPool,
     control: &Arc<Control>,
-) -> Result<GenerationReport, HeadlessError> {
+) -> Result<GenerationReport, Cancelled> {
     let population = experiment.settings().evolution.population;
     let bar = ProgressBar::new(population.into());
     // The template is a constant; if it were wrong, the default bar would do.
@@ -118,7 +125,7 @@ fn with_progress(
         result
     });
     bar.finish_and_clear();
-    result.map_err(|_| HeadlessError::Cancelled)
+    result
 }
 
 /// Re-simulates a saved champion and compares it with its record, bit for bit.
@@ -129,8 +136,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let loaded = load_champion(path)?;
     let recorded = loaded.champion.evaluation;
     let found = evaluate(&loaded.champion.genome, &loaded.champion.trial);
-    let same_fitness = found.fitness_m.to_bits() == recorded.fitness_m.to_bits();
-    let matches = same_fitness && found.trace_hash == recorded.trace_hash;
+    let matches = found == recorded;
     let meaning = loaded.champion.trial.meaning(f64::from(found.fitness_m));
     if json {
         let line = json!({
@@ -161,8 +167,13 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
         format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
     };
     let difference = format!(
-        "fitness {} m and trace {:016x}, recorded {} m and {:016x} ({engine})",
-        found.fitness_m, found.trace_hash, recorded.fitness_m, recorded.trace_hash,
+        "fitness {} m, {} steps, trace {:016x}; recorded {} m, {} steps, {:016x} ({engine})",
+        found.fitness_m,
+        found.steps,
+        found.trace_hash,
+        recorded.fitness_m,
+        recorded.steps,
+        recorded.trace_hash,
     );
     Err(HeadlessError::Differs { path: path.to_owned(), difference })
 }

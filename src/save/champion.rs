@@ -1,7 +1,6 @@
 //! Reading and writing champions, whichever format they are in.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ron::ser::PrettyConfig;
 use serde::Deserialize;
@@ -72,21 +71,11 @@ pub fn shipped_champion() -> Result<LoadedChampion, SaveError> {
     read(Path::new("first-climber.ron"), include_str!("../../saves/first-climber.ron"))
 }
 
-/// The `.ron` files of a folder, sorted by name. A folder that is not there has none.
-pub fn list_champions(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut paths: Vec<PathBuf> = entries
-        .map(|entry| entry.path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "ron"))
-        .collect();
-    paths.sort();
-    paths
-}
-
 fn read(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
     let header: Header = parse(path, text)?;
     if header.kind != KIND {
-        let found = format!("{:.60?}", header.kind);
+        let start: String = header.kind.chars().take(60).collect();
+        let found = format!("{start:?}");
         return Err(SaveError::Foreign { path: path.to_owned(), found, expected: KIND });
     }
     match header.format {
@@ -114,9 +103,11 @@ impl LoadedChampion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
+
     use crate::evolve::Settings;
     use crate::run::{Control, Experiment, pool};
-    use crate::score::evaluate;
+    use crate::score::{Rollout, evaluate};
 
     fn champion() -> Champion {
         let mut settings = Settings::default();
@@ -136,7 +127,8 @@ mod tests {
         let loaded = load_champion(&path).expect("read");
         assert_eq!(loaded.champion, champion);
         assert!(loaded.is_of_this_engine());
-        assert_eq!(list_champions(folder.path()), [path], "and nothing else is left in the folder");
+        let files = fs::read_dir(folder.path()).expect("a folder").count();
+        assert_eq!(files, 1, "and nothing else is left in the folder");
     }
 
     #[test]
@@ -146,6 +138,10 @@ mod tests {
         assert_eq!(evaluate(&champion.genome, &champion.trial), champion.evaluation);
         let climbed = champion.trial.stairs.steps_climbed(champion.evaluation.fitness_m.into());
         assert!(climbed >= 3, "a champion to open with climbs; this one climbed {climbed}");
+        let mut rollout = Rollout::new(&champion.genome, &champion.trial);
+        while rollout.advance() {}
+        let at = rollout.poses()[2].translation;
+        assert!(at.x.abs() < 2.5 && at.z > 1.5, "on the stairs, not beside them: {at}");
     }
 
     /// What `load_champion` says to a champion's text after `edit`.

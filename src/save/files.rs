@@ -78,7 +78,7 @@ pub enum SaveError {
     },
 }
 
-/// The largest file that is read. A champion of 12 limbs, 600 s and 60 points a second has half of it.
+/// The largest file that is read. A champion's torque points are bounded so that it stays below.
 const LARGEST_FILE_MIB: u64 = 10;
 
 /// Reads a text file, but never more than [`LARGEST_FILE_MIB`].
@@ -113,7 +113,8 @@ pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<
 /// temporary file beside it, flushed to the disk, then renamed.
 pub fn write_whole(path: &Path, text: &str) -> Result<(), SaveError> {
     let write = || -> std::io::Result<()> {
-        let folder = path.parent().unwrap_or(Path::new("."));
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
         builder.prefix(".unfinished-");
         // Readable by others as far as the person's umask allows; the default is for secrets.
@@ -123,7 +124,10 @@ pub fn write_whole(path: &Path, text: &str) -> Result<(), SaveError> {
         file.write_all(text.as_bytes())?;
         file.as_file().sync_all()?;
         file.persist(path).map_err(|error| error.error)?;
-        File::open(folder)?.sync_all()
+        // The file is there by now; that its name survives a power cut too is up to the platform.
+        #[cfg(unix)]
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        Ok(())
     };
     write().map_err(|source| SaveError::Unwritable { path: path.to_owned(), source })
 }

@@ -10,7 +10,7 @@ use super::files::prepare_folder;
 use crate::ENGINE_VERSION;
 use crate::evolve::{Origin, Settings};
 
-/// The folder champions are written to and listed from.
+/// The folder champions are written to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SavesFolder(PathBuf);
 
@@ -19,7 +19,8 @@ impl SavesFolder {
     /// platform's data folder.
     pub fn find(named: Option<&Path>) -> Self {
         if let Some(named) = named {
-            return Self(named.to_owned());
+            let is_empty = named.as_os_str().is_empty();
+            return Self(if is_empty { PathBuf::from(".") } else { named.to_owned() });
         }
         let here = PathBuf::from("saves");
         if here.is_dir() {

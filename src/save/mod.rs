@@ -10,9 +10,7 @@ mod folder;
 mod preset;
 mod v1;
 
-pub use champion::{
-    LoadedChampion, list_champions, load_champion, shipped_champion, store_champion,
-};
+pub use champion::{LoadedChampion, load_champion, shipped_champion, store_champion};
 pub use files::SaveError;
 pub use folder::{SavesFolder, champion_file_name};
 pub use preset::{DEFAULT_PRESET, Preset, load_preset, shipped_presets};

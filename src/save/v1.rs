@@ -152,8 +152,8 @@ impl TryFrom<ChampionV1> for Champion {
     fn try_from(file: ChampionV1) -> Result<Self, Invalid> {
         let recorded = file.recorded;
         let trace_hash = u64::from_str_radix(&recorded.trace_hash, 16).map_err(|_| {
-            let found = format!("{:.40?}", recorded.trace_hash);
-            Invalid::new("recorded.trace_hash", found, "16 hexadecimal digits")
+            let start: String = recorded.trace_hash.chars().take(40).collect();
+            Invalid::new("recorded.trace_hash", format!("{start:?}"), "16 hexadecimal digits")
         })?;
         crate::check::within("recorded.fitness_m", recorded.fitness_m, -1.0e6..=1.0e6)?;
         let trial = Trial::from(file.trial);

@@ -3,7 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
-use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD, POINTS_PER_S_RANGE};
+use crate::genome::{
+    DENSITY_RANGE_KG_M3, Genome, JointSignals, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD,
+    POINTS_PER_S_RANGE,
+};
 use crate::world::{
     BodyPlan, HealthLimits, JointPlan, LimbPlan, PhysicsSettings, Softness, Stairs, Surface,
     WorldPlan,
@@ -139,6 +142,9 @@ impl Trial {
             let allowed = format!("{expected}, one per joint of {} limbs", self.agent.limbs);
             return Err(Invalid::new("signals.joints", format!("{joints} joints"), allowed));
         }
+        let points = |joint: &JointSignals| joint.bend_nm.len() + joint.twist_nm.len();
+        let torques: usize = genome.signals.joints.iter().map(points).sum();
+        within("signals torque points", torques, 1..=LARGEST_GENOME_TORQUES)?;
         for (index, joint) in genome.signals.joints.iter().enumerate() {
             for (axis, signal) in [("bend_nm", &joint.bend_nm), ("twist_nm", &joint.twist_nm)] {
                 let field = format!("signals.joints[{index}].{axis}");

@@ -33,7 +33,7 @@ pub(super) struct View {
 impl Default for View {
     /// From the right side, a little behind and above: stairs and snake at a glance.
     fn default() -> Self {
-        Self { yaw_rad: -0.55, pitch_rad: 0.38, distance_m: 21.0, offset: Vec3::new(0.0, 2.0, 0.5) }
+        Self { yaw_rad: -0.55, pitch_rad: 0.36, distance_m: 24.0, offset: Vec3::new(0.0, 3.0, 0.5) }
     }
 }
 
@@ -67,7 +67,7 @@ const ZOOM_PER_LINE: f32 = 0.12;
 /// Pixels of a trackpad's scroll that count as a wheel line.
 const PIXELS_PER_LINE: f32 = 40.0;
 /// Nearest and farthest distance, in metres.
-const DISTANCE_M: std::ops::RangeInclusive<f32> = 2.0..=150.0;
+const DISTANCE_M: std::ops::RangeInclusive<f32> = 3.0..=90.0;
 /// Highest and lowest pitch, in radians: never quite overhead, never below the ground.
 const PITCH_RAD: std::ops::RangeInclusive<f32> = 0.02..=1.55;
 /// Share of the way to the snake that the camera covers per second is 1 - e^-this.
@@ -110,27 +110,52 @@ fn set_up(mut commands: Commands, mut egui_settings: ResMut<EguiGlobalSettings>)
     ));
 }
 
-/// Turns drags and the wheel into a new view, unless a panel has the pointer.
+/// What the mouse has hold of.
+#[derive(Debug, Default)]
+pub(super) struct Grip {
+    last_cursor: Option<Vec2>,
+    /// Whether the button that is down went down over the stage: a drag that began on the panel
+    /// belongs to the panel.
+    began_on_stage: bool,
+}
+
+/// Turns drags and the wheel into a new view, unless they belong to a panel.
 fn steer(
     mut rig: ResMut<CameraRig>,
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
     window: Single<&Window, With<PrimaryWindow>>,
-    mut last_cursor: Local<Option<Vec2>>,
+    area: Res<StageArea>,
+    mut grip: Local<Grip>,
     scroll: Res<AccumulatedMouseScroll>,
     egui: Res<EguiWantsInput>,
 ) {
     // The cursor, not the device: a tablet or a remote desktop reports no relative motion.
     let cursor = window.cursor_position();
-    let drag = match (last_cursor.take(), cursor) {
+    let drag = match (grip.last_cursor, cursor) {
         (Some(last), Some(now)) => now - last,
         _ => Vec2::ZERO,
     };
-    *last_cursor = cursor;
-    if egui.wants_any_pointer_input() {
-        return;
+    grip.last_cursor = cursor;
+    let is_over_stage = cursor.is_some_and(|cursor| cursor.x >= area.left_points)
+        && !egui.wants_any_pointer_input();
+    let drag_buttons = [MouseButton::Left, MouseButton::Right, MouseButton::Middle];
+    if buttons.any_just_pressed(drag_buttons) {
+        grip.began_on_stage = is_over_stage;
     }
     let view = &mut rig.view;
+    if is_over_stage {
+        let lines = match scroll.unit {
+            MouseScrollUnit::Line => scroll.delta.y,
+            MouseScrollUnit::Pixel => scroll.delta.y / PIXELS_PER_LINE,
+        };
+        let factor = 1.0 - lines.clamp(-4.0, 4.0) * ZOOM_PER_LINE;
+        let distance_m = view.distance_m * factor;
+        view.distance_m = distance_m.clamp(*DISTANCE_M.start(), *DISTANCE_M.end());
+    }
+    if !grip.began_on_stage {
+        return;
+    }
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     let pans = buttons.any_pressed([MouseButton::Right, MouseButton::Middle]);
     if pans || (shift && buttons.pressed(MouseButton::Left)) {
@@ -143,13 +168,6 @@ fn steer(
         let pitch_rad = view.pitch_rad + drag.y * TURN_RAD_PER_PIXEL;
         view.pitch_rad = pitch_rad.clamp(*PITCH_RAD.start(), *PITCH_RAD.end());
     }
-    let lines = match scroll.unit {
-        MouseScrollUnit::Line => scroll.delta.y,
-        MouseScrollUnit::Pixel => scroll.delta.y / PIXELS_PER_LINE,
-    };
-    let factor = 1.0 - lines.clamp(-4.0, 4.0) * ZOOM_PER_LINE;
-    let distance_m = view.distance_m * factor;
-    view.distance_m = distance_m.clamp(*DISTANCE_M.start(), *DISTANCE_M.end());
 }
 
 /// Keeps the middle of the snake in view.

@@ -71,7 +71,9 @@ fn apply(
             }
             Command::ShowGeneration(generation) => {
                 let champion = evolution.champion_of(*generation);
-                show.write_batch(champion.map(|champion| ShowExhibit(Exhibit::found(champion))));
+                let run = evolution.number();
+                let exhibit = champion.map(|champion| Exhibit::found(champion, run));
+                show.write_batch(exhibit.map(ShowExhibit));
                 Ok(())
             }
             Command::TogglePlayback => {

@@ -55,6 +55,8 @@ pub(super) enum Status {
 #[derive(Resource, Debug)]
 pub(super) struct Evolution {
     engine: Engine,
+    /// Which run of this session it is; the first is 0.
+    number: u32,
     /// Seed and settings of the current run; the engine's are those of the next.
     seed: u64,
     settings: Settings,
@@ -82,6 +84,7 @@ impl Evolution {
             seed: engine.seed,
             settings: engine.settings.clone(),
             engine,
+            number: 0,
             background: None,
             reports: Vec::new(),
             run_hash: None,
@@ -96,6 +99,11 @@ impl Evolution {
             Some(background) if background.is_paused() => Status::Paused,
             Some(_) => Status::Running,
         }
+    }
+
+    /// Which run of this session it is; the first is 0.
+    pub fn number(&self) -> u32 {
+        self.number
     }
 
     /// Name of the preset.
@@ -169,14 +177,17 @@ impl Evolution {
 
     /// Evolves to the end of the current generation.
     pub fn single_generation(&mut self) -> Result<(), String> {
-        self.begin_next_if_over()?;
+        if self.status() == Status::Finished {
+            return Err("The run is finished; \"New run\" begins another.".to_owned());
+        }
         self.background()?.run_single_generation();
         Ok(())
     }
 
     /// Throws the current run away and prepares the next.
     pub fn reset(&mut self) -> Result<(), String> {
-        *self = Self::new(self.engine.clone());
+        let number = self.number + 1;
+        *self = Self { number, ..Self::new(self.engine.clone()) };
         Ok(())
     }
 
@@ -226,7 +237,8 @@ fn start_at_once(mut evolution: ResMut<Evolution>, mut notices: ResMut<Notices>)
     }
 }
 
-/// Takes in what the background found. A champion that beats the one on show takes its place.
+/// Takes in what the background found. A champion that beats the one on show takes its place, unless
+/// the stage is held: then somebody is looking at something.
 fn take_in(
     mut evolution: ResMut<Evolution>,
     mut notices: ResMut<Notices>,
@@ -237,6 +249,7 @@ fn take_in(
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
     let mut to_beat_m =
         stages.iter().map(|stage| stage.exhibit().fitness_m()).fold(f32::MIN, f32::max);
+    let is_held = stages.iter().any(|stage| !stage.is_playing());
     for event in events {
         match event {
             Event::Generation(report) => {
@@ -244,15 +257,23 @@ fn take_in(
                     && champion.evaluation.fitness_m > to_beat_m
                 {
                     to_beat_m = champion.evaluation.fitness_m;
-                    let exhibit = Exhibit::found(champion);
-                    notices.news(format!("New champion. {}", exhibit.caption()));
-                    show.write(ShowExhibit(exhibit));
+                    let exhibit = Exhibit::found(champion, evolution.number);
+                    if is_held {
+                        notices.news(format!("Better than what is held: {}", exhibit.caption()));
+                    } else {
+                        notices.news(format!("New on stage: {}", exhibit.caption()));
+                        show.write(ShowExhibit(exhibit));
+                    }
                 }
                 evolution.reports.push(*report);
             }
             Event::Finished { run_hash } => {
                 evolution.run_hash = Some(run_hash);
                 notices.news("The run is finished.".to_owned());
+            }
+            Event::BrokeOff => {
+                notices.problem("The run broke off by an error of the program.".to_owned());
+                evolution.background = None;
             }
             Event::NotSaved(problem) => notices.problem(format!("Not saved: {problem}")),
         }

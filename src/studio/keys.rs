@@ -1,5 +1,6 @@
 //! The keyboard: each key sends one command.
 
+use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::prelude::*;
 use bevy_egui::input::EguiWantsInput;
 
@@ -14,61 +15,81 @@ pub(super) const KEYS: [(&str, &str); 10] = [
     ("E", "start or pause evolution"),
     ("G", "evolve a single generation"),
     ("1 ... 9", "show the champion of a generation"),
-    ("0", "show the first champion again"),
+    ("0", "show the saved champion again"),
     ("F", "follow the snake, or not"),
     ("Home", "put the camera back"),
     ("D", "the physics engine's own lines"),
     ("Ctrl Q", "quit"),
 ];
 
-const DIGITS: [KeyCode; 10] = [
-    KeyCode::Digit0,
-    KeyCode::Digit1,
-    KeyCode::Digit2,
-    KeyCode::Digit3,
-    KeyCode::Digit4,
-    KeyCode::Digit5,
-    KeyCode::Digit6,
-    KeyCode::Digit7,
-    KeyCode::Digit8,
-    KeyCode::Digit9,
-];
-
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, read.in_set(Frame::TakeIn));
 }
 
-/// Turns the keys pressed in this frame into commands, unless a text field has the keyboard.
+/// Turns the presses of this frame into commands, in their order, unless a text field has the keyboard.
+///
+/// It reads what is printed on the key, not where the key is: on a French keyboard Q is elsewhere.
 fn read(
-    keys: Res<ButtonInput<KeyCode>>,
+    mut presses: MessageReader<KeyboardInput>,
+    mut control_is_down: Local<bool>,
     egui: Res<EguiWantsInput>,
     evolution: Res<Evolution>,
     mut send: MessageWriter<Command>,
 ) {
-    if egui.wants_any_keyboard_input() {
-        return;
+    for press in presses.read() {
+        if matches!(press.logical_key, Key::Control | Key::Super) {
+            *control_is_down = press.state.is_pressed();
+        }
+        if !press.state.is_pressed() || press.repeat || egui.wants_any_keyboard_input() {
+            continue;
+        }
+        let is_running = evolution.status() == Status::Running;
+        if let Some(command) = command(&press.logical_key, *control_is_down, is_running) {
+            send.write(command);
+        }
     }
-    let control = [KeyCode::ControlLeft, KeyCode::ControlRight, KeyCode::SuperLeft];
-    // On a slow frame both keys may be down and up again before anybody looks.
-    let control = keys.any_pressed(control) || keys.any_just_pressed(control);
-    for key in keys.get_just_pressed() {
-        let command = match key {
-            KeyCode::KeyQ if control => Command::Quit,
-            _ if control => continue,
-            KeyCode::Space => Command::TogglePlayback,
-            KeyCode::KeyR => Command::Restart,
-            KeyCode::KeyE if evolution.status() == Status::Running => Command::Pause,
-            KeyCode::KeyE => Command::Start,
-            KeyCode::KeyG => Command::SingleGeneration,
-            KeyCode::KeyF => Command::ToggleFollow,
-            KeyCode::KeyD => Command::ToggleWireframe,
-            KeyCode::Home => Command::ResetCamera,
-            key => match DIGITS.iter().position(|digit| digit == key) {
-                Some(0) => Command::ShowOpening,
-                Some(generation) => Command::ShowGeneration(generation as u32),
-                None => continue,
-            },
-        };
-        send.write(command);
+}
+
+/// What a key asks for.
+fn command(key: &Key, control_is_down: bool, is_running: bool) -> Option<Command> {
+    let text = match key {
+        Key::Space => " ".to_owned(),
+        Key::Home => return Some(Command::ResetCamera),
+        Key::Character(text) => text.to_lowercase(),
+        _ => return None,
+    };
+    if control_is_down {
+        return (text == "q").then_some(Command::Quit);
+    }
+    match text.as_str() {
+        " " => Some(Command::TogglePlayback),
+        "r" => Some(Command::Restart),
+        "e" if is_running => Some(Command::Pause),
+        "e" => Some(Command::Start),
+        "g" => Some(Command::SingleGeneration),
+        "f" => Some(Command::ToggleFollow),
+        "d" => Some(Command::ToggleWireframe),
+        "0" => Some(Command::ShowOpening),
+        digit => digit.parse().ok().map(Command::ShowGeneration),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_listed_key_does_something_and_nothing_else_does() {
+        let does = |text: &str| command(&Key::Character(text.into()), false, false);
+        for key in ["r", "E", "g", "f", "D", "0", "1", "9"] {
+            assert!(does(key).is_some(), "{key}");
+        }
+        assert_eq!(command(&Key::Space, false, false), Some(Command::TogglePlayback));
+        assert_eq!(command(&Key::Character("e".into()), false, true), Some(Command::Pause));
+        assert_eq!(command(&Key::Character("Q".into()), true, false), Some(Command::Quit));
+        for key in ["q", "x", "-1", "+"] {
+            assert_eq!(does(key), None, "{key}");
+        }
+        assert_eq!(command(&Key::Character("r".into()), true, false), None, "control and R");
     }
 }

@@ -39,6 +39,14 @@ pub const LIGHT: Color = Color::WHITE;
 
 /// The unit of spacing, in points.
 pub const GAP: f32 = 8.0;
+/// Size of the program's name, in points.
+pub const HEADING_SIZE: f32 = 22.0;
+/// Size of a section's title, in points.
+pub const TITLE_SIZE: f32 = 15.0;
+/// Width of a field for a number, in points.
+pub const FIELD_WIDTH: f32 = 64.0;
+/// From this height on a window has room for everything at once, in points.
+pub const TALL_WINDOW: f32 = 880.0;
 /// Width of the left panel, in points.
 pub const PANEL_WIDTH: f32 = 320.0;
 /// Width of a message over the stage, in points.
@@ -62,6 +70,7 @@ pub fn card(edge: Color32) -> Frame {
 /// Dresses egui.
 pub fn apply(context: &egui::Context) {
     context.set_theme(egui::Theme::Dark);
+    warm_up_fonts(context);
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
         style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
@@ -88,5 +97,20 @@ pub fn apply(context: &egui::Context) {
         visuals.widgets.hovered.weak_bg_fill = FIELD_HOVERED;
         visuals.widgets.active.weak_bg_fill = ACCENT.gamma_multiply(0.6);
         visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, FIELD_HOVERED);
+    });
+}
+
+/// Draws every letter once into egui's font texture. A letter that is new to it is missing for a frame,
+/// because the texture arrives on the graphics card one frame after the text.
+fn warm_up_fonts(context: &egui::Context) {
+    let letters: String = (' '..='~').chain(['·', '²', '³', '±']).collect();
+    let fonts = egui::TextStyle::Body.resolve(&context.global_style());
+    let sizes = [fonts.size, TITLE_SIZE, HEADING_SIZE].map(egui::FontId::proportional);
+    let others = [egui::TextStyle::Monospace, egui::TextStyle::Small, egui::TextStyle::Button]
+        .map(|style| style.resolve(&context.global_style()));
+    context.fonts_mut(|fonts| {
+        for font in sizes.into_iter().chain(others) {
+            fonts.layout_no_wrap(letters.clone(), font, TEXT);
+        }
     });
 }

@@ -35,7 +35,15 @@ impl Notices {
         self.push(text, true);
     }
 
+    /// How many are on show.
+    #[cfg(test)]
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
     fn push(&mut self, text: String, is_problem: bool) {
+        // Said again, it is said once, and for longer.
+        self.0.retain(|notice| notice.text != text);
         self.0.push(Notice { text, is_problem, shown_for: Duration::ZERO });
         let surplus = self.0.len().saturating_sub(MOST);
         self.0.drain(..surplus);
@@ -55,13 +63,15 @@ fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time
         .interactable(false)
         .show(context, |ui| {
             ui.spacing_mut().item_spacing.y = look::GAP;
-            for notice in notices.0.iter().rev() {
-                let edge = if notice.is_problem { look::PROBLEM } else { look::ACCENT };
-                look::card(edge).show(ui, |ui| {
-                    ui.set_max_width(look::NOTICE_WIDTH);
-                    ui.label(egui::RichText::new(&notice.text).color(look::TEXT));
-                });
-            }
+            ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
+                for notice in notices.0.iter().rev() {
+                    let edge = if notice.is_problem { look::PROBLEM } else { look::ACCENT };
+                    look::card(edge).show(ui, |ui| {
+                        ui.set_max_width(look::NOTICE_WIDTH);
+                        ui.label(egui::RichText::new(&notice.text).color(look::TEXT));
+                    });
+                }
+            });
         });
     Ok(())
 }
@@ -76,7 +86,8 @@ mod tests {
         for number in 0..10 {
             notices.news(number.to_string());
         }
+        notices.news("7".to_owned());
         let texts: Vec<&str> = notices.0.iter().map(|notice| notice.text.as_str()).collect();
-        assert_eq!(texts, ["6", "7", "8", "9"]);
+        assert_eq!(texts, ["6", "8", "9", "7"]);
     }
 }

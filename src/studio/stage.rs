@@ -12,6 +12,7 @@ use bevy_rapier3d::plugin::context::{
 use bevy_rapier3d::render::RapierDebugRenderPlugin;
 use std::mem::swap;
 
+use super::notice::Notices;
 use super::{Frame, Opening};
 use crate::evolve::Champion;
 use crate::score::{Evaluation, Rollout};
@@ -21,25 +22,37 @@ use crate::world::{PhysicsWorld, Pose};
 #[derive(Debug, Clone)]
 pub(super) struct Exhibit {
     champion: Champion,
-    /// The generation of the current run it is from; none for the one the studio opened with.
-    generation: Option<u32>,
+    source: Source,
+}
+
+/// Where an exhibit is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// The save the studio opened with.
+    Opening,
+    /// A run of this session; the first is 0. The generation is the champion's origin's.
+    Run(u32),
 }
 
 impl Exhibit {
     /// The champion the studio opened with.
     pub fn opening(champion: &Champion) -> Self {
-        Self { champion: champion.clone(), generation: None }
+        Self { champion: champion.clone(), source: Source::Opening }
     }
 
-    /// A champion that the current run found.
-    pub fn found(champion: &Champion) -> Self {
-        let generation = Some(champion.origin.generation);
-        Self { champion: champion.clone(), generation }
+    /// A champion that a run of this session found.
+    pub fn found(champion: &Champion, run: u32) -> Self {
+        Self { champion: champion.clone(), source: Source::Run(run) }
     }
 
-    /// The generation of the current run it is from.
-    pub fn generation(&self) -> Option<u32> {
-        self.generation
+    /// Where it is from.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// The generation it is from, in whichever run; the first is 1.
+    pub fn generation(&self) -> u32 {
+        self.champion.origin.generation
     }
 
     /// What it reached, in metres.
@@ -51,9 +64,11 @@ impl Exhibit {
     pub fn caption(&self) -> String {
         let fitness_m = self.fitness_m();
         let meaning = self.champion.trial.meaning(f64::from(fitness_m));
-        match self.generation {
-            Some(generation) => format!("Generation {generation}: {fitness_m:.2} m, {meaning}"),
-            None => format!("Saved champion: {fitness_m:.2} m, {meaning}"),
+        match self.source {
+            Source::Run(_) => {
+                format!("Generation {}: {fitness_m:.2} m, {meaning}", self.generation())
+            }
+            Source::Opening => format!("Saved champion: {fitness_m:.2} m, {meaning}"),
         }
     }
 }
@@ -76,6 +91,8 @@ pub(super) struct Stage {
     restart: bool,
     /// How long the end has been on show, in seconds.
     rested_s: f32,
+    /// Whether the end was compared with what was recorded of the champion.
+    is_checked: bool,
 }
 
 /// How long the end stays on show before the rollout starts again, in seconds.
@@ -113,6 +130,7 @@ impl Stage {
             is_playing: true,
             restart: false,
             rested_s: 0.0,
+            is_checked: false,
         }
     }
 
@@ -214,6 +232,7 @@ fn advance(
     mut stages: Query<(&mut Stage, Context)>,
     time: Res<Time<Real>>,
     mut show: MessageWriter<ShowExhibit>,
+    mut notices: ResMut<Notices>,
 ) {
     for (mut stage, (mut simulation, mut colliders, mut joints, mut bodies)) in &mut stages {
         if stage.restart || stage.rested_s > REST_S {
@@ -230,6 +249,17 @@ fn advance(
             lend(&mut stage);
             stage.pass(time.delta_secs());
             lend(&mut stage);
+        }
+        if stage.rollout.is_over() && !stage.is_checked {
+            stage.is_checked = true;
+            if stage.evaluation() != stage.exhibit.champion.evaluation {
+                notices.problem(format!(
+                    "This replay differs from its record ({:.2} m instead of {:.2} m): the file was \
+                     edited, or another engine recorded it.",
+                    stage.evaluation().fitness_m,
+                    stage.exhibit.fitness_m(),
+                ));
+            }
         }
     }
 }
@@ -264,10 +294,14 @@ mod tests {
 
     /// A stage without a window, whose frames last as long as `frames_s` says, in turn.
     fn play(frames_s: &[f32], until: impl Fn(&Stage) -> bool) -> App {
-        let opening = shipped_champion().expect("well formed").champion;
+        play_champion(shipped_champion().expect("well formed").champion, frames_s, until)
+    }
+
+    fn play_champion(opening: Champion, frames_s: &[f32], until: impl Fn(&Stage) -> bool) -> App {
         let mut app = App::new();
         app.add_plugins(MinimalPlugins)
             .add_message::<ShowExhibit>()
+            .init_resource::<Notices>()
             .insert_resource(Opening(opening))
             .add_systems(Startup, show_opening)
             .add_systems(Update, (put_on_stage, advance).chain());
@@ -296,6 +330,18 @@ mod tests {
     }
 
     #[test]
+    fn a_replay_that_differs_from_its_record_says_so_once() {
+        let honest = shipped_champion().expect("well formed").champion;
+        let mut edited = honest.clone();
+        edited.genome.density_kg_m3 *= 1.2;
+        for (champion, notices) in [(honest, 0), (edited, 1)] {
+            let mut app = play_champion(champion, &[0.1], |stage| stage.rested_s > 1.0);
+            app.update();
+            assert_eq!(app.world().resource::<Notices>().len(), notices);
+        }
+    }
+
+    #[test]
     fn between_frames_the_world_is_in_the_rapier_context() {
         let mut app = play(&[0.1], |stage| stage.rollout.step() > 20);
         let mut contexts = app.world_mut().query::<(&Stage, &RapierRigidBodySet)>();
@@ -314,6 +360,10 @@ mod tests {
         let (before, after) =
             (stage.before[0].translation.y, stage.rollout.poses()[0].translation.y);
         let drawn = stage.drawn_poses().next().expect("a head").translation.y;
-        assert!((drawn - before) * (drawn - after) <= 0.0, "{drawn} between {before} and {after}");
+        assert!((after - before).abs() > 1e-4, "the head moves: {before} to {after}");
+        let share = stage.owed_s / stage.step_s;
+        assert!((0.1..0.9).contains(&share), "the frame ends {share} of the way through a step");
+        let expected = before + (after - before) * share;
+        assert!((drawn - expected).abs() < 1e-5, "{drawn} for {expected}");
     }
 }

@@ -5,7 +5,7 @@ use bevy::window::PrimaryWindow;
 
 use super::Frame;
 use super::evolution::{Evolution, Status};
-use super::stage::Stage;
+use super::stage::{Source, Stage};
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, update.in_set(Frame::Draw));
@@ -25,9 +25,11 @@ fn update(
     let shown = match stages.iter().next() {
         None => "nothing".to_owned(),
         Some(stage) => {
-            let what = match stage.exhibit().generation() {
-                Some(generation) => format!("generation {generation}"),
-                None => "saved champion".to_owned(),
+            let generation = stage.exhibit().generation();
+            let what = match stage.exhibit().source() {
+                Source::Opening => "saved champion".to_owned(),
+                Source::Run(run) if run == evolution.number() => format!("generation {generation}"),
+                Source::Run(_) => format!("generation {generation} of an earlier run"),
             };
             if stage.is_playing() { what } else { format!("{what}, held") }
         }

@@ -86,9 +86,9 @@ impl Stairs {
 
     /// How many steps a snake has climbed whose centre stands at `y_m`.
     ///
-    /// Table 1 of the report counts a step as climbed where the centre is within a fifth of a metre
-    /// of the riser or past it, and rounds to the nearest: 3.84 is one step, 5.79 two, 8.05 three.
-    /// The rule that gives all three is: the centre has passed the riser.
+    /// A step counts as climbed where the centre has passed its riser; that is the rule behind
+    /// Table 1 of the report: 3.84 is one step, 5.79 two, 8.05 three. It looks at y alone, as the
+    /// report does: a snake that crawls past the stairs at their side would count too.
     pub fn steps_climbed(&self, y_m: f64) -> u32 {
         (0..self.steps).filter(|&index| y_m >= f64::from(self.riser_y_m(index))).count() as u32
     }

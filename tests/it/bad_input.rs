@@ -146,6 +146,8 @@ fn running_twice_overwrites_nothing_else() {
     assert_eq!(run_with(5), 2, "another run writes another");
 }
 
+/// Elsewhere there is always a display.
+#[cfg(target_os = "linux")]
 #[test]
 fn without_a_display_the_studio_says_so_in_one_line() {
     let message = refusal(folder().path(), "", 1);

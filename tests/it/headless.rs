@@ -144,6 +144,9 @@ fn the_interrupt_key_ends_a_run_in_good_order_and_keeps_its_best() {
     let mut stderr = String::new();
     child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("read");
     assert_eq!(child.wait().expect("ended").code(), Some(1), "{stderr}");
-    assert!(stderr.contains("cancelled; the best so far is saved"), "{stderr}");
+    assert!(
+        stderr.contains("cancelled; the best so far is saved to out/report-seed1-"),
+        "{stderr}"
+    );
     assert!(std::fs::read_dir(folder.path().join("out")).expect("a folder").count() >= 1);
 }

@@ -8,24 +8,32 @@ use crate::run::GenerationReport;
 use crate::studio::command::Command;
 use crate::studio::look;
 
+/// What of the list is on the stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shown {
+    /// The champion that the studio opened with.
+    Opening,
+    /// The champion of this generation of the current run.
+    Generation(u32),
+}
+
 /// The list.
 #[derive(Debug, Default)]
 pub(super) struct ChampionsPanel;
 
 impl ChampionsPanel {
-    /// Draws the list and adds what was asked for. `shown` is what is on the stage: the generation of
-    /// the current run it is from, or none of it.
+    /// Draws the list and adds what was asked for.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
         opening: &Champion,
         reports: &[GenerationReport],
-        shown: Option<Option<u32>>,
+        shown: Option<Shown>,
         asked: &mut Vec<Command>,
     ) {
         title(ui, "Champions");
         let hint = "Click to replay";
-        let saved = row(ui, shown == Some(None), "Saved champion", &reached(opening));
+        let saved = row(ui, shown == Some(Shown::Opening), "Saved champion", &reached(opening));
         if saved.on_hover_text(hint).clicked() {
             asked.push(Command::ShowOpening);
         }
@@ -38,7 +46,7 @@ impl ChampionsPanel {
                 );
                 continue;
             };
-            let is_shown = shown == Some(Some(generation));
+            let is_shown = shown == Some(Shown::Generation(generation));
             if row(ui, is_shown, &name, &reached(champion)).on_hover_text(hint).clicked() {
                 asked.push(Command::ShowGeneration(generation));
             }
@@ -58,7 +66,8 @@ fn reached(champion: &Champion) -> String {
 
 /// A clickable row over the whole width: a name at the left, what it reached at the right.
 fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, reached: &str) -> egui::Response {
-    let reached = egui::RichText::new(reached).color(look::TEXT_WEAK);
+    let color = if is_shown { look::TEXT } else { look::TEXT_WEAK };
+    let reached = egui::RichText::new(reached).color(color);
     let button = egui::Button::new(name).right_text(reached).selected(is_shown);
     ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
 }
@@ -82,7 +91,7 @@ mod tests {
         let reports = [report(), report()];
         let opening = reports[0].champion.as_ref().expect("somebody was healthy");
         let mut harness = Harness::new_ui_state(
-            |ui, asked| ChampionsPanel.ui(ui, opening, &reports, Some(None), asked),
+            |ui, asked| ChampionsPanel.ui(ui, opening, &reports, Some(Shown::Opening), asked),
             Vec::new(),
         );
         harness.get_by_label_contains("Generation 2").click();

@@ -1,9 +1,10 @@
 //! Fitness over the generations: the best and the mean.
 
 use bevy_egui::egui;
-use egui_plot::{AxisHints, HoverPosition, Line, Plot, PlotPoints, Points};
+use egui_plot::{AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points};
 
 use super::title;
+use crate::evolve::Settings;
 use crate::run::GenerationReport;
 use crate::studio::look;
 
@@ -13,11 +14,11 @@ pub(super) struct ChartPanel;
 
 impl ChartPanel {
     /// Draws best and mean of the finished generations.
-    pub fn ui(&mut self, ui: &mut egui::Ui, reports: &[GenerationReport]) {
+    pub fn ui(&mut self, ui: &mut egui::Ui, settings: &Settings, reports: &[GenerationReport]) {
         title(ui, "Fitness");
         ui.horizontal(|ui| {
             let text = |text: &str, color| egui::RichText::new(text).color(color);
-            ui.label(text("Distance in m by generation:", look::TEXT_WEAK));
+            ui.label(text("Centre's y in m, by generation:", look::TEXT_WEAK));
             ui.label(text("best", look::ACCENT).strong());
             ui.label(text("mean", look::SECOND).strong());
         });
@@ -32,6 +33,9 @@ impl ChartPanel {
             ("best", series(|statistics| statistics.best), look::ACCENT),
             ("mean", series(|statistics| statistics.mean), look::SECOND),
         ];
+        let stairs = HLine::new("the first step", settings.trial.stairs.first_riser_y_m)
+            .color(look::TEXT_WEAK)
+            .style(LineStyle::dashed_dense());
         Plot::new("fitness")
             .height(look::CHART_HEIGHT)
             .allow_drag(false)
@@ -43,9 +47,10 @@ impl ChartPanel {
             .custom_x_axes(vec![AxisHints::new_x().label_spacing(14.0..=28.0)])
             .include_y(-8.0)
             .include_y(10.0)
-            .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 5.0]))
+            .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0e3, 1.0e6]))
             .label_formatter(label)
             .show(ui, |plot| {
+                plot.hline(stairs);
                 for (name, points, color) in lines {
                     plot.line(
                         Line::new(name, PlotPoints::from(points.clone())).color(color).width(2.0),

@@ -2,7 +2,9 @@
 
 use bevy_egui::egui;
 
+use super::number_field::NumberField;
 use super::title;
+use crate::evolve::LARGEST_POPULATION;
 use crate::studio::command::Command;
 use crate::studio::evolution::{Evolution, Status};
 use crate::studio::look;
@@ -10,42 +12,61 @@ use crate::studio::look;
 /// The panel, with what is being typed.
 #[derive(Debug, Default)]
 pub(super) struct EvolutionPanel {
-    /// The seed's text while it is edited or wrong; none while it shows the seed itself.
-    seed_text: Option<String>,
+    seed: NumberField,
+    population: NumberField,
 }
 
 impl EvolutionPanel {
     /// Draws the panel and adds what was asked for.
     pub fn ui(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
         title(ui, "Evolution");
-        ui.horizontal(|ui| {
-            let (label, command) = match run.status() {
-                Status::Running => ("Pause", Command::Pause),
-                Status::Finished => ("New run", Command::Start),
-                Status::Ready | Status::Paused => ("Start", Command::Start),
-            };
-            let start = egui::Button::new(egui::RichText::new(label).strong())
-                .fill(look::ACCENT.gamma_multiply(0.55))
-                .min_size(egui::vec2(look::GAP * 10.0, 0.0));
-            let mut button = |ui: &mut egui::Ui, button: egui::Button<'_>, hint: &str, command| {
-                if ui.add(button).on_hover_text(hint).clicked() {
-                    asked.push(command);
-                }
-            };
-            button(ui, start, "Evolve in the background (E)", command);
-            let single = egui::Button::new("One generation");
-            button(
-                ui,
-                single,
-                "Evolve to the end of a generation, then pause (G)",
-                Command::SingleGeneration,
-            );
-            let hint =
-                "Throw this run away and prepare a fresh one with the seed and population below";
-            button(ui, egui::Button::new("Reset"), hint, Command::Reset);
-        });
+        // A click on a button also ends what is typed below it; the typed value comes first.
+        let mut pressed = Vec::new();
+        self.buttons(ui, run, &mut pressed);
         self.progress(ui, run);
         self.fields(ui, run, asked);
+        asked.append(&mut pressed);
+    }
+
+    fn buttons(&self, ui: &mut egui::Ui, run: &Evolution, pressed: &mut Vec<Command>) {
+        let is_wrong = self.seed.problem().or(self.population.problem()).is_some();
+        let status = run.status();
+        let is_finished = status == Status::Finished;
+        let (label, start) = match status {
+            Status::Running => ("Pause", Command::Pause),
+            Status::Finished => ("New run", Command::Start),
+            Status::Ready | Status::Paused => ("Start", Command::Start),
+        };
+        let first = egui::Button::new(egui::RichText::new(label).strong())
+            .fill(look::ACCENT.gamma_multiply(0.55))
+            .min_size(egui::vec2(look::GAP * 10.0, 0.0));
+        let single = if is_finished {
+            "The run is finished; \"New run\" begins another"
+        } else {
+            "Evolve to the end of a generation, then pause (G)"
+        };
+        let reset = if is_wrong {
+            "Correct the value below first"
+        } else {
+            "Throw this run away and prepare a fresh one with the seed and population below"
+        };
+        ui.horizontal(|ui| {
+            for (is_on, button, hint, command) in [
+                (!(is_finished && is_wrong), first, "Evolve in the background (E)", start),
+                (
+                    !is_finished,
+                    egui::Button::new("One generation"),
+                    single,
+                    Command::SingleGeneration,
+                ),
+                (!is_wrong, egui::Button::new("Reset"), reset, Command::Reset),
+            ] {
+                let response = ui.add_enabled(is_on, button);
+                if response.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
+                    pressed.push(command);
+                }
+            }
+        });
     }
 
     fn progress(&self, ui: &mut egui::Ui, run: &Evolution) {
@@ -75,52 +96,21 @@ impl EvolutionPanel {
 
     fn fields(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
         ui.horizontal(|ui| {
-            let label = ui.label("Seed");
-            let mut text = self.seed_text.clone().unwrap_or_else(|| run.next_seed().to_string());
-            let field = egui::TextEdit::singleline(&mut text)
-                .desired_width(look::GAP * 10.0)
-                .margin(egui::Margin::symmetric(8, 4));
-            let response = ui
-                .add(field)
-                .labelled_by(label.id)
-                .on_hover_text("The same seed and settings give the same run, bit for bit");
-            if response.changed() {
-                self.seed_text = Some(text);
-            }
-            if response.lost_focus() {
-                self.seed_text = match self.seed_text.take() {
-                    Some(text) => self.commit_seed(text, asked),
-                    None => None,
-                };
-            }
-            let label = ui.label("Population");
-            let mut population = run.next_population();
-            let field = egui::DragValue::new(&mut population).range(1..=100_000).speed(2.0);
-            let hint = "Snakes in a generation, 1 to 100000";
-            if ui.add(field).labelled_by(label.id).on_hover_text(hint).changed() {
-                asked.push(Command::SetPopulation(population));
-            }
+            let hint = "The same seed and settings give the same run, bit for bit";
+            let seed = self.seed.ui(ui, "Seed", hint, run.next_seed(), 0..=u64::MAX);
+            asked.extend(seed.map(Command::SetSeed));
+            let hint = "Snakes in a generation";
+            let range = 1..=LARGEST_POPULATION;
+            let now = run.next_population();
+            let population = self.population.ui(ui, "Population", hint, now, range);
+            asked.extend(population.map(Command::SetPopulation));
         });
-        if let Some(text) = &self.seed_text
-            && text.trim().parse::<u64>().is_err()
-        {
-            let problem = format!("Seed is \"{text}\"; allowed: 0 to {}", u64::MAX);
+        for problem in [self.seed.problem(), self.population.problem()].into_iter().flatten() {
             ui.colored_label(look::PROBLEM, problem);
         }
         if run.next_run_differs() {
             let hint = "Reset to begin a run with these values.";
             ui.label(egui::RichText::new(hint).color(look::SECOND));
-        }
-    }
-
-    /// Sends a seed that is a number; keeps a text that is none, for correction.
-    fn commit_seed(&self, text: String, asked: &mut Vec<Command>) -> Option<String> {
-        match text.trim().parse() {
-            Ok(seed) => {
-                asked.push(Command::SetSeed(seed));
-                None
-            }
-            Err(_) => Some(text),
         }
     }
 }
@@ -193,5 +183,36 @@ mod tests {
         };
         assert_eq!(type_seed("23"), [Command::SetSeed(123)], "appended to the 1 that was there");
         assert_eq!(type_seed("x"), []);
+    }
+
+    #[test]
+    fn with_a_wrong_value_in_a_field_reset_is_off() {
+        let run = run();
+        let sent = sent(&run, |harness| {
+            harness.get_by_label("Population").focus();
+            harness.run();
+            harness.get_by_label("Population").type_text("a");
+            harness.run();
+            assert!(
+                harness.query_by_label_contains("Population is \"500a\"; allowed: 1 to").is_some()
+            );
+            harness.get_by_label("Reset").click();
+            harness.run();
+        });
+        assert_eq!(sent, []);
+    }
+
+    #[test]
+    fn a_seed_that_is_still_being_typed_counts_when_a_button_is_clicked() {
+        let run = run();
+        let sent = sent(&run, |harness| {
+            harness.get_by_label("Seed").focus();
+            harness.run();
+            harness.get_by_label("Seed").type_text("9");
+            harness.run();
+            harness.get_by_label("Start").click();
+            harness.run();
+        });
+        assert_eq!(sent, [Command::SetSeed(19), Command::Start]);
     }
 }

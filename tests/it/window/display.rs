@@ -165,6 +165,8 @@ impl Studio {
             "Start" | "Pause" => "56",
             "One generation" => "159",
             "Reset" => "249",
+            // Not a button: a place in the panel where there is nothing.
+            "the empty panel" => return self.click("300", "60"),
             other => panic!("no button {other}"),
         };
         self.click(x, BUTTONS_Y);
@@ -224,8 +226,15 @@ impl Studio {
 
     /// Waits for a picture that `is_it`.
     pub fn picture_with(&self, is_it: impl Fn(&Picture) -> bool) -> Picture {
-        self.wait(|| is_it(&self.picture()), || format!("a picture while {:?}", self.title()));
-        self.picture()
+        let started = Instant::now();
+        loop {
+            let picture = self.picture();
+            if is_it(&picture) {
+                return picture;
+            }
+            assert!(started.elapsed() < PATIENCE, "waited for a picture, {:?}", self.title());
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
     }
 
     /// Waits until the stage has stopped changing.

@@ -1,0 +1,53 @@
+//! A field for a whole number that a person types: taken when it is left, refused with a reason.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+use bevy_egui::egui;
+
+use crate::studio::look;
+
+/// A field, with what is being typed.
+#[derive(Debug, Default)]
+pub(super) struct NumberField {
+    /// The text while it is edited or wrong; none while the field shows the value itself.
+    text: Option<String>,
+    problem: Option<String>,
+}
+
+impl NumberField {
+    /// Draws the field with its label. Returns a new value when a person has left the field with one.
+    pub fn ui<T: FromStr + Display + PartialOrd>(
+        &mut self,
+        ui: &mut egui::Ui,
+        label: &str,
+        hint: &str,
+        value: T,
+        range: RangeInclusive<T>,
+    ) -> Option<T> {
+        let name = ui.label(label);
+        let mut text = self.text.clone().unwrap_or_else(|| value.to_string());
+        let field = egui::TextEdit::singleline(&mut text)
+            .desired_width(look::FIELD_WIDTH)
+            .margin(egui::Margin::symmetric(8, 4));
+        let response = ui.add(field).labelled_by(name.id).on_hover_text(hint);
+        let parsed = text.trim().parse().ok().filter(|number| range.contains(number));
+        if response.changed() {
+            self.problem = parsed.is_none().then(|| {
+                let allowed = format!("allowed: {} to {}", range.start(), range.end());
+                format!("{label} is \"{text}\"; {allowed}")
+            });
+            self.text = Some(text);
+        }
+        if response.lost_focus() && self.problem.is_none() {
+            return self.text.take().and(parsed);
+        }
+        None
+    }
+
+    /// What is wrong with the text, if something is.
+    pub fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+}
