@@ -258,7 +258,7 @@ mod tests {
                 "--seed twelve",
                 "seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615",
             ),
-            ("--preset nosuch", "preset is \"nosuch\"; allowed: report, quick, or a file"),
+            ("--preset nosuch", "preset is \"nosuch\"; allowed: report, steady, quick, or a file"),
             ("--threads 0", "threads is 0; allowed: 1 to 1024"),
         ] {
             assert_eq!(refusal(words), message, "{words}");

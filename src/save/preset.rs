@@ -23,8 +23,9 @@ pub struct Preset {
 /// The preset used when none is named.
 pub const DEFAULT_PRESET: &str = "report";
 
-const SHIPPED: [(&str, &str); 2] = [
+const SHIPPED: [(&str, &str); 3] = [
     ("report.ron", include_str!("../../assets/presets/report.ron")),
+    ("steady.ron", include_str!("../../assets/presets/steady.ron")),
     ("quick.ron", include_str!("../../assets/presets/quick.ron")),
 ];
 
@@ -101,6 +102,6 @@ mod tests {
     #[test]
     fn an_unknown_preset_lists_the_known_ones() {
         let error = load_preset("repotr").unwrap_err().to_string();
-        assert_eq!(error, "preset is \"repotr\"; allowed: report, quick, or a file");
+        assert_eq!(error, "preset is \"repotr\"; allowed: report, steady, quick, or a file");
     }
 }

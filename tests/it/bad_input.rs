@@ -20,7 +20,7 @@ fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
 #[test]
 fn an_unknown_preset() {
     let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
-    assert_eq!(message, "error: preset is \"nosuch\"; allowed: report, quick, or a file");
+    assert_eq!(message, "error: preset is \"nosuch\"; allowed: report, steady, quick, or a file");
 }
 
 #[test]

@@ -15,7 +15,7 @@ const STAGE_LEFT: u32 = 320;
 
 /// How many pixels of the stage, without the caption below and the messages above, look like `is`.
 fn count_on_stage(picture: &Picture, is: fn(&[u8; 3]) -> bool) -> usize {
-    let pixels = picture.region(STAGE_LEFT, 60, 480, 440);
+    let pixels = picture.region(STAGE_LEFT, 130, 480, 370);
     pixels.iter().filter(|pixel| is(pixel)).count()
 }
 
@@ -29,7 +29,7 @@ fn is_blue(&[red, green, blue]: &[u8; 3]) -> bool {
 
 /// How many pixels of the middle of the stage differ between two pictures.
 fn difference(before: &Picture, after: &Picture) -> usize {
-    let region = |picture: &Picture| picture.region(STAGE_LEFT, 60, 480, 440);
+    let region = |picture: &Picture| picture.region(STAGE_LEFT, 130, 480, 370);
     region(before).iter().zip(region(after)).filter(|(a, b)| **a != *b).count()
 }
 

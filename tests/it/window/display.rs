@@ -239,7 +239,7 @@ impl Studio {
 
     /// Waits until the stage has stopped changing.
     pub fn still_picture(&self) -> Picture {
-        let region = |picture: &Picture| picture.region(320, 60, 480, 440);
+        let region = |picture: &Picture| picture.region(320, 130, 480, 370);
         let mut before = self.picture();
         let started = Instant::now();
         loop {
