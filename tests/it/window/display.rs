@@ -237,8 +237,9 @@ impl Studio {
         }
     }
 
-    /// Waits until the stage has stopped changing.
+    /// Waits until the stage has stopped changing, with the pointer, which is part of the picture, away.
     pub fn still_picture(&self) -> Picture {
+        self.move_to((5, 595));
         let region = |picture: &Picture| picture.region(320, 130, 480, 370);
         let mut before = self.picture();
         let started = Instant::now();
