@@ -9,11 +9,13 @@ use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::pbr::{DistanceFog, FogFalloff};
 use bevy::prelude::*;
 use bevy::render::render_resource::BlendState;
+use bevy::render::renderer::RenderAdapterInfo;
 use bevy::window::PrimaryWindow;
 use bevy_egui::input::EguiWantsInput;
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
 
 use super::panels::StageArea;
+use super::quality::Quality;
 use super::stage::Stage;
 use super::{Frame, look};
 
@@ -70,8 +72,10 @@ const PIXELS_PER_LINE: f32 = 40.0;
 const DISTANCE_M: std::ops::RangeInclusive<f32> = 3.0..=90.0;
 /// Highest and lowest pitch, in radians: never quite overhead, never below the ground.
 const PITCH_RAD: std::ops::RangeInclusive<f32> = 0.02..=1.55;
-/// Share of the way to the snake that the camera covers per second is 1 - e^-this.
+/// How eagerly the camera follows, in 1/s: in a short time t it covers the share `this * t` of the way.
 const FOLLOW_PER_S: f32 = 4.0;
+/// Nearer than this the camera is where it wants to be, in metres.
+const FOLLOWED_M: f32 = 0.005;
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<CameraRig>()
@@ -80,13 +84,17 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// One camera for the stage, beside the panel, and one for egui, over the whole window.
-fn set_up(mut commands: Commands, mut egui_settings: ResMut<EguiGlobalSettings>) {
+fn set_up(
+    mut commands: Commands,
+    mut egui_settings: ResMut<EguiGlobalSettings>,
+    adapter: Res<RenderAdapterInfo>,
+) {
     egui_settings.auto_create_primary_context = false;
     commands.spawn((
         StageCamera,
         Camera3d::default(),
         Tonemapping::None,
-        Msaa::Sample4,
+        Quality::suiting(&adapter).msaa,
         DistanceFog {
             color: look::SKY,
             falloff: FogFalloff::Linear { start: 50.0, end: 190.0 },
@@ -181,7 +189,9 @@ fn follow(mut rig: ResMut<CameraRig>, stages: Query<&Stage>, time: Res<Time<Real
         None => rig.anchor = Some(goal),
         Some(anchor) if rig.follows => {
             let share = 1.0 - (1.0 + FOLLOW_PER_S * time.delta_secs()).recip();
-            rig.anchor = Some(anchor.lerp(goal, share));
+            // Ever smaller moves would keep a held picture trembling by a pixel here and there.
+            let is_there = anchor.distance(goal) < FOLLOWED_M;
+            rig.anchor = Some(if is_there { goal } else { anchor.lerp(goal, share) });
         }
         Some(_) => {}
     }

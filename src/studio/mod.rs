@@ -14,6 +14,7 @@ mod keys;
 mod look;
 mod notice;
 mod panels;
+mod quality;
 mod scene;
 mod snake;
 mod stage;

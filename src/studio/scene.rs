@@ -4,7 +4,9 @@ use bevy::asset::RenderAssetUsages;
 use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap};
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
+use bevy::render::renderer::RenderAdapterInfo;
 
+use super::quality::Quality;
 use super::stage::Stage;
 use super::{Frame, look};
 use crate::world::StairBox;
@@ -29,7 +31,6 @@ pub(super) fn plugin(app: &mut App) {
             brightness: AMBIENT_CD_M2,
             ..default()
         })
-        .insert_resource(DirectionalLightShadowMap { size: SHADOW_MAP_PIXELS })
         .init_resource::<Props>()
         .add_systems(Startup, set_up)
         .add_systems(Update, build_stairs.in_set(Frame::Draw));
@@ -41,8 +42,6 @@ const AMBIENT_CD_M2: f32 = 320.0;
 const SUN_LUX: f32 = 3_600.0;
 /// Shadows end this far from the camera, in metres: the length of the whole staircase.
 const SHADOW_DISTANCE_M: f32 = 60.0;
-/// Pixels along a side of the shadow map.
-const SHADOW_MAP_PIXELS: usize = 2048;
 /// Half the side of the drawn ground, in metres. The physical ground has no end; the fog hides this one.
 const GROUND_HALF_M: f32 = 250.0;
 /// Half the side of the grid, in metres: beyond it the lines would flicker.
@@ -78,7 +77,10 @@ fn set_up(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
+    adapter: Res<RenderAdapterInfo>,
 ) {
+    let size = Quality::suiting(&adapter).shadow_map_pixels;
+    commands.insert_resource(DirectionalLightShadowMap { size });
     commands.spawn((
         DirectionalLight {
             color: look::LIGHT,

@@ -242,16 +242,17 @@ impl Studio {
         self.move_to((5, 595));
         let region = |picture: &Picture| picture.region(320, 130, 480, 370);
         let mut before = self.picture();
+        let mut equal = 0;
         let started = Instant::now();
-        loop {
+        // A slow camera can look still for one frame; for three it is.
+        while equal < 3 {
             std::thread::sleep(A_FRAME);
             let now = self.picture();
-            if region(&before) == region(&now) {
-                return now;
-            }
+            equal = if region(&before) == region(&now) { equal + 1 } else { 0 };
             assert!(started.elapsed() < PATIENCE, "the picture never came to rest");
             before = now;
         }
+        before
     }
 
     /// Quits by the keyboard; the program's exit code.
