@@ -11,7 +11,7 @@ use super::CliError;
 use crate::check::{Invalid, within};
 use crate::evolve::Settings;
 use crate::run::{THREADS_RANGE, available_cores};
-use crate::save::{DEFAULT_PRESET, load_preset};
+use crate::save::{DEFAULT_PRESET, Preset, SavesFolder, load_preset};
 
 /// A five-block snake evolves until it climbs a staircase.
 ///
@@ -27,7 +27,7 @@ pub struct Args {
     pub json: bool,
     /// A preset's name (see `snakes presets`) or the path of your own preset file
     #[arg(long, global = true, value_name = "NAME")]
-    pub preset: Option<String>,
+    preset: Option<String>,
     /// Seed of the run; the same seed gives the same bits [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<String>,
@@ -63,10 +63,10 @@ pub struct Args {
     threads: Option<String>,
     /// Folder to write this run's champions to
     #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    out: Option<PathBuf>,
     /// Folder of saved champions [default: ./saves if there is one, else the platform's data folder]
     #[arg(long, global = true, value_name = "DIR")]
-    pub saves: Option<PathBuf>,
+    saves: Option<PathBuf>,
     /// Size of the window in pixels
     #[arg(long, global = true, value_name = "WIDTHxHEIGHT")]
     window_size: Option<String>,
@@ -131,9 +131,19 @@ const WHOLE: &str = "a whole number from 0 up";
 const DECIMAL: &str = "a number";
 
 impl Args {
+    /// The preset that was named, or the default, as it stands in its file.
+    pub fn preset(&self) -> Result<Preset, CliError> {
+        Ok(load_preset(self.preset.as_deref().unwrap_or(DEFAULT_PRESET))?)
+    }
+
+    /// Where this run's champions go.
+    pub fn saves_folder(&self) -> SavesFolder {
+        SavesFolder::find(self.out.as_deref().or(self.saves.as_deref()))
+    }
+
     /// The preset's name and its settings, with the flags' values put in and everything checked.
     pub fn settings(&self) -> Result<(String, Settings), CliError> {
-        let preset = load_preset(self.preset.as_deref().unwrap_or(DEFAULT_PRESET))?;
+        let preset = self.preset()?;
         let mut settings = preset.settings;
         let Settings { trial, genome, evolution } = &mut settings;
         for (flag, given, target) in [

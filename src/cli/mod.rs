@@ -19,7 +19,7 @@ pub use error::CliError;
 use crate::check::Invalid;
 use crate::run::bench::{BenchReport, bench};
 use crate::run::{Control, Experiment, headless};
-use crate::save::{SavesFolder, load_preset, shipped_presets};
+use crate::save::shipped_presets;
 
 /// Runs the program with the given arguments, the program's name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -54,7 +54,7 @@ fn evolve(args: &Args) -> Result<(), CliError> {
     let (preset, settings) = args.settings()?;
     let threads = args.threads()?;
     let seed = args.seed()?;
-    let saves = SavesFolder::find(args.out.as_deref().or(args.saves.as_deref()));
+    let saves = args.saves_folder();
     let evolution = &settings.evolution;
     let _ = writeln!(
         io::stderr(),
@@ -86,7 +86,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         settings,
         seed: args.seed()?,
         threads: args.studio_threads()?,
-        saves: SavesFolder::find(args.out.as_deref().or(args.saves.as_deref())),
+        saves: args.saves_folder(),
         champion,
         window_size: args.window_size()?,
         exit_after_frames: args.exit_after_frames()?,
@@ -114,10 +114,7 @@ fn print_presets(json: bool) -> Result<(), CliError> {
 }
 
 fn print_bench(args: &Args) -> Result<(), CliError> {
-    let settings = match &args.preset {
-        Some(name) => load_preset(name)?.settings,
-        None => load_preset(crate::save::DEFAULT_PRESET)?.settings,
-    };
+    let settings = args.preset()?.settings;
     let bar = ProgressBar::new(100);
     let report = bench(&settings, args.threads()?, BENCH_DURATION, |share| {
         bar.set_position((share * 100.0) as u64);

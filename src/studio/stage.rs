@@ -1,7 +1,7 @@
 //! The stage: one rollout, played in real time.
 //!
-//! Between frames the physics world lives in a bevy_rapier3d context, so that its debug drawing and
-//! picking see the very bodies that are scored. To advance, the world is lent back to the rollout,
+//! Between frames the physics world lives in a bevy_rapier3d context, so that its debug drawing
+//! sees the very bodies that are scored. To advance, the world is lent back to the rollout,
 //! which takes whole constant steps; the frame only decides how many. What is drawn lies between the
 //! last two steps.
 
