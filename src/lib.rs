@@ -57,4 +57,4 @@ pub mod cli;
 
 /// Version of everything that decides the bits of a run: physics, controllers, random streams,
 /// strategies. Raised by hand whenever a change alters them on purpose; saves record it.
-pub const ENGINE_VERSION: u32 = 1;
+pub const ENGINE_VERSION: u32 = 2;

@@ -1,7 +1,7 @@
 //! An individual worth keeping, and where it comes from.
 
 use crate::genome::Genome;
-use crate::score::{Evaluation, Trial};
+use crate::score::{Evaluation, Fitness, Trial};
 
 /// An individual worth keeping, with all that is needed to see it again.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,18 @@ pub struct Champion {
     pub evaluation: Evaluation,
     /// Where it comes from.
     pub origin: Origin,
+}
+
+impl Champion {
+    /// What it reached, in a few words: fitness, and what the place of its centre means.
+    pub fn reached(&self) -> String {
+        let Evaluation { fitness, centre_y_m, .. } = self.evaluation;
+        let meaning = self.trial.meaning(f64::from(centre_y_m));
+        match self.trial.fitness {
+            Fitness::StepsClimbed => meaning,
+            kind => format!("{fitness:.2}{}, {meaning}", kind.unit()),
+        }
+    }
 }
 
 /// The place of an individual in the run that found it.

@@ -121,8 +121,9 @@ mod tests {
     use super::*;
     use crate::world::Disqualification;
 
-    fn evaluated(fitness_m: f32) -> Evaluation {
-        Evaluation { fitness_m, disqualified: None, trace_hash: 0, steps: 1 }
+    fn evaluated(fitness: f32) -> Evaluation {
+        let disqualified = None;
+        Evaluation { fitness, centre_y_m: fitness, disqualified, trace_hash: 0, steps: 1 }
     }
 
     fn small() -> Halving {

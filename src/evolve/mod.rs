@@ -28,7 +28,7 @@ pub trait Strategy {
 pub fn ranking(evaluations: &[Evaluation]) -> Vec<usize> {
     let mut ranked: Vec<usize> =
         (0..evaluations.len()).filter(|&i| evaluations[i].disqualified.is_none()).collect();
-    ranked.sort_by(|&a, &b| evaluations[b].fitness_m.total_cmp(&evaluations[a].fitness_m));
+    ranked.sort_by(|&a, &b| evaluations[b].fitness.total_cmp(&evaluations[a].fitness));
     ranked
 }
 
@@ -39,8 +39,9 @@ mod tests {
 
     #[test]
     fn the_disqualified_are_not_ranked_and_ties_go_to_the_first() {
-        let evaluation = |fitness_m, disqualified| Evaluation {
-            fitness_m,
+        let evaluation = |fitness, disqualified| Evaluation {
+            fitness,
+            centre_y_m: fitness,
             disqualified,
             trace_hash: 0,
             steps: 0,

@@ -105,7 +105,7 @@ impl Experiment {
             },
         });
         let meaning = match statistics {
-            Some(statistics) => trial.meaning(statistics.mean),
+            Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
             None => "all disqualified".to_owned(),
         };
         let hash = generation_hash(&evaluations);
@@ -127,9 +127,9 @@ impl Experiment {
     }
 
     fn keep_if_better(&mut self, candidate: Option<&Champion>) {
-        let fitness_m = |champion: &Champion| champion.evaluation.fitness_m;
+        let fitness = |champion: &Champion| champion.evaluation.fitness;
         if let Some(candidate) = candidate
-            && self.best.as_ref().is_none_or(|best| fitness_m(candidate) > fitness_m(best))
+            && self.best.as_ref().is_none_or(|best| fitness(candidate) > fitness(best))
         {
             self.best = Some(candidate.clone());
         }

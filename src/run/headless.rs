@@ -83,7 +83,7 @@ pub fn evolve(
         let last = json!({
             "done": true,
             "run_hash": run_hash,
-            "best": best.map(|best| best.evaluation.fitness_m),
+            "best": best.map(|best| best.evaluation.fitness),
             "champion": keeper.kept(),
         });
         writeln!(out, "{last}")?;
@@ -137,12 +137,12 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let recorded = loaded.champion.evaluation;
     let found = evaluate(&loaded.champion.genome, &loaded.champion.trial);
     let matches = found == recorded;
-    let meaning = loaded.champion.trial.meaning(f64::from(found.fitness_m));
+    let meaning = loaded.champion.trial.meaning(f64::from(found.centre_y_m));
     if json {
         let line = json!({
-            "fitness": found.fitness_m,
+            "fitness": found.fitness,
             "trace_hash": format!("{:016x}", found.trace_hash),
-            "recorded_fitness": recorded.fitness_m,
+            "recorded_fitness": recorded.fitness,
             "recorded_trace_hash": format!("{:016x}", recorded.trace_hash),
             "steps": found.steps,
             "disqualified": found.disqualified.map(|reason| reason.words()),
@@ -152,7 +152,8 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
         });
         writeln!(out, "{line}")?;
     } else {
-        writeln!(out, "fitness     {:.6} m, {meaning}", found.fitness_m)?;
+        let unit = loaded.champion.trial.fitness.unit();
+        writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;
         writeln!(out, "trace_hash  {:016x}", found.trace_hash)?;
         if matches {
             writeln!(out, "equal to the record, bit for bit")?;
@@ -167,11 +168,11 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
         format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
     };
     let difference = format!(
-        "fitness {} m, {} steps, trace {:016x}; recorded {} m, {} steps, {:016x} ({engine})",
-        found.fitness_m,
+        "fitness {}, {} steps, trace {:016x}; recorded {}, {} steps, {:016x} ({engine})",
+        found.fitness,
         found.steps,
         found.trace_hash,
-        recorded.fitness_m,
+        recorded.fitness,
         recorded.steps,
         recorded.trace_hash,
     );
@@ -210,10 +211,9 @@ fn json_line(report: &GenerationReport) -> Value {
 
 /// A champion in one line.
 fn about(champion: &Champion) -> String {
-    let fitness_m = f64::from(champion.evaluation.fitness_m);
     format!(
-        "y = {fitness_m:.2} m: {} (generation {}, individual {})",
-        champion.trial.meaning(fitness_m),
+        "{} (generation {}, individual {})",
+        champion.reached(),
         champion.origin.generation,
         champion.origin.individual,
     )
@@ -227,7 +227,14 @@ mod tests {
     #[test]
     fn a_row_stands_under_its_head() {
         let statistics =
-            Statistics { mean: -7.225, best: 1.5, median: -7.0, std: 0.25, worst: -9.0 };
+            Statistics {
+            mean: -7.225,
+            best: 1.5,
+            median: -7.0,
+            std: 0.25,
+            worst: -9.0,
+            mean_centre_y_m: -7.225,
+        };
         let report = GenerationReport {
             generation: 1,
             evaluations: 500,

@@ -26,7 +26,7 @@ pub struct GenerationReport {
     pub champion: Option<Champion>,
 }
 
-/// Statistics over the agents of one generation that were not disqualified, in metres.
+/// Statistics over the fitness of those agents of one generation that were not disqualified.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// Arithmetic mean.
@@ -39,20 +39,25 @@ pub struct Statistics {
     pub std: f64,
     /// Least fitness.
     pub worst: f64,
+    /// Mean y of the centre at the end, in m, whatever is rewarded.
+    pub mean_centre_y_m: f64,
 }
 
 impl Statistics {
     /// The statistics of the healthy ones among `evaluations`, in a fixed order of summation.
     pub fn of(evaluations: &[Evaluation]) -> Option<Self> {
         let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
-        let mut fitness: Vec<f64> = healthy.map(|e| f64::from(e.fitness_m)).collect();
+        let mut fitness: Vec<f64> = healthy.map(|e| f64::from(e.fitness)).collect();
         fitness.sort_by(f64::total_cmp);
         let (&worst, &best) = (fitness.first()?, fitness.last()?);
         let count = fitness.len() as f64;
         let mean = fitness.iter().sum::<f64>() / count;
         let variance = fitness.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count;
         let (low, high) = (fitness[(fitness.len() - 1) / 2], fitness[fitness.len() / 2]);
-        Some(Self { mean, best, median: (low + high) / 2.0, std: variance.sqrt(), worst })
+        let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
+        let mean_centre_y_m = healthy.map(|e| f64::from(e.centre_y_m)).sum::<f64>() / count;
+        let median = (low + high) / 2.0;
+        Some(Self { mean, best, median, std: variance.sqrt(), worst, mean_centre_y_m })
     }
 }
 
@@ -61,7 +66,7 @@ pub fn generation_hash(evaluations: &[Evaluation]) -> u64 {
     let mut hash = Xxh3Default::new();
     for evaluation in evaluations {
         hash.update(&evaluation.trace_hash.to_le_bytes());
-        hash.update(&evaluation.fitness_m.to_bits().to_le_bytes());
+        hash.update(&evaluation.fitness.to_bits().to_le_bytes());
         hash.update(&evaluation.steps.to_le_bytes());
         hash.update(&[u8::from(evaluation.disqualified.is_some())]);
     }
@@ -73,8 +78,8 @@ mod tests {
     use super::*;
     use crate::world::Disqualification;
 
-    fn evaluation(fitness_m: f32, disqualified: Option<Disqualification>) -> Evaluation {
-        Evaluation { fitness_m, disqualified, trace_hash: 0, steps: 1 }
+    fn evaluation(fitness: f32, disqualified: Option<Disqualification>) -> Evaluation {
+        Evaluation { fitness, centre_y_m: fitness + 1.0, disqualified, trace_hash: 0, steps: 1 }
     }
 
     #[test]
@@ -89,6 +94,7 @@ mod tests {
         let statistics = Statistics::of(&evaluations).expect("four are healthy");
         assert_eq!((statistics.mean, statistics.median), (2.0, 2.5));
         assert_eq!((statistics.best, statistics.worst), (5.0, -2.0));
+        assert_eq!(statistics.mean_centre_y_m, 3.0);
         assert_eq!(statistics.std, 7.5_f64.sqrt());
         assert_eq!(Statistics::of(&evaluations[1..2]), None);
     }

@@ -7,7 +7,8 @@ use serde::Deserialize;
 
 use super::SaveError;
 use super::files::{parse, read_text, write_whole};
-use super::v1::{ChampionV1, FORMAT, KIND};
+use super::v1::ChampionV1;
+use super::v2::{ChampionV2, FORMAT, KIND};
 use crate::ENGINE_VERSION;
 use crate::check::Invalid;
 use crate::evolve::Champion;
@@ -44,21 +45,21 @@ pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
 /// The file cannot be written.
 pub fn store_champion(path: &Path, champion: &Champion) -> Result<(), SaveError> {
     let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
-    let file = ChampionV1::from(champion.clone());
+    let file = ChampionV2::from(champion.clone());
     let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| {
         SaveError::Unwritable { path: path.to_owned(), source: std::io::Error::other(error) }
     })?;
     let origin = &champion.origin;
     let header = format!(
         "// A champion of Snakes & Stairs: preset {}, seed {}, generation {}, individual {}.\n\
-         // It reached y = {:.2} m: it {}.\n\
+         // Fitness ({}): {}.\n\
          // See it again, exactly: snakes replay FILE (with --no-render to check it in a terminal)\n",
         origin.preset,
         origin.seed,
         origin.generation,
         origin.individual,
-        champion.evaluation.fitness_m,
-        champion.trial.meaning(f64::from(champion.evaluation.fitness_m)),
+        champion.trial.fitness.words(),
+        champion.reached(),
     );
     write_whole(path, &format!("{header}{text}\n"))
 }
@@ -86,7 +87,10 @@ fn read(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
         }
         found => return Err(SaveError::Newer { path: path.to_owned(), found, newest: FORMAT }),
     }
-    let file: ChampionV1 = parse(path, text)?;
+    let file: ChampionV2 = match header.format {
+        1 => parse::<ChampionV1>(path, text)?.into(),
+        _ => parse(path, text)?,
+    };
     let engine = file.engine;
     let champion = Champion::try_from(file)
         .map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
@@ -136,7 +140,7 @@ mod tests {
         let LoadedChampion { champion, engine } = shipped_champion().expect("well formed");
         assert_eq!(engine, ENGINE_VERSION);
         assert_eq!(evaluate(&champion.genome, &champion.trial), champion.evaluation);
-        let climbed = champion.trial.stairs.steps_climbed(champion.evaluation.fitness_m.into());
+        let climbed = champion.trial.stairs.steps_climbed(champion.evaluation.centre_y_m.into());
         assert!(climbed >= 3, "a champion to open with climbs; this one climbed {climbed}");
         let mut rollout = Rollout::new(&champion.genome, &champion.trial);
         while rollout.advance() {}
@@ -165,8 +169,8 @@ mod tests {
         };
         says(refusal(|text| text[..text.len() / 2].to_owned()), &["damaged or incomplete at line"]);
         says(
-            refusal(|text| text.replace("format: 1", "format: 9")),
-            &["format is 9", "allowed: 1 to 1", "newer version"],
+            refusal(|text| text.replace("format: 2", "format: 9")),
+            &["format is 9", "allowed: 1 to 2", "newer version"],
         );
         says(
             refusal(|text| text.replace("snakes-and-stairs champion", "chess opening")),

@@ -4,8 +4,14 @@
 //! This is the only scoring path there is. A headless run, the studio's stage, a replay and a test all
 //! advance the same [`Rollout`]; they differ in who watches.
 
+mod agent;
+mod fitness;
+mod per_part;
 mod rollout;
 mod trial;
 
+pub use agent::AgentSettings;
+pub use fitness::Fitness;
+pub use per_part::PerPart;
 pub use rollout::{Evaluation, Rollout, evaluate};
-pub use trial::{AgentSettings, Trial};
+pub use trial::Trial;

@@ -2,17 +2,20 @@
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::Trial;
+use super::fitness::Ending;
+use super::{Fitness, Trial};
 use crate::control::SignalPlayer;
 use crate::genome::Genome;
-use crate::world::{Disqualification, JointTorque, Pose, Simulation};
+use crate::world::{Disqualification, JointTorque, LimbPlan, Pose, Simulation, Stairs};
 
 /// What a rollout ended with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evaluation {
-    /// y of the middle limb's centre at the end, in metres. For a disqualified agent, where it was
-    /// last seen in good health.
-    pub fitness_m: f32,
+    /// What the trial rewards: see [`Fitness`] for the unit. For a disqualified agent, what it had when
+    /// it was last seen in good health.
+    pub fitness: f32,
+    /// y of the middle limb's centre at the end, in metres, whatever is rewarded.
+    pub centre_y_m: f32,
     /// Why the agent was disqualified, if it was.
     pub disqualified: Option<Disqualification>,
     /// Hash (XXH3, 64 bits) over the bits of every limb's pose after every healthy step, the final
@@ -28,7 +31,11 @@ pub struct Rollout {
     player: SignalPlayer,
     torques: Vec<JointTorque>,
     poses: Vec<Pose>,
+    fitness: Fitness,
+    stairs: Stairs,
+    masses_kg: Vec<f32>,
     middle_limb: usize,
+    furthest_y_m: f32,
     trace: Xxh3Default,
     step: u32,
     last_step: u32,
@@ -45,7 +52,11 @@ impl Rollout {
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
             simulation,
+            fitness: trial.fitness,
+            stairs: plan.stairs,
+            masses_kg: plan.body.limbs.iter().map(LimbPlan::mass_kg).collect(),
             middle_limb: plan.body.middle_limb(),
+            furthest_y_m: trial.start_y_m,
             trace: Xxh3Default::new(),
             step: 0,
             last_step: trial.steps(),
@@ -74,6 +85,7 @@ impl Rollout {
             }
             self.trace.update(&bytes);
         }
+        self.furthest_y_m = self.furthest_y_m.max(self.poses[self.middle_limb].translation.y);
         true
     }
 
@@ -94,8 +106,16 @@ impl Rollout {
 
     /// What there is to say so far; after the end, the result.
     pub fn evaluation(&self) -> Evaluation {
+        let ending = Ending {
+            poses: &self.poses,
+            masses_kg: &self.masses_kg,
+            middle_limb: self.middle_limb,
+            furthest_y_m: self.furthest_y_m,
+            stairs: &self.stairs,
+        };
         Evaluation {
-            fitness_m: self.poses[self.middle_limb].translation.y,
+            fitness: ending.score(self.fitness),
+            centre_y_m: self.poses[self.middle_limb].translation.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
             steps: self.step,
@@ -156,6 +176,6 @@ mod tests {
         let evaluation = evaluate(&genome, &trial);
         assert_eq!(evaluation.disqualified, None);
         assert_eq!(evaluation.steps, 300);
-        assert!((evaluation.fitness_m - trial.start_y_m).abs() < 0.01, "{evaluation:?}");
+        assert!((evaluation.fitness - trial.start_y_m).abs() < 0.01, "{evaluation:?}");
     }
 }

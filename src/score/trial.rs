@@ -2,15 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{AgentSettings, Fitness};
 use crate::check::{Invalid, within};
 use crate::genome::{
     DENSITY_RANGE_KG_M3, Genome, JointSignals, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD,
     POINTS_PER_S_RANGE,
 };
-use crate::world::{
-    BodyPlan, HealthLimits, JointPlan, LimbPlan, PhysicsSettings, Softness, Stairs, Surface,
-    WorldPlan,
-};
+use crate::world::{HealthLimits, PhysicsSettings, Stairs, Surface, WorldPlan};
 
 /// Where, how long, on which surface, with which body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,10 +23,14 @@ pub struct Trial {
     pub physics: PhysicsSettings,
     /// The staircase.
     pub stairs: Stairs,
-    /// The material of ground and stairs.
+    /// The material of the stairs, and of the ground if that has none of its own.
     pub surface: Surface,
+    /// The material of the ground, if it differs from that of the stairs.
+    pub ground: Option<Surface>,
     /// What is given of the snake.
     pub agent: AgentSettings,
+    /// What is rewarded.
+    pub fitness: Fitness,
     /// When the snake is disqualified.
     pub health: HealthLimits,
 }
@@ -41,75 +43,11 @@ impl Default for Trial {
             physics: PhysicsSettings::default(),
             stairs: Stairs::default(),
             surface: Surface::default(),
+            ground: None,
             agent: AgentSettings::default(),
+            fitness: Fitness::default(),
             health: HealthLimits::default(),
         }
-    }
-}
-
-/// The parts of the snake that do not evolve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AgentSettings {
-    /// Number of limbs. The report has five.
-    pub limbs: u32,
-    /// Width of each limb across x, in metres.
-    pub limb_width_m: f32,
-    /// Length of each limb along y, in metres.
-    pub limb_length_m: f32,
-    /// Height of each limb, in metres.
-    pub limb_height_m: f32,
-    /// Largest torque on a joint's bend axis, in N·m.
-    pub max_bend_torque_nm: f32,
-    /// Largest torque on a joint's twist axis, in N·m.
-    pub max_twist_torque_nm: f32,
-    /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic and a
-    /// child lands anywhere, whatever its parent did.
-    pub joint_damping_nms_per_rad: f32,
-    /// How firmly the joints hold.
-    pub joint_softness: Softness,
-    /// Share of a limb's angular velocity lost per second, in 1/s.
-    pub angular_damping_per_s: f32,
-}
-
-impl Default for AgentSettings {
-    fn default() -> Self {
-        Self {
-            limbs: 5,
-            limb_width_m: 1.0,
-            limb_length_m: 2.0,
-            limb_height_m: 1.0,
-            max_bend_torque_nm: 1000.0,
-            max_twist_torque_nm: 1000.0,
-            joint_damping_nms_per_rad: 30.0,
-            joint_softness: Softness::default(),
-            angular_damping_per_s: 2.0,
-        }
-    }
-}
-
-impl AgentSettings {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        within("limbs", self.limbs, 2..=12)?;
-        within("limb_width_m", self.limb_width_m, 0.1..=10.0)?;
-        within("limb_length_m", self.limb_length_m, 0.1..=10.0)?;
-        within("limb_height_m", self.limb_height_m, 0.1..=10.0)?;
-        within("max_bend_torque_nm", self.max_bend_torque_nm, 0.0..=1.0e6)?;
-        within("max_twist_torque_nm", self.max_twist_torque_nm, 0.0..=1.0e6)?;
-        within("joint_damping_nms_per_rad", self.joint_damping_nms_per_rad, 0.0..=1.0e5)?;
-        self.joint_softness.check().map_err(|error| error.inside("joint_softness"))?;
-        within("angular_damping_per_s", self.angular_damping_per_s, 0.0..=100.0)
-    }
-
-    /// Number of joints between the limbs.
-    pub fn joints(&self) -> usize {
-        self.limbs.saturating_sub(1) as usize
-    }
-
-    /// Length of the straight snake, in metres.
-    pub fn length_m(&self) -> f32 {
-        self.limb_length_m * self.limbs as f32
     }
 }
 
@@ -121,6 +59,9 @@ impl Trial {
         self.physics.check().map_err(|error| error.inside("physics"))?;
         self.stairs.check().map_err(|error| error.inside("stairs"))?;
         self.surface.check().map_err(|error| error.inside("surface"))?;
+        if let Some(ground) = &self.ground {
+            ground.check().map_err(|error| error.inside("ground"))?;
+        }
         self.agent.check().map_err(|error| error.inside("agent"))?;
         self.health.check().map_err(|error| error.inside("health"))
     }
@@ -159,36 +100,24 @@ impl Trial {
 
     /// The world in which this trial puts a genome.
     pub fn world_plan(&self, genome: &Genome) -> WorldPlan {
-        let agent = &self.agent;
-        let limb = LimbPlan {
-            width_m: agent.limb_width_m,
-            length_m: agent.limb_length_m,
-            height_m: agent.limb_height_m,
-            density_kg_m3: genome.density_kg_m3,
-        };
-        let joint = JointPlan {
-            bend_limit_rad: genome.bend_limit_rad,
-            twist_limit_rad: genome.twist_limit_rad,
-            max_bend_torque_nm: agent.max_bend_torque_nm,
-            max_twist_torque_nm: agent.max_twist_torque_nm,
-            damping_nms_per_rad: agent.joint_damping_nms_per_rad,
-            softness: agent.joint_softness,
-        };
         WorldPlan {
             physics: self.physics.clone(),
             stairs: self.stairs.clone(),
             surface: self.surface.clone(),
+            ground: self.ground().clone(),
+            skin: self.agent.skin.clone(),
             health: self.health.clone(),
-            body: BodyPlan {
-                limbs: vec![limb; agent.limbs as usize],
-                joints: vec![joint; agent.joints()],
-                angular_damping_per_s: agent.angular_damping_per_s,
-            },
+            body: self.agent.body_plan(genome),
             start_y_m: self.start_y_m,
         }
     }
 
-    /// What a mean or a fitness of `y_m` means, in the words of the report's Table 1.
+    /// The material of the ground.
+    pub fn ground(&self) -> &Surface {
+        self.ground.as_ref().unwrap_or(&self.surface)
+    }
+
+    /// What it means that the centre stands at `y_m`, alone or on average, in the words of the report's Table 1.
     pub fn meaning(&self, y_m: f64) -> String {
         let length_m = f64::from(self.agent.length_m());
         self.stairs.meaning(y_m, f64::from(self.start_y_m), length_m)

@@ -248,15 +248,15 @@ fn take_in(
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
     let mut to_beat_m =
-        stages.iter().map(|stage| stage.exhibit().fitness_m()).fold(f32::MIN, f32::max);
+        stages.iter().map(|stage| stage.exhibit().fitness()).fold(f32::MIN, f32::max);
     let is_held = stages.iter().any(|stage| !stage.is_playing());
     for event in events {
         match event {
             Event::Generation(report) => {
                 if let Some(champion) = &report.champion
-                    && champion.evaluation.fitness_m > to_beat_m
+                    && champion.evaluation.fitness > to_beat_m
                 {
-                    to_beat_m = champion.evaluation.fitness_m;
+                    to_beat_m = champion.evaluation.fitness;
                     let exhibit = Exhibit::found(champion, evolution.number);
                     if is_held {
                         notices.news(format!("Better than what is held: {}", exhibit.caption()));

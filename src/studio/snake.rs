@@ -18,9 +18,9 @@ pub(super) fn plugin(app: &mut App) {
 fn build(stages: Query<(Entity, &Stage), Added<Stage>>, props: Res<Props>, mut commands: Commands) {
     for (entity, stage) in &stages {
         let agent = &stage.trial().agent;
-        let size = Vec3::new(agent.limb_width_m, agent.limb_length_m, agent.limb_height_m);
         commands.entity(entity).with_children(|parent| {
             for (index, pose) in stage.drawn_poses().enumerate() {
+                let size = Vec3::from(agent.limb_size_m(index));
                 let material = if index % 2 == 0 { &props.red } else { &props.blue };
                 parent.spawn((
                     Limb(index),

@@ -55,20 +55,19 @@ impl Exhibit {
         self.champion.origin.generation
     }
 
-    /// What it reached, in metres.
-    pub fn fitness_m(&self) -> f32 {
-        self.champion.evaluation.fitness_m
+    /// What it reached.
+    pub fn fitness(&self) -> f32 {
+        self.champion.evaluation.fitness
     }
 
     /// What it is and what it reached, in a line.
     pub fn caption(&self) -> String {
-        let fitness_m = self.fitness_m();
-        let meaning = self.champion.trial.meaning(f64::from(fitness_m));
+        let reached = self.champion.reached();
         match self.source {
             Source::Run(_) => {
-                format!("Generation {}: {fitness_m:.2} m, {meaning}", self.generation())
+                format!("Generation {}: {reached}", self.generation())
             }
-            Source::Opening => format!("Saved champion: {fitness_m:.2} m, {meaning}"),
+            Source::Opening => format!("Saved champion: {reached}"),
         }
     }
 }
@@ -254,10 +253,10 @@ fn advance(
             stage.is_checked = true;
             if stage.evaluation() != stage.exhibit.champion.evaluation {
                 notices.problem(format!(
-                    "This replay differs from its record ({:.2} m instead of {:.2} m): the file was \
+                    "This replay differs from its record ({:.2} instead of {:.2}): the file was \
                      edited, or another engine recorded it.",
-                    stage.evaluation().fitness_m,
-                    stage.exhibit.fitness_m(),
+                    stage.evaluation().fitness,
+                    stage.exhibit.fitness(),
                 ));
             }
         }

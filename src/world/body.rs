@@ -3,8 +3,6 @@
 //! A plan holds plain numbers. What of them evolves is decided in `genome`, what a person sets in
 //! the trial's agent settings; the world only builds what the plan says.
 
-use crate::check::{Invalid, within};
-
 /// The whole body. Limb 0 is the head: the foremost limb, nearest to the stairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPlan {
@@ -44,32 +42,15 @@ pub struct JointPlan {
     /// Torque that resists bend and twist, per joint rate, in N·m·s/rad. Integrated implicitly by
     /// the solver, so that large values stay stable.
     pub damping_nms_per_rad: f32,
-    /// How firmly the joint holds its anchors, its locked axis and its limits.
-    pub softness: Softness,
+    /// Constraint force mixing, in m/s per N: 0 holds anchors, locked axis and limits practically
+    /// rigidly, larger is softer. It stands for a spring of `0.2 / (step · CFM)` N/m along the snake.
+    pub cfm_m_s_per_n: f32,
 }
 
-/// A constraint as a damped spring.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Softness {
-    /// Natural frequency, in Hz: larger is harder.
-    pub frequency_hz: f32,
-    /// Damping ratio: 1 is critical.
-    pub damping_ratio: f32,
-}
-
-impl Default for Softness {
-    /// Practically rigid: rapier's own default for joints.
-    fn default() -> Self {
-        Self { frequency_hz: 1.0e6, damping_ratio: 1.0 }
-    }
-}
-
-impl Softness {
-    /// Checks both numbers against their ranges.
-    pub fn check(&self) -> Result<(), Invalid> {
-        within("frequency_hz", self.frequency_hz, 0.1..=1.0e6)?;
-        within("damping_ratio", self.damping_ratio, 0.01..=100.0)
+impl LimbPlan {
+    /// Mass of the limb, in kg.
+    pub fn mass_kg(&self) -> f32 {
+        self.width_m * self.length_m * self.height_m * self.density_kg_m3
     }
 }
 
@@ -77,6 +58,16 @@ impl BodyPlan {
     /// Length of the straight body from head to tail, in metres.
     pub fn length_m(&self) -> f32 {
         self.limbs.iter().map(|limb| limb.length_m).sum()
+    }
+
+    /// Mass of the whole body, in kg.
+    pub fn mass_kg(&self) -> f32 {
+        self.limbs.iter().map(LimbPlan::mass_kg).sum()
+    }
+
+    /// Height of the line on which the joints lie at the start, in metres: the tallest limb's middle.
+    pub fn axis_height_m(&self) -> f32 {
+        self.limbs.iter().map(|limb| limb.height_m).fold(0.0, f32::max) / 2.0
     }
 
     /// Which limb is the middle one: the third of five. Its centre is "the centre of the snake".

@@ -5,17 +5,21 @@
 //! order. What never enters here: a window, a file, a thread, a clock, a hash-ordered loop.
 
 mod body;
+mod bounce;
+mod contact;
 mod health;
 mod physics;
 mod simulation;
 mod stairs;
 mod surface;
 
-pub use body::{BodyPlan, JointPlan, LimbPlan, Softness};
+pub use body::{BodyPlan, JointPlan, LimbPlan};
 pub use health::{Disqualification, HealthLimits};
 pub use physics::PhysicsSettings;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
 pub use simulation::{JointTorque, Simulation, WorldPlan};
 pub use stairs::{StairBox, Stairs};
-pub use surface::Surface;
+pub use surface::{Skin, Surface};
+pub use surface::{BOUNCE_RANGE, BOUNCE_VELOCITY_RANGE, DAMPEN_RANGE, FRICTION_RANGE};
+pub use surface::{SLIP_RANGE, SOFT_CFM_RANGE, SOFT_ERP_RANGE};

@@ -4,9 +4,12 @@
 
 use rapier3d::prelude::*;
 
+use super::bounce::{Velocity, finish_bounce};
+use super::contact::{ContactLaws, Hooks, joint_coefficients, soften};
+use super::surface::ContactLaw;
 use super::{
-    BodyPlan, Disqualification, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld, Stairs,
-    Surface,
+    BodyPlan, Disqualification, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld, Skin,
+    Stairs, Surface,
 };
 
 /// All that determines a world: build it twice and step it with the same torques, and the two agree
@@ -17,8 +20,12 @@ pub struct WorldPlan {
     pub physics: PhysicsSettings,
     /// The staircase.
     pub stairs: Stairs,
-    /// The material of ground and stairs.
+    /// The material of the stairs.
     pub surface: Surface,
+    /// The material of the ground.
+    pub ground: Surface,
+    /// The material of the snake.
+    pub skin: Skin,
     /// When the agent is disqualified.
     pub health: HealthLimits,
     /// The snake.
@@ -40,6 +47,7 @@ pub struct JointTorque {
 /// A running world.
 pub struct Simulation {
     physics: PhysicsWorld,
+    contacts: Contacts,
     /// Bodies of the limbs, head first.
     limbs: Vec<RigidBodyHandle>,
     joints: Vec<JointPlan>,
@@ -50,16 +58,31 @@ pub struct Simulation {
     torques_in_world: Vec<Vector>,
 }
 
+/// What a step needs to know of the contacts.
+#[derive(Debug, Clone)]
+struct Contacts {
+    laws: ContactLaws,
+    /// Whether anything bounces.
+    bounces: bool,
+    ground: ColliderHandle,
+    substeps: u32,
+    snake_kg: f32,
+}
+
 /// A snake this far below the ground has fallen through it; only a broken contact does that.
 const LOWEST_Z_M: f32 = -2.0;
-/// The snake's own friction, which the surface's multiplies; and friction of limb on limb.
-const LIMB_FRICTION: f32 = 1.0;
 
 impl Simulation {
     /// Builds the world: ground, stairs from the lowest up, limbs from the head, joints from the head.
     ///
     /// The order of insertion is part of the bits of every run.
     pub fn new(plan: &WorldPlan) -> Self {
+        let laws = ContactLaws {
+            stairs: ContactLaw::between(&plan.surface, &plan.skin),
+            ground: ContactLaw::between(&plan.ground, &plan.skin),
+            limbs: ContactLaw::within(&plan.skin),
+            joints_are_soft: plan.body.joints.iter().any(|joint| joint.cfm_m_s_per_n > 0.0),
+        };
         let mut physics = PhysicsWorld {
             gravity: Vector::new(0.0, 0.0, -plan.physics.gravity_m_s2),
             integration_parameters: IntegrationParameters {
@@ -69,28 +92,31 @@ impl Simulation {
             },
             ..Default::default()
         };
-
-        let material = |collider: ColliderBuilder| {
-            collider
-                .friction(plan.surface.friction)
-                .friction_combine_rule(CoefficientCombineRule::Multiply)
-                .restitution(plan.surface.bounce)
-                .restitution_combine_rule(CoefficientCombineRule::Max)
-        };
-        let up = SharedShape::halfspace(Vector::Z);
-        physics.insert_collider(material(ColliderBuilder::new(up)), None);
+        if let Some(middle) = plan.body.limbs.get(plan.body.middle_limb()) {
+            soften(&mut physics.integration_parameters, &laws, &plan.physics, middle);
+        }
+        let ground = insert_ground(&mut physics, plan, &laws);
         for stair in plan.stairs.boxes() {
             let min = Vector::from(stair.min_m);
             let half = (Vector::from(stair.max_m) - min) / 2.0;
             let shape = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(min + half);
-            physics.insert_collider(material(shape), None);
+            physics.insert_collider(material(shape, &plan.surface, &laws.stairs), None);
         }
 
-        let limbs = insert_limbs(&mut physics, plan);
-        insert_joints(&mut physics, &limbs, &plan.body);
+        let limbs = insert_limbs(&mut physics, plan, &laws.limbs);
+        insert_joints(&mut physics, &limbs, plan);
 
         Self {
             physics,
+            contacts: Contacts {
+                laws,
+                bounces: [plan.surface.bounce, plan.ground.bounce, plan.skin.bounce]
+                    .iter()
+                    .any(|&bounce| bounce > 0.0),
+                ground,
+                substeps: plan.physics.substeps,
+                snake_kg: plan.body.mass_kg(),
+            },
             torques_in_world: vec![Vector::ZERO; limbs.len()],
             limbs,
             joints: plan.body.joints.clone(),
@@ -107,8 +133,66 @@ impl Simulation {
     /// The reason why this step disqualified the agent. The world must not be stepped further then.
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
-        self.physics.step();
+        self.advance();
         self.check_health()
+    }
+
+    /// Lets the engine take one step, and what touches a damping surface slow down.
+    pub(crate) fn advance(&mut self) {
+        let Contacts { laws, ground, substeps, snake_kg, .. } = &self.contacts;
+        let hooks = Hooks {
+            laws,
+            ground: *ground,
+            step_s: self.physics.integration_parameters.dt,
+            substeps: *substeps,
+            snake_kg: *snake_kg,
+        };
+        if !self.contacts.bounces {
+            self.physics.step_with_events(&hooks, &());
+        } else {
+            let velocity = |&limb: &RigidBodyHandle| {
+                let body = &self.physics.bodies[limb];
+                Velocity { linear: body.linvel(), angular: body.angvel() }
+            };
+            let before: Vec<Velocity> = self.limbs.iter().map(velocity).collect();
+            self.physics.step_with_events(&hooks, &());
+            for (&limb, before) in self.limbs.iter().zip(before) {
+                finish_bounce(&mut self.physics, limb, before);
+            }
+        }
+        if laws.stairs.dampen_per_s > 0.0 || laws.ground.dampen_per_s > 0.0 {
+            self.dampen();
+        }
+    }
+
+    /// Slows each limb that touches a damping surface, once, by the stronger one that it touches.
+    fn dampen(&mut self) {
+        let Contacts { laws, ground, .. } = &self.contacts;
+        let step_s = self.physics.integration_parameters.dt;
+        for &limb in &self.limbs {
+            let collider = self.physics.bodies[limb].colliders()[0];
+            let touched = self.physics.narrow_phase.contact_pairs_with(collider);
+            let dampen_per_s = touched
+                .filter(|pair| pair.has_any_active_contact())
+                .map(|pair| {
+                    let other =
+                        if pair.collider1 == collider { pair.collider2 } else { pair.collider1 };
+                    if other == *ground {
+                        laws.ground.dampen_per_s
+                    } else if self.physics.colliders[other].parent().is_none() {
+                        laws.stairs.dampen_per_s
+                    } else {
+                        0.0
+                    }
+                })
+                .fold(0.0, f32::max);
+            if dampen_per_s > 0.0 {
+                let factor = 1.0 - dampen_per_s * step_s;
+                let body = &mut self.physics.bodies[limb];
+                body.set_linvel(body.linvel() * factor, false);
+                body.set_angvel(body.angvel() * factor, false);
+            }
+        }
     }
 
     /// The pose of each limb's centre, head first.
@@ -188,14 +272,59 @@ impl Simulation {
     }
 }
 
+/// Gives a collider of the world its material.
+fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
+    let collider = collider
+        .friction(surface.friction)
+        .friction_combine_rule(CoefficientCombineRule::Multiply)
+        .restitution(surface.bounce)
+        .restitution_combine_rule(CoefficientCombineRule::Max);
+    with_hook(collider, law)
+}
+
+/// Lets the collider's contacts pass the hooks, if they have to.
+fn with_hook(collider: ColliderBuilder, law: &ContactLaw) -> ColliderBuilder {
+    let hooks = if law.needs_hook() {
+        ActiveHooks::MODIFY_SOLVER_CONTACTS
+    } else {
+        ActiveHooks::empty()
+    };
+    collider.active_hooks(hooks)
+}
+
+/// Inserts the ground, an endless plane at z = 0: see [`ContactLaws::ground_is_apart`].
+fn insert_ground(
+    physics: &mut PhysicsWorld,
+    plan: &WorldPlan,
+    laws: &ContactLaws,
+) -> ColliderHandle {
+    let plane = ColliderBuilder::new(SharedShape::halfspace(Vector::Z));
+    let plane = material(plane, &plan.ground, &laws.ground);
+    if laws.ground_is_apart() {
+        let body = RigidBodyBuilder::dynamic()
+            .lock_translations()
+            .lock_rotations()
+            .gravity_scale(0.0)
+            .can_sleep(false);
+        physics.insert(body, plane.density(0.0)).1
+    } else {
+        physics.insert_collider(plane, None)
+    }
+}
+
 /// Inserts the straight snake, head first, lying on the ground.
-fn insert_limbs(physics: &mut PhysicsWorld, plan: &WorldPlan) -> Vec<RigidBodyHandle> {
+fn insert_limbs(
+    physics: &mut PhysicsWorld,
+    plan: &WorldPlan,
+    law: &ContactLaw,
+) -> Vec<RigidBodyHandle> {
+    let axis_z_m = plan.body.axis_height_m();
     let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
     plan.body
         .limbs
         .iter()
         .map(|limb| {
-            let centre = Vector::new(0.0, front_y_m - limb.length_m / 2.0, limb.height_m / 2.0);
+            let centre = Vector::new(0.0, front_y_m - limb.length_m / 2.0, axis_z_m);
             front_y_m -= limb.length_m;
             let body = RigidBodyBuilder::dynamic()
                 .translation(centre)
@@ -207,20 +336,28 @@ fn insert_limbs(physics: &mut PhysicsWorld, plan: &WorldPlan) -> Vec<RigidBodyHa
                 limb.height_m / 2.0,
             )
             .density(limb.density_kg_m3)
-            .friction(LIMB_FRICTION)
-            .restitution(0.0);
-            physics.insert(body, collider).0
+            .friction(plan.skin.friction)
+            .friction_combine_rule(CoefficientCombineRule::Multiply)
+            .restitution(plan.skin.bounce)
+            .restitution_combine_rule(CoefficientCombineRule::Max);
+            physics.insert(body, with_hook(collider, law)).0
         })
         .collect()
 }
 
 /// Joins neighbours, head first. See [`universal_joint`].
-fn insert_joints(physics: &mut PhysicsWorld, limbs: &[RigidBodyHandle], body: &BodyPlan) {
+fn insert_joints(physics: &mut PhysicsWorld, limbs: &[RigidBodyHandle], plan: &WorldPlan) {
+    let body = &plan.body;
     for (index, joint) in body.joints.iter().enumerate() {
-        let front_half_m = body.limbs[index].length_m / 2.0;
-        let rear_half_m = body.limbs[index + 1].length_m / 2.0;
-        let joint = universal_joint(joint, front_half_m, rear_half_m);
-        physics.insert_impulse_joint(limbs[index], limbs[index + 1], joint);
+        let (front, rear) = (&body.limbs[index], &body.limbs[index + 1]);
+        let mut built = universal_joint(joint, front.length_m / 2.0, rear.length_m / 2.0);
+        built.softness = joint_coefficients(
+            joint.cfm_m_s_per_n,
+            plan.physics.step_s(),
+            front.mass_kg(),
+            rear.mass_kg(),
+        );
+        physics.insert_impulse_joint(limbs[index], limbs[index + 1], built);
     }
 }
 
@@ -246,10 +383,6 @@ fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> Gen
         // Neighbours touch with a whole face; their contact would block the bend.
         .contacts_enabled(false)
         .build();
-    joint.softness = SpringCoefficients {
-        natural_frequency: plan.softness.frequency_hz,
-        damping_ratio: plan.softness.damping_ratio,
-    };
     for axis in [JointAxis::AngX, JointAxis::AngY] {
         joint.set_motor_model(axis, MotorModel::ForceBased);
         joint.set_motor_velocity(axis, 0.0, plan.damping_nms_per_rad);

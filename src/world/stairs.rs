@@ -93,6 +93,15 @@ impl Stairs {
         (0..self.steps).filter(|&index| y_m >= f64::from(self.riser_y_m(index))).count() as u32
     }
 
+    /// How many steps are under a point at `at_m`, in metres: it is past their risers, over the last one's
+    /// tread, and within the width. A point beside the stairs has none under it.
+    pub fn steps_under(&self, at_m: [f32; 3]) -> u32 {
+        let [x_m, y_m, z_m] = at_m;
+        let climbed = self.steps_climbed(f64::from(y_m));
+        let is_over = z_m >= self.rise_m * climbed as f32 && x_m.abs() <= self.width_m / 2.0;
+        if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
+    }
+
     /// What it means, in words, that the centre of a snake `snake_length_m` long that started at
     /// `start_y_m` now stands at `y_m`. These are the words of the report's Table 1.
     pub fn meaning(&self, y_m: f64, start_y_m: f64, snake_length_m: f64) -> String {

@@ -103,7 +103,7 @@ fn only_the_simulation_steps_the_engine() {
     for (path, text) in files() {
         // The bench steps rapier bare on purpose: it is what we compare with.
         let allowed = ["world/simulation.rs", "run/bench.rs"].contains(&path.as_str());
-        for step in ["physics.step(", "physics_mut().step(", ".step_simulation("] {
+        for step in ["physics.step(", "physics_mut().step(", ".step_with_events(", ".step_simulation("] {
             let steps = code(&text).any(|line| line.contains(step));
             assert!(!steps || allowed, "src/{path} steps the engine itself");
         }

@@ -69,8 +69,8 @@ fn computed() -> Golden {
             small(|settings| {
                 settings.trial.surface.friction = 0.05;
                 settings.trial.surface.bounce = 0.8;
-                settings.trial.agent.joint_damping_nms_per_rad = 0.0;
-                settings.trial.agent.joint_softness.frequency_hz = 30.0;
+                settings.trial.agent.joint_damping_nms_per_rad = 0.0.into();
+                settings.trial.agent.joint_cfm_m_s_per_n = 1.0e-4.into();
                 settings.trial.agent.limbs = 7;
             }),
         ),

@@ -55,7 +55,7 @@ fn contents(ui: &mut egui::Ui, stage: &Stage, run: u32, asked: &mut Vec<Command>
                 "{:.1} of {:.1} s   y = {:.2} m",
                 stage.time_s(),
                 stage.duration_s(),
-                evaluation.fitness_m
+                evaluation.centre_y_m
             ),
         };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -33,7 +33,7 @@ impl ChampionsPanel {
     ) {
         title(ui, "Champions");
         let hint = "Click to replay";
-        let saved = row(ui, shown == Some(Shown::Opening), "Saved champion", &reached(opening));
+        let saved = row(ui, shown == Some(Shown::Opening), "Saved champion", &opening.reached());
         if saved.on_hover_text(hint).clicked() {
             asked.push(Command::ShowOpening);
         }
@@ -47,7 +47,7 @@ impl ChampionsPanel {
                 continue;
             };
             let is_shown = shown == Some(Shown::Generation(generation));
-            if row(ui, is_shown, &name, &reached(champion)).on_hover_text(hint).clicked() {
+            if row(ui, is_shown, &name, &champion.reached()).on_hover_text(hint).clicked() {
                 asked.push(Command::ShowGeneration(generation));
             }
         }
@@ -56,12 +56,6 @@ impl ChampionsPanel {
             ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK));
         }
     }
-}
-
-/// What a champion reached, in a few words.
-fn reached(champion: &Champion) -> String {
-    let fitness_m = champion.evaluation.fitness_m;
-    format!("{fitness_m:.2} m, {}", champion.trial.meaning(f64::from(fitness_m)))
 }
 
 /// A clickable row over the whole width: a name at the left, what it reached at the right.

@@ -1,6 +1,8 @@
 //! The world against what the report states and what closed forms say.
 
-use super::super::{LimbPlan, Softness};
+mod surface;
+
+use super::super::LimbPlan;
 use super::*;
 
 /// A snake of `limbs` blocks without damping, in the world of the report.
@@ -12,12 +14,14 @@ fn plan(limbs: usize) -> WorldPlan {
         max_bend_torque_nm: 1000.0,
         max_twist_torque_nm: 1000.0,
         damping_nms_per_rad: 0.0,
-        softness: Softness::default(),
+        cfm_m_s_per_n: 0.0,
     };
     WorldPlan {
         physics: PhysicsSettings::default(),
         stairs: Stairs::default(),
         surface: Surface::default(),
+        ground: Surface::default(),
+        skin: Skin::default(),
         health: HealthLimits::default(),
         body: BodyPlan {
             limbs: vec![limb; limbs],
@@ -164,28 +168,112 @@ fn joint_damping_slows_the_joint_as_its_formula_says() {
 }
 
 #[test]
-fn a_softer_joint_gives_way_under_the_same_pull() {
-    let drift_m = |frequency_hz| {
+fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
+    let stretch_m = |cfm_m_s_per_n, pull_n: f32| {
         let (mut plan, _) = weightless(2);
-        plan.body.joints[0].softness = Softness { frequency_hz, damping_ratio: 1.0 };
+        plan.body.joints[0].cfm_m_s_per_n = cfm_m_s_per_n;
         plan.health.joint_drift_m = 10.0;
-        plan.health.speed_m_s = 1000.0;
         let mut simulation = Simulation::new(&plan);
         let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
-        for _ in 0..60 {
-            let pull = Vector::new(0.0, 50.0, 0.0);
-            simulation.physics.bodies[front].reset_forces(true);
-            simulation.physics.bodies[front].add_force(pull, true);
-            simulation.physics.bodies[rear].reset_forces(true);
-            simulation.physics.bodies[rear].add_force(-pull, true);
+        for _ in 0..1200 {
+            for (limb, sign) in [(front, 1.0), (rear, -1.0)] {
+                simulation.physics.bodies[limb].reset_forces(true);
+                let pull = Vector::new(0.0, pull_n * sign, 0.0);
+                simulation.physics.bodies[limb].add_force(pull, true);
+            }
             simulation.step(&[JointTorque::default()]).expect("healthy");
         }
         let centre = |limb: RigidBodyHandle| simulation.physics.bodies[limb].translation().y;
         centre(front) - centre(rear) - 2.0
     };
-    let (hard, soft) = (drift_m(1.0e6), drift_m(2.0));
-    assert!(hard.abs() < 0.001, "hard: {hard} m");
-    assert!(soft > 0.02, "soft: {soft} m");
+    assert!(stretch_m(0.0, 50.0).abs() < 0.001, "rigid");
+    for (cfm_m_s_per_n, pull_n) in [(0.01, 50.0), (0.01, 100.0), (0.03, 50.0)] {
+        // kp = ERP / (h CFM) with an ERP of 0.2 and 60 steps a second.
+        let expected_m = pull_n / (0.2 * 60.0 / cfm_m_s_per_n);
+        let found_m = stretch_m(cfm_m_s_per_n, pull_n);
+        assert!((found_m / expected_m - 1.0).abs() < 0.03, "{found_m} m for {expected_m} m");
+    }
+}
+
+#[test]
+fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
+    let (plan, mut simulation) = weightless(2);
+    let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
+    simulation.physics.bodies[front].set_body_type(RigidBodyType::Fixed, true);
+    // Down is backwards along the snake, so that straight is at rest.
+    simulation.physics.gravity = Vector::new(0.0, -9.81, 0.0);
+    let speed = 0.2;
+    simulation.physics.bodies[rear].set_angvel(Vector::new(speed, 0.0, 0.0), true);
+    let lever = 1.0;
+    simulation.physics.bodies[rear].set_linvel(Vector::new(0.0, 0.0, -speed * lever), true);
+    let mut crossings_s = Vec::new();
+    let mut previous = 0.0;
+    for step in 1..=1800 {
+        simulation.step(&[JointTorque::default()]).expect("healthy");
+        let angle = angles(&simulation, 0)[0];
+        if previous < 0.0 && angle >= 0.0 {
+            crossings_s.push((step as f32 - angle / (angle - previous)) / 60.0);
+        }
+        previous = angle;
+    }
+    let swings = crossings_s.len() as f32 - 1.0;
+    let found_s = (crossings_s[crossings_s.len() - 1] - crossings_s[0]) / swings;
+    // T = 2 pi sqrt(I / (m g d)), I = m (l² + h²) / 12 + m d², for small swings.
+    let limb = &plan.body.limbs[1];
+    let own = (limb.length_m * limb.length_m + limb.height_m * limb.height_m) / 12.0;
+    let expected_s = std::f32::consts::TAU * ((own + lever * lever) / (9.81 * lever)).sqrt();
+    assert!((found_s / expected_s - 1.0).abs() < 0.01, "{found_s} s for {expected_s} s");
+}
+
+/// Drift over 10 s of a weightless snake of `limbs` that waves and turns without a touch: momentum in
+/// kg m/s, and energy as a share of what it had.
+fn drift(limbs: usize) -> (f32, f32) {
+    let (mut plan, _) = weightless(limbs);
+    for joint in &mut plan.body.joints {
+        (joint.bend_limit_rad, joint.twist_limit_rad) = (3.0, 3.0);
+    }
+    let mut simulation = Simulation::new(&plan);
+    for limb in simulation.limbs.clone() {
+        let body = &mut simulation.physics.bodies[limb];
+        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
+        body.set_translation(above, true);
+        body.set_linvel(Vector::new(0.4, 0.0, 0.0), true);
+    }
+    // A wave is pushed in through the joints, so that no joint is contradicted at the start.
+    for step in 0..30 {
+        let push = |joint: usize| JointTorque {
+            bend_nm: if (step + 10 * joint) % 40 < 20 { 0.3 } else { -0.3 },
+            twist_nm: if joint.is_multiple_of(2) { 0.1 } else { -0.1 },
+        };
+        let torques: Vec<JointTorque> = (0..limbs - 1).map(push).collect();
+        simulation.step(&torques).expect("healthy");
+    }
+    let still = vec![JointTorque::default(); limbs - 1];
+    simulation.step(&still).expect("healthy");
+    let bodies = |simulation: &Simulation| -> Vec<RigidBody> {
+        simulation.limbs.iter().map(|&limb| simulation.physics.bodies[limb].clone()).collect()
+    };
+    let momentum = |simulation: &Simulation| -> Vector {
+        bodies(simulation).iter().map(|body| body.linvel() * body.mass()).sum()
+    };
+    let energy_j = |simulation: &Simulation| -> f32 {
+        bodies(simulation).iter().map(RigidBody::kinetic_energy).sum()
+    };
+    let (momentum_before, energy_before_j) = (momentum(&simulation), energy_j(&simulation));
+    (0..600).for_each(|_| simulation.step(&still).expect("healthy"));
+    let is_free = |joint| angles(&simulation, joint).iter().all(|angle| angle.abs() < 2.9);
+    assert!((0..limbs - 1).all(is_free), "a joint that hits its limit loses energy, as it should");
+    let lost = (momentum(&simulation) - momentum_before).length();
+    (lost, energy_j(&simulation) / energy_before_j - 1.0)
+}
+
+#[test]
+fn what_is_left_alone_keeps_its_momentum_and_its_energy() {
+    for limbs in [2, 5, 12] {
+        let (momentum, energy) = drift(limbs);
+        assert!(momentum < 1.0e-4, "{limbs} limbs: {momentum} kg m/s");
+        assert!(energy.abs() < 1.0e-3, "{limbs} limbs: {energy} of the energy");
+    }
 }
 
 #[test]

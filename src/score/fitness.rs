@@ -1,0 +1,187 @@
+//! What is rewarded.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+use crate::check::Invalid;
+use crate::world::{Pose, Stairs};
+
+/// What a rollout is scored by. The report chose the first and considered the next three.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fitness {
+    /// y of the middle limb's centre at the end, in m. The report's choice. Rewards wrongly: flying past
+    /// the stairs at their side, and a leap that the end of the time catches in the air.
+    #[default]
+    Centre,
+    /// y of the head's centre at the end, in m. Rewards wrongly: stretching the neck, or throwing the
+    /// head forward, instead of going anywhere.
+    Head,
+    /// y of the centre of mass at the end, in m. Rewards wrongly: what the centre does; a curled snake
+    /// scores less than a straight one that did not get further.
+    CentreOfMass,
+    /// z of the middle limb's centre at the end, in m. Rewards wrongly: jumping, and rearing on the spot.
+    Height,
+    /// The furthest y that the middle limb's centre had at any time, in m. Rewards wrongly: a leap that
+    /// falls back; where the snake ends does not count.
+    FurthestY,
+    /// Number of steps climbed at the end: the middle limb's centre is past the riser, over the tread,
+    /// and within the width. Rewards wrongly: nothing in between, so that all who have not reached
+    /// the first step are equal and evolution searches blindly at first.
+    StepsClimbed,
+}
+
+impl Fitness {
+    /// All of them, the default first.
+    pub const ALL: [Self; 6] = [
+        Self::Centre,
+        Self::Head,
+        Self::CentreOfMass,
+        Self::Height,
+        Self::FurthestY,
+        Self::StepsClimbed,
+    ];
+
+    /// The name in flags and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Centre => "centre",
+            Self::Head => "head",
+            Self::CentreOfMass => "centre_of_mass",
+            Self::Height => "height",
+            Self::FurthestY => "furthest_y",
+            Self::StepsClimbed => "steps_climbed",
+        }
+    }
+
+    /// What is measured, in a few words that follow "fitness: ".
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Centre => "y of the middle block at the end",
+            Self::Head => "y of the head at the end",
+            Self::CentreOfMass => "y of the centre of mass at the end",
+            Self::Height => "height of the middle block at the end",
+            Self::FurthestY => "furthest y of the middle block at any time",
+            Self::StepsClimbed => "steps climbed at the end",
+        }
+    }
+
+    /// What it rewards that nobody meant.
+    pub fn rewards_wrongly(self) -> &'static str {
+        match self {
+            Self::Centre => "Passing the stairs at their side, and being in mid-leap at the end.",
+            Self::Head => "Stretching or throwing the head forward instead of going anywhere.",
+            Self::CentreOfMass => "What the centre does; and a curled snake counts for less.",
+            Self::Height => "Jumping and rearing on the spot.",
+            Self::FurthestY => "A leap that falls back.",
+            Self::StepsClimbed => "Nothing before the first step, so the search begins blindly.",
+        }
+    }
+
+    /// The unit, with a space before it, or nothing for a count.
+    pub fn unit(self) -> &'static str {
+        if self == Self::StepsClimbed { "" } else { " m" }
+    }
+}
+
+impl fmt::Display for Fitness {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+impl FromStr for Fitness {
+    type Err = Invalid;
+
+    fn from_str(text: &str) -> Result<Self, Invalid> {
+        let name = text.replace('-', "_");
+        Self::ALL.into_iter().find(|fitness| fitness.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = Self::ALL.iter().map(|fitness| fitness.name()).collect();
+            Invalid::new("fitness", format!("{text:?}"), names.join(", "))
+        })
+    }
+}
+
+/// What a fitness is worked out from, at the end of a rollout.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ending<'a> {
+    /// Poses of the limbs, head first.
+    pub poses: &'a [Pose],
+    /// Masses of the limbs, in kg, head first.
+    pub masses_kg: &'a [f32],
+    /// Which limb is the middle one.
+    pub middle_limb: usize,
+    /// The furthest y that the middle limb's centre had, in m.
+    pub furthest_y_m: f32,
+    /// The stairs.
+    pub stairs: &'a Stairs,
+}
+
+impl Ending<'_> {
+    /// The score.
+    pub fn score(&self, fitness: Fitness) -> f32 {
+        let middle = self.poses[self.middle_limb].translation;
+        match fitness {
+            Fitness::Centre => middle.y,
+            Fitness::Head => self.poses[0].translation.y,
+            Fitness::CentreOfMass => {
+                let pairs = self.poses.iter().zip(self.masses_kg);
+                let moment: f32 = pairs.map(|(pose, mass_kg)| pose.translation.y * mass_kg).sum();
+                moment / self.masses_kg.iter().sum::<f32>()
+            }
+            Fitness::Height => middle.z,
+            Fitness::FurthestY => self.furthest_y_m,
+            Fitness::StepsClimbed => {
+                self.stairs.steps_under([middle.x, middle.y, middle.z]) as f32
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Rotation, Vector};
+
+    #[test]
+    fn each_fitness_measures_what_it_says() {
+        let stairs = Stairs::default();
+        let pose = |x, y, z| Pose::from_parts(Vector::new(x, y, z), Rotation::IDENTITY);
+        let score = |fitness, x, z| {
+            let poses = [pose(0.0, 10.0, 1.0), pose(x, 6.0, z), pose(0.0, 4.0, 1.0)];
+            let ending = Ending {
+                poses: &poses,
+                masses_kg: &[1.0, 1.0, 2.0],
+                middle_limb: 1,
+                furthest_y_m: 9.5,
+                stairs: &stairs,
+            };
+            ending.score(fitness)
+        };
+        for (fitness, expected) in [
+            (Fitness::Centre, 6.0),
+            (Fitness::Head, 10.0),
+            (Fitness::CentreOfMass, 6.0),
+            (Fitness::Height, 1.5),
+            (Fitness::FurthestY, 9.5),
+            (Fitness::StepsClimbed, 2.0),
+        ] {
+            assert_eq!(score(fitness, 0.0, 1.5), expected, "{fitness}");
+        }
+        assert_eq!(score(Fitness::StepsClimbed, 3.0, 0.5), 0.0, "beside the stairs");
+        assert_eq!(score(Fitness::StepsClimbed, 0.0, 0.5), 0.0, "inside the stairs");
+    }
+
+    #[test]
+    fn names_come_back() {
+        for fitness in Fitness::ALL {
+            assert_eq!(fitness.name().parse(), Ok(fitness));
+            let text = serde_json::to_string(&fitness).expect("serialisable");
+            assert_eq!(text, format!("\"{fitness}\""));
+        }
+        assert_eq!("centre-of-mass".parse(), Ok(Fitness::CentreOfMass), "as flags spell it");
+        let error = "speed".parse::<Fitness>().unwrap_err().to_string();
+        assert!(error.starts_with("fitness is \"speed\"; allowed: centre, head,"), "{error}");
+    }
+}

@@ -1,0 +1,98 @@
+//! Lets a bounce come out right where a limb lands on a whole face.
+//!
+//! Rapier applies restitution once, corner after corner, at the end of a step. Each corner spoils what
+//! the one before had got, so a block that lands flat leaves a tenth too slow, and spinning. A few
+//! more rounds over the same corners make them agree.
+
+use rapier3d::geometry::{ContactPair, NEW_CONTACT_BIT};
+use rapier3d::prelude::*;
+
+/// Velocity of a limb, as it was before the step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Velocity {
+    pub linear: Vector,
+    pub angular: Vector,
+}
+
+/// A corner that bounces in this step.
+struct Corner {
+    /// From the limb's centre, in m.
+    lever: Vector,
+    /// The direction in which the surface pushes the limb.
+    direction: Vector,
+    /// The speed at which it has to leave, in m/s.
+    leaving_m_s: f32,
+    /// What pushed it in this step so far, in N·s; in the end it must not have been pulled.
+    impulse_ns: f32,
+}
+
+/// Rounds over the corners. Four corners of a block agree to a thousandth after ten.
+const ROUNDS: u32 = 16;
+
+/// Continues the engine's restitution of a limb's contacts with the world until they agree.
+pub(super) fn finish_bounce(physics: &mut PhysicsWorld, limb: RigidBodyHandle, before: Velocity) {
+    let body = &physics.bodies[limb];
+    let collider = body.colliders()[0];
+    let pose = *body.position();
+    let corners = physics.narrow_phase.contact_pairs_with(collider).flat_map(|pair| {
+        let is_first = pair.collider1 == collider;
+        let other = if is_first { pair.collider2 } else { pair.collider1 };
+        let owner = physics.colliders[other].parent();
+        let is_world = owner.is_none_or(|owner| physics.bodies[owner].mass() == 0.0);
+        let pair = is_world.then_some(pair);
+        pair.into_iter().flat_map(move |pair| bouncing(pair, is_first, pose, before))
+    });
+    let mut corners: Vec<Corner> = corners.collect();
+    if corners.is_empty() {
+        return;
+    }
+    let inverse_mass = 1.0 / body.mass();
+    let inverse_inertia = body.mass_properties().effective_world_inv_inertia;
+    let (mut linear, mut angular) = (body.linvel(), body.angvel());
+    for _ in 0..ROUNDS {
+        for corner in &mut corners {
+            let turn = inverse_inertia * corner.lever.cross(corner.direction);
+            let speed_m_s = (linear + angular.cross(corner.lever)).dot(corner.direction);
+            let inverse_effective =
+                inverse_mass + turn.cross(corner.lever).dot(corner.direction);
+            let wanted = corner.impulse_ns + (corner.leaving_m_s - speed_m_s) / inverse_effective;
+            let change = wanted.max(0.0) - corner.impulse_ns;
+            corner.impulse_ns += change;
+            linear += corner.direction * (change * inverse_mass);
+            angular += turn * change;
+        }
+    }
+    let body = &mut physics.bodies[limb];
+    body.set_linvel(linear, false);
+    body.set_angvel(angular, false);
+}
+
+/// The corners of a pair that the engine has just bounced.
+fn bouncing(
+    pair: &ContactPair,
+    limb_is_first: bool,
+    pose: Pose,
+    before: Velocity,
+) -> impl Iterator<Item = Corner> + '_ {
+    pair.solver_manifolds().iter().filter(|manifold| manifold.data.restitution > 0.0).flat_map(
+        move |manifold| {
+            // The engine's normal points from the first body to the second.
+            let direction =
+                if limb_is_first { -manifold.data.normal } else { manifold.data.normal };
+            manifold.data.solver_contacts.iter().filter_map(move |contact| {
+                let id = contact.contact_id[0];
+                let point = manifold.points.get((id & !NEW_CONTACT_BIT) as usize)?;
+                let at = if limb_is_first { point.local_p1 } else { point.local_p2 };
+                let lever = pose.rotation * at;
+                let coming_m_s = -(before.linear + before.angular.cross(lever)).dot(direction);
+                let bounces = id & NEW_CONTACT_BIT != 0 && point.data.impulse > 0.0 && coming_m_s > 0.0;
+                bounces.then_some(Corner {
+                    lever,
+                    direction,
+                    leaving_m_s: manifold.data.restitution * coming_m_s,
+                    impulse_ns: point.data.impulse,
+                })
+            })
+        },
+    )
+}

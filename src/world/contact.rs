@@ -1,0 +1,223 @@
+//! The surface parameters that rapier does not have of its own, put into its terms.
+//!
+//! Softness becomes contact springs of the solver ([`soften`]); bounce velocity and slip act through
+//! contact hooks ([`Hooks`]), which are switched on only where a contact needs them.
+
+use rapier3d::prelude::*;
+
+use super::surface::{ContactLaw, Give, spring};
+use super::{LimbPlan, PhysicsSettings};
+
+/// The laws of all contacts in a world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ContactLaws {
+    /// Between the snake and the stairs.
+    pub stairs: ContactLaw,
+    /// Between the snake and the ground.
+    pub ground: ContactLaw,
+    /// Between limbs of the snake.
+    pub limbs: ContactLaw,
+    /// Whether a joint of the snake is a spring.
+    pub joints_are_soft: bool,
+}
+
+impl ContactLaws {
+    /// Whether any contact or joint is a spring: then the solver runs without its velocity-only passes,
+    /// which would make every contact rigid again and let every soft joint drift apart.
+    pub fn has_springs(&self) -> bool {
+        self.joints_are_soft
+            || [self.stairs, self.ground, self.limbs].iter().any(|law| law.give.is_soft())
+    }
+
+    /// Whether ground and stairs give way differently. Rapier knows two softnesses, one for contacts
+    /// with fixed bodies and one for the others, so the ground then is an immovable body of the other
+    /// kind, and limbs that touch each other do it as softly as they touch the ground.
+    pub fn ground_is_apart(&self) -> bool {
+        self.ground.give != self.stairs.give
+    }
+
+    fn slips(&self) -> bool {
+        self.stairs.slip_m_s_per_n > 0.0 || self.ground.slip_m_s_per_n > 0.0
+    }
+}
+
+/// Sets up the solver for these laws. `reference` is the limb whose weight the springs are worked out
+/// for.
+pub(super) fn soften(
+    parameters: &mut IntegrationParameters,
+    laws: &ContactLaws,
+    physics: &PhysicsSettings,
+    reference: &LimbPlan,
+) {
+    let coefficients = |give: Give| {
+        if give.is_soft() {
+            soft_coefficients(give, physics.step_s(), corner_mass_kg(reference))
+        } else if laws.has_springs() {
+            // A wall beside springs. It has to be a very stiff spring, because the solver has one mode.
+            let give = Give { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..give };
+            soft_coefficients(give, physics.step_s(), corner_mass_kg(reference))
+        } else {
+            hard_coefficients(give.erp, physics)
+        }
+    };
+    parameters.static_contact_softness = coefficients(laws.stairs.give);
+    let others = if laws.ground_is_apart() { laws.ground.give } else { laws.limbs.give };
+    parameters.contact_softness = coefficients(others);
+    if laws.has_springs() {
+        parameters.num_internal_stabilization_iterations = 0;
+        // A cap on the speed at which a spring pushes back would make it weaker the deeper it is.
+        parameters.normalized_max_corrective_velocity = Real::MAX;
+    }
+    if laws.slips() {
+        // The simplified model knows no moving surface in its position-level pass.
+        parameters.friction_model = FrictionModel::Coulomb;
+    }
+}
+
+/// The value the report's engine manual calls hard, in m/s per N.
+const HARD_CFM_M_S_PER_N: f32 = 1.0e-5;
+
+/// Rapier's softness for a hard contact that corrects the share `erp` of a penetration in one physics
+/// step, that is `1 - (1 - erp)^(1/n)` in each of the n substeps.
+///
+/// Rapier has `erp = dt·w / (dt·w + 2z)` for the angular frequency w and the damping ratio z; a large z
+/// makes the contact's compliance vanish.
+fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<Real> {
+    let substep_s = physics.step_s() / physics.substeps as f32;
+    let left = libm::powf((1.0 - erp).max(1.0e-3), 1.0 / physics.substeps as f32);
+    let damping_ratio = 1.0e3;
+    let angular_frequency = 2.0 * damping_ratio * (1.0 - left) / (left * substep_s);
+    SpringCoefficients {
+        natural_frequency: angular_frequency / std::f32::consts::TAU,
+        damping_ratio,
+    }
+}
+
+/// Rapier's softness for a contact with the spring and damper that ERP and CFM stand for (see
+/// [`spring`]).
+///
+/// Rapier scales its springs with the effective mass at each contact, `w² m` and `2 z w m`; so the
+/// conversion holds exactly for one mass, `mass_kg`: see [`corner_mass_kg`].
+fn soft_coefficients(give: Give, step_s: f32, mass_kg: f32) -> SpringCoefficients<Real> {
+    let spring = spring(give, step_s);
+    let angular_frequency = (spring.kp_n_per_m / mass_kg).sqrt();
+    SpringCoefficients {
+        natural_frequency: angular_frequency / std::f32::consts::TAU,
+        damping_ratio: spring.kd_ns_per_m / (2.0 * angular_frequency * mass_kg),
+    }
+}
+
+/// Rapier's softness for a joint between limbs with these masses, in kg: exact for a pull along the
+/// snake, where the effective mass is the reduced mass of the pair. ERP is [`JOINT_ERP`].
+pub(super) fn joint_coefficients(
+    cfm_m_s_per_n: f32,
+    step_s: f32,
+    front_kg: f32,
+    rear_kg: f32,
+) -> SpringCoefficients<Real> {
+    if cfm_m_s_per_n == 0.0 {
+        return SpringCoefficients::joint_defaults();
+    }
+    let reduced_kg = front_kg * rear_kg / (front_kg + rear_kg);
+    soft_coefficients(Give { erp: JOINT_ERP, cfm_m_s_per_n }, step_s, reduced_kg)
+}
+
+/// The share of a soft joint's error that is corrected in one step: ODE's default.
+pub(super) const JOINT_ERP: f32 = 0.2;
+
+/// The effective mass, in kg, that a contact at the corner of a flat lying limb pushes against:
+/// `1 / m_eff = (1 + 3 l² / (l² + h²) + 3 w² / (w² + h²)) / m`, from the inertia of a box. A limb of the
+/// report, 1 by 2 by 1, has 4.9 / m.
+fn corner_mass_kg(limb: &LimbPlan) -> f32 {
+    let [w2, l2, h2] = [limb.width_m, limb.length_m, limb.height_m].map(|size| size * size);
+    limb.mass_kg() / (1.0 + 3.0 * l2 / (l2 + h2) + 3.0 * w2 / (w2 + h2))
+}
+
+/// What looks at the contacts of a world before they are solved.
+pub(super) struct Hooks<'a> {
+    pub laws: &'a ContactLaws,
+    pub ground: ColliderHandle,
+    pub step_s: f32,
+    pub substeps: u32,
+    /// Mass of the whole snake, in kg.
+    pub snake_kg: f32,
+}
+
+impl PhysicsHooks for Hooks<'_> {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let law = if context.collider1 == self.ground || context.collider2 == self.ground {
+            &self.laws.ground
+        } else if [context.rigid_body1, context.rigid_body2]
+            .iter()
+            .flatten()
+            .all(|body| context.bodies[*body].is_dynamic())
+            && context.rigid_body1.is_some()
+            && context.rigid_body2.is_some()
+        {
+            &self.laws.limbs
+        } else {
+            &self.laws.stairs
+        };
+        if law.give.is_soft() {
+            // The engine meets a coming contact halfway and stops it rigidly; a spring begins to push
+            // when it is touched.
+            context.solver_contacts.retain(|contact| contact.dist <= 0.0);
+        }
+        if law.bounce_velocity_m_s > 0.0
+            && incoming_m_s(context) < law.bounce_velocity_m_s
+        {
+            *context.restitution = 0.0;
+        }
+        if law.slip_m_s_per_n > 0.0 {
+            self.let_slip(law.slip_m_s_per_n, context);
+        }
+    }
+}
+
+/// Velocity of the first body's surface relative to the second's at a point, in m/s.
+fn relative_velocity(context: &ContactModificationContext, at: Vector) -> Vector {
+    let velocity = |body: Option<RigidBodyHandle>| {
+        body.map_or(Vector::ZERO, |body| context.bodies[body].velocity_at_point(at))
+    };
+    velocity(context.rigid_body1) - velocity(context.rigid_body2)
+}
+
+/// The greatest speed at which the bodies approach each other at their contacts, in m/s.
+fn incoming_m_s(context: &ContactModificationContext) -> f32 {
+    // The normal points from the first body to the second.
+    let approach =
+        |contact: &SolverContact| relative_velocity(context, contact.anchor2).dot(*context.normal);
+    context.solver_contacts.iter().map(approach).fold(0.0, f32::max)
+}
+
+impl Hooks<'_> {
+    /// Lets a contact patch creep at slip times the tangential force it carried in the last step, by
+    /// moving the surface under it.
+    ///
+    /// Following the force at once would overshoot where the bodies are heavy: with a = mass · slip / h
+    /// the creep is approached by the share 1 / (1 + 2a) in each step, which is stable for every a (the
+    /// roots of x² = b x + b, b = a / (1 + 2a), lie within the unit circle) and gives a sliding body
+    /// about the time constant mass · slip that a viscous contact has.
+    fn let_slip(&self, slip_m_s_per_n: f32, context: &mut ContactModificationContext) {
+        let count = context.solver_contacts.len();
+        if count == 0 {
+            return;
+        }
+        let substep_s = self.step_s / self.substeps as f32;
+        let points = &context.manifold.points;
+        let impulse: Vector = points.iter().map(|point| point.data.warmstart_tangent_world).sum();
+        let force_n = impulse / substep_s;
+        let centre: Vector =
+            context.solver_contacts.iter().map(|contact| contact.anchor2).sum::<Vector>()
+                / count as f32;
+        let velocity = relative_velocity(context, centre);
+        let normal = *context.normal;
+        let sliding = velocity - normal * velocity.dot(normal);
+        let share = 1.0 / (1.0 + 2.0 * self.snake_kg * slip_m_s_per_n / self.step_s);
+        let creep = sliding * (1.0 - share) - force_n * (slip_m_s_per_n * share);
+        for contact in context.solver_contacts.iter_mut() {
+            // The solver wants the first body's velocity to be minus this.
+            contact.tangent_velocity = -creep;
+        }
+    }
+}
