@@ -48,6 +48,9 @@ pub mod save;
 /// Experiments on worker threads, and the headless mode.
 pub mod run;
 
+/// Plots as pictures.
+pub mod plot;
+
 /// The window.
 #[cfg(feature = "studio")]
 pub mod studio;

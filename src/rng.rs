@@ -16,6 +16,8 @@ pub enum Purpose {
     Birth = 1,
     /// Varying a parent into a child.
     Mutation = 2,
+    /// Drawing a candidate of the search for settings.
+    Calibration = 3,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

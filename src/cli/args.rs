@@ -1,7 +1,7 @@
 //! The flags, and how they override a preset.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::error::ErrorKind;
@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 
 use super::CliError;
 use crate::check::{Invalid, within};
-use crate::evolve::Settings;
+use crate::evolve::{Settings, with_fields};
 use crate::run::{THREADS_RANGE, available_cores};
 use crate::save::{DEFAULT_PRESET, Preset, SavesFolder, load_preset};
 
@@ -58,11 +58,17 @@ pub struct Args {
     /// Gravity, in m/s²
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     gravity: Option<String>,
+    /// What is rewarded: centre, head, centre_of_mass, height, furthest_y or steps_climbed
+    #[arg(long, value_name = "NAME")]
+    fitness: Option<String>,
+    /// Change any single setting, such as surface.friction=0.8 (see `snakes settings`); repeatable
+    #[arg(long, global = true, value_name = "FIELD=VALUE")]
+    set: Vec<String>,
     /// Worker threads [default: all cores; with a window, all but one]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     threads: Option<String>,
-    /// Folder to write this run's champions to
-    #[arg(long, value_name = "DIR")]
+    /// Folder to write this run's champions, tables and pictures to
+    #[arg(long, global = true, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Folder of saved champions [default: ./saves if there is one, else the platform's data folder]
     #[arg(long, global = true, value_name = "DIR")]
@@ -88,8 +94,36 @@ pub enum Command {
     },
     /// Measure how fast the simulation is on this machine
     Bench,
+    /// Run the report's protocol with several seeds and print its Table 1 beside ours
+    Table1 {
+        /// How many seeds
+        #[arg(long, value_name = "N", default_value_t = 10)]
+        seeds: u64,
+        /// The first of them
+        #[arg(long, value_name = "N", default_value_t = 1)]
+        first_seed: u64,
+    },
+    /// Draw the champion of each generation of a run, and a signal, as PNG; no window is opened
+    Figures {
+        /// The run's folder, as `snakes --no-render` names it
+        run: PathBuf,
+    },
+    /// Search for what the report left free: duration, points per second, density, damping, surface
+    Calibrate {
+        /// How many candidates to try
+        #[arg(long, value_name = "N", default_value_t = 200)]
+        tries: u32,
+        /// With how many seeds each
+        #[arg(long, value_name = "N", default_value_t = 4)]
+        seeds: u64,
+        /// The first of them; test what is found with others
+        #[arg(long, value_name = "N", default_value_t = 1000)]
+        first_seed: u64,
+    },
     /// List the presets
     Presets,
+    /// List every setting and its value, as --set takes them
+    Settings,
 }
 
 /// What the arguments ask for.
@@ -141,6 +175,11 @@ impl Args {
         SavesFolder::find(self.out.as_deref().or(self.saves.as_deref()))
     }
 
+    /// Where tables and pictures go: the working directory, unless named.
+    pub fn results_folder(&self) -> SavesFolder {
+        SavesFolder::find(Some(self.out.as_deref().unwrap_or(Path::new("."))))
+    }
+
     /// The preset's name and its settings, with the flags' values put in and everything checked.
     pub fn settings(&self) -> Result<(String, Settings), CliError> {
         let preset = self.preset()?;
@@ -167,8 +206,21 @@ impl Args {
                 *target = number(flag, text, DECIMAL)?;
             }
         }
-        settings.check()?;
-        Ok((preset.name, settings))
+        if let Some(text) = &self.fitness {
+            trial.fitness = text.parse()?;
+        }
+        let mut changes = Vec::new();
+        for text in &self.set {
+            let (path, value) = text.split_once('=').ok_or_else(|| {
+                Invalid::new(
+                    "set",
+                    format!("{text:?}"),
+                    "FIELD=VALUE, such as surface.friction=0.8",
+                )
+            })?;
+            changes.push((path.trim(), value.trim()));
+        }
+        Ok((preset.name, with_fields(&settings, changes)?))
     }
 
     /// The seed of the run.
@@ -233,6 +285,10 @@ mod tests {
         }
     }
 
+    fn args_of(words: &str) -> Args {
+        args(words).expect("allowed")
+    }
+
     fn refusal(words: &str) -> String {
         let complaint = args(words).and_then(|args| {
             args.seed()?;
@@ -255,6 +311,11 @@ mod tests {
         assert_eq!(settings.evolution.population, 20);
         assert_eq!(settings.trial.duration_s, 2.5);
         assert_eq!(args.seed().expect("allowed"), 7);
+        let args =
+            args_of("--no-render --set surface.friction=0.8 --set ground.slip_m_s_per_n=0.1");
+        let (_, settings) = args.settings().expect("allowed");
+        assert_eq!(settings.trial.surface.friction, 0.8);
+        assert_eq!(settings.trial.ground.map(|ground| ground.slip_m_s_per_n), Some(0.1));
     }
 
     #[test]
@@ -268,8 +329,16 @@ mod tests {
                 "--seed twelve",
                 "seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615",
             ),
-            ("--preset nosuch", "preset is \"nosuch\"; allowed: report, steady, quick, or a file"),
+            (
+                "--preset nosuch",
+                "preset is \"nosuch\"; allowed: report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file",
+            ),
             ("--threads 0", "threads is 0; allowed: 1 to 1024"),
+            ("--set surface.bounce=2", "trial.surface.bounce is 2; allowed: 0 to 1"),
+            (
+                "--set surface.bounce",
+                "set is \"surface.bounce\"; allowed: FIELD=VALUE, such as surface.friction=0.8",
+            ),
         ] {
             assert_eq!(refusal(words), message, "{words}");
         }

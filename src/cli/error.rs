@@ -12,13 +12,16 @@ pub enum CliError {
     /// It was called well, and failed.
     #[error(transparent)]
     Headless(#[from] HeadlessError),
+    /// A plot could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] crate::plot::PlotError),
     /// The studio could not start, or ended badly.
     #[cfg(feature = "studio")]
     #[error(transparent)]
     Studio(#[from] crate::studio::StudioError),
     /// The program was built without the studio.
     #[cfg(not(feature = "studio"))]
-    #[error("this build has no studio; use --no-render")]
+    #[error("this build has no studio: it opens no window and draws no figures; use --no-render")]
     NoStudio,
 }
 

@@ -4,6 +4,9 @@
 
 mod args;
 mod error;
+#[cfg(feature = "studio")]
+mod figures;
+mod table1;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -17,6 +20,7 @@ use args::{Args, Command};
 pub use error::CliError;
 
 use crate::check::Invalid;
+use crate::evolve::fields;
 use crate::run::bench::{BenchReport, bench};
 use crate::run::{Control, Experiment, headless};
 use crate::save::shipped_presets;
@@ -40,7 +44,18 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn dispatch(args: Args) -> Result<(), CliError> {
     match &args.command {
         Some(Command::Presets) => print_presets(args.json),
+        Some(Command::Settings) => print_settings(&args),
         Some(Command::Bench) => print_bench(&args),
+        Some(Command::Table1 { seeds, first_seed }) => {
+            table1::table1(&args, table1::seeds(*first_seed, *seeds)?)
+        }
+        Some(Command::Calibrate { tries, seeds, first_seed }) => {
+            table1::calibrate(&args, *tries, table1::seeds(*first_seed, *seeds)?)
+        }
+        #[cfg(feature = "studio")]
+        Some(Command::Figures { run }) => figures::draw(&args, run),
+        #[cfg(not(feature = "studio"))]
+        Some(Command::Figures { .. }) => Err(CliError::NoStudio),
         Some(Command::Replay { file }) if args.no_render => {
             Ok(headless::replay(file, args.json, &mut io::stdout().lock())?)
         }
@@ -62,13 +77,19 @@ fn evolve(args: &Args) -> Result<(), CliError> {
         evolution.generations,
         evolution.population
     );
+    let control = cancel_on_interrupt();
+    let experiment = Experiment::new(&preset, seed, settings);
+    let mut out = io::stdout();
+    Ok(headless::evolve(experiment, saves, threads, args.json, &control, &mut out)?)
+}
+
+/// A control that the interrupt key cancels.
+fn cancel_on_interrupt() -> Arc<Control> {
     let control = Arc::new(Control::default());
     let cancelled = Arc::clone(&control);
     // Without a handler the key ends the program at once; what is saved by then is whole.
     let _ = ctrlc::set_handler(move || cancelled.cancel());
-    let experiment = Experiment::new(&preset, seed, settings);
-    let mut out = io::stdout();
-    Ok(headless::evolve(experiment, saves, threads, args.json, &control, &mut out)?)
+    control
 }
 
 #[cfg(feature = "studio")]
@@ -107,10 +128,22 @@ fn print_presets(json: bool) -> Result<(), CliError> {
             text +=
                 &format!("{}\n", serde_json::json!({"name": preset.name, "about": preset.about}));
         } else {
-            text += &format!("{:<10}{}\n", preset.name, preset.about);
+            text += &format!("{:<14}{}\n", preset.name, preset.about);
         }
     }
     print(&text)
+}
+
+fn print_settings(args: &Args) -> Result<(), CliError> {
+    let (preset, settings) = args.settings()?;
+    let fields = fields(&settings);
+    if args.json {
+        let line = serde_json::json!({"preset": preset, "settings": settings});
+        return print(&format!("{line}\n"));
+    }
+    let width = fields.iter().map(|(path, _)| path.len()).max().unwrap_or(0);
+    let lines = fields.iter().map(|(path, value)| format!("{path:<width$} = {value}\n"));
+    print(&lines.collect::<String>())
 }
 
 fn print_bench(args: &Args) -> Result<(), CliError> {

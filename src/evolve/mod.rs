@@ -4,10 +4,12 @@
 //! comes from streams named after the individual it is for.
 
 mod champion;
+mod field;
 mod halving;
 mod settings;
 
 pub use champion::{Champion, Origin};
+pub use field::{fields, with_field, with_fields};
 pub use halving::{Halving, HalvingSettings, LARGEST_POPULATION};
 pub use settings::Settings;
 

@@ -131,7 +131,7 @@ fn work(
         if pause_after_generation.swap(false, Ordering::SeqCst) {
             control.pause();
         }
-        if let Err(error) = keeper.keep_best(&experiment) {
+        if let Err(error) = keeper.keep(&experiment, report.champion.as_ref()) {
             let _ = events.send(Event::NotSaved(error.to_string()));
         }
         let _ = events.send(Event::Generation(Box::new(report)));

@@ -71,8 +71,8 @@ pub fn evolve(
     let mut keeper = Keeper::new(saves);
     while !experiment.is_over() {
         let report = with_progress(&mut experiment, &pool, control)
-            .map_err(|_| HeadlessError::Cancelled { kept: keeper.kept().map(Path::to_owned) })?;
-        keeper.keep_best(&experiment)?;
+            .map_err(|_| HeadlessError::Cancelled { kept: keeper.best().map(Path::to_owned) })?;
+        keeper.keep(&experiment, report.champion.as_ref())?;
         let line = if json { json_line(&report).to_string() } else { table_row(&report) };
         writeln!(out, "{line}")?;
         out.flush()?;
@@ -84,10 +84,10 @@ pub fn evolve(
             "done": true,
             "run_hash": run_hash,
             "best": best.map(|best| best.evaluation.fitness),
-            "champion": keeper.kept(),
+            "champion": keeper.best(),
         });
         writeln!(out, "{last}")?;
-    } else if let (Some(best), Some(path)) = (best, keeper.kept()) {
+    } else if let (Some(best), Some(path)) = (best, keeper.best()) {
         writeln!(out, "\nchampion  {}", about(best))?;
         writeln!(out, "saved to  {}", path.display())?;
         writeln!(out, "run hash  {run_hash}")?;
@@ -97,7 +97,10 @@ pub fn evolve(
 
 /// Runs one generation with a progress bar on the terminal; where standard error is no terminal, none
 /// is drawn.
-fn with_progress(
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn with_progress(
     experiment: &mut Experiment,
     pool: &ThreadPool,
     control: &Arc<Control>,
@@ -226,8 +229,7 @@ mod tests {
 
     #[test]
     fn a_row_stands_under_its_head() {
-        let statistics =
-            Statistics {
+        let statistics = Statistics {
             mean: -7.225,
             best: 1.5,
             median: -7.0,

@@ -1,41 +1,51 @@
-//! Saves the best of a run as soon as it is found, so that a crash or a closed window loses nothing.
+//! Saves the champion of each generation as soon as it is found, so that a crash or a closed window
+//! loses nothing.
 
 use std::path::{Path, PathBuf};
 
 use super::Experiment;
-use crate::save::{SaveError, SavesFolder, champion_file_name, store_champion};
+use crate::evolve::Champion;
+use crate::save::{SaveError, SavesFolder, champion_file_name, run_name, store_champion};
 
-/// Writes each new best champion of one run to its own file.
+/// Writes the champions of one run into a folder of its own.
 #[derive(Debug)]
 pub struct Keeper {
     saves: SavesFolder,
-    kept: Option<PathBuf>,
+    /// The best champion's file, and what it reached.
+    best: Option<(PathBuf, f32)>,
 }
 
 impl Keeper {
-    /// A keeper that writes into `saves`.
+    /// A keeper that makes the run's folder in `saves`.
     pub fn new(saves: SavesFolder) -> Self {
-        Self { saves, kept: None }
+        Self { saves, best: None }
     }
 
-    /// Saves the experiment's best champion, unless it is saved already.
+    /// Saves the champion of the generation that was just finished, if it has one.
     ///
     /// # Errors
     /// The folder or the file cannot be written.
-    pub fn keep_best(&mut self, experiment: &Experiment) -> Result<(), SaveError> {
-        let Some(best) = experiment.best() else { return Ok(()) };
-        let name = champion_file_name(&best.origin, experiment.settings());
-        let path = self.saves.path().join(name);
-        if self.kept.as_ref() != Some(&path) {
-            self.saves.prepare()?;
-            store_champion(&path, best)?;
-            self.kept = Some(path);
+    pub fn keep(
+        &mut self,
+        experiment: &Experiment,
+        champion: Option<&Champion>,
+    ) -> Result<(), SaveError> {
+        let Some(champion) = champion else { return Ok(()) };
+        let origin = &champion.origin;
+        let run = run_name(&origin.preset, origin.seed, experiment.settings());
+        let folder = SavesFolder::find(Some(&self.saves.path().join(run)));
+        folder.prepare()?;
+        let path = folder.path().join(champion_file_name(origin.generation));
+        store_champion(&path, champion)?;
+        let fitness = champion.evaluation.fitness;
+        if self.best.as_ref().is_none_or(|(_, best)| fitness > *best) {
+            self.best = Some((path, fitness));
         }
         Ok(())
     }
 
     /// The file of the best champion so far.
-    pub fn kept(&self) -> Option<&Path> {
-        self.kept.as_deref()
+    pub fn best(&self) -> Option<&Path> {
+        self.best.as_ref().map(|(path, _)| path.as_path())
     }
 }

@@ -2,11 +2,13 @@
 
 mod background;
 pub mod bench;
+pub mod calibrate;
 mod control;
 mod experiment;
 pub mod headless;
 mod keeper;
 mod report;
+pub mod table1;
 mod threads;
 
 pub use background::{Background, Event};

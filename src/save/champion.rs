@@ -61,7 +61,7 @@ pub fn store_champion(path: &Path, champion: &Champion) -> Result<(), SaveError>
         champion.trial.fitness.words(),
         champion.reached(),
     );
-    write_whole(path, &format!("{header}{text}\n"))
+    write_whole(path, format!("{header}{text}\n").as_bytes())
 }
 
 /// The champion that comes with the program.

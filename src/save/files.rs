@@ -111,7 +111,7 @@ pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<
 
 /// Writes a file so that at every instant either the old or the whole new one is there: into a
 /// temporary file beside it, flushed to the disk, then renamed.
-pub fn write_whole(path: &Path, text: &str) -> Result<(), SaveError> {
+pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
     let write = || -> std::io::Result<()> {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.unwrap_or(Path::new("."));
@@ -121,7 +121,7 @@ pub fn write_whole(path: &Path, text: &str) -> Result<(), SaveError> {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut file = builder.tempfile_in(folder)?;
-        file.write_all(text.as_bytes())?;
+        file.write_all(contents)?;
         file.as_file().sync_all()?;
         file.persist(path).map_err(|error| error.error)?;
         // The file is there by now; that its name survives a power cut too is up to the platform.

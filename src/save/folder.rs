@@ -1,14 +1,15 @@
 //! Where saves are.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use directories::ProjectDirs;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::SaveError;
 use super::files::prepare_folder;
+use super::{LoadedChampion, SaveError, load_champion};
 use crate::ENGINE_VERSION;
-use crate::evolve::{Origin, Settings};
+use crate::evolve::Settings;
 
 /// The folder champions are written to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,15 +42,42 @@ impl SavesFolder {
     }
 }
 
-/// The file name of a run's champion: it names the preset, the seed, the generation, and in eight hex
-/// digits everything else that decides the bits. So two files of one name hold the same champion, and
-/// no run overwrites the champion of another.
-pub fn champion_file_name(origin: &Origin, settings: &Settings) -> String {
+/// The name of a run's folder: it names the preset, the seed, and in eight hex digits everything else
+/// that decides the bits. So two folders of one name hold the same run, and no run overwrites another.
+pub fn run_name(preset: &str, seed: u64, settings: &Settings) -> String {
     let settings = ron::to_string(settings).unwrap_or_default();
     let fingerprint = xxh3_64(format!("{ENGINE_VERSION} {settings}").as_bytes()) as u32;
     let preset: String =
-        origin.preset.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
-    format!("{preset}-seed{}-{fingerprint:08x}-generation{}.ron", origin.seed, origin.generation)
+        preset.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
+    format!("{preset}-seed{seed}-{fingerprint:08x}")
+}
+
+/// The name of the file, in a run's folder, of the champion of a generation; the first is 1.
+pub fn champion_file_name(generation: u32) -> String {
+    format!("generation-{generation}.ron")
+}
+
+/// The champions of a run's folder, the first generation first.
+///
+/// # Errors
+/// The folder cannot be read, has no champion in it, or one that is damaged.
+pub fn load_run(folder: &Path) -> Result<Vec<LoadedChampion>, SaveError> {
+    let unreadable = |source| SaveError::Unreadable { path: folder.to_owned(), source };
+    let mut generations = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let name = entry.map_err(unreadable)?.file_name();
+        let number = name.to_str().and_then(|name| {
+            name.strip_prefix("generation-")?.strip_suffix(".ron")?.parse::<u32>().ok()
+        });
+        generations.extend(number);
+    }
+    generations.sort_unstable();
+    if generations.is_empty() {
+        let missing = "no generation-1.ron or later in it; a run's folder is wanted";
+        return Err(unreadable(std::io::Error::other(missing)));
+    }
+    let load = |generation| load_champion(&folder.join(champion_file_name(generation)));
+    generations.into_iter().map(load).collect()
 }
 
 #[cfg(test)]
@@ -57,22 +85,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_name_tells_runs_apart_and_stays_in_its_folder() {
-        let origin = |preset: &str, seed| Origin {
-            preset: preset.to_owned(),
-            seed,
-            generation: 6,
-            individual: 3,
-        };
+    fn a_folders_name_tells_runs_apart_and_stays_in_its_folder() {
         let settings = Settings::default();
         let mut other = settings.clone();
         other.evolution.population += 1;
-        let name = champion_file_name(&origin("report", 1), &settings);
-        assert!(name.starts_with("report-seed1-") && name.ends_with("-generation6.ron"), "{name}");
-        assert_eq!(name, champion_file_name(&origin("report", 1), &settings));
-        assert_ne!(name, champion_file_name(&origin("report", 2), &settings));
-        assert_ne!(name, champion_file_name(&origin("report", 1), &other));
-        let hostile = champion_file_name(&origin("../../etc/x", 1), &settings);
+        let name = run_name("report", 1, &settings);
+        assert!(name.starts_with("report-seed1-"), "{name}");
+        assert_eq!(name, run_name("report", 1, &settings));
+        assert_ne!(name, run_name("report", 2, &settings));
+        assert_ne!(name, run_name("report", 1, &other));
+        let hostile = run_name("../../etc/x", 1, &settings);
         assert!(hostile.starts_with("etcx-seed1"), "{hostile}");
     }
 }

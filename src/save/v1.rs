@@ -133,7 +133,11 @@ fn trial_v2(trial: TrialV1, density_kg_m3: f32) -> TrialV2 {
         fitness: Fitness::Centre,
         agent: AgentV2 {
             limbs: agent.limbs,
-            joint_cfm_m_s_per_n: PerPart::All(joint_cfm(&agent, physics.steps_per_s, density_kg_m3)),
+            joint_cfm_m_s_per_n: PerPart::All(joint_cfm(
+                &agent,
+                physics.steps_per_s,
+                density_kg_m3,
+            )),
             limb_width_m: agent.limb_width_m.into(),
             limb_length_m: agent.limb_length_m.into(),
             limb_height_m: agent.limb_height_m.into(),

@@ -78,10 +78,9 @@ impl AgentSettings {
             densities.check("density_kg_m3", self.limbs as usize, DENSITY_RANGE_KG_M3)?;
         }
         let joints = self.joints();
-        for (field, limits) in [
-            ("bend_limit_rad", &self.bend_limit_rad),
-            ("twist_limit_rad", &self.twist_limit_rad),
-        ] {
+        for (field, limits) in
+            [("bend_limit_rad", &self.bend_limit_rad), ("twist_limit_rad", &self.twist_limit_rad)]
+        {
             if let Some(limits) = limits {
                 limits.check(field, joints, 0.0..=LARGEST_LIMIT_RAD)?;
             }

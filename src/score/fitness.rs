@@ -132,9 +132,7 @@ impl Ending<'_> {
             }
             Fitness::Height => middle.z,
             Fitness::FurthestY => self.furthest_y_m,
-            Fitness::StepsClimbed => {
-                self.stairs.steps_under([middle.x, middle.y, middle.z]) as f32
-            }
+            Fitness::StepsClimbed => self.stairs.steps_under([middle.x, middle.y, middle.z]) as f32,
         }
     }
 }

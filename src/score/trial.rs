@@ -123,3 +123,124 @@ impl Trial {
         self.stairs.meaning(y_m, f64::from(self.start_y_m), length_m)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::evolve::{Settings, with_fields};
+    use crate::genome::GenomeSpace;
+    use crate::rng::{Purpose, stream};
+    use crate::score::evaluate;
+
+    /// A world in which everything acts a little, so that nothing is without effect.
+    fn lively() -> Settings {
+        let changes = [
+            ("surface.bounce", "0.3"),
+            ("surface.bounce_velocity_m_s", "0.5"),
+            ("surface.soft_cfm_m_s_per_n", "0.001"),
+            ("surface.slip_m_s_per_n", "0.001"),
+            ("surface.dampen_per_s", "0.1"),
+            ("skin.bounce", "0.1"),
+            ("skin.soft_cfm_m_s_per_n", "0.001"),
+            ("joint_cfm_m_s_per_n", "0.00001"),
+            ("ground.friction", "0.9"),
+            // Within reach at once.
+            ("first_riser_y_m", "-1.5"),
+            ("trial.duration_s", "5"),
+            // Whatever happens, it goes on to the end.
+            ("joint_drift_m", "10"),
+            ("speed_m_s", "1000"),
+            ("arena_half_width_m", "1000"),
+            ("arena_back_m", "1000"),
+        ];
+        with_fields(&Settings::default(), changes).expect("allowed")
+    }
+
+    /// A newborn that touches ground and stairs, and lands on both.
+    const A_TRAVELLER: u32 = 13;
+
+    fn trace(settings: &Settings) -> u64 {
+        let joints = settings.trial.agent.joints();
+        let mut rng = stream(1, 1, A_TRAVELLER, Purpose::Birth);
+        evaluate(&GenomeSpace::default().birth(joints, 5.0, &mut rng), &settings.trial).trace_hash
+    }
+
+    #[test]
+    fn each_parameter_alone_changes_the_trajectory_of_one_genome() {
+        let lively = lively();
+        let unchanged = trace(&lively);
+        assert_eq!(unchanged, trace(&lively));
+        for (field, value) in [
+            ("surface.friction", "0.9"),
+            ("surface.bounce", "0.35"),
+            ("surface.bounce_velocity_m_s", "3"),
+            ("surface.soft_erp", "0.3"),
+            ("surface.soft_cfm_m_s_per_n", "0.0012"),
+            ("surface.slip_m_s_per_n", "0.0012"),
+            ("surface.dampen_per_s", "0.12"),
+            ("ground.friction", "1.1"),
+            ("ground.bounce", "0.35"),
+            ("ground.bounce_velocity_m_s", "3"),
+            ("ground.soft_erp", "0.3"),
+            ("ground.soft_cfm_m_s_per_n", "0.0012"),
+            ("ground.slip_m_s_per_n", "0.0012"),
+            ("ground.dampen_per_s", "0.12"),
+            ("skin.friction", "1.1"),
+            ("skin.bounce", "0.35"),
+            ("skin.soft_erp", "0.3"),
+            ("skin.soft_cfm_m_s_per_n", "0.0012"),
+            ("agent.limbs", "6"),
+            ("limb_width_m", "[1, 1, 1.1, 1, 1]"),
+            ("limb_length_m", "[2, 2, 2, 2.1, 2]"),
+            ("limb_height_m", "[1, 1, 1, 1, 1.1]"),
+            ("agent.density_kg_m3", "[2, 2, 2, 2, 3]"),
+            ("agent.bend_limit_rad", "[0.5, 1, 1, 1]"),
+            ("agent.twist_limit_rad", "[1, 1, 1, 0.2]"),
+            ("max_bend_torque_nm", "[1000, 1000, 500, 1000]"),
+            ("max_twist_torque_nm", "[1000, 300, 1000, 1000]"),
+            ("joint_damping_nms_per_rad", "[30, 30, 31, 30]"),
+            ("joint_cfm_m_s_per_n", "[0.00001, 0.00002, 0.00001, 0.00001]"),
+            ("angular_damping_per_s", "2.1"),
+            ("stairs.rise_m", "0.6"),
+            ("stairs.tread_m", "1.8"),
+            ("stairs.steps", "1"),
+            ("stairs.first_riser_y_m", "-1.6"),
+            ("trial.start_y_m", "-7.2"),
+            ("trial.duration_s", "2.5"),
+            ("steps_per_s", "61"),
+            ("substeps", "5"),
+            ("gravity_m_s2", "9.7"),
+        ] {
+            let changed = with_fields(&lively, [(field, value)]).expect(field);
+            assert_ne!(changed, lively, "{field}");
+            assert_ne!(trace(&changed), unchanged, "{field} = {value} does nothing");
+        }
+    }
+
+    #[test]
+    fn a_setting_for_each_part_goes_to_that_part() {
+        let changes = [
+            ("agent.limbs", "3"),
+            ("limb_width_m", "[1, 2, 3]"),
+            ("agent.density_kg_m3", "[4, 5, 6]"),
+            ("agent.bend_limit_rad", "[0.1, 0.2]"),
+            ("joint_damping_nms_per_rad", "[7, 8]"),
+            ("max_bend_torque_nm", "[9, 10]"),
+        ];
+        let settings = with_fields(&Settings::default(), changes).expect("allowed");
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = GenomeSpace::default().birth(2, 1.0, &mut rng);
+        let body = settings.trial.world_plan(&genome).body;
+        let limbs: Vec<_> =
+            body.limbs.iter().map(|limb| (limb.width_m, limb.density_kg_m3)).collect();
+        assert_eq!(limbs, [(1.0, 4.0), (2.0, 5.0), (3.0, 6.0)]);
+        let joints: Vec<_> = body
+            .joints
+            .iter()
+            .map(|joint| {
+                (joint.bend_limit_rad, joint.damping_nms_per_rad, joint.max_bend_torque_nm)
+            })
+            .collect();
+        assert_eq!(joints, [(0.1, 7.0, 9.0), (0.2, 8.0, 10.0)]);
+        assert_eq!(body.joints[0].twist_limit_rad, genome.twist_limit_rad, "the genome's own");
+    }
+}

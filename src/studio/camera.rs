@@ -39,6 +39,39 @@ impl Default for View {
     }
 }
 
+impl View {
+    /// Where the camera stands to look at a target like this.
+    fn looking_at(&self, target: Vec3) -> Transform {
+        let turn = Quat::from_rotation_z(self.yaw_rad) * Quat::from_rotation_y(-self.pitch_rad);
+        let eye = target + turn * Vec3::X * self.distance_m;
+        Transform::from_translation(eye).looking_at(target, Vec3::Z)
+    }
+}
+
+/// A fixed camera's place, from the usual side, that has a stretch of the y axis in view, in metres.
+pub(super) fn overlooking(from_y_m: f32, to_y_m: f32) -> Transform {
+    // At this distance the stretch, seen at an angle, fills the width of a 16:9 picture.
+    const DISTANCE_PER_LENGTH: f32 = 0.8;
+    let distance_m = ((to_y_m - from_y_m) * DISTANCE_PER_LENGTH).max(*DISTANCE_M.start());
+    let view = View { distance_m, ..View::default() };
+    view.looking_at(Vec3::new(0.0, (from_y_m + to_y_m) / 2.0, 1.5))
+}
+
+/// What every camera that draws the world has in common: no tone mapping, fog that hides the end of the
+/// ground.
+pub(super) fn eye(msaa: Msaa) -> impl Bundle {
+    (
+        Camera3d::default(),
+        Tonemapping::None,
+        msaa,
+        DistanceFog {
+            color: look::SKY,
+            falloff: FogFalloff::Linear { start: 50.0, end: 190.0 },
+            ..default()
+        },
+    )
+}
+
 /// How the camera moves.
 #[derive(Resource, Debug)]
 pub(super) struct CameraRig {
@@ -90,17 +123,7 @@ fn set_up(
     adapter: Res<RenderAdapterInfo>,
 ) {
     egui_settings.auto_create_primary_context = false;
-    commands.spawn((
-        StageCamera,
-        Camera3d::default(),
-        Tonemapping::None,
-        Quality::suiting(&adapter).msaa,
-        DistanceFog {
-            color: look::SKY,
-            falloff: FogFalloff::Linear { start: 50.0, end: 190.0 },
-            ..default()
-        },
-    ));
+    commands.spawn((StageCamera, eye(Quality::suiting(&adapter).msaa)));
     commands.spawn((
         PrimaryEguiContext,
         Camera2d,
@@ -198,11 +221,7 @@ fn follow(mut rig: ResMut<CameraRig>, stages: Query<&Stage>, time: Res<Time<Real
 }
 
 fn place(rig: Res<CameraRig>, mut camera: Single<&mut Transform, With<StageCamera>>) {
-    let View { yaw_rad, pitch_rad, distance_m, offset } = rig.view;
-    let target = rig.anchor.unwrap_or_default() + offset;
-    let turn = Quat::from_rotation_z(yaw_rad) * Quat::from_rotation_y(-pitch_rad);
-    let eye = target + turn * Vec3::X * distance_m;
-    **camera = Transform::from_translation(eye).looking_at(target, Vec3::Z);
+    **camera = rig.view.looking_at(rig.anchor.unwrap_or_default() + rig.view.offset);
 }
 
 /// Draws the stage beside the panel, not under it.

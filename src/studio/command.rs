@@ -23,6 +23,17 @@ pub(super) enum Command {
     SetSeed(u64),
     /// Use this population for the next run.
     SetPopulation(u32),
+    /// Change one setting of the next run, by its name, and show what it does to what is on the stage.
+    SetField {
+        /// The setting's name: see [`crate::evolve::with_field`].
+        field: String,
+        /// Its value as text.
+        text: String,
+    },
+    /// Take this shipped preset for the next run, and show what it does to what is on the stage.
+    SetPreset(String),
+    /// Show what is on the stage in the world in which it was found.
+    ShowRecorded,
     /// Put the champion that the studio opened with on the stage.
     ShowOpening,
     /// Put the champion of this generation on the stage; the first is 1.
@@ -65,6 +76,17 @@ fn apply(
             Command::Reset => evolution.reset(),
             Command::SetSeed(seed) => evolution.set_seed(*seed),
             Command::SetPopulation(population) => evolution.set_population(*population),
+            Command::SetField { field, text } => evolution
+                .set_field(field, text)
+                .map(|()| show_changed(&evolution, &stages, &mut show)),
+            Command::SetPreset(name) => {
+                evolution.set_preset(name).map(|()| show_changed(&evolution, &stages, &mut show))
+            }
+            Command::ShowRecorded => {
+                let recorded = stages.iter().map(|stage| stage.exhibit().as_recorded());
+                show.write_batch(recorded.map(ShowExhibit));
+                Ok(())
+            }
             Command::ShowOpening => {
                 show.write(ShowExhibit(Exhibit::opening(&opening.0)));
                 Ok(())
@@ -106,4 +128,15 @@ fn apply(
             notices.problem(problem);
         }
     }
+}
+
+/// Shows what is on the stage in the world of the next run, if its genome fits into that.
+fn show_changed(
+    evolution: &Evolution,
+    stages: &Query<&mut Stage>,
+    show: &mut MessageWriter<ShowExhibit>,
+) {
+    let trial = &evolution.next_settings().trial;
+    let changed = stages.iter().filter_map(|stage| stage.exhibit().in_world(trial));
+    show.write_batch(changed.map(ShowExhibit));
 }

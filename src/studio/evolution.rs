@@ -9,10 +9,10 @@ use super::notice::Notices;
 use super::stage::{Exhibit, ShowExhibit, Stage};
 use super::{Frame, Options, StudioError};
 use crate::check::Invalid;
-use crate::evolve::{Champion, Settings};
+use crate::evolve::{Champion, Settings, with_field};
 use crate::run::headless::HeadlessError;
 use crate::run::{Background, Event, Experiment, GenerationReport, Keeper, pool};
-use crate::save::SavesFolder;
+use crate::save::{SavesFolder, load_preset};
 
 /// What every run of this session shares.
 #[derive(Resource, Debug, Clone)]
@@ -57,7 +57,8 @@ pub(super) struct Evolution {
     engine: Engine,
     /// Which run of this session it is; the first is 0.
     number: u32,
-    /// Seed and settings of the current run; the engine's are those of the next.
+    /// Preset, seed and settings of the current run; the engine's are those of the next.
+    preset: String,
     seed: u64,
     settings: Settings,
     background: Option<Background>,
@@ -81,6 +82,7 @@ impl Evolution {
     /// A prepared run.
     pub fn new(engine: Engine) -> Self {
         Self {
+            preset: engine.preset.clone(),
             seed: engine.seed,
             settings: engine.settings.clone(),
             engine,
@@ -106,9 +108,9 @@ impl Evolution {
         self.number
     }
 
-    /// Name of the preset.
+    /// Name of the preset that the current run started from.
     pub fn preset(&self) -> &str {
-        &self.engine.preset
+        &self.preset
     }
 
     /// Seed of the current run.
@@ -124,6 +126,16 @@ impl Evolution {
     /// Settings of the current run.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// Settings of the next run.
+    pub fn next_settings(&self) -> &Settings {
+        &self.engine.settings
+    }
+
+    /// Name of the preset that the next run starts from.
+    pub fn next_preset(&self) -> &str {
+        &self.engine.preset
     }
 
     /// Population of the next run.
@@ -199,10 +211,21 @@ impl Evolution {
 
     /// Sets the population of the next run; a run that has not begun takes it at once.
     pub fn set_population(&mut self, population: u32) -> Result<(), String> {
-        let mut settings = self.engine.settings.clone();
-        settings.evolution.population = population;
-        settings.check().map_err(|error: Invalid| error.to_string())?;
-        self.engine.settings = settings;
+        self.set_field("evolution.population", &population.to_string())
+    }
+
+    /// Sets one setting of the next run, by its name; a run that has not begun takes it at once.
+    pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
+        self.engine.settings = with_field(&self.engine.settings, field, text)
+            .map_err(|error: Invalid| error.to_string())?;
+        self.take_over_if_ready()
+    }
+
+    /// Takes a shipped preset for the next run.
+    pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
+        let preset = load_preset(name).map_err(|error| error.to_string())?;
+        self.engine.preset = preset.name;
+        self.engine.settings = preset.settings;
         self.take_over_if_ready()
     }
 
@@ -220,7 +243,7 @@ impl Evolution {
             Some(background) => background,
             None => {
                 let settings = self.settings.clone();
-                let experiment = Experiment::new(&self.engine.preset, self.seed, settings);
+                let experiment = Experiment::new(&self.preset, self.seed, settings);
                 let keeper = Keeper::new(self.engine.saves.clone());
                 Background::start(experiment, Arc::clone(&self.engine.pool), keeper)
                     .map_err(|error| format!("evolution could not be started: {error}"))?
@@ -247,19 +270,23 @@ fn take_in(
 ) {
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
-    let mut to_beat_m =
-        stages.iter().map(|stage| stage.exhibit().fitness()).fold(f32::MIN, f32::max);
-    let is_held = stages.iter().any(|stage| !stage.is_playing());
+    // Only like can be compared with like.
+    let fitness = evolution.settings.trial.fitness;
+    let rivals = stages.iter().map(Stage::exhibit);
+    let rivals = rivals.filter(|exhibit| exhibit.champion().trial.fitness == fitness);
+    let mut to_beat = rivals.map(Exhibit::fitness).fold(f32::MIN, f32::max);
+    // Who holds the stage or tries out a world is looking at something.
+    let is_held = stages.iter().any(|stage| !stage.is_playing() || stage.exhibit().is_changed());
     for event in events {
         match event {
             Event::Generation(report) => {
                 if let Some(champion) = &report.champion
-                    && champion.evaluation.fitness > to_beat_m
+                    && champion.evaluation.fitness > to_beat
                 {
-                    to_beat_m = champion.evaluation.fitness;
+                    to_beat = champion.evaluation.fitness;
                     let exhibit = Exhibit::found(champion, evolution.number);
                     if is_held {
-                        notices.news(format!("Better than what is held: {}", exhibit.caption()));
+                        notices.news(format!("Better than what is on show: {}", exhibit.caption()));
                     } else {
                         notices.news(format!("New on stage: {}", exhibit.caption()));
                         show.write(ShowExhibit(exhibit));

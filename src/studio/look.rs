@@ -47,6 +47,10 @@ pub const TITLE_SIZE: f32 = 15.0;
 pub const FIELD_WIDTH: f32 = 64.0;
 /// From this height on a window has room for everything at once, in points.
 pub const TALL_WINDOW: f32 = 880.0;
+/// Width of a list to choose from, in points.
+pub const COMBO_WIDTH: f32 = 190.0;
+/// Width of a slider without its number, in points.
+pub const SLIDER_WIDTH: f32 = 190.0;
 /// Width of the left panel, in points.
 pub const PANEL_WIDTH: f32 = 320.0;
 /// Width of a message over the stage, in points.

@@ -9,6 +9,7 @@
 mod camera;
 mod command;
 mod evolution;
+pub mod figures;
 mod frame_times;
 mod keys;
 mod look;
@@ -57,6 +58,11 @@ pub enum StudioError {
     /// There is no display, or no graphics driver.
     #[error("no window can be opened ({0}); use --no-render to work in the terminal")]
     NoWindow(String),
+    /// No picture can be drawn.
+    #[error(
+        "no picture can be drawn ({0}); drawing needs a graphics driver, a software one will do"
+    )]
+    NoPicture(String),
     /// The champion to open with could not be read.
     #[error(transparent)]
     Champion(#[from] SaveError),

@@ -15,7 +15,7 @@ use std::mem::swap;
 use super::notice::Notices;
 use super::{Frame, Opening};
 use crate::evolve::Champion;
-use crate::score::{Evaluation, Rollout};
+use crate::score::{Evaluation, Rollout, Trial};
 use crate::world::{PhysicsWorld, Pose};
 
 /// A champion with the words under it.
@@ -23,6 +23,8 @@ use crate::world::{PhysicsWorld, Pose};
 pub(super) struct Exhibit {
     champion: Champion,
     source: Source,
+    /// The world in which it is shown, if not the one in which it was found.
+    changed: Option<Trial>,
 }
 
 /// Where an exhibit is from.
@@ -37,12 +39,39 @@ pub(super) enum Source {
 impl Exhibit {
     /// The champion the studio opened with.
     pub fn opening(champion: &Champion) -> Self {
-        Self { champion: champion.clone(), source: Source::Opening }
+        Self { champion: champion.clone(), source: Source::Opening, changed: None }
     }
 
     /// A champion that a run of this session found.
     pub fn found(champion: &Champion, run: u32) -> Self {
-        Self { champion: champion.clone(), source: Source::Run(run) }
+        Self { champion: champion.clone(), source: Source::Run(run), changed: None }
+    }
+
+    /// The same in another world; none if its genome does not fit into that.
+    pub fn in_world(&self, trial: &Trial) -> Option<Self> {
+        trial.check_genome(&self.champion.genome).ok()?;
+        let is_changed = *trial != self.champion.trial;
+        Some(Self { changed: is_changed.then(|| trial.clone()), ..self.clone() })
+    }
+
+    /// The same in the world in which it was found.
+    pub fn as_recorded(&self) -> Self {
+        Self { changed: None, ..self.clone() }
+    }
+
+    /// Whether it is shown in another world than the one in which it was found.
+    pub fn is_changed(&self) -> bool {
+        self.changed.is_some()
+    }
+
+    /// The champion as it was found.
+    pub fn champion(&self) -> &Champion {
+        &self.champion
+    }
+
+    /// The world in which it is shown.
+    fn trial(&self) -> &Trial {
+        self.changed.as_ref().unwrap_or(&self.champion.trial)
     }
 
     /// Where it is from.
@@ -63,11 +92,12 @@ impl Exhibit {
     /// What it is and what it reached, in a line.
     pub fn caption(&self) -> String {
         let reached = self.champion.reached();
+        let world = if self.is_changed() { "In another world. " } else { "" };
         match self.source {
             Source::Run(_) => {
-                format!("Generation {}: {reached}", self.generation())
+                format!("{world}Generation {}: {reached}", self.generation())
             }
-            Source::Opening => format!("Saved champion: {reached}"),
+            Source::Opening => format!("{world}Saved champion: {reached}"),
         }
     }
 }
@@ -118,11 +148,11 @@ pub(super) fn plugin(app: &mut App) {
 impl Stage {
     /// A stage at the start of the exhibit's rollout.
     pub fn new(exhibit: Exhibit) -> Self {
-        let champion = &exhibit.champion;
-        let rollout = Rollout::new(&champion.genome, &champion.trial);
+        let trial = exhibit.trial();
+        let rollout = Rollout::new(&exhibit.champion.genome, trial);
         Self {
             before: rollout.poses().to_vec(),
-            step_s: champion.trial.physics.step_s(),
+            step_s: trial.physics.step_s(),
             rollout,
             exhibit,
             owed_s: 0.0,
@@ -133,14 +163,31 @@ impl Stage {
         }
     }
 
+    /// Goes to the end of the rollout at once. Returns the poses on the way at `moments` equal distances
+    /// of time, the start first. The world must not have been lent out.
+    pub fn skip_to_end(&mut self, moments: u32) -> Vec<Vec<Pose>> {
+        let every = (self.trial().steps() / moments.max(1)).max(1);
+        let mut seen = Vec::new();
+        loop {
+            if self.rollout.step().is_multiple_of(every) && seen.len() < moments as usize {
+                seen.push(self.rollout.poses().to_vec());
+            }
+            if !self.rollout.advance() {
+                break;
+            }
+        }
+        self.before.copy_from_slice(self.rollout.poses());
+        seen
+    }
+
     /// What is on show.
     pub fn exhibit(&self) -> &Exhibit {
         &self.exhibit
     }
 
-    /// The champion's trial: the stairs to draw, the limbs' sizes.
-    pub fn trial(&self) -> &crate::score::Trial {
-        &self.exhibit.champion.trial
+    /// The trial on show: the stairs to draw, the limbs' sizes.
+    pub fn trial(&self) -> &Trial {
+        self.exhibit.trial()
     }
 
     /// Simulated time of the last step, in seconds.
@@ -251,7 +298,8 @@ fn advance(
         }
         if stage.rollout.is_over() && !stage.is_checked {
             stage.is_checked = true;
-            if stage.evaluation() != stage.exhibit.champion.evaluation {
+            let recorded = &stage.exhibit.champion.evaluation;
+            if !stage.exhibit.is_changed() && stage.evaluation() != *recorded {
                 notices.problem(format!(
                     "This replay differs from its record ({:.2} instead of {:.2}): the file was \
                      edited, or another engine recorded it.",

@@ -53,8 +53,7 @@ pub(super) fn finish_bounce(physics: &mut PhysicsWorld, limb: RigidBodyHandle, b
         for corner in &mut corners {
             let turn = inverse_inertia * corner.lever.cross(corner.direction);
             let speed_m_s = (linear + angular.cross(corner.lever)).dot(corner.direction);
-            let inverse_effective =
-                inverse_mass + turn.cross(corner.lever).dot(corner.direction);
+            let inverse_effective = inverse_mass + turn.cross(corner.lever).dot(corner.direction);
             let wanted = corner.impulse_ns + (corner.leaving_m_s - speed_m_s) / inverse_effective;
             let change = wanted.max(0.0) - corner.impulse_ns;
             corner.impulse_ns += change;
@@ -85,7 +84,8 @@ fn bouncing(
                 let at = if limb_is_first { point.local_p1 } else { point.local_p2 };
                 let lever = pose.rotation * at;
                 let coming_m_s = -(before.linear + before.angular.cross(lever)).dot(direction);
-                let bounces = id & NEW_CONTACT_BIT != 0 && point.data.impulse > 0.0 && coming_m_s > 0.0;
+                let bounces =
+                    id & NEW_CONTACT_BIT != 0 && point.data.impulse > 0.0 && coming_m_s > 0.0;
                 bounces.then_some(Corner {
                     lever,
                     direction,

@@ -98,12 +98,17 @@ fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<
 ///
 /// Rapier scales its springs with the effective mass at each contact, `w² m` and `2 z w m`; so the
 /// conversion holds exactly for one mass, `mass_kg`: see [`corner_mass_kg`].
+///
+/// Without any damping (an ERP of 1) rapier would divide zero by zero, and close to it lose its digits;
+/// so the damping ratio is at least a little, far too small to see.
 fn soft_coefficients(give: Give, step_s: f32, mass_kg: f32) -> SpringCoefficients<Real> {
+    const LEAST_DAMPING: f32 = 1.0e-3;
     let spring = spring(give, step_s);
     let angular_frequency = (spring.kp_n_per_m / mass_kg).sqrt();
+    let damping_ratio = spring.kd_ns_per_m / (2.0 * angular_frequency * mass_kg);
     SpringCoefficients {
         natural_frequency: angular_frequency / std::f32::consts::TAU,
-        damping_ratio: spring.kd_ns_per_m / (2.0 * angular_frequency * mass_kg),
+        damping_ratio: damping_ratio.max(LEAST_DAMPING * angular_frequency * step_s),
     }
 }
 
@@ -163,9 +168,7 @@ impl PhysicsHooks for Hooks<'_> {
             // when it is touched.
             context.solver_contacts.retain(|contact| contact.dist <= 0.0);
         }
-        if law.bounce_velocity_m_s > 0.0
-            && incoming_m_s(context) < law.bounce_velocity_m_s
-        {
+        if law.bounce_velocity_m_s > 0.0 && incoming_m_s(context) < law.bounce_velocity_m_s {
             *context.restitution = 0.0;
         }
         if law.slip_m_s_per_n > 0.0 {

@@ -284,11 +284,8 @@ fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> C
 
 /// Lets the collider's contacts pass the hooks, if they have to.
 fn with_hook(collider: ColliderBuilder, law: &ContactLaw) -> ColliderBuilder {
-    let hooks = if law.needs_hook() {
-        ActiveHooks::MODIFY_SOLVER_CONTACTS
-    } else {
-        ActiveHooks::empty()
-    };
+    let hooks =
+        if law.needs_hook() { ActiveHooks::MODIFY_SOLVER_CONTACTS } else { ActiveHooks::empty() };
     collider.active_hooks(hooks)
 }
 

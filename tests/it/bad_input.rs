@@ -20,7 +20,10 @@ fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
 #[test]
 fn an_unknown_preset() {
     let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
-    assert_eq!(message, "error: preset is \"nosuch\"; allowed: report, steady, quick, or a file");
+    assert_eq!(
+        message,
+        "error: preset is \"nosuch\"; allowed: report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file"
+    );
 }
 
 #[test]

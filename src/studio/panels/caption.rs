@@ -49,6 +49,12 @@ fn contents(ui: &mut egui::Ui, stage: &Stage, run: u32, asked: &mut Vec<Command>
         if ui.button("From the start").on_hover_text("Play from the start (R)").clicked() {
             asked.push(Command::Restart);
         }
+        if stage.exhibit().is_changed() {
+            let hint = "Play it again in the world in which it was found";
+            if ui.button("As recorded").on_hover_text(hint).clicked() {
+                asked.push(Command::ShowRecorded);
+            }
+        }
         let state = match evaluation.disqualified {
             Some(reason) => format!("disqualified: {}", reason.words()),
             None => format!(

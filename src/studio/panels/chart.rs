@@ -6,6 +6,7 @@ use egui_plot::{AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoin
 use super::title;
 use crate::evolve::Settings;
 use crate::run::GenerationReport;
+use crate::score::Fitness;
 use crate::studio::look;
 
 /// The chart.
@@ -18,7 +19,13 @@ impl ChartPanel {
         title(ui, "Fitness");
         ui.horizontal(|ui| {
             let text = |text: &str, color| egui::RichText::new(text).color(color);
-            ui.label(text("Centre's y in m, by generation:", look::TEXT_WEAK));
+            let fitness = settings.trial.fitness;
+            let what = if fitness == Fitness::Centre {
+                "Centre's y in m, by generation:".to_owned()
+            } else {
+                format!("{}, by generation:", fitness.name().replace('_', " "))
+            };
+            ui.label(text(&what, look::TEXT_WEAK));
             ui.label(text("best", look::ACCENT).strong());
             ui.label(text("mean", look::SECOND).strong());
         });

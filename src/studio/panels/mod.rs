@@ -7,6 +7,7 @@ mod champions;
 mod chart;
 mod evolution;
 mod number_field;
+mod world;
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
@@ -22,6 +23,7 @@ use caption::caption;
 use champions::{ChampionsPanel, Shown};
 use chart::ChartPanel;
 use evolution::EvolutionPanel;
+use world::WorldPanel;
 
 /// The part of the window that is left for the stage.
 #[derive(Resource, Debug, Default)]
@@ -36,7 +38,19 @@ struct Panels {
     evolution: EvolutionPanel,
     chart: ChartPanel,
     champions: ChampionsPanel,
+    world: WorldPanel,
+    tab: Tab,
     is_dressed: bool,
+}
+
+/// What the left panel shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Tab {
+    /// The run: steer it, see how it goes, replay its champions.
+    #[default]
+    Run,
+    /// The world and the snake: tune them.
+    World,
 }
 
 pub(super) fn plugin(app: &mut App) {
@@ -81,7 +95,7 @@ fn draw(
         .resizable(false)
         .frame(frame)
         .show(&mut root, |ui| {
-            heading(ui, &evolution);
+            heading(ui, &evolution, &mut panels.tab);
             // At the bottom, where the growing list does not push it away.
             egui::Panel::bottom("keys")
                 .frame(egui::Frame::new())
@@ -89,10 +103,15 @@ fn draw(
                 .show(ui, |ui| keys(ui, window.height() > look::TALL_WINDOW));
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 let panels = &mut *panels;
-                panels.evolution.ui(ui, &evolution, &mut asked);
-                panels.chart.ui(ui, evolution.settings(), evolution.reports());
-                let reports = evolution.reports();
-                panels.champions.ui(ui, &opening.0, reports, shown, &mut asked);
+                match panels.tab {
+                    Tab::Run => {
+                        panels.evolution.ui(ui, &evolution, &mut asked);
+                        panels.chart.ui(ui, evolution.settings(), evolution.reports());
+                        let reports = evolution.reports();
+                        panels.champions.ui(ui, &opening.0, reports, shown, &mut asked);
+                    }
+                    Tab::World => panels.world.ui(ui, &evolution, &mut asked),
+                }
             });
         });
     area.left_points = panel.response.rect.right();
@@ -103,8 +122,16 @@ fn draw(
     Ok(())
 }
 
-fn heading(ui: &mut egui::Ui, evolution: &Evolution) {
-    ui.label(egui::RichText::new("Snakes & Stairs").size(look::HEADING_SIZE).strong());
+fn heading(ui: &mut egui::Ui, evolution: &Evolution, tab: &mut Tab) {
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new("Snakes & Stairs").size(look::HEADING_SIZE).strong());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.selectable_value(tab, Tab::World, "World")
+                .on_hover_text("Tune the surface, the snake and the stairs");
+            ui.selectable_value(tab, Tab::Run, "Run")
+                .on_hover_text("Steer evolution, replay its champions");
+        });
+    });
     let origin = format!("Preset {}, seed {}", evolution.preset(), evolution.seed());
     ui.label(egui::RichText::new(origin).color(look::TEXT_WEAK));
     ui.separator();

@@ -38,7 +38,8 @@ fn rebound_m(surface: Surface, height_m: f32) -> f32 {
 fn a_block_slides_only_past_the_friction_angle() {
     for friction in [0.2, 0.5, 1.0] {
         let slid_m = |tangent: f32| {
-            let mut simulation = Simulation::new(&block(Surface { friction, ..Default::default() }));
+            let mut simulation =
+                Simulation::new(&block(Surface { friction, ..Default::default() }));
             // A slope of this angle, seen from the slope.
             let angle = libm::atanf(tangent);
             simulation.physics.gravity =
@@ -82,7 +83,7 @@ fn an_impact_below_the_bounce_velocity_does_not_rebound() {
 
 #[test]
 fn a_resting_block_sinks_by_its_weight_over_the_stiffness_of_its_contacts() {
-    for (soft_erp, soft_cfm_m_s_per_n) in [(0.2, 0.01), (0.8, 0.01), (0.2, 0.1)] {
+    for (soft_erp, soft_cfm_m_s_per_n) in [(0.2, 0.01), (0.8, 0.01), (0.2, 0.1), (1.0, 0.2)] {
         let surface = Surface { soft_erp, soft_cfm_m_s_per_n, ..Default::default() };
         let mut simulation = Simulation::new(&block(surface));
         run(&mut simulation, 20.0);
@@ -163,8 +164,7 @@ fn creep_is_proportional_to_slip_and_to_force() {
 
 #[test]
 fn soft_ground_slips_as_hard_ground_does() {
-    let surface =
-        Surface { slip_m_s_per_n: 0.01, soft_cfm_m_s_per_n: 0.001, ..Default::default() };
+    let surface = Surface { slip_m_s_per_n: 0.01, soft_cfm_m_s_per_n: 0.001, ..Default::default() };
     let found = creep_m_s(surface, 20.0);
     assert!((found / 0.2 - 1.0).abs() < 0.05, "{found} m/s for 0.2 m/s");
 }
@@ -224,7 +224,10 @@ fn contacts_pass_the_hooks_only_where_a_parameter_needs_them() {
         let colliders = simulation.physics.colliders.iter();
         colliders.filter(|(_, collider)| !collider.active_hooks().is_empty()).count()
     };
-    assert_eq!(hooked(Surface { friction: 3.0, bounce: 0.5, soft_erp: 0.9, ..Default::default() }), 0);
+    assert_eq!(
+        hooked(Surface { friction: 3.0, bounce: 0.5, soft_erp: 0.9, ..Default::default() }),
+        0
+    );
     let slip = Surface { slip_m_s_per_n: 0.1, ..Default::default() };
     assert_eq!(hooked(slip), 11, "ten steps and the ground, and no limb");
 }

@@ -1,0 +1,154 @@
+//! `snakes table1` and `snakes calibrate`.
+
+use std::io::{self, Write};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use super::args::Args;
+use super::{CliError, cancel_on_interrupt, print};
+use crate::check::{Invalid, within};
+use crate::evolve::Settings;
+use crate::plot;
+use crate::run::calibrate::{Calibration, Candidate, knobs, try_candidate};
+use crate::run::headless::{HeadlessError, with_progress};
+use crate::run::table1::{SeedResult, Table1, run_seed};
+use crate::run::{Cancelled, pool};
+use crate::save::{Preset, store_csv, store_picture, store_preset};
+
+/// Runs the protocol with several seeds, prints the report's table beside ours, writes CSV and PNG.
+pub fn table1(args: &Args, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
+    let (preset, settings) = args.settings()?;
+    let folder = args.results_folder();
+    folder.prepare()?;
+    let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
+    let control = cancel_on_interrupt();
+    say(&format!(
+        "preset {preset}, seeds {} to {}: generations {}, population {}",
+        seeds.start(),
+        seeds.end(),
+        settings.evolution.generations,
+        settings.evolution.population
+    ));
+    let mut table = Table1 { seeds: Vec::new() };
+    for seed in seeds {
+        let result = run_seed(&preset, &settings, seed, &pool, &control, with_progress);
+        let result = result.map_err(|Cancelled| HeadlessError::Cancelled { kept: None })?;
+        if args.json {
+            print(&format!("{}\n", json_of(&result)))?;
+        } else {
+            say(&format!("seed {seed:>3}: {}", means_of(&result)));
+        }
+        table.seeds.push(result);
+    }
+    let text = table.text(|mean| settings.trial.meaning(mean));
+    let (csv, png) = (folder.path().join("table1.csv"), folder.path().join("table1.png"));
+    store_csv(&csv, &table.records())?;
+    let title = format!("Table 1 of the report, and ours (preset {preset})");
+    store_picture(&png, &plot::table1(&table, &title)?)?;
+    if args.json {
+        let line = serde_json::json!({
+            "done": true,
+            "seeds": table.seeds.len(),
+            "rising": table.rising(),
+            "reaching": table.reaching(),
+            "both": table.both(),
+            "csv": csv,
+            "png": png,
+        });
+        return print(&format!("{line}\n"));
+    }
+    print(&format!("{text}\nsaved to  {}\n          {}\n", csv.display(), png.display()))
+}
+
+/// Searches for the settings that the report left free.
+pub fn calibrate(args: &Args, tries: u32, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
+    let (name, settings) = args.settings()?;
+    let folder = args.results_folder();
+    folder.prepare()?;
+    let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
+    let control = cancel_on_interrupt();
+    say(&format!(
+        "from preset {name}, {tries} tries, seeds {} to {}; Ctrl-C keeps the best so far",
+        seeds.start(),
+        seeds.end()
+    ));
+    for knob in knobs() {
+        say(&format!("  {:<34} {} to {}", knob.field, knob.least, knob.most));
+    }
+    let path = folder.path().join("calibrated.ron");
+    let mut search = Calibration::new(settings, args.seed()?);
+    for number in 1..=tries {
+        let point = search.next()?;
+        let hopeless = search.hopeless_below();
+        let tried = try_candidate(point, seeds.clone(), hopeless, &pool, &control, with_progress);
+        let Ok(candidate) = tried else {
+            return Err(cancelled(&path, search.best()).into());
+        };
+        print(&line_of(number, &candidate))?;
+        if search.take_in(candidate.clone()) == Some(0) {
+            store_preset(&path, &preset_of(&candidate.settings, &candidate))?;
+        }
+    }
+    let best = search.best().map_or(f64::NAN, |best| best.score);
+    print(&format!("\nbest score {best:.2}; its settings are a preset: {}\n", path.display()))
+}
+
+fn cancelled(path: &std::path::Path, best: Option<&Candidate>) -> HeadlessError {
+    let kept: Option<PathBuf> = best.map(|_| path.to_owned());
+    HeadlessError::Cancelled { kept }
+}
+
+fn preset_of(settings: &Settings, candidate: &Candidate) -> Preset {
+    Preset {
+        name: "calibrated".to_owned(),
+        about: format!(
+            "Found by `snakes calibrate`: score {:.2} over {} seeds. Test it with other seeds: \
+             snakes table1 --preset FILE --first-seed 1001.",
+            candidate.score,
+            candidate.seeds.len()
+        ),
+        settings: settings.clone(),
+    }
+}
+
+/// A candidate in a line: score, knobs, the means of its seeds.
+fn line_of(number: u32, candidate: &Candidate) -> String {
+    let values: Vec<String> = candidate.values.iter().map(f32::to_string).collect();
+    let seeds: Vec<String> = candidate.seeds.iter().map(means_of).collect();
+    format!(
+        "{number:>4} {:>7.2}  ({})  [{}]\n",
+        candidate.score,
+        values.join(", "),
+        seeds.join("] [")
+    )
+}
+
+fn means_of(seed: &SeedResult) -> String {
+    let means = seed.means.iter().map(|mean| match mean {
+        Some(mean) => format!("{mean:.2}"),
+        None => "-".to_owned(),
+    });
+    means.collect::<Vec<String>>().join(" ")
+}
+
+fn json_of(seed: &SeedResult) -> serde_json::Value {
+    serde_json::json!({
+        "seed": seed.seed,
+        "means": seed.means,
+        "disqualified": seed.disqualified,
+        "run_hash": format!("{:016x}", seed.run_hash),
+    })
+}
+
+/// Seeds from `first` on, `count` of them.
+pub fn seeds(first: u64, count: u64) -> Result<RangeInclusive<u64>, Invalid> {
+    within("seeds", count, 1..=10_000)?;
+    within("first-seed", first, 0..=u64::MAX - count)?;
+    Ok(first..=first + count - 1)
+}
+
+/// Tells a person how it goes; standard output is for results.
+fn say(line: &str) {
+    // Nothing is left to do if even standard error is gone.
+    let _ = writeln!(io::stderr(), "{line}");
+}

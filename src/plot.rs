@@ -1,0 +1,228 @@
+//! Plots as pictures: Table 1 beside ours, and a torque signal as in the report's Figure 4.
+
+use std::error::Error;
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+
+use crate::evolve::Champion;
+use crate::run::table1::{REPORT_MEANS, Table1};
+use crate::save::Picture;
+
+/// A plot could not be drawn.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the plot cannot be drawn: {0}")]
+pub struct PlotError(String);
+
+impl PlotError {
+    fn new(error: impl Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// Ours, in all plots.
+const OURS: RGBColor = RGBColor(0x1f, 0x6f, 0xd0);
+/// The report's.
+const THEIRS: RGBColor = RGBColor(0xd0, 0x6a, 0x10);
+/// Text and axes.
+const INK: RGBColor = RGBColor(0x22, 0x26, 0x2e);
+/// Lines that only guide the eye.
+const FAINT: RGBColor = RGBColor(0xdd, 0xdf, 0xe4);
+const FONT: &str = "sans-serif";
+const TITLE_PIXELS: u32 = 26;
+const TEXT_PIXELS: u32 = 18;
+
+/// The means of all seeds over the generations, their mean with its spread, and the report's.
+///
+/// # Errors
+/// The plotting library failed.
+pub fn table1(table: &Table1, title: &str) -> Result<Picture, PlotError> {
+    let spreads = table.spreads();
+    let ours: Vec<(f64, f64, f64)> = (1..)
+        .zip(&spreads)
+        .filter_map(|(generation, spread)| Some((f64::from(generation), (*spread)?)))
+        .map(|(generation, spread)| (generation, spread.mean, spread.std))
+        .collect();
+    let report: Vec<(f64, f64)> = (1..).map(f64::from).zip(REPORT_MEANS).collect();
+    let every_mean = table.seeds.iter().flat_map(|seed| &seed.means).filter_map(|mean| *mean);
+    let x_range = 0.7..(spreads.len().max(REPORT_MEANS.len()) as f64 + 0.3);
+    let y_range = padded(every_mean.chain(REPORT_MEANS));
+    draw((960, 600), |area| {
+        let mut chart = ChartBuilder::on(area)
+            .caption(title, (FONT, TITLE_PIXELS).into_font().color(&INK))
+            .margin(20)
+            .x_label_area_size(48)
+            .y_label_area_size(70)
+            .build_cartesian_2d(x_range, y_range)?;
+        chart
+            .configure_mesh()
+            .x_labels(spreads.len().max(REPORT_MEANS.len()))
+            .x_label_formatter(&|x| format!("{x:.0}"))
+            .x_desc("generation")
+            .y_desc("mean fitness: y of the middle block, in m")
+            .light_line_style(WHITE)
+            .bold_line_style(FAINT)
+            .axis_style(INK)
+            .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
+            .draw()?;
+        for seed in &table.seeds {
+            let line = (1..).map(f64::from).zip(&seed.means);
+            let line = line.filter_map(|(generation, mean)| Some((generation, (*mean)?)));
+            chart.draw_series(LineSeries::new(line, OURS.mix(0.22).stroke_width(1)))?;
+        }
+        let above = ours.iter().map(|&(x, mean, std)| (x, mean + std));
+        let below = ours.iter().rev().map(|&(x, mean, std)| (x, mean - std));
+        let band: Vec<(f64, f64)> = above.chain(below).collect();
+        chart.draw_series([Polygon::new(band, OURS.mix(0.14).filled())])?;
+        let mean = ours.iter().map(|&(x, mean, _)| (x, mean));
+        let sample = |color: RGBColor| {
+            move |(x, y)| PathElement::new(vec![(x, y), (x + 26, y)], color.stroke_width(3))
+        };
+        let seeds = table.seeds.len();
+        let label = format!("ours: mean of {seeds} seeds, band: one std.dev., thin: each seed");
+        chart
+            .draw_series(LineSeries::new(mean.clone(), OURS.stroke_width(3)).point_size(4))?
+            .label(label)
+            .legend(sample(OURS));
+        chart
+            .draw_series(LineSeries::new(report, THEIRS.stroke_width(3)).point_size(4))?
+            .label("the report's Table 1")
+            .legend(sample(THEIRS));
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperLeft)
+            .background_style(WHITE.mix(0.85))
+            .border_style(FAINT)
+            .label_font((FONT, TEXT_PIXELS).into_font().color(&INK))
+            .draw()?;
+        Ok(())
+    })
+}
+
+/// One torque signal of a champion over time, as in the report's Figure 4: the first joint's bend.
+///
+/// # Errors
+/// The plotting library failed.
+pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
+    let signals = &champion.genome.signals;
+    let torques = signals.joints.first().map_or(&[][..], |joint| &joint.bend_nm);
+    let duration_s = f64::from(champion.trial.duration_s);
+    let at_s = |index: usize| index as f64 / f64::from(signals.points_per_s);
+    let points: Vec<(f64, f64)> =
+        torques.iter().enumerate().map(|(index, &nm)| (at_s(index), f64::from(nm))).collect();
+    let y_range = padded(points.iter().map(|(_, torque)| *torque).chain([-1000.0, 1000.0]));
+    draw((960, 420), |area| {
+        let mut chart = ChartBuilder::on(area)
+            .caption(title, (FONT, TITLE_PIXELS).into_font().color(&INK))
+            .margin(20)
+            .x_label_area_size(48)
+            .y_label_area_size(80)
+            .build_cartesian_2d(0.0..duration_s, y_range)?;
+        chart
+            .configure_mesh()
+            .x_desc("time in s")
+            .y_desc("torque in N·m")
+            .y_labels(9)
+            .light_line_style(WHITE)
+            .bold_line_style(FAINT)
+            .axis_style(INK)
+            .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
+            .draw()?;
+        chart.draw_series(LineSeries::new([(0.0, 0.0), (duration_s, 0.0)], INK.mix(0.4)))?;
+        let line = LineSeries::new(points.clone(), OURS.stroke_width(2)).point_size(3);
+        chart.draw_series(line)?;
+        Ok(())
+    })
+}
+
+/// Writes a line of text onto a picture, on a band along its lower edge.
+///
+/// # Errors
+/// The plotting library failed.
+pub fn caption(picture: &mut Picture, text: &str) -> Result<(), PlotError> {
+    font()?;
+    let size = (picture.width, picture.height);
+    let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
+    let (width, height) = (size.0 as i32, size.1 as i32);
+    let band = TEXT_PIXELS as i32 * 2;
+    area.draw(&Rectangle::new([(0, height - band), (width, height)], INK.mix(0.82).filled()))
+        .map_err(PlotError::new)?;
+    let style = (FONT, TEXT_PIXELS + 2).into_font().color(&WHITE);
+    area.draw(&Text::new(text, (band / 2, height - band * 3 / 4), style))
+        .map_err(PlotError::new)?;
+    area.present().map_err(PlotError::new)
+}
+
+/// The range of the values with a margin.
+fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (least, most) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(value), most.max(value)));
+    if least > most {
+        return -1.0..1.0;
+    }
+    let margin = ((most - least) * 0.06).max(0.5);
+    least - margin..most + margin
+}
+
+type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+
+fn draw(
+    size: (u32, u32),
+    paint: impl FnOnce(&Area) -> Result<(), Box<dyn Error>>,
+) -> Result<Picture, PlotError> {
+    font()?;
+    let mut picture = Picture::new(size.0, size.1);
+    {
+        let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
+        area.fill(&WHITE).map_err(PlotError::new)?;
+        paint(&area).map_err(|error| PlotError(error.to_string()))?;
+        area.present().map_err(PlotError::new)?;
+    }
+    Ok(picture)
+}
+
+/// Makes the embedded font known to the plotting library, once. No font of the system is looked for, so
+/// that a plot looks the same everywhere.
+fn font() -> Result<(), PlotError> {
+    static REGISTERED: OnceLock<bool> = OnceLock::new();
+    let register =
+        || register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok();
+    if *REGISTERED.get_or_init(register) {
+        Ok(())
+    } else {
+        Err(PlotError("the embedded font is broken".to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::table1::SeedResult;
+
+    #[test]
+    fn a_plot_has_ours_and_theirs_in_it() {
+        let seed = |shift: f64| SeedResult {
+            seed: 1,
+            means: REPORT_MEANS.map(|mean| Some(mean + shift)).to_vec(),
+            disqualified: vec![0; 6],
+            run_hash: 0,
+        };
+        let table = Table1 { seeds: vec![seed(-1.0), seed(2.0)] };
+        let picture = table1(&table, "Table 1").expect("drawn");
+        let has = |color: RGBColor| {
+            let color = [color.0, color.1, color.2];
+            picture.rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == color).count()
+        };
+        assert!(has(OURS) > 500, "{} pixels of ours", has(OURS));
+        assert!(has(THEIRS) > 500, "{} pixels of theirs", has(THEIRS));
+    }
+
+    #[test]
+    fn a_range_without_values_is_still_a_range() {
+        assert_eq!(padded(std::iter::empty()), -1.0..1.0);
+        assert_eq!(padded([1.0, f64::NAN].into_iter()), 0.5..1.5);
+    }
+}

@@ -1,0 +1,482 @@
+//! The world and the snake that the next run gets: surface, stairs, joints, limbs, and what is rewarded.
+//!
+//! A change also goes to the stage: what is on show begins anew under it. So that a drag does not start
+//! the stage again with every pixel, a slider is taken when it is let go.
+
+use bevy_egui::egui;
+
+use super::title;
+use crate::evolve::Settings;
+use crate::save::shipped_presets;
+use crate::score::{Fitness, PerPart};
+use crate::studio::command::Command;
+use crate::studio::evolution::Evolution;
+use crate::studio::look;
+use crate::world::Surface;
+
+/// The panel, with what is being dragged or typed.
+#[derive(Debug)]
+pub(super) struct WorldPanel {
+    /// The field being changed, and the value it has so far.
+    changing: Option<(String, f32)>,
+    /// Names and descriptions of the shipped presets.
+    presets: Vec<(String, String)>,
+}
+
+impl Default for WorldPanel {
+    fn default() -> Self {
+        // The shipped presets are well formed; a test holds them to it.
+        let presets = shipped_presets().unwrap_or_default();
+        let presets = presets.into_iter().map(|preset| (preset.name, preset.about)).collect();
+        Self { changing: None, presets }
+    }
+}
+
+/// A slider for one setting.
+struct Knob {
+    field: &'static str,
+    label: &'static str,
+    hint: &'static str,
+    /// What the slider shows. More may be typed, up to what the setting allows.
+    least: f32,
+    most: f32,
+    /// From this value up the slider goes by ratio; none: it is even.
+    logarithmic_from: Option<f32>,
+    is_whole: bool,
+}
+
+const fn knob(
+    field: &'static str,
+    label: &'static str,
+    hint: &'static str,
+    [least, most]: [f32; 2],
+) -> Knob {
+    Knob { field, label, hint, least, most, logarithmic_from: None, is_whole: false }
+}
+
+impl Knob {
+    const fn by_ratio_from(mut self, value: f32) -> Self {
+        self.logarithmic_from = Some(value);
+        self
+    }
+
+    const fn whole(mut self) -> Self {
+        self.is_whole = true;
+        self
+    }
+}
+
+/// The seven parameters of a surface.
+const SURFACE: [(Knob, fn(&Surface) -> f32); 7] = [
+    (
+        knob(
+            "friction",
+            "Friction",
+            "Largest tangential force over the normal force. 0 is ice without any hold",
+            [0.0, 5.0],
+        ),
+        |surface| surface.friction,
+    ),
+    (
+        knob("bounce", "Bounce", "Share of its speed that an impact gets back", [0.0, 1.0]),
+        |surface| surface.bounce,
+    ),
+    (
+        knob(
+            "bounce_velocity_m_s",
+            "Bounce velocity, m/s",
+            "Impacts slower than this do not bounce",
+            [0.0, 10.0],
+        ),
+        |surface| surface.bounce_velocity_m_s,
+    ),
+    (
+        knob(
+            "soft_erp",
+            "Soft ERP",
+            "Share of a penetration that is pushed out again in one step",
+            [0.01, 1.0],
+        ),
+        |surface| surface.soft_erp,
+    ),
+    (
+        knob(
+            "soft_cfm_m_s_per_n",
+            "Soft CFM, m/s per N",
+            "0 is hard; the larger, the deeper the snake sinks in",
+            [0.0, 1.0],
+        )
+        .by_ratio_from(1.0e-5),
+        |surface| surface.soft_cfm_m_s_per_n,
+    ),
+    (
+        knob(
+            "slip_m_s_per_n",
+            "Slip, m/s per N",
+            "How fast a contact creeps under a push that friction would hold",
+            [0.0, 1.0],
+        )
+        .by_ratio_from(1.0e-4),
+        |surface| surface.slip_m_s_per_n,
+    ),
+    (
+        knob(
+            "dampen_per_s",
+            "Dampen, 1/s",
+            "Share of its speed that a touching limb loses per second",
+            [0.0, 20.0],
+        ),
+        |surface| surface.dampen_per_s,
+    ),
+];
+
+/// What else there is of the world.
+const STAIRS: [(Knob, fn(&Settings) -> f32); 8] = [
+    (knob("stairs.steps", "Steps", "Number of steps", [0.0, 20.0]).whole(), |settings| {
+        settings.trial.stairs.steps as f32
+    }),
+    (knob("stairs.rise_m", "Rise, m", "Height of a step", [0.05, 2.0]), |settings| {
+        settings.trial.stairs.rise_m
+    }),
+    (knob("stairs.tread_m", "Tread, m", "Depth of a step", [0.2, 5.0]), |settings| {
+        settings.trial.stairs.tread_m
+    }),
+    (knob("stairs.width_m", "Width, m", "Width of the stairs", [1.0, 20.0]), |settings| {
+        settings.trial.stairs.width_m
+    }),
+    (
+        knob(
+            "stairs.first_riser_y_m",
+            "First riser at y, m",
+            "Where the stairs begin",
+            [0.0, 20.0],
+        ),
+        |settings| settings.trial.stairs.first_riser_y_m,
+    ),
+    (
+        knob(
+            "stairs.landing_m",
+            "Landing, m",
+            "Depth of the landing behind the last step",
+            [0.0, 30.0],
+        ),
+        |settings| settings.trial.stairs.landing_m,
+    ),
+    (
+        knob("gravity_m_s2", "Gravity, m/s²", "9.81 on earth, 1.62 on the moon", [0.0, 20.0]),
+        |settings| settings.trial.physics.gravity_m_s2,
+    ),
+    (knob("trial.duration_s", "Time, s", "How long each snake has", [1.0, 30.0]), |settings| {
+        settings.trial.duration_s
+    }),
+];
+
+/// The snake. A setting with one value per part shows its first, and a change sets all.
+const SNAKE: [(Knob, fn(&Settings) -> f32); 11] = [
+    (
+        knob("agent.limbs", "Limbs", "Number of blocks, each joined to the next", [2.0, 12.0])
+            .whole(),
+        |settings| settings.trial.agent.limbs as f32,
+    ),
+    (knob("agent.limb_width_m", "Width, m", "Of every block", [0.2, 3.0]), |settings| {
+        settings.trial.agent.limb_width_m.at(0)
+    }),
+    (knob("agent.limb_length_m", "Length, m", "Of every block", [0.2, 5.0]), |settings| {
+        settings.trial.agent.limb_length_m.at(0)
+    }),
+    (knob("agent.limb_height_m", "Height, m", "Of every block", [0.2, 3.0]), |settings| {
+        settings.trial.agent.limb_height_m.at(0)
+    }),
+    (
+        knob("max_bend_torque_nm", "Largest bend torque", "In N·m, of every joint", [0.0, 2000.0]),
+        |settings| settings.trial.agent.max_bend_torque_nm.at(0),
+    ),
+    (
+        knob("max_twist_torque_nm", "Largest twist torque", "In N·m, of every joint", [0.0, 2000.0]),
+        |settings| settings.trial.agent.max_twist_torque_nm.at(0),
+    ),
+    (
+        knob(
+            "joint_damping_nms_per_rad",
+            "Joint damping",
+            "Torque that resists bend and twist, in N·m per rad/s. Without it the motion is chaotic",
+            [0.0, 500.0],
+        )
+        .by_ratio_from(1.0),
+        |settings| settings.trial.agent.joint_damping_nms_per_rad.at(0),
+    ),
+    (
+        knob(
+            "joint_cfm_m_s_per_n",
+            "Joint CFM, m/s per N",
+            "0 is rigid; the larger, the more the joints give way",
+            [0.0, 0.1],
+        )
+        .by_ratio_from(1.0e-6),
+        |settings| settings.trial.agent.joint_cfm_m_s_per_n.at(0),
+    ),
+    (
+        knob(
+            "angular_damping_per_s",
+            "Angular damping, 1/s",
+            "Share of its spin that a block loses per second, as in thick air",
+            [0.0, 100.0],
+        ),
+        |settings| settings.trial.agent.angular_damping_per_s,
+    ),
+    (
+        knob(
+            "skin.friction",
+            "Skin friction",
+            "Multiplies the friction of what the snake touches",
+            [0.0, 5.0],
+        ),
+        |settings| settings.trial.agent.skin.friction,
+    ),
+    (
+        knob(
+            "skin.soft_cfm_m_s_per_n",
+            "Skin CFM, m/s per N",
+            "0 is hard; the larger, the squishier the blocks",
+            [0.0, 1.0],
+        )
+        .by_ratio_from(1.0e-5),
+        |settings| settings.trial.agent.skin.soft_cfm_m_s_per_n,
+    ),
+];
+
+/// The limits of the joints, if they are given instead of each genome's own.
+const LIMITS: [(Knob, fn(&Settings) -> &Option<PerPart>); 2] = [
+    (
+        knob("agent.bend_limit_rad", "Bend limit, rad", "Largest bend of every joint", [0.0, 3.0]),
+        |settings| &settings.trial.agent.bend_limit_rad,
+    ),
+    (
+        knob(
+            "agent.twist_limit_rad",
+            "Twist limit, rad",
+            "Largest twist of every joint",
+            [0.0, 3.0],
+        ),
+        |settings| &settings.trial.agent.twist_limit_rad,
+    ),
+];
+
+impl WorldPanel {
+    /// Draws the panel and adds what was asked for.
+    pub fn ui(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+        let settings = run.next_settings();
+        self.choices(ui, run, asked);
+        if run.next_run_differs() {
+            ui.label(
+                egui::RichText::new("The run under way keeps the world it began with.")
+                    .color(look::SECOND),
+            );
+            if ui.button("New run in this world").clicked() {
+                asked.extend([Command::Reset, Command::Start]);
+            }
+        }
+        let section = |ui: &mut egui::Ui, name: &str, is_open: bool| {
+            ui.add_space(look::GAP / 2.0);
+            let name = egui::RichText::new(name).size(look::TITLE_SIZE).strong();
+            egui::CollapsingHeader::new(name).default_open(is_open)
+        };
+        section(ui, "Surface", true).show(ui, |ui| self.surfaces(ui, settings, asked));
+        section(ui, "Snake", false).show(ui, |ui| {
+            for (knob, value) in &SNAKE {
+                self.slider(ui, "", knob, value(settings), asked);
+            }
+            for (knob, given) in &LIMITS {
+                self.limit(ui, knob, given(settings), asked);
+            }
+        });
+        section(ui, "Stairs and world", false).show(ui, |ui| {
+            for (knob, value) in &STAIRS {
+                self.slider(ui, "", knob, value(settings), asked);
+            }
+        });
+    }
+
+    /// Preset and fitness.
+    fn choices(&self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+        title(ui, "World");
+        let fitness = run.next_settings().trial.fitness;
+        egui::Grid::new("choices").num_columns(2).show(ui, |ui| {
+            ui.label("Preset");
+            egui::ComboBox::from_id_salt("preset")
+                .selected_text(run.next_preset())
+                .width(look::COMBO_WIDTH)
+                .show_ui(ui, |ui| {
+                    for (name, about) in &self.presets {
+                        let is_chosen = name == run.next_preset();
+                        let choice = ui.selectable_label(is_chosen, name).on_hover_text(about);
+                        if choice.clicked() {
+                            asked.push(Command::SetPreset(name.clone()));
+                        }
+                    }
+                });
+            ui.end_row();
+            ui.label("Fitness");
+            egui::ComboBox::from_id_salt("fitness")
+                .selected_text(short_name(fitness))
+                .width(look::COMBO_WIDTH)
+                .show_ui(ui, |ui| {
+                    for kind in Fitness::ALL {
+                        let choice = ui
+                            .selectable_label(kind == fitness, short_name(kind))
+                            .on_hover_text(about(kind));
+                        if choice.clicked() {
+                            asked.push(set("trial.fitness", kind.name()));
+                        }
+                    }
+                })
+                .response
+                .on_hover_text(about(fitness));
+            ui.end_row();
+        });
+    }
+
+    fn surfaces(&mut self, ui: &mut egui::Ui, settings: &Settings, asked: &mut Vec<Command>) {
+        let trial = &settings.trial;
+        let mut differs = trial.ground.is_some();
+        if ui.checkbox(&mut differs, "The ground has a surface of its own").changed() {
+            asked.push(if differs {
+                set("ground.friction", &trial.surface.friction.to_string())
+            } else {
+                set("trial.ground", "none")
+            });
+        }
+        if trial.ground.is_some() {
+            ui.label(egui::RichText::new("Stairs").color(look::TEXT_WEAK));
+        }
+        for (knob, value) in &SURFACE {
+            self.slider(ui, "trial.surface.", knob, value(&trial.surface), asked);
+        }
+        if let Some(ground) = &trial.ground {
+            ui.label(egui::RichText::new("Ground").color(look::TEXT_WEAK));
+            for (knob, value) in &SURFACE {
+                self.slider(ui, "trial.ground.", knob, value(ground), asked);
+            }
+        }
+    }
+
+    /// A limit that is each genome's own unless it is given.
+    fn limit(
+        &mut self,
+        ui: &mut egui::Ui,
+        knob: &Knob,
+        given: &Option<PerPart>,
+        asked: &mut Vec<Command>,
+    ) {
+        let mut is_given = given.is_some();
+        let hint = "Unticked, each genome has its own, drawn from the preset's list";
+        if ui.checkbox(&mut is_given, knob.label).on_hover_text(hint).changed() {
+            asked.push(set(knob.field, if is_given { "1" } else { "none" }));
+        }
+        if let Some(given) = given {
+            self.slider(ui, "", knob, given.at(0), asked);
+        }
+    }
+
+    /// A slider with a name over it. What it is set to is asked for when it is let go.
+    fn slider(
+        &mut self,
+        ui: &mut egui::Ui,
+        prefix: &str,
+        knob: &Knob,
+        value: f32,
+        asked: &mut Vec<Command>,
+    ) {
+        let field = format!("{prefix}{}", knob.field);
+        let mut shown = match &self.changing {
+            Some((changing, so_far)) if *changing == field => *so_far,
+            _ => value,
+        };
+        let mut slider = egui::Slider::new(&mut shown, knob.least..=knob.most)
+            .clamping(egui::SliderClamping::Never)
+            .max_decimals(6);
+        if let Some(from) = knob.logarithmic_from {
+            slider = slider.logarithmic(true).smallest_positive(f64::from(from));
+        }
+        if knob.is_whole {
+            slider = slider.step_by(1.0);
+        }
+        let name = ui.label(knob.label).on_hover_text(knob.hint);
+        ui.spacing_mut().slider_width = look::SLIDER_WIDTH;
+        let response = ui.add(slider).labelled_by(name.id).on_hover_text(knob.hint);
+        if response.changed() {
+            self.changing = Some((field.clone(), shown));
+        }
+        let is_let_go = !response.dragged() && !response.has_focus();
+        if is_let_go && self.changing.as_ref().is_some_and(|(changing, _)| *changing == field) {
+            self.changing = None;
+            if shown != value {
+                asked.push(set(&field, &rounded(shown)));
+            }
+        }
+    }
+}
+
+fn set(field: &str, text: &str) -> Command {
+    Command::SetField { field: field.to_owned(), text: text.to_owned() }
+}
+
+/// A slider's value with as many digits as a person can mean.
+fn rounded(value: f32) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn short_name(fitness: Fitness) -> &'static str {
+    match fitness {
+        Fitness::Centre => "Centre, y",
+        Fitness::Head => "Head, y",
+        Fitness::CentreOfMass => "Centre of mass, y",
+        Fitness::Height => "Height",
+        Fitness::FurthestY => "Furthest y ever",
+        Fitness::StepsClimbed => "Steps climbed",
+    }
+}
+
+fn about(fitness: Fitness) -> String {
+    format!("The {}.\nRewards wrongly: {}", fitness.words(), fitness.rewards_wrongly())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::with_field;
+
+    #[test]
+    fn every_slider_sets_a_field_that_there_is() {
+        let mut settings = Settings::default();
+        settings.trial.ground = Some(settings.trial.surface.clone());
+        let surfaces = ["trial.surface.", "trial.ground."].into_iter().flat_map(|prefix| {
+            SURFACE.iter().map(move |(knob, _)| (format!("{prefix}{}", knob.field), knob))
+        });
+        let others = STAIRS.iter().chain(&SNAKE).map(|(knob, _)| (knob.field.to_owned(), knob));
+        let limits = LIMITS.iter().map(|(knob, _)| (knob.field.to_owned(), knob));
+        for (field, knob) in surfaces.chain(others).chain(limits) {
+            for value in [knob.least, knob.most] {
+                with_field(&settings, &field, &rounded(value)).expect(&field);
+            }
+        }
+    }
+
+    #[test]
+    fn every_slider_shows_the_field_that_it_sets() {
+        let settings = Settings::default();
+        for (knob, value) in STAIRS.iter().chain(&SNAKE) {
+            let target = (knob.least + knob.most) / 2.0;
+            let target = if knob.is_whole { target.round() } else { target };
+            let changed = with_field(&settings, knob.field, &rounded(target)).expect(knob.field);
+            assert_eq!(value(&changed), target, "{}", knob.field);
+        }
+        for (knob, value) in &SURFACE {
+            let target = (knob.least + knob.most) / 2.0;
+            let field = format!("surface.{}", knob.field);
+            let changed = with_field(&settings, &field, &rounded(target)).expect(&field);
+            assert_eq!(value(&changed.trial.surface), target, "{field}");
+        }
+    }
+}
