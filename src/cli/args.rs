@@ -29,37 +29,37 @@ pub struct Args {
     #[arg(long, global = true, value_name = "NAME")]
     preset: Option<String>,
     /// Seed of the run; the same seed gives the same bits [default: 1]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     seed: Option<String>,
     /// Individuals per generation
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     population: Option<String>,
     /// Generations in the run
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     generations: Option<String>,
     /// How many of the best become parents
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     parents: Option<String>,
     /// Mutation range of the second generation, in N·m; it halves with each further one
-    #[arg(long, value_name = "NM", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "NM", allow_negative_numbers = true)]
     mutation_range: Option<String>,
     /// Torque points that take effect per second
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     points_per_s: Option<String>,
     /// Length of each simulation, in simulated seconds
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "S", allow_negative_numbers = true)]
     duration: Option<String>,
     /// Physics steps per simulated second
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "HZ", allow_negative_numbers = true)]
     steps_per_s: Option<String>,
     /// Solver substeps within a physics step
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     substeps: Option<String>,
     /// Gravity, in m/s²
-    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    #[arg(long, global = true, value_name = "G", allow_negative_numbers = true)]
     gravity: Option<String>,
     /// What is rewarded: centre, head, centre_of_mass, height, furthest_y or steps_climbed
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, global = true, value_name = "NAME")]
     fitness: Option<String>,
     /// Change any single setting, such as surface.friction=0.8 (see `snakes settings`); repeatable
     #[arg(long, global = true, value_name = "FIELD=VALUE")]

@@ -2,8 +2,8 @@
 //!
 //! What the report states stays as it is: population, parents, mutation range and halving, torque range
 //! and step, limit lists, the stairs, the start. What it leaves free is in [`knobs`]. A candidate runs
-//! the whole protocol with several seeds; the search draws candidates at first anywhere, then near
-//! the best that it has. Test what it finds with other seeds: `snakes table1`.
+//! the whole protocol with several seeds; the search starts from the settings it is given and draws
+//! candidates near the best that it has, now and then from anywhere. Test what it finds with other seeds: `snakes table1`.
 
 use std::sync::Arc;
 
@@ -72,10 +72,8 @@ pub struct Calibration {
 
 /// How many of the best candidates the search stays near.
 const KEPT: usize = 6;
-/// Candidates drawn from anywhere before the search looks near its best.
-const FIRST_TRIES: u32 = 12;
-/// Afterwards one in so many is still drawn from anywhere.
-const EXPLORE_ONE_IN: u32 = 8;
+/// One candidate in so many is drawn from anywhere, the others near the best.
+const EXPLORE_ONE_IN: u32 = 6;
 /// A candidate near another differs in each knob by up to this share.
 const STRIDE: f32 = 0.35;
 
@@ -99,10 +97,7 @@ impl Calibration {
         self.tries += 1;
         let values = if self.tries == 1 {
             self.base_values()
-        } else if self.tries <= FIRST_TRIES
-            || self.best.is_empty()
-            || rng.random_range(0..EXPLORE_ONE_IN) == 0
-        {
+        } else if self.best.is_empty() || rng.random_range(0..EXPLORE_ONE_IN) == 0 {
             KNOBS.iter().map(|knob| knob.anywhere(&mut rng)).collect()
         } else {
             let parent = &self.best[rng.random_range(0..self.best.len())].values;
@@ -126,7 +121,7 @@ impl Calibration {
 
     /// The score below which a candidate is not worth another seed.
     pub fn hopeless_below(&self) -> f64 {
-        self.best.get(KEPT - 1).map_or(f64::MIN, |last| last.score - GIVE_UP_MARGIN)
+        self.best.first().map_or(f64::MIN, |best| best.score - GIVE_UP_MARGIN)
     }
 
     fn base_values(&self) -> Vec<f32> {

@@ -148,6 +148,18 @@ mod tests {
         assert!(at.x.abs() < 2.5 && at.z > 1.5, "on the stairs, not beside them: {at}");
     }
 
+    #[test]
+    fn a_file_of_format_1_loads_for_ever() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/saves/format-1.ron");
+        let LoadedChampion { champion, engine } = load_champion(&path).expect("it loads");
+        assert_eq!(engine, 1);
+        assert_eq!(champion.trial.surface, crate::world::Surface::default());
+        assert_eq!(champion.trial.ground, None);
+        assert_eq!(champion.trial.agent, crate::score::AgentSettings::default());
+        assert!((champion.evaluation.fitness - 10.89).abs() < 0.01);
+        assert_eq!(champion.genome.signals.joints.len(), 4);
+    }
+
     /// What `load_champion` says to a champion's text after `edit`.
     fn refusal(edit: impl FnOnce(String) -> String) -> String {
         let folder = tempfile::tempdir().expect("a folder");

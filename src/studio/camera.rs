@@ -51,7 +51,7 @@ impl View {
 /// A fixed camera's place, from the usual side, that has a stretch of the y axis in view, in metres.
 pub(super) fn overlooking(from_y_m: f32, to_y_m: f32) -> Transform {
     // At this distance the stretch, seen at an angle, fills the width of a 16:9 picture.
-    const DISTANCE_PER_LENGTH: f32 = 0.8;
+    const DISTANCE_PER_LENGTH: f32 = 0.95;
     let distance_m = ((to_y_m - from_y_m) * DISTANCE_PER_LENGTH).max(*DISTANCE_M.start());
     let view = View { distance_m, ..View::default() };
     view.looking_at(Vec3::new(0.0, (from_y_m + to_y_m) / 2.0, 1.5))

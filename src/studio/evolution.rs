@@ -306,3 +306,21 @@ fn take_in(
         }
     }
 }
+
+/// A run of the default settings that has not begun, for tests of panels.
+#[cfg(test)]
+pub(super) fn prepared_run() -> Evolution {
+    let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
+    let options = Options {
+        preset: "report".to_owned(),
+        settings: Settings::default(),
+        seed: 1,
+        threads: 1,
+        saves: SavesFolder::find(Some(&folder)),
+        champion: None,
+        window_size: (1280, 720),
+        exit_after_frames: None,
+    };
+    #[expect(clippy::expect_used, reason = "a test without threads has failed")]
+    Evolution::new(Engine::new(&options).expect("threads"))
+}

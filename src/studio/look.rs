@@ -98,6 +98,8 @@ pub fn apply(context: &egui::Context) {
         }
         visuals.widgets.inactive.weak_bg_fill = FIELD;
         visuals.widgets.inactive.bg_fill = FIELD;
+        // Else an empty check box is hardly there.
+        visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, FIELD_HOVERED);
         visuals.widgets.hovered.weak_bg_fill = FIELD_HOVERED;
         visuals.widgets.active.weak_bg_fill = ACCENT.gamma_multiply(0.6);
         visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, FIELD_HOVERED);

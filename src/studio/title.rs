@@ -31,7 +31,9 @@ fn update(
                 Source::Run(run) if run == evolution.number() => format!("generation {generation}"),
                 Source::Run(_) => format!("generation {generation} of an earlier run"),
             };
-            if stage.is_playing() { what } else { format!("{what}, held") }
+            let world = if stage.exhibit().is_changed() { " in another world" } else { "" };
+            let held = if stage.is_playing() { "" } else { ", held" };
+            format!("{what}{world}{held}")
         }
     };
     let title = format!(

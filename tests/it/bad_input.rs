@@ -39,6 +39,34 @@ fn a_negative_duration() {
 }
 
 #[test]
+fn a_setting_that_does_not_exist_or_is_out_of_range() {
+    let folder = folder();
+    let message = refusal(folder.path(), "--no-render --set surface.fricton=0.8", 2);
+    assert!(
+        message.starts_with("error: set is \"surface.fricton\", which is no setting"),
+        "{message}"
+    );
+    assert!(message.contains("trial.surface.friction"), "{message}");
+    let message = refusal(folder.path(), "--no-render --set surface.slip_m_s_per_n=-1", 2);
+    assert_eq!(message, "error: trial.surface.slip_m_s_per_n is -1; allowed: 0 to 10");
+    let message = refusal(folder.path(), "--no-render --fitness speed", 2);
+    let allowed = "centre, head, centre_of_mass, height, furthest_y, steps_climbed";
+    assert_eq!(message, format!("error: fitness is \"speed\"; allowed: {allowed}"));
+    let message = refusal(folder.path(), "table1 --seeds 0", 2);
+    assert_eq!(message, "error: seeds is 0; allowed: 1 to 10000");
+}
+
+#[cfg(feature = "studio")]
+#[test]
+fn figures_of_a_folder_without_a_run() {
+    let folder = folder();
+    let message = refusal(folder.path(), "figures nosuch", 1);
+    assert!(message.starts_with("error: nosuch: cannot be read: "), "{message}");
+    let message = refusal(folder.path(), "figures .", 1);
+    assert!(message.contains("no generation-1.ron or later in it"), "{message}");
+}
+
+#[test]
 fn a_seed_that_is_no_number() {
     let message = refusal(folder().path(), "--no-render --seed twelve", 2);
     let allowed = "allowed: a whole number from 0 to 18446744073709551615";
@@ -91,9 +119,9 @@ fn a_foreign_save() {
 
 #[test]
 fn a_newer_save() {
-    let message = refusal_of_save(|text| text.replace("format: 1,", "format: 2,"));
+    let message = refusal_of_save(|text| text.replace("format: 2,", "format: 3,"));
     let reason = "(a newer version of Snakes & Stairs wrote this file)";
-    assert_eq!(message, format!("error: save.ron: format is 2; allowed: 1 to 1 {reason}"));
+    assert_eq!(message, format!("error: save.ron: format is 3; allowed: 1 to 2 {reason}"));
 }
 
 #[test]
@@ -126,6 +154,14 @@ fn a_preset_file_with_an_unknown_and_with_a_missing_field() {
     for (edit, complaint) in [
         (quick.replace("friction: 1.0", "fricton: 1.0"), "fricton"),
         (quick.replace("start_y_m: -7.23,", ""), "start_y_m"),
+        (
+            quick.replace("soft_erp: 0.25,\n", "soft_erp: 1.5,\n"),
+            "trial.surface.soft_erp is 1.5; allowed: 0.01 to 1",
+        ),
+        (
+            quick.replace("limb_width_m: 1.0,", "limb_width_m: [1.0, 1.0],"),
+            "trial.agent.limb_width_m is a list of 2; allowed: one value, or a list of 5",
+        ),
     ] {
         fs::write(folder.path().join("own.ron"), edit).expect("written");
         let message = refusal(folder.path(), "--no-render --preset own.ron", 1);

@@ -113,6 +113,59 @@ fn a_persons_own_preset_file_is_used() {
 }
 
 #[test]
+fn every_preset_runs() {
+    let folder = folder();
+    for preset in json_lines(folder.path(), "presets --json") {
+        let name = preset["name"].as_str().expect("a name");
+        let size = "--population 6 --generations 1 --duration 1";
+        let arguments = format!("--no-render --json --preset {name} {size} --out out");
+        let lines = json_lines(folder.path(), &arguments);
+        assert_eq!(lines[0]["evaluations"], json!(6), "{name}");
+        assert_eq!(lines[1]["done"], json!(true), "{name}");
+    }
+}
+
+#[test]
+fn a_single_setting_and_the_fitness_can_be_set_by_flag() {
+    let folder = folder();
+    let arguments =
+        "settings --json --set surface.friction=0.8 --set gravity_m_s2=1.62 --fitness head";
+    let settings = &json_lines(folder.path(), arguments)[0]["settings"];
+    let friction = settings["trial"]["surface"]["friction"].as_f64().expect("a number");
+    assert!((friction - 0.8).abs() < 1e-6);
+    assert_eq!(settings["trial"]["fitness"], json!("head"));
+    let list = stdout_of(folder.path(), "settings --preset ice");
+    let line = list.lines().find(|line| line.starts_with("trial.surface.friction"));
+    assert!(line.is_some_and(|line| line.ends_with("= 0.03")), "{list}");
+}
+
+#[test]
+fn table_1_is_printed_and_written_as_csv_and_png() {
+    let folder = folder();
+    let arguments = "table1 --seeds 2 --population 6 --generations 2 --duration 0.5 --out out";
+    let text = stdout_of(folder.path(), arguments);
+    assert!(text.lines().next().expect("a head").contains("report"), "{text}");
+    assert!(text.contains("-5.94  slightly forward"), "{text}");
+    assert!(text.contains("of 2 seeds"), "{text}");
+    let csv = std::fs::read_to_string(folder.path().join("out/table1.csv")).expect("written");
+    assert_eq!(csv.lines().count(), 5, "{csv}");
+    assert!(csv.starts_with("seed,generation,mean_m,disqualified,report_mean_m,run_hash\n1,1,"));
+    let png = std::fs::read(folder.path().join("out/table1.png")).expect("written");
+    assert!(png.starts_with(b"\x89PNG") && png.len() > 5_000);
+    let lines = json_lines(folder.path(), &format!("{arguments} --json"));
+    assert_eq!((lines[0]["seed"].clone(), lines[2]["seeds"].clone()), (json!(1), json!(2)));
+}
+
+#[test]
+fn calibration_writes_its_best_as_a_preset_that_runs() {
+    let folder = folder();
+    let small = "--population 4 --generations 2";
+    stdout_of(folder.path(), &format!("calibrate --tries 2 --seeds 1 {small} --out out"));
+    let arguments = "--no-render --json --preset out/calibrated.ron --generations 1 --out out";
+    assert_eq!(json_lines(folder.path(), arguments)[0]["evaluations"], json!(4));
+}
+
+#[test]
 fn the_bench_reports_its_figures() {
     let folder = folder();
     let figures = &json_lines(folder.path(), "bench --threads 1 --json")[0];

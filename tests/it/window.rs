@@ -7,6 +7,7 @@
 
 mod display;
 
+use super::program::{folder, json_lines, stdout_of};
 use display::{Picture, Studio};
 use std::time::Duration;
 
@@ -95,6 +96,36 @@ fn the_buttons_and_the_list_do_what_they_say() {
     studio.wait_for_title("0 of 1000 generations, ready");
     studio.click_button("Start");
     studio.wait_for_title("running");
+}
+
+#[test]
+fn a_change_in_the_world_tab_goes_to_the_stage_and_the_record_comes_back() {
+    let Some(studio) = Studio::open("world", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.click_button("World");
+    studio.click_button("The ground has a surface of its own");
+    studio.wait_for_title("showing saved champion in another world");
+    studio.click_button("As recorded");
+    studio.wait_for_title_without("in another world");
+}
+
+/// Not a window test, but it needs the same driver: pictures without a display.
+#[test]
+fn figures_are_drawn_without_a_display() {
+    if display::lacks_a_driver("figures") {
+        return;
+    }
+    let folder = folder();
+    let small = "--no-render --json --population 6 --generations 2 --duration 1 --out run";
+    let champion = json_lines(folder.path(), small)[2]["champion"].clone();
+    let run = champion.as_str().and_then(|path| path.rsplit_once('/')).expect("a path").0;
+    stdout_of(folder.path(), &format!("figures {run} --out figures"));
+    for name in ["signal.png", "generation-1.png", "generation-2.png"] {
+        let bytes = std::fs::read(folder.path().join("figures").join(name)).expect(name);
+        assert!(bytes.starts_with(b"\x89PNG"), "{name}");
+        // A picture of nothing would be packed into a few thousand bytes.
+        assert!(bytes.len() > 15_000, "{name} has {} bytes", bytes.len());
+    }
 }
 
 #[test]

@@ -49,12 +49,6 @@ fn contents(ui: &mut egui::Ui, stage: &Stage, run: u32, asked: &mut Vec<Command>
         if ui.button("From the start").on_hover_text("Play from the start (R)").clicked() {
             asked.push(Command::Restart);
         }
-        if stage.exhibit().is_changed() {
-            let hint = "Play it again in the world in which it was found";
-            if ui.button("As recorded").on_hover_text(hint).clicked() {
-                asked.push(Command::ShowRecorded);
-            }
-        }
         let state = match evaluation.disqualified {
             Some(reason) => format!("disqualified: {}", reason.words()),
             None => format!(
@@ -68,4 +62,10 @@ fn contents(ui: &mut egui::Ui, stage: &Stage, run: u32, asked: &mut Vec<Command>
             ui.label(egui::RichText::new(state).color(look::TEXT_WEAK).monospace());
         });
     });
+    if stage.exhibit().is_changed() {
+        let hint = "Play it again in the world in which it was found";
+        if ui.button("As recorded").on_hover_text(hint).clicked() {
+            asked.push(Command::ShowRecorded);
+        }
+    }
 }

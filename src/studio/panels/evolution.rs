@@ -118,27 +118,9 @@ impl EvolutionPanel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Settings;
-    use crate::save::SavesFolder;
-    use crate::studio::Options;
-    use crate::studio::evolution::Engine;
+    use crate::studio::evolution::prepared_run as run;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
-
-    fn run() -> Evolution {
-        let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
-        let options = Options {
-            preset: "report".to_owned(),
-            settings: Settings::default(),
-            seed: 1,
-            threads: 1,
-            saves: SavesFolder::find(Some(&folder)),
-            champion: None,
-            window_size: (1280, 720),
-            exit_after_frames: None,
-        };
-        Evolution::new(Engine::new(&options).expect("threads"))
-    }
 
     /// What the panel sends when a person does `act`.
     fn sent(run: &Evolution, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {

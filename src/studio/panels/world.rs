@@ -394,7 +394,7 @@ impl WorldPanel {
         };
         let mut slider = egui::Slider::new(&mut shown, knob.least..=knob.most)
             .clamping(egui::SliderClamping::Never)
-            .max_decimals(6);
+            .custom_formatter(|value, _| rounded(value as f32));
         if let Some(from) = knob.logarithmic_from {
             slider = slider.logarithmic(true).smallest_positive(f64::from(from));
         }
@@ -446,6 +446,62 @@ fn about(fitness: Fitness) -> String {
 mod tests {
     use super::*;
     use crate::evolve::with_field;
+    use crate::studio::evolution::prepared_run;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// What the panel sends when a person does `act`.
+    fn sent(run: &Evolution, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+        let mut panel = WorldPanel::default();
+        let size = egui::vec2(look::PANEL_WIDTH, 1000.0);
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .build_ui_state(|ui, asked| panel.ui(ui, run, asked), Vec::new());
+        act(&mut harness);
+        harness.run();
+        harness.state().clone()
+    }
+
+    #[test]
+    fn a_slider_is_taken_when_it_is_let_go_and_not_before() {
+        let run = prepared_run();
+        let drag = |lets_go: bool| {
+            sent(&run, |harness| {
+                let slider = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Bounce");
+                let rail = slider.rect();
+                harness.drag_at(rail.left_center() + egui::vec2(6.0, 0.0));
+                harness.run();
+                harness.hover_at(rail.center());
+                harness.run();
+                if lets_go {
+                    harness.drop_at(rail.center());
+                }
+            })
+        };
+        assert_eq!(drag(false), []);
+        let [Command::SetField { field, text }] = &drag(true)[..] else { panic!("one command") };
+        assert_eq!(field, "trial.surface.bounce");
+        let value: f32 = text.parse().expect("a number");
+        assert!((0.3..0.7).contains(&value), "half way along the rail: {value}");
+    }
+
+    #[test]
+    fn a_surface_for_the_ground_begins_as_a_copy() {
+        let run = prepared_run();
+        let asked = sent(&run, |harness| {
+            harness.get_by_label("The ground has a surface of its own").click();
+        });
+        assert_eq!(asked, [set("ground.friction", "1")]);
+    }
+
+    #[test]
+    fn while_the_run_is_in_another_world_a_new_one_is_offered() {
+        let mut run = prepared_run();
+        run.single_generation().expect("started");
+        run.set_field("surface.friction", "0.5").expect("allowed");
+        let asked = sent(&run, |harness| harness.get_by_label("New run in this world").click());
+        assert_eq!(asked, [Command::Reset, Command::Start]);
+    }
 
     #[test]
     fn every_slider_sets_a_field_that_there_is() {

@@ -46,6 +46,18 @@ fn skip(test: &str, reason: &str) {
     std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).expect("standard error");
 }
 
+/// Whether there is no Vulkan driver, so that nothing can be drawn; the test then is skipped.
+pub fn lacks_a_driver(test: &str) -> bool {
+    let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+    let is_there =
+        |folder: &&str| std::fs::read_dir(folder).is_ok_and(|mut list| list.next().is_some());
+    if folders.iter().any(|folder| is_there(&folder)) {
+        return false;
+    }
+    skip(test, "no Vulkan driver is installed");
+    true
+}
+
 fn is_installed(tool: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).any(|folder| folder.join(tool).is_file())
@@ -167,6 +179,9 @@ impl Studio {
             "Reset" => "249",
             // Not a button: a place in the panel where there is nothing.
             "the empty panel" => return self.click("300", "60"),
+            "World" => return self.click("275", "29"),
+            "The ground has a surface of its own" => return self.click("41", "223"),
+            "As recorded" => return self.click("397", "562"),
             other => panic!("no button {other}"),
         };
         self.click(x, BUTTONS_Y);
