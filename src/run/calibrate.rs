@@ -36,7 +36,7 @@ const KNOBS: [Knob; 9] = [
     Knob { field: DENSITY, least: 0.3, most: 10.0 },
     Knob { field: DENSITY_SPREAD, least: 1.0, most: 2.0 },
     Knob { field: "agent.joint_damping_nms_per_rad", least: 5.0, most: 500.0 },
-    Knob { field: "agent.angular_damping_per_s", least: 1.0, most: 100.0 },
+    Knob { field: "agent.angular_damping_per_s", least: 1.0, most: 1000.0 },
     Knob { field: "surface.friction", least: 0.2, most: 8.0 },
     Knob { field: "surface.bounce", least: 0.0, most: 0.8 },
     Knob { field: "surface.dampen_per_s", least: 0.0, most: 3.0 },

@@ -92,7 +92,8 @@ impl AgentSettings {
         self.joint_damping_nms_per_rad.check("joint_damping_nms_per_rad", joints, 0.0..=1.0e5)?;
         // At 0.1 m/s per N a report's snake comes apart under its own weight.
         self.joint_cfm_m_s_per_n.check("joint_cfm_m_s_per_n", joints, 0.0..=0.1)?;
-        within("angular_damping_per_s", self.angular_damping_per_s, 0.0..=100.0)?;
+        // At 1000 a spin is gone within a millisecond, as in tar.
+        within("angular_damping_per_s", self.angular_damping_per_s, 0.0..=1000.0)?;
         self.skin.check().map_err(|error| error.inside("skin"))
     }
 

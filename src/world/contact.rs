@@ -35,10 +35,6 @@ impl ContactLaws {
     pub fn ground_is_apart(&self) -> bool {
         self.ground.give != self.stairs.give
     }
-
-    fn slips(&self) -> bool {
-        self.stairs.slip_m_s_per_n > 0.0 || self.ground.slip_m_s_per_n > 0.0
-    }
 }
 
 /// Sets up the solver for these laws. `reference` is the limb whose weight the springs are worked out
@@ -67,10 +63,6 @@ pub(super) fn soften(
         parameters.num_internal_stabilization_iterations = 0;
         // A cap on the speed at which a spring pushes back would make it weaker the deeper it is.
         parameters.normalized_max_corrective_velocity = Real::MAX;
-    }
-    if laws.slips() {
-        // The simplified model knows no moving surface in its position-level pass.
-        parameters.friction_model = FrictionModel::Coulomb;
     }
 }
 
@@ -194,33 +186,57 @@ fn incoming_m_s(context: &ContactModificationContext) -> f32 {
 }
 
 impl Hooks<'_> {
-    /// Lets a contact patch creep at slip times the tangential force it carried in the last step, by
-    /// moving the surface under it.
+    /// Lets a contact patch creep at slip times its tangential force, by lowering the friction.
     ///
-    /// Following the force at once would overshoot where the bodies are heavy: with a = mass · slip / h
-    /// the creep is approached by the share 1 / (1 + 2a) in each step, which is stable for every a (the
-    /// roots of x² = b x + b, b = a / (1 + 2a), lie within the unit circle) and gives a sliding body
-    /// about the time constant mass · slip that a viscous contact has.
+    /// Inside the cone the patch should behave as a viscous contact, F = v / slip. The solver can only
+    /// stop a contact or let it slide, so it is told to stop it with no more than the viscous force
+    /// that the end of this step will call for: with u = h / mass and the sliding velocity that the
+    /// patch would have without friction, v + u F (from the last step's F),
+    /// `F' = |v + u F| / (slip + u)`. A steady push P then creeps at slip · P; the roots of
+    /// `x² - x + u / (slip + u)`, the deviations' growth per step, lie within the unit circle for every
+    /// slip. Because friction never does more than stop, it cannot feed energy in, whatever the estimates
+    /// are worth in a fall.
     fn let_slip(&self, slip_m_s_per_n: f32, context: &mut ContactModificationContext) {
-        let count = context.solver_contacts.len();
-        if count == 0 {
+        let count = context.solver_contacts.len() as f32;
+        if count == 0.0 {
             return;
         }
-        let substep_s = self.step_s / self.substeps as f32;
         let points = &context.manifold.points;
-        let impulse: Vector = points.iter().map(|point| point.data.warmstart_tangent_world).sum();
-        let force_n = impulse / substep_s;
-        let centre: Vector =
-            context.solver_contacts.iter().map(|contact| contact.anchor2).sum::<Vector>()
-                / count as f32;
+        // The engine keeps what the last substep pressed and rubbed: each point its own pressure, but the
+        // friction of the whole patch. (Its sum over a step counts a persistent contact once too often.)
+        let per_s = self.substeps as f32 / self.step_s;
+        let rubbed: Vector = points.iter().map(|point| point.data.warmstart_tangent_world).sum();
+        let force_n = rubbed * (per_s / points.len().max(1) as f32);
+        let pressed_n =
+            points.iter().map(|point| point.data.warmstart_impulse).sum::<f32>() * per_s;
+
+        let anchors = context.solver_contacts.iter().map(|contact| contact.anchor2);
+        let centre = anchors.sum::<Vector>() / count;
         let velocity = relative_velocity(context, centre);
-        let normal = *context.normal;
-        let sliding = velocity - normal * velocity.dot(normal);
-        let share = 1.0 / (1.0 + 2.0 * self.snake_kg * slip_m_s_per_n / self.step_s);
-        let creep = sliding * (1.0 - share) - force_n * (slip_m_s_per_n * share);
-        for contact in context.solver_contacts.iter_mut() {
-            // The solver wants the first body's velocity to be minus this.
-            contact.tangent_velocity = -creep;
+        let along_normal = velocity.dot(*context.normal);
+        let sliding = velocity - *context.normal * along_normal;
+
+        let mass_kg = self.limb_mass_kg(context);
+        let per_mass = self.step_s / (mass_kg * PATCH_SHARE_OF_MASS);
+        // The friction opposes the sliding, so that taking it away adds to it.
+        let free_m_s = (sliding - force_n * per_mass).length();
+        let viscous_n = free_m_s / (slip_m_s_per_n + per_mass);
+        // A patch that lands is pressed by its impact too.
+        let impact_n = mass_kg * along_normal.max(0.0) / self.step_s;
+        let pressed_n = pressed_n + impact_n;
+        if pressed_n > 0.0 {
+            *context.friction = context.friction.min(viscous_n / pressed_n);
         }
     }
+
+    /// Mass of the limb that touches, in kg; of the lighter, if two do.
+    fn limb_mass_kg(&self, context: &ContactModificationContext) -> f32 {
+        let bodies = [context.rigid_body1, context.rigid_body2];
+        let masses = bodies.iter().flatten().map(|body| context.bodies[*body].mass());
+        masses.filter(|mass| *mass > 0.0).fold(self.snake_kg, f32::min)
+    }
 }
+
+/// The share of a limb's mass that a push along the surface at its underside has to move, because the
+/// limb gives way by turning too. Too large a share would be unstable, too small a one only slower.
+const PATCH_SHARE_OF_MASS: f32 = 0.3;

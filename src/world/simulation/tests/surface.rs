@@ -231,3 +231,55 @@ fn contacts_pass_the_hooks_only_where_a_parameter_needs_them() {
     let slip = Surface { slip_m_s_per_n: 0.1, ..Default::default() };
     assert_eq!(hooked(slip), 11, "ten steps and the ground, and no limb");
 }
+
+/// The most that the mechanical energy of a thrown, limp snake ever is above an earlier value of its own,
+/// in J, and what it had at first.
+fn energy_gained_j(surface: Surface) -> (f32, f32) {
+    let mut plan = WorldPlan { ground: surface.clone(), surface, start_y_m: -20.0, ..plan(5) };
+    plan.health.arena_back_m = 1000.0;
+    plan.health.arena_half_width_m = 1000.0;
+    plan.health.joint_drift_m = 10.0;
+    plan.health.speed_m_s = 1000.0;
+    let mut simulation = Simulation::new(&plan);
+    for (index, limb) in simulation.limbs.clone().into_iter().enumerate() {
+        let body = &mut simulation.physics.bodies[limb];
+        let above = body.translation() + Vector::new(0.0, 0.0, 1.0);
+        body.set_translation(above, true);
+        body.set_linvel(Vector::new(1.0, 6.0, 2.0), true);
+        body.set_angvel(Vector::new(3.0, 2.0, if index > 2 { 1.0 } else { -1.0 }), true);
+    }
+    let energy_j = |simulation: &Simulation| -> f32 {
+        let bodies = simulation.limbs.iter().map(|&limb| &simulation.physics.bodies[limb]);
+        bodies.map(|b| b.kinetic_energy() + b.mass() * 9.81 * b.translation().z).sum()
+    };
+    let still = [JointTorque::default(); 4];
+    (0..3).for_each(|_| simulation.step(&still).expect("healthy"));
+    let first_j = energy_j(&simulation);
+    let (mut least_j, mut gained_j) = (first_j, 0.0_f32);
+    for _ in 0..300 {
+        simulation.step(&still).expect("healthy");
+        let now_j = energy_j(&simulation);
+        gained_j = gained_j.max(now_j - least_j);
+        least_j = least_j.min(now_j);
+    }
+    (gained_j, first_j)
+}
+
+#[test]
+fn no_surface_feeds_energy_in() {
+    let slippery = Surface { friction: 2.0, slip_m_s_per_n: 0.1, ..Default::default() };
+    let soft = Surface { soft_cfm_m_s_per_n: 0.01, ..Default::default() };
+    for surface in [
+        Surface::default(),
+        Surface { slip_m_s_per_n: 0.01, ..slippery.clone() },
+        Surface { slip_m_s_per_n: 0.5, ..slippery.clone() },
+        Surface { slip_m_s_per_n: 0.1, ..soft.clone() },
+        Surface { bounce: 0.5, ..Default::default() },
+        Surface { dampen_per_s: 2.0, ..Default::default() },
+        slippery,
+        soft,
+    ] {
+        let (gained_j, first_j) = energy_gained_j(surface.clone());
+        assert!(gained_j < 0.02 * first_j, "{gained_j} of {first_j} J on {surface:?}");
+    }
+}
