@@ -175,7 +175,13 @@ impl Args {
         SavesFolder::find(self.out.as_deref().or(self.saves.as_deref()))
     }
 
-    /// Where tables and pictures go: the working directory, unless named.
+    /// The folder that was named for results.
+    #[cfg(feature = "studio")]
+    pub fn out_folder(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
+
+    /// Where tables go: the working directory, unless named.
     pub fn results_folder(&self) -> SavesFolder {
         SavesFolder::find(Some(self.out.as_deref().unwrap_or(Path::new("."))))
     }

@@ -6,18 +6,21 @@ use indicatif::ProgressBar;
 
 use super::args::Args;
 use super::{CliError, print};
+use crate::evolve::Champion;
 use crate::plot;
-use crate::save::{LoadedChampion, Picture, load_run, store_picture};
+use crate::save::{Picture, SavesFolder, load_run, store_picture};
 use crate::studio::figures;
 
 /// Size of the pictures, in pixels.
 const SIZE: (u32, u32) = (1280, 720);
 
-/// Draws the champions of a run's folder: the report's Figures 5 to 10, and one signal as its Figure 4.
+/// Draws the champions of a run's folder: the report's Figures 5 to 10, and one signal as its Figure 4. They
+/// go into the run's own folder `figures`, unless another is named.
 pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
-    let champions: Vec<_> =
-        load_run(run)?.into_iter().map(|LoadedChampion { champion, .. }| champion).collect();
-    let folder = args.results_folder();
+    let (numbers, champions): (Vec<u32>, Vec<Champion>) =
+        load_run(run)?.into_iter().map(|(number, loaded)| (number, loaded.champion)).unzip();
+    let beside = run.join("figures");
+    let folder = SavesFolder::find(Some(args.out_folder().unwrap_or(&beside)));
     folder.prepare()?;
     let mut said = String::from("saved to\n");
     let mut keep = |name: String, picture: &Picture| -> Result<(), CliError> {
@@ -26,27 +29,31 @@ pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
         said += &format!("  {}\n", path.display());
         Ok(())
     };
-    if let Some(last) = champions.last() {
-        let title = format!(
-            "Bend torque of the first joint, champion of generation {}",
-            last.origin.generation
-        );
+    if let (Some(last), Some(number)) = (champions.last(), numbers.last()) {
+        let title = format!("Bend torque of the first joint, champion of generation {number}");
         keep("signal.png".to_owned(), &plot::signal(last, &title)?)?;
     }
     let bar = ProgressBar::new(champions.len() as u64);
     let pictures = figures::draw(&champions, SIZE, |_| bar.inc(1));
     bar.finish_and_clear();
-    for (champion, mut picture) in champions.iter().zip(pictures?) {
+    for ((number, champion), (mut picture, evaluation)) in
+        numbers.iter().zip(&champions).zip(pictures?)
+    {
         let origin = &champion.origin;
-        let generation = origin.generation;
+        let note = if evaluation == champion.evaluation {
+            ""
+        } else {
+            "   REPLAYED OTHERWISE THAN RECORDED"
+        };
+        let shown = Champion { evaluation, ..champion.clone() };
         let text = format!(
-            "Generation {generation}: {}   ({}, seed {})",
-            champion.reached(),
+            "Generation {number}: {}   ({}, seed {}){note}",
+            shown.reached(),
             origin.preset,
             origin.seed
         );
         plot::caption(&mut picture, &text)?;
-        keep(format!("generation-{generation}.png"), &picture)?;
+        keep(format!("generation-{number}.png"), &picture)?;
     }
     print(&said)
 }

@@ -13,15 +13,20 @@ use crate::run::calibrate::{Calibration, Candidate, knobs, try_candidate};
 use crate::run::headless::{HeadlessError, with_progress};
 use crate::run::table1::{SeedResult, Table1, run_seed};
 use crate::run::{Cancelled, pool};
-use crate::save::{Preset, store_csv, store_picture, store_preset};
+use crate::save::{Preset, run_name, store_csv, store_picture, store_preset};
+use crate::score::Fitness;
 
 /// Runs the protocol with several seeds, prints the report's table beside ours, writes CSV and PNG.
 pub fn table1(args: &Args, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
     let (preset, settings) = args.settings()?;
+    check_fitness(&settings)?;
     let folder = args.results_folder();
     folder.prepare()?;
     let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
     let control = cancel_on_interrupt();
+    let run = run_name(&preset, *seeds.start(), &settings);
+    let named = |kind: &str| folder.path().join(format!("table1-{run}-to-{}.{kind}", seeds.end()));
+    let (csv, png) = (named("csv"), named("png"));
     say(&format!(
         "preset {preset}, seeds {} to {}: generations {}, population {}",
         seeds.start(),
@@ -30,19 +35,19 @@ pub fn table1(args: &Args, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
         settings.evolution.population
     ));
     let mut table = Table1 { seeds: Vec::new() };
-    for seed in seeds {
+    for seed in seeds.clone() {
         let result = run_seed(&preset, &settings, seed, &pool, &control, with_progress);
-        let result = result.map_err(|Cancelled| HeadlessError::Cancelled { kept: None })?;
+        let kept = (!table.seeds.is_empty()).then(|| csv.clone());
+        let result = result.map_err(|Cancelled| HeadlessError::Cancelled { kept })?;
         if args.json {
             print(&format!("{}\n", json_of(&result)))?;
         } else {
             say(&format!("seed {seed:>3}: {}", means_of(&result)));
         }
         table.seeds.push(result);
+        store_csv(&csv, &table.records())?;
     }
     let text = table.text(|mean| settings.trial.meaning(mean));
-    let (csv, png) = (folder.path().join("table1.csv"), folder.path().join("table1.png"));
-    store_csv(&csv, &table.records())?;
     let title = format!("Table 1 of the report, and ours (preset {preset})");
     store_picture(&png, &plot::table1(&table, &title)?)?;
     if args.json {
@@ -63,6 +68,8 @@ pub fn table1(args: &Args, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
 /// Searches for the settings that the report left free.
 pub fn calibrate(args: &Args, tries: u32, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
     let (name, settings) = args.settings()?;
+    check_fitness(&settings)?;
+    within("tries", tries, 1..=1_000_000)?;
     let folder = args.results_folder();
     folder.prepare()?;
     let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
@@ -75,7 +82,8 @@ pub fn calibrate(args: &Args, tries: u32, seeds: RangeInclusive<u64>) -> Result<
     for knob in knobs() {
         say(&format!("  {:<34} {} to {}", knob.field, knob.least, knob.most));
     }
-    let path = folder.path().join("calibrated.ron");
+    let run = run_name(&name, args.seed()?, &settings);
+    let path = folder.path().join(format!("calibrated-from-{run}.ron"));
     let mut search = Calibration::new(settings, args.seed()?);
     for number in 1..=tries {
         let point = search.next()?;
@@ -86,7 +94,7 @@ pub fn calibrate(args: &Args, tries: u32, seeds: RangeInclusive<u64>) -> Result<
         };
         print(&line_of(number, &candidate))?;
         if search.take_in(candidate.clone()) == Some(0) {
-            store_preset(&path, &preset_of(&candidate.settings, &candidate))?;
+            store_preset(&path, &preset_of(&candidate, *seeds.end()))?;
         }
     }
     let best = search.best().map_or(f64::NAN, |best| best.score);
@@ -98,16 +106,17 @@ fn cancelled(path: &std::path::Path, best: Option<&Candidate>) -> HeadlessError 
     HeadlessError::Cancelled { kept }
 }
 
-fn preset_of(settings: &Settings, candidate: &Candidate) -> Preset {
+fn preset_of(candidate: &Candidate, last_seed: u64) -> Preset {
     Preset {
         name: "calibrated".to_owned(),
         about: format!(
             "Found by `snakes calibrate`: score {:.2} over {} seeds. Test it with other seeds: \
-             snakes table1 --preset FILE --first-seed 1001.",
+             snakes table1 --preset FILE --first-seed {}.",
             candidate.score,
-            candidate.seeds.len()
+            candidate.seeds.len(),
+            last_seed.saturating_add(1)
         ),
-        settings: settings.clone(),
+        settings: candidate.settings.clone(),
     }
 }
 
@@ -138,6 +147,15 @@ fn json_of(seed: &SeedResult) -> serde_json::Value {
         "disqualified": seed.disqualified,
         "run_hash": format!("{:016x}", seed.run_hash),
     })
+}
+
+/// The report's table is about one fitness; a mean of anything else beside it would mislead.
+fn check_fitness(settings: &Settings) -> Result<(), Invalid> {
+    let fitness = settings.trial.fitness;
+    if fitness == Fitness::Centre {
+        return Ok(());
+    }
+    Err(Invalid::new("trial.fitness", fitness, "centre, as in the report's table"))
 }
 
 /// Seeds from `first` on, `count` of them.

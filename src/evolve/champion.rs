@@ -22,7 +22,7 @@ impl Champion {
         let Evaluation { fitness, centre_y_m, .. } = self.evaluation;
         let meaning = self.trial.meaning(f64::from(centre_y_m));
         match self.trial.fitness {
-            Fitness::StepsClimbed => meaning,
+            Fitness::StepsClimbed => format!("{fitness:.0} steps"),
             kind => format!("{fitness:.2}{}, {meaning}", kind.unit()),
         }
     }

@@ -43,6 +43,10 @@ pub fn with_fields<'a>(
 }
 
 fn unchecked(mut settings: Settings, path: &str, text: &str) -> Result<Settings, Invalid> {
+    if ["ground", "trial.ground"].contains(&path) && text == "none" {
+        settings.trial.ground = None;
+        return Ok(settings);
+    }
     if settings.trial.ground.is_none() && path.trim_start_matches("trial.").starts_with("ground.") {
         settings.trial.ground = Some(settings.trial.surface.clone());
     }
@@ -201,6 +205,10 @@ mod tests {
         let ground = changed.trial.ground.expect("its own");
         assert_eq!((ground.friction, ground.bounce), (0.1, 0.5));
         assert_eq!(changed.trial.surface, settings.trial.surface);
+        let changed = with_field(&settings, "ground.friction", "0.1").expect("allowed");
+        for path in ["ground", "trial.ground"] {
+            assert_eq!(with_field(&changed, path, "none").expect("allowed"), settings);
+        }
     }
 
     #[test]

@@ -57,17 +57,20 @@ pub fn champion_file_name(generation: u32) -> String {
     format!("generation-{generation}.ron")
 }
 
-/// The champions of a run's folder, the first generation first.
+/// The champions of a run's folder with the numbers of their generations, the first generation first.
 ///
 /// # Errors
 /// The folder cannot be read, has no champion in it, or one that is damaged.
-pub fn load_run(folder: &Path) -> Result<Vec<LoadedChampion>, SaveError> {
+pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> {
     let unreadable = |source| SaveError::Unreadable { path: folder.to_owned(), source };
     let mut generations = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let name = entry.map_err(unreadable)?.file_name();
         let number = name.to_str().and_then(|name| {
-            name.strip_prefix("generation-")?.strip_suffix(".ron")?.parse::<u32>().ok()
+            let digits = name.strip_prefix("generation-")?.strip_suffix(".ron")?;
+            let number = digits.parse::<u32>().ok()?;
+            // Not a copy that a person named `generation-01.ron`.
+            (champion_file_name(number) == name).then_some(number)
         });
         generations.extend(number);
     }
@@ -76,7 +79,7 @@ pub fn load_run(folder: &Path) -> Result<Vec<LoadedChampion>, SaveError> {
         let missing = "no generation-1.ron or later in it; a run's folder is wanted";
         return Err(unreadable(std::io::Error::other(missing)));
     }
-    let load = |generation| load_champion(&folder.join(champion_file_name(generation)));
+    let load = |number| Ok((number, load_champion(&folder.join(champion_file_name(number)))?));
     generations.into_iter().map(load).collect()
 }
 

@@ -163,6 +163,7 @@ fn trial_v2(trial: TrialV1, density_kg_m3: f32) -> TrialV2 {
 /// format 1 called rigid is rigid. The effective mass is that of two limbs pulled apart.
 fn joint_cfm(agent: &AgentV1, steps_per_s: u32, density_kg_m3: f32) -> f32 {
     const RIGID_HZ: f32 = 1.0e4;
+    const SOFTEST_JOINT: f32 = 0.1;
     let SoftnessV1 { frequency_hz, damping_ratio } = agent.joint_softness;
     if frequency_hz >= RIGID_HZ {
         return 0.0;
@@ -172,5 +173,7 @@ fn joint_cfm(agent: &AgentV1, steps_per_s: u32, density_kg_m3: f32) -> f32 {
     let angular_frequency = std::f32::consts::TAU * frequency_hz;
     let kp_n_per_m = angular_frequency * angular_frequency * reduced_kg;
     let kd_ns_per_m = 2.0 * damping_ratio * angular_frequency * reduced_kg;
-    1.0 / (kp_n_per_m / steps_per_s as f32 + kd_ns_per_m)
+    // Softer than format 2 allows would come apart under its own weight.
+    let cfm_m_s_per_n = 1.0 / (kp_n_per_m / steps_per_s as f32 + kd_ns_per_m);
+    if cfm_m_s_per_n < SOFTEST_JOINT { cfm_m_s_per_n } else { SOFTEST_JOINT }
 }

@@ -47,7 +47,7 @@ impl Rollout {
     pub fn new(genome: &Genome, trial: &Trial) -> Self {
         let plan = trial.world_plan(genome);
         let simulation = Simulation::new(&plan);
-        Self {
+        let mut rollout = Self {
             player: SignalPlayer::new(genome.signals.clone(), trial.physics.steps_per_s),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
@@ -56,12 +56,14 @@ impl Rollout {
             stairs: plan.stairs,
             masses_kg: plan.body.limbs.iter().map(LimbPlan::mass_kg).collect(),
             middle_limb: plan.body.middle_limb(),
-            furthest_y_m: trial.start_y_m,
+            furthest_y_m: f32::MIN,
             trace: Xxh3Default::new(),
             step: 0,
             last_step: trial.steps(),
             disqualified: None,
-        }
+        };
+        rollout.furthest_y_m = rollout.poses[rollout.middle_limb].translation.y;
+        rollout
     }
 
     /// Takes one step, unless the rollout is over. Returns whether it took a healthy one.

@@ -78,10 +78,10 @@ fn apply(
             Command::SetPopulation(population) => evolution.set_population(*population),
             Command::SetField { field, text } => evolution
                 .set_field(field, text)
-                .map(|()| show_changed(&evolution, &stages, &mut show)),
-            Command::SetPreset(name) => {
-                evolution.set_preset(name).map(|()| show_changed(&evolution, &stages, &mut show))
-            }
+                .map(|()| show_changed(&evolution, &stages, &mut show, &mut notices)),
+            Command::SetPreset(name) => evolution
+                .set_preset(name)
+                .map(|()| show_changed(&evolution, &stages, &mut show, &mut notices)),
             Command::ShowRecorded => {
                 let recorded = stages.iter().map(|stage| stage.exhibit().as_recorded());
                 show.write_batch(recorded.map(ShowExhibit));
@@ -135,8 +135,18 @@ fn show_changed(
     evolution: &Evolution,
     stages: &Query<&mut Stage>,
     show: &mut MessageWriter<ShowExhibit>,
+    notices: &mut Notices,
 ) {
     let trial = &evolution.next_settings().trial;
-    let changed = stages.iter().filter_map(|stage| stage.exhibit().in_world(trial));
-    show.write_batch(changed.map(ShowExhibit));
+    for stage in stages {
+        match stage.exhibit().in_world(trial) {
+            Some(changed) => {
+                show.write(ShowExhibit(changed));
+            }
+            None => notices.news(format!(
+                "What is on show has {} limbs and stays in its own world; a new run will show this one.",
+                stage.trial().agent.limbs
+            )),
+        }
+    }
 }

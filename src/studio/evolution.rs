@@ -270,13 +270,14 @@ fn take_in(
 ) {
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
-    // Only like can be compared with like.
-    let fitness = evolution.settings.trial.fitness;
+    // Only what was found in the world of this run can be compared with what it finds.
+    let world = &evolution.settings.trial;
     let rivals = stages.iter().map(Stage::exhibit);
-    let rivals = rivals.filter(|exhibit| exhibit.champion().trial.fitness == fitness);
+    let rivals = rivals.filter(|exhibit| exhibit.champion().trial == *world);
     let mut to_beat = rivals.map(Exhibit::fitness).fold(f32::MIN, f32::max);
-    // Who holds the stage or tries out a world is looking at something.
-    let is_held = stages.iter().any(|stage| !stage.is_playing() || stage.exhibit().is_changed());
+    // Who holds the stage, or tries out another world than the run's, is looking at something.
+    let is_tried = |stage: &Stage| stage.exhibit().is_changed() && stage.trial() != world;
+    let is_held = stages.iter().any(|stage| !stage.is_playing() || is_tried(stage));
     for event in events {
         match event {
             Event::Generation(report) => {

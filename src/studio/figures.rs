@@ -18,6 +18,7 @@ use super::stage::{Exhibit, Stage};
 use super::{Frame, StudioError, camera, look, scene, snake, start_up};
 use crate::evolve::Champion;
 use crate::save::Picture;
+use crate::score::Evaluation;
 
 /// How many faint snakes show the way to the end; the first is the start.
 const MOMENTS: u32 = 4;
@@ -30,7 +31,8 @@ const MOST_FRAMES: u32 = 200;
 #[derive(Resource, Default)]
 struct Developed(Mutex<Option<Picture>>);
 
-/// Draws the end of each champion's rollout. `each` is told the number of every picture that is done.
+/// Draws the end of each champion's rollout, and says what it reached this time. `each` is told the number
+/// of every picture that is done.
 ///
 /// # Errors
 /// There is no graphics driver.
@@ -38,16 +40,16 @@ pub fn draw(
     champions: &[Champion],
     (width, height): (u32, u32),
     mut each: impl FnMut(usize),
-) -> Result<Vec<Picture>, StudioError> {
+) -> Result<Vec<(Picture, Evaluation)>, StudioError> {
     let mut pictures = Vec::new();
     let mut problem = None;
     let result = start_up::guarded(|| {
         let mut app = studio_without_window();
         let target = set_up(&mut app, width, height);
         for (index, champion) in champions.iter().enumerate() {
-            put_in_place(&mut app, champion);
+            let evaluation = put_in_place(&mut app, champion);
             match take_picture(&mut app, &target) {
-                Some(picture) => pictures.push(picture),
+                Some(picture) => pictures.push((picture, evaluation)),
                 None => {
                     problem = Some(StudioError::NoPicture("the renderer brought none back".into()));
                     break;
@@ -102,14 +104,15 @@ fn set_up(app: &mut App, width: u32, height: u32) -> Handle<Image> {
     target
 }
 
-/// Replaces what is in front of the camera by a champion at the end of its rollout.
-fn put_in_place(app: &mut App, champion: &Champion) {
+/// Replaces what is in front of the camera by a champion at the end of its rollout. Returns what it reached.
+fn put_in_place(app: &mut App, champion: &Champion) -> Evaluation {
     let world = app.world_mut();
     let earlier: Vec<Entity> = world.query_filtered::<Entity, With<Stage>>().iter(world).collect();
     earlier.into_iter().for_each(|stage| world.entity_mut(stage).despawn());
 
     let mut stage = Stage::new(Exhibit::opening(champion));
     let moments = stage.skip_to_end(MOMENTS);
+    let evaluation = stage.evaluation();
     let ends_at_m = stage.drawn_poses().map(|pose| pose.translation.y).fold(f32::MIN, f32::max);
     let agent = champion.trial.agent.clone();
     let starts_at_m = champion.trial.start_y_m - agent.length_m() / 2.0;
@@ -132,6 +135,7 @@ fn put_in_place(app: &mut App, champion: &Champion) {
             }
         }
     });
+    evaluation
 }
 
 /// The cube, and the two colours of the snake as glass.

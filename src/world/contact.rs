@@ -3,6 +3,7 @@
 //! Softness becomes contact springs of the solver ([`soften`]); bounce velocity and slip act through
 //! contact hooks ([`Hooks`]), which are switched on only where a contact needs them.
 
+use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
 
 use super::surface::{ContactLaw, Give, spring};
@@ -201,14 +202,19 @@ impl Hooks<'_> {
         if count == 0.0 {
             return;
         }
-        let points = &context.manifold.points;
+        // Points that only come near are in the manifold too, with what they carried when they touched.
+        let touching = context.solver_contacts.iter().filter_map(|contact| {
+            context.manifold.points.get((contact.contact_id[0] & !NEW_CONTACT_BIT) as usize)
+        });
         // The engine keeps what the last substep pressed and rubbed: each point its own pressure, but the
         // friction of the whole patch. (Its sum over a step counts a persistent contact once too often.)
         let per_s = self.substeps as f32 / self.step_s;
-        let rubbed: Vector = points.iter().map(|point| point.data.warmstart_tangent_world).sum();
-        let force_n = rubbed * (per_s / points.len().max(1) as f32);
-        let pressed_n =
-            points.iter().map(|point| point.data.warmstart_impulse).sum::<f32>() * per_s;
+        let (mut rubbed, mut pressed_ns) = (Vector::ZERO, 0.0);
+        for point in touching {
+            rubbed += point.data.warmstart_tangent_world;
+            pressed_ns += point.data.warmstart_impulse;
+        }
+        let (force_n, pressed_n) = (rubbed * (per_s / count), pressed_ns * per_s);
 
         let anchors = context.solver_contacts.iter().map(|contact| contact.anchor2);
         let centre = anchors.sum::<Vector>() / count;

@@ -95,6 +95,13 @@ impl Simulation {
         if let Some(middle) = plan.body.limbs.get(plan.body.middle_limb()) {
             soften(&mut physics.integration_parameters, &laws, &plan.physics, middle);
         }
+        let bounces = [plan.surface.bounce, plan.ground.bounce, plan.skin.bounce]
+            .iter()
+            .any(|&bounce| bounce > 0.0);
+        if bounces {
+            // Contacts that the engine recycles keep saying that they are new: see `bounce`.
+            physics.integration_parameters.contact_recycling = false;
+        }
         let ground = insert_ground(&mut physics, plan, &laws);
         for stair in plan.stairs.boxes() {
             let min = Vector::from(stair.min_m);
@@ -110,9 +117,7 @@ impl Simulation {
             physics,
             contacts: Contacts {
                 laws,
-                bounces: [plan.surface.bounce, plan.ground.bounce, plan.skin.bounce]
-                    .iter()
-                    .any(|&bounce| bounce > 0.0),
+                bounces,
                 ground,
                 substeps: plan.physics.substeps,
                 snake_kg: plan.body.mass_kg(),

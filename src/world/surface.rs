@@ -132,11 +132,17 @@ impl ContactLaw {
     pub fn between(surface: &Surface, skin: &Skin) -> Self {
         let surface_gives =
             Give { erp: surface.soft_erp, cfm_m_s_per_n: surface.soft_cfm_m_s_per_n };
+        let skin_gives = skin.give();
         Self {
             bounce_velocity_m_s: surface.bounce_velocity_m_s,
             slip_m_s_per_n: surface.slip_m_s_per_n,
             dampen_per_s: surface.dampen_per_s,
-            give: surface_gives.in_series_with(skin.give()),
+            // A hard skin leaves a surface as it is; a soft one is all there is on a hard surface.
+            give: if skin_gives.is_soft() {
+                surface_gives.in_series_with(skin_gives)
+            } else {
+                surface_gives
+            },
         }
     }
 
@@ -163,13 +169,13 @@ impl Give {
     }
 
     /// Two materials pressed against each other by the same force: with the stiffness kp = ERP / (h ·
-    /// CFM) of each, 1/kp adds. Two hard ones correct at the pace of the slower.
+    /// CFM) of each, 1/kp adds.
     fn in_series_with(self, other: Self) -> Self {
         let cfm_m_s_per_n = self.cfm_m_s_per_n + other.cfm_m_s_per_n;
         let erp = if cfm_m_s_per_n > 0.0 {
             cfm_m_s_per_n / (self.cfm_m_s_per_n / self.erp + other.cfm_m_s_per_n / other.erp)
         } else {
-            self.erp.min(other.erp)
+            self.erp
         };
         Self { erp, cfm_m_s_per_n }
     }
@@ -199,10 +205,11 @@ mod tests {
 
     #[test]
     fn a_neutral_skin_leaves_the_surface_as_it_is() {
-        let surface = Surface { soft_erp: 0.7, soft_cfm_m_s_per_n: 0.02, ..Default::default() };
-        let law = ContactLaw::between(&surface, &Skin::default());
-        assert!((law.give.erp - 0.7).abs() < 1e-6);
-        assert_eq!(law.give.cfm_m_s_per_n, 0.02);
+        for soft_cfm_m_s_per_n in [0.0, 0.02] {
+            let surface = Surface { soft_erp: 0.7, soft_cfm_m_s_per_n, ..Default::default() };
+            let law = ContactLaw::between(&surface, &Skin::default());
+            assert_eq!(law.give, Give { erp: 0.7, cfm_m_s_per_n: soft_cfm_m_s_per_n });
+        }
     }
 
     #[test]

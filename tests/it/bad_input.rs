@@ -54,6 +54,11 @@ fn a_setting_that_does_not_exist_or_is_out_of_range() {
     assert_eq!(message, format!("error: fitness is \"speed\"; allowed: {allowed}"));
     let message = refusal(folder.path(), "table1 --seeds 0", 2);
     assert_eq!(message, "error: seeds is 0; allowed: 1 to 10000");
+    let message = refusal(folder.path(), "table1 --fitness height", 2);
+    assert_eq!(
+        message,
+        "error: trial.fitness is height; allowed: centre, as in the report's table"
+    );
 }
 
 #[cfg(feature = "studio")]

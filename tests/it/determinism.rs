@@ -11,6 +11,8 @@ use snakes_and_stairs::ENGINE_VERSION;
 use snakes_and_stairs::evolve::Settings;
 use snakes_and_stairs::run::{Control, Experiment, pool};
 use snakes_and_stairs::save::load_preset;
+use snakes_and_stairs::score::{Fitness, PerPart};
+use snakes_and_stairs::world::Surface;
 
 use super::program::{folder, json_lines};
 
@@ -72,6 +74,28 @@ fn computed() -> Golden {
                 settings.trial.agent.joint_damping_nms_per_rad = 0.0.into();
                 settings.trial.agent.joint_cfm_m_s_per_n = 1.0e-4.into();
                 settings.trial.agent.limbs = 7;
+            }),
+        ),
+        (
+            "stairs that slip, a soft damping ground, a squishy snake of unlike parts, steps climbed",
+            1,
+            small(|settings| {
+                let trial = &mut settings.trial;
+                trial.surface.slip_m_s_per_n = 0.01;
+                trial.surface.bounce = 0.4;
+                trial.surface.bounce_velocity_m_s = 1.0;
+                trial.ground = Some(Surface {
+                    soft_erp: 0.5,
+                    soft_cfm_m_s_per_n: 0.003,
+                    dampen_per_s: 0.5,
+                    ..trial.surface.clone()
+                });
+                trial.fitness = Fitness::StepsClimbed;
+                let agent = &mut trial.agent;
+                agent.skin.soft_cfm_m_s_per_n = 0.001;
+                agent.limb_length_m = PerPart::Each(vec![1.0, 2.0, 2.0, 2.0, 1.5]);
+                agent.density_kg_m3 = Some(PerPart::Each(vec![2.0, 2.0, 3.0, 2.0, 2.0]));
+                agent.bend_limit_rad = Some(0.9.into());
             }),
         ),
     ];

@@ -19,6 +19,8 @@ use crate::world::Surface;
 pub(super) struct WorldPanel {
     /// The field being changed, and the value it has so far.
     changing: Option<(String, f32)>,
+    /// The frame in which the panel was drawn last.
+    drawn_in: u64,
     /// Names and descriptions of the shipped presets.
     presets: Vec<(String, String)>,
 }
@@ -28,7 +30,7 @@ impl Default for WorldPanel {
         // The shipped presets are well formed; a test holds them to it.
         let presets = shipped_presets().unwrap_or_default();
         let presets = presets.into_iter().map(|preset| (preset.name, preset.about)).collect();
-        Self { changing: None, presets }
+        Self { changing: None, drawn_in: 0, presets }
     }
 }
 
@@ -266,6 +268,12 @@ impl WorldPanel {
     /// Draws the panel and adds what was asked for.
     pub fn ui(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
         let settings = run.next_settings();
+        let frame = ui.ctx().cumulative_frame_nr();
+        if frame > self.drawn_in + 1 {
+            // What was left unfinished when the panel was left is forgotten.
+            self.changing = None;
+        }
+        self.drawn_in = frame;
         self.choices(ui, run, asked);
         if run.next_run_differs() {
             ui.label(
@@ -421,10 +429,10 @@ fn set(field: &str, text: &str) -> Command {
     Command::SetField { field: field.to_owned(), text: text.to_owned() }
 }
 
-/// A slider's value with as many digits as a person can mean.
+/// A slider's value with as many digits as a person can mean: four that count.
 fn rounded(value: f32) -> String {
-    let text = format!("{value:.6}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    let four_digits: f32 = format!("{value:.3e}").parse().unwrap_or(value);
+    four_digits.to_string()
 }
 
 fn short_name(fitness: Fitness) -> &'static str {
