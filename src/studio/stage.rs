@@ -118,6 +118,8 @@ pub(super) struct Stage {
     step_s: f32,
     is_playing: bool,
     restart: bool,
+    /// Whether it asked, having rested, to be shown once more.
+    is_looping: bool,
     /// How long the end has been on show, in seconds.
     rested_s: f32,
     /// Whether the end was compared with what was recorded of the champion.
@@ -158,6 +160,7 @@ impl Stage {
             owed_s: 0.0,
             is_playing: true,
             restart: false,
+            is_looping: false,
             rested_s: 0.0,
             is_checked: false,
         }
@@ -251,13 +254,18 @@ fn show_opening(opening: Res<Opening>, mut show: MessageWriter<ShowExhibit>) {
 /// Replaces what is on the stage.
 fn put_on_stage(
     mut asked: MessageReader<ShowExhibit>,
-    stages: Query<Entity, With<Stage>>,
+    stages: Query<(Entity, &Stage)>,
     mut commands: Commands,
 ) {
     // Of several requests in a frame only the last is seen.
     let Some(ShowExhibit(exhibit)) = asked.read().last() else { return };
-    stages.iter().for_each(|stage| commands.entity(stage).despawn());
-    spawn(&mut commands, Stage::new(exhibit.clone()));
+    let mut stage = Stage::new(exhibit.clone());
+    for (entity, earlier) in &stages {
+        // Who holds the stage in the very moment in which it begins again still wants it held.
+        stage.is_playing &= earlier.is_playing || !earlier.is_looping;
+        commands.entity(entity).despawn();
+    }
+    spawn(&mut commands, stage);
 }
 
 /// Spawns a stage whose physics world lives in a context of its own.
@@ -282,6 +290,7 @@ fn advance(
 ) {
     for (mut stage, (mut simulation, mut colliders, mut joints, mut bodies)) in &mut stages {
         if stage.restart || stage.rested_s > REST_S {
+            stage.is_looping = !stage.restart;
             show.write(ShowExhibit(stage.exhibit.clone()));
             stage.restart = false;
             stage.rested_s = 0.0;
@@ -374,6 +383,17 @@ mod tests {
             let stage = stages.single(app.world()).expect("one stage");
             assert_eq!(stage.evaluation(), headless, "with frames of {frames_s:?} s");
         }
+    }
+
+    #[test]
+    fn a_stage_that_is_held_while_it_begins_again_stays_held() {
+        let mut app = play(&[0.1], |stage| stage.is_looping);
+        let mut stages = app.world_mut().query::<&mut Stage>();
+        stages.single_mut(app.world_mut()).expect("one stage").toggle_playback();
+        app.update();
+        app.update();
+        let stage = stages.single(app.world()).expect("one stage");
+        assert!(!stage.is_playing() && stage.rollout.step() == 0, "held at the start");
     }
 
     #[test]

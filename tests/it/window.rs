@@ -199,8 +199,8 @@ fn r_plays_from_the_start_and_f_lets_the_snake_go() {
 
 #[test]
 fn a_better_champion_takes_the_stage() {
-    // This seed's run finds a better one than the shipped champion within its six generations.
-    let arguments = "--seed 1 --generations 3 --threads 2";
+    // This seed's run finds a better one than the shipped champion within four generations.
+    let arguments = "--seed 5 --generations 4 --threads 2";
     let Some(studio) = Studio::open("newcomer", arguments) else { return };
     studio.wait_for_title("showing generation ");
 }
