@@ -86,7 +86,7 @@ pub fn calibrate(args: &Args, tries: u32, seeds: RangeInclusive<u64>) -> Result<
     let path = folder.path().join(format!("calibrated-from-{run}.ron"));
     let mut search = Calibration::new(settings, args.seed()?);
     for number in 1..=tries {
-        let point = search.next()?;
+        let point = search.next_point()?;
         let hopeless = search.hopeless_below();
         let tried = try_candidate(point, seeds.clone(), hopeless, &pool, &control, with_progress);
         let Ok(candidate) = tried else {

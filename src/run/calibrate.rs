@@ -92,7 +92,7 @@ impl Calibration {
     ///
     /// # Errors
     /// The base is such that a knob within its range is not allowed.
-    pub fn next(&mut self) -> Result<(Vec<f32>, Settings), Invalid> {
+    pub fn next_point(&mut self) -> Result<(Vec<f32>, Settings), Invalid> {
         let mut rng = stream(self.seed, 0, self.tries, Purpose::Calibration);
         self.tries += 1;
         let values = if self.tries == 1 {
@@ -245,7 +245,7 @@ mod tests {
         let base = Settings::default();
         let mut search = Calibration::new(base.clone(), 1);
         for _ in 0..100 {
-            let (values, settings) = search.next().expect("allowed");
+            let (values, settings) = search.next_point().expect("allowed");
             search.take_in(Candidate { values, settings: settings.clone(), ..candidate(0.0) });
             assert_eq!(settings.evolution, base.evolution);
             assert_eq!(settings.trial.stairs, base.trial.stairs);
@@ -261,7 +261,7 @@ mod tests {
     fn the_base_is_tried_first_and_the_best_are_kept_in_order() {
         let base = Settings::default();
         let mut search = Calibration::new(base.clone(), 1);
-        assert_eq!(search.next().expect("allowed").1, base);
+        assert_eq!(search.next_point().expect("allowed").1, base);
         for score in [1.0, 3.0, 2.0, 0.0, 5.0, 4.0] {
             search.take_in(candidate(score));
         }

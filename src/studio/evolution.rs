@@ -322,6 +322,5 @@ pub(super) fn prepared_run() -> Evolution {
         window_size: (1280, 720),
         exit_after_frames: None,
     };
-    #[expect(clippy::expect_used, reason = "a test without threads has failed")]
     Evolution::new(Engine::new(&options).expect("threads"))
 }

@@ -68,8 +68,11 @@ impl Knob {
     }
 }
 
+/// A slider, and how to read what it shows.
+type Reads<T, V = f32> = (Knob, fn(&T) -> V);
+
 /// The seven parameters of a surface.
-const SURFACE: [(Knob, fn(&Surface) -> f32); 7] = [
+const SURFACE: [Reads<Surface>; 7] = [
     (
         knob(
             "friction",
@@ -133,7 +136,7 @@ const SURFACE: [(Knob, fn(&Surface) -> f32); 7] = [
 ];
 
 /// What else there is of the world.
-const STAIRS: [(Knob, fn(&Settings) -> f32); 8] = [
+const STAIRS: [Reads<Settings>; 8] = [
     (knob("stairs.steps", "Steps", "Number of steps", [0.0, 20.0]).whole(), |settings| {
         settings.trial.stairs.steps as f32
     }),
@@ -174,7 +177,7 @@ const STAIRS: [(Knob, fn(&Settings) -> f32); 8] = [
 ];
 
 /// The snake. A setting with one value per part shows its first, and a change sets all.
-const SNAKE: [(Knob, fn(&Settings) -> f32); 11] = [
+const SNAKE: [Reads<Settings>; 11] = [
     (
         knob("agent.limbs", "Limbs", "Number of blocks, each joined to the next", [2.0, 12.0])
             .whole(),
@@ -247,8 +250,11 @@ const SNAKE: [(Knob, fn(&Settings) -> f32); 11] = [
     ),
 ];
 
+/// Reads a limit.
+type Limit = fn(&Settings) -> &Option<PerPart>;
+
 /// The limits of the joints, if they are given instead of each genome's own.
-const LIMITS: [(Knob, fn(&Settings) -> &Option<PerPart>); 2] = [
+const LIMITS: [(Knob, Limit); 2] = [
     (
         knob("agent.bend_limit_rad", "Bend limit, rad", "Largest bend of every joint", [0.0, 3.0]),
         |settings| &settings.trial.agent.bend_limit_rad,
