@@ -51,7 +51,7 @@ pub fn lacks_a_driver(test: &str) -> bool {
     let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
     let is_there =
         |folder: &&str| std::fs::read_dir(folder).is_ok_and(|mut list| list.next().is_some());
-    if folders.iter().any(|folder| is_there(folder)) {
+    if folders.iter().any(is_there) {
         return false;
     }
     skip(test, "no Vulkan driver is installed");
