@@ -54,6 +54,7 @@ impl Default for Trial {
 impl Trial {
     /// Checks every field against its range.
     pub fn check(&self) -> Result<(), Invalid> {
+        // Ten minutes are a third of a second to compute; longer genomes make unreadable saves.
         within("duration_s", self.duration_s, 0.1..=600.0)?;
         within("start_y_m", self.start_y_m, -100.0..=100.0)?;
         self.physics.check().map_err(|error| error.inside("physics"))?;

@@ -58,6 +58,7 @@ impl Default for HealthLimits {
 impl HealthLimits {
     /// Checks every field against its range.
     pub fn check(&self) -> Result<(), Invalid> {
+        // From what the solver itself leaves open to what is no limit at all; so with the others.
         within("joint_drift_m", self.joint_drift_m, 0.001..=10.0)?;
         within("speed_m_s", self.speed_m_s, 1.0..=1000.0)?;
         within("arena_half_width_m", self.arena_half_width_m, 1.0..=1000.0)?;

@@ -25,8 +25,10 @@ impl Default for PhysicsSettings {
 impl PhysicsSettings {
     /// Checks every field against its range.
     pub fn check(&self) -> Result<(), Invalid> {
+        // Slower than 20 a second bodies pass through each other; faster than 1000 nothing changes.
         within("steps_per_s", self.steps_per_s, 20..=1000)?;
         within("substeps", self.substeps, 1..=32)?;
+        // From weightlessness to four times Jupiter.
         within("gravity_m_s2", self.gravity_m_s2, 0.0..=100.0)
     }
 

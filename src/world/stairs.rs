@@ -49,10 +49,14 @@ pub struct StairBox {
 impl Stairs {
     /// Checks every field against its range.
     pub fn check(&self) -> Result<(), Invalid> {
+        // None is flat ground; a hundred is far more than any snake climbs, and still quick.
         within("steps", self.steps, 0..=100)?;
+        // From a doorsill to a wall. Below a centimetre the engine's tolerances are as high as the step.
         within("rise_m", self.rise_m, 0.01..=5.0)?;
         within("tread_m", self.tread_m, 0.1..=20.0)?;
+        // From a block's own width to a hall's.
         within("width_m", self.width_m, 1.0..=100.0)?;
+        // Within a hundred metres floats still resolve a hundredth of a millimetre.
         within("first_riser_y_m", self.first_riser_y_m, -100.0..=100.0)?;
         within("landing_m", self.landing_m, 0.0..=100.0)
     }
