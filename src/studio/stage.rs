@@ -59,6 +59,11 @@ impl Exhibit {
         Self { changed: None, ..self.clone() }
     }
 
+    /// What stands between its name and what it reached, in the world in which it was found.
+    fn colon(&self) -> &'static str {
+        if self.is_changed() { " in another world; on record " } else { ": " }
+    }
+
     /// Whether it is shown in another world than the one in which it was found.
     pub fn is_changed(&self) -> bool {
         self.changed.is_some()
@@ -92,12 +97,11 @@ impl Exhibit {
     /// What it is and what it reached, in a line.
     pub fn caption(&self) -> String {
         let reached = self.champion.reached();
-        let world = if self.is_changed() { "In another world. " } else { "" };
         match self.source {
             Source::Run(_) => {
-                format!("{world}Generation {}: {reached}", self.generation())
+                format!("Generation {}{}{reached}", self.generation(), self.colon())
             }
-            Source::Opening => format!("{world}Saved champion: {reached}"),
+            Source::Opening => format!("Saved champion{}{reached}", self.colon()),
         }
     }
 }

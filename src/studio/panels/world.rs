@@ -281,14 +281,16 @@ impl WorldPanel {
         }
         self.drawn_in = frame;
         self.choices(ui, run, asked);
-        if run.next_run_differs() {
-            ui.label(
-                egui::RichText::new("The run under way keeps the world it began with.")
-                    .color(look::SECOND),
-            );
-            if ui.button("New run in this world").clicked() {
-                asked.extend([Command::Reset, Command::Start]);
-            }
+        // Always there, so that nothing moves under the pointer when a slider is let go.
+        let differs = run.next_run_differs();
+        let (text, color) = if differs {
+            ("The run under way keeps its own world.", look::SECOND)
+        } else {
+            ("The run under way is in this world.", look::TEXT_WEAK)
+        };
+        ui.label(egui::RichText::new(text).color(color));
+        if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
+            asked.extend([Command::Reset, Command::Start]);
         }
         let section = |ui: &mut egui::Ui, name: &str, is_open: bool| {
             ui.add_space(look::GAP / 2.0);

@@ -180,7 +180,7 @@ impl Studio {
             // Not a button: a place in the panel where there is nothing.
             "the empty panel" => return self.click("300", "60"),
             "World" => return self.click("275", "29"),
-            "The ground has a surface of its own" => return self.click("41", "223"),
+            "The ground has a surface of its own" => return self.click("41", "275"),
             "As recorded" => return self.click("397", "562"),
             other => panic!("no button {other}"),
         };
