@@ -6,6 +6,7 @@ mod caption;
 mod champions;
 mod chart;
 mod evolution;
+mod knobs;
 mod number_field;
 mod world;
 
