@@ -44,6 +44,16 @@ pub fn within<T: PartialOrd + Display>(
     }
 }
 
+/// Accepts a name that may become part of a file's name: it can neither leave a folder nor hide in it.
+pub fn name(field: &str, value: &str) -> Result<(), Invalid> {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    if (1..=40).contains(&value.len()) && value.chars().all(plain) {
+        return Ok(());
+    }
+    let start: String = value.chars().take(60).collect();
+    Err(Invalid::new(field, format!("{start:?}"), "1 to 40 of a-z, 0-9 and -"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +62,16 @@ mod tests {
     fn a_message_has_the_field_the_value_and_the_range() {
         let error = within("duration_s", -1.0, 0.1..=600.0).unwrap_err().inside("trial");
         assert_eq!(error.to_string(), "trial.duration_s is -1; allowed: 0.1 to 600");
+    }
+
+    #[test]
+    fn a_name_cannot_leave_its_folder() {
+        for good in ["report", "my-preset-2", "a"] {
+            assert_eq!(name("name", good), Ok(()));
+        }
+        for bad in ["", ".", "..", "a/b", "a\\b", "C:x", "con\0", "A", "ä", &"x".repeat(41)] {
+            assert!(name("name", bad).is_err(), "{bad:?}");
+        }
     }
 
     #[test]

@@ -9,9 +9,9 @@ use clap::{Parser, Subcommand};
 
 use super::CliError;
 use crate::check::{Invalid, within};
-use crate::evolve::{Settings, with_fields};
-use crate::run::{THREADS_RANGE, available_cores};
-use crate::save::{DEFAULT_PRESET, Preset, SavesFolder, load_preset};
+use crate::evolve::{RunPlan, Settings, with_fields};
+use crate::run::{RunSource, THREADS_RANGE, available_cores};
+use crate::save::{DEFAULT_PRESET, Earlier, Preset, SavesFolder, load_preset};
 
 /// A five-block snake evolves until it climbs a staircase.
 ///
@@ -64,6 +64,21 @@ pub struct Args {
     /// Change any single setting, such as surface.friction=0.8 (see `snakes settings`); repeatable
     #[arg(long, global = true, value_name = "FIELD=VALUE")]
     set: Vec<String>,
+    /// Go on with the run in this folder, from its last finished generation
+    #[arg(
+        long,
+        global = true,
+        value_name = "DIR",
+        conflicts_with_all = [
+            "preset", "seed", "population", "generations", "parents", "mutation_range",
+            "points_per_s", "duration", "steps_per_s", "substeps", "gravity", "fitness", "set", "out",
+            "restart",
+        ]
+    )]
+    resume: Option<PathBuf>,
+    /// Begin the run anew, even if it was stopped before its end; without this it goes on
+    #[arg(long, global = true)]
+    restart: bool,
     /// Worker threads [default: all cores; with a window, all but one]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     threads: Option<String>,
@@ -94,6 +109,8 @@ pub enum Command {
     },
     /// Measure how fast the simulation is on this machine
     Bench,
+    /// Check that this machine computes the same bits as every other: golden trajectories, one fingerprint
+    Verify,
     /// Run the report's protocol with several seeds and print its Table 1 beside ours
     Table1 {
         /// How many seeds
@@ -184,6 +201,17 @@ impl Args {
     /// Where tables go: the working directory, unless named.
     pub fn results_folder(&self) -> SavesFolder {
         SavesFolder::find(Some(self.out.as_deref().unwrap_or(Path::new("."))))
+    }
+
+    /// The run that is meant: the one in a folder, or the one of the flags.
+    pub fn run_source(&self) -> Result<RunSource, CliError> {
+        if let Some(folder) = &self.resume {
+            return Ok(RunSource::in_folder(folder)?);
+        }
+        let (preset, settings) = self.settings()?;
+        let plan = RunPlan { preset, seed: self.seed()?, settings };
+        let earlier = if self.restart { Earlier::Discard } else { Earlier::GoOn };
+        Ok(RunSource::in_saves(&self.saves_folder(), plan, earlier))
     }
 
     /// The preset's name and its settings, with the flags' values put in and everything checked.

@@ -1,6 +1,7 @@
 //! What the command line may end with.
 
 use crate::run::headless::HeadlessError;
+use crate::run::verify::VerifyError;
 use crate::save::SaveError;
 
 /// An error of the command line, in one line.
@@ -12,6 +13,25 @@ pub enum CliError {
     /// It was called well, and failed.
     #[error(transparent)]
     Headless(#[from] HeadlessError),
+    /// The golden trajectories could not be computed.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    /// This machine computes other bits.
+    #[error(
+        "{differ} of {all} trajectories differ from the reference: saves from elsewhere go another way \
+         on this machine (fingerprint {fingerprint}, reference {reference}); please report it with the \
+         table above, the processor and the system"
+    )]
+    OtherBits {
+        /// How many trajectories differ.
+        differ: usize,
+        /// How many there are.
+        all: usize,
+        /// The fingerprint of this machine.
+        fingerprint: String,
+        /// The fingerprint of the reference.
+        reference: String,
+    },
     /// A plot could not be drawn.
     #[error(transparent)]
     Plot(#[from] crate::plot::PlotError),

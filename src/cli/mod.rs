@@ -7,6 +7,7 @@ mod error;
 #[cfg(feature = "studio")]
 mod figures;
 mod table1;
+mod verify;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -22,7 +23,8 @@ pub use error::CliError;
 use crate::check::Invalid;
 use crate::evolve::fields;
 use crate::run::bench::{BenchReport, bench};
-use crate::run::{Control, Experiment, headless};
+use crate::run::headless::say;
+use crate::run::{Control, headless};
 use crate::save::shipped_presets;
 
 /// Runs the program with the given arguments, the program's name first.
@@ -34,8 +36,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // Nothing is left to do if even standard error is gone.
-            let _ = writeln!(io::stderr(), "error: {error}");
+            let line = error.to_string().replace(char::is_control, " ");
+            say(&format!("error: {line}"));
             ExitCode::from(error.exit_code())
         }
     }
@@ -46,6 +48,7 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         Some(Command::Presets) => print_presets(args.json),
         Some(Command::Settings) => print_settings(&args),
         Some(Command::Bench) => print_bench(&args),
+        Some(Command::Verify) => verify::verify(&args),
         Some(Command::Table1 { seeds, first_seed }) => {
             table1::table1(&args, table1::seeds(*first_seed, *seeds)?)
         }
@@ -66,21 +69,11 @@ fn dispatch(args: Args) -> Result<(), CliError> {
 
 /// The headless experiment.
 fn evolve(args: &Args) -> Result<(), CliError> {
-    let (preset, settings) = args.settings()?;
+    let source = args.run_source()?;
     let threads = args.threads()?;
-    let seed = args.seed()?;
-    let saves = args.saves_folder();
-    let evolution = &settings.evolution;
-    let _ = writeln!(
-        io::stderr(),
-        "preset {preset}, seed {seed}: generations {}, population {}, threads {threads}",
-        evolution.generations,
-        evolution.population
-    );
     let control = cancel_on_interrupt();
-    let experiment = Experiment::new(&preset, seed, settings);
     let mut out = io::stdout();
-    Ok(headless::evolve(experiment, saves, threads, args.json, &control, &mut out)?)
+    Ok(headless::evolve(source, threads, args.json, &control, &mut out)?)
 }
 
 /// A control that the interrupt key cancels.
@@ -95,7 +88,6 @@ fn cancel_on_interrupt() -> Arc<Control> {
 #[cfg(feature = "studio")]
 fn open_studio(args: &Args) -> Result<(), CliError> {
     use crate::studio;
-    let (preset, settings) = args.settings()?;
     let champion = match &args.command {
         Some(Command::Replay { file }) => {
             Some(crate::save::load_champion(file).map_err(headless::HeadlessError::from)?)
@@ -103,9 +95,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         _ => None,
     };
     let options = studio::Options {
-        preset,
-        settings,
-        seed: args.seed()?,
+        run: args.run_source()?,
         threads: args.studio_threads()?,
         saves: args.saves_folder(),
         champion,

@@ -1,16 +1,14 @@
 //! `snakes table1` and `snakes calibrate`.
 
-use std::io::{self, Write};
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
 
 use super::args::Args;
 use super::{CliError, cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
-use crate::evolve::Settings;
+use crate::evolve::{RunPlan, Settings};
 use crate::plot;
 use crate::run::calibrate::{Calibration, Candidate, knobs, try_candidate};
-use crate::run::headless::{HeadlessError, with_progress};
+use crate::run::headless::{HeadlessError, say, with_progress};
 use crate::run::table1::{SeedResult, Table1, run_seed};
 use crate::run::{Cancelled, pool};
 use crate::save::{Preset, run_name, store_csv, store_picture, store_preset};
@@ -24,7 +22,8 @@ pub fn table1(args: &Args, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
     folder.prepare()?;
     let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
     let control = cancel_on_interrupt();
-    let run = run_name(&preset, *seeds.start(), &settings);
+    let plan = |seed| RunPlan::new(&preset, seed, settings.clone());
+    let run = run_name(&plan(*seeds.start()));
     let named = |kind: &str| folder.path().join(format!("table1-{run}-to-{}.{kind}", seeds.end()));
     let (csv, png) = (named("csv"), named("png"));
     say(&format!(
@@ -36,7 +35,7 @@ pub fn table1(args: &Args, seeds: RangeInclusive<u64>) -> Result<(), CliError> {
     ));
     let mut table = Table1 { seeds: Vec::new() };
     for seed in seeds.clone() {
-        let result = run_seed(&preset, &settings, seed, &pool, &control, with_progress);
+        let result = run_seed(plan(seed), |run| with_progress(run, &pool, &control, |_, _, _| ()));
         let kept = (!table.seeds.is_empty()).then(|| csv.clone());
         let result = result.map_err(|Cancelled| HeadlessError::Cancelled { kept })?;
         if args.json {
@@ -82,28 +81,26 @@ pub fn calibrate(args: &Args, tries: u32, seeds: RangeInclusive<u64>) -> Result<
     for knob in knobs() {
         say(&format!("  {:<34} {} to {}", knob.field, knob.least, knob.most));
     }
-    let run = run_name(&name, args.seed()?, &settings);
+    let run = run_name(&RunPlan::new(&name, args.seed()?, settings.clone()));
     let path = folder.path().join(format!("calibrated-from-{run}.ron"));
     let mut search = Calibration::new(settings, args.seed()?);
     for number in 1..=tries {
         let point = search.next_point()?;
         let hopeless = search.hopeless_below();
-        let tried = try_candidate(point, seeds.clone(), hopeless, &pool, &control, with_progress);
-        let Ok(candidate) = tried else {
-            return Err(cancelled(&path, search.best()).into());
-        };
+        let candidate = try_candidate(point, seeds.clone(), hopeless, |run| {
+            with_progress(run, &pool, &control, |_, _, _| ())
+        });
+        let kept = search.best().map(|_| path.clone());
+        let candidate = candidate.map_err(|Cancelled| HeadlessError::Cancelled { kept })?;
         print(&line_of(number, &candidate))?;
-        if search.take_in(candidate.clone()) == Some(0) {
-            store_preset(&path, &preset_of(&candidate, *seeds.end()))?;
+        if search.take_in(candidate) == Some(0)
+            && let Some(best) = search.best()
+        {
+            store_preset(&path, &preset_of(best, *seeds.end()))?;
         }
     }
     let best = search.best().map_or(f64::NAN, |best| best.score);
     print(&format!("\nbest score {best:.2}; its settings are a preset: {}\n", path.display()))
-}
-
-fn cancelled(path: &std::path::Path, best: Option<&Candidate>) -> HeadlessError {
-    let kept: Option<PathBuf> = best.map(|_| path.to_owned());
-    HeadlessError::Cancelled { kept }
 }
 
 fn preset_of(candidate: &Candidate, last_seed: u64) -> Preset {
@@ -163,10 +160,4 @@ pub fn seeds(first: u64, count: u64) -> Result<RangeInclusive<u64>, Invalid> {
     within("seeds", count, 1..=10_000)?;
     within("first-seed", first, 0..=u64::MAX - count)?;
     Ok(first..=first + count - 1)
-}
-
-/// Tells a person how it goes; standard output is for results.
-fn say(line: &str) {
-    // Nothing is left to do if even standard error is gone.
-    let _ = writeln!(io::stderr(), "{line}");
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Strategy, ranking};
+use super::{RunPlan, Strategy, StrategyState, ranking};
 use crate::check::{Invalid, within};
 use crate::genome::{Genome, GenomeSpace};
 use crate::rng::{Purpose, stream};
@@ -65,15 +65,23 @@ pub struct Halving {
 }
 
 impl Halving {
-    /// A fresh search for snakes with `joints` joints in runs of `duration_s`.
-    pub fn new(
-        settings: HalvingSettings,
-        space: GenomeSpace,
-        run_seed: u64,
-        joints: usize,
-        duration_s: f32,
-    ) -> Self {
-        Self { settings, space, run_seed, joints, duration_s, generation: 1, parents: Vec::new() }
+    /// A fresh search.
+    pub fn new(plan: &RunPlan) -> Self {
+        Self::resumed(plan, 0, Vec::new())
+    }
+
+    /// A search that goes on after its first `finished` generations, of which `parents` are left.
+    pub fn resumed(plan: &RunPlan, finished: u32, parents: Vec<Genome>) -> Self {
+        let settings = &plan.settings;
+        Self {
+            settings: settings.evolution.clone(),
+            space: settings.genome.clone(),
+            run_seed: plan.seed,
+            joints: settings.trial.agent.joints(),
+            duration_s: settings.trial.duration_s,
+            generation: finished + 1,
+            parents,
+        }
     }
 
     /// The range within which the children of the current generation are shifted, in N·m.
@@ -114,11 +122,16 @@ impl Strategy for Halving {
         self.parents = chosen.map(|&index| genomes[index].clone()).collect();
         self.generation += 1;
     }
+
+    fn state(&self) -> StrategyState {
+        StrategyState::Halving { parents: self.parents.clone() }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::Settings;
     use crate::world::Disqualification;
 
     fn evaluated(fitness: f32) -> Evaluation {
@@ -127,8 +140,10 @@ mod tests {
     }
 
     fn small() -> Halving {
-        let settings = HalvingSettings { population: 8, parents: 2, ..Default::default() };
-        Halving::new(settings, GenomeSpace::default(), 1, 4, 1.0)
+        let evolution = HalvingSettings { population: 8, parents: 2, ..HalvingSettings::default() };
+        let mut settings = Settings { evolution, ..Settings::default() };
+        settings.trial.duration_s = 1.0;
+        Halving::new(&RunPlan::new("test", 1, settings))
     }
 
     /// The largest difference between two genomes' torque points, in N·m.

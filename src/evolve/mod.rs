@@ -11,7 +11,7 @@ mod settings;
 pub use champion::{Champion, Origin};
 pub use field::{fields, with_field, with_fields};
 pub use halving::{Halving, HalvingSettings, LARGEST_POPULATION};
-pub use settings::Settings;
+pub use settings::{RunPlan, Settings};
 
 use crate::genome::Genome;
 use crate::score::Evaluation;
@@ -23,6 +23,20 @@ pub trait Strategy {
 
     /// How the genomes of the last `ask` did, in the same order.
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]);
+
+    /// All that it has learned: together with settings, seed and the number of finished generations,
+    /// enough to go on bit for bit.
+    fn state(&self) -> StrategyState;
+}
+
+/// What a strategy has learned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StrategyState {
+    /// Of [`Halving`].
+    Halving {
+        /// The parents of the next generation, best first.
+        parents: Vec<Genome>,
+    },
 }
 
 /// The indices of the agents that may become parents, best first. Disqualified ones may not; of equals

@@ -38,12 +38,38 @@ impl Settings {
             let allowed = format!("1 to {largest} with {torques_each} torque points each");
             return Err(Invalid::new("evolution.population", self.evolution.population, allowed));
         }
+        let parents = self.evolution.parents.min(self.evolution.population);
+        let most = LARGEST_PARENTS_TORQUES / torques_each.max(1);
+        if parents as usize > most {
+            let allowed = format!("1 to {most} with {torques_each} torque points each");
+            return Err(Invalid::new("evolution.parents", parents, allowed));
+        }
         Ok(())
     }
 }
 
-/// Torque points in one generation: 500 million of them take 2 GB.
-const LARGEST_GENERATION_TORQUES: usize = 500_000_000;
+/// Torque points in one generation: 25 million of them take 100 MB.
+const LARGEST_GENERATION_TORQUES: usize = 25_000_000;
+/// Torque points of all parents together: a checkpoint writes them down, in some 12 characters each.
+const LARGEST_PARENTS_TORQUES: usize = 4_000_000;
+
+/// A run: all that determines its bits, and what it is called.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunPlan {
+    /// Name of the preset that the settings started from.
+    pub preset: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// The settings; they must have passed their check.
+    pub settings: Settings,
+}
+
+impl RunPlan {
+    /// A plan of that name.
+    pub fn new(preset: &str, seed: u64, settings: Settings) -> Self {
+        Self { preset: preset.to_owned(), seed, settings }
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -61,7 +87,11 @@ mod tests {
         settings.genome.points_per_s = 100.0;
         settings.evolution.population = 10_000;
         let error = settings.check().unwrap_err().to_string();
-        assert!(error.starts_with("evolution.population is 10000; allowed: 1 to 1041"), "{error}");
+        assert!(error.starts_with("evolution.population is 10000; allowed: 1 to 52"), "{error}");
+        settings.evolution.population = 50;
+        settings.evolution.parents = 50;
+        let error = settings.check().unwrap_err().to_string();
+        assert!(error.starts_with("evolution.parents is 50; allowed: 1 to 8"), "{error}");
         settings.genome.points_per_s = 1000.0;
         let error = settings.check().unwrap_err().to_string();
         assert!(error.starts_with("genome.points_per_s is 1000 (4800000 torque points"), "{error}");

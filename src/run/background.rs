@@ -1,17 +1,22 @@
 //! An experiment on a thread of its own, for a window that must not wait.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
+use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
-use super::{Control, Experiment, GenerationReport, Keeper};
+use super::{Control, GenerationReport, KeptRun, RunSource};
 
 /// What an experiment in the background has to tell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
+    /// The run's folder is open, and these generations are behind the run.
+    Opened(Vec<GenerationReport>),
+    /// The run's folder cannot be opened: nothing is evolved.
+    Refused(String),
     /// A generation is finished.
     Generation(Box<GenerationReport>),
     /// All generations are finished.
@@ -19,14 +24,16 @@ pub enum Event {
         /// Hash over the whole run.
         run_hash: u64,
     },
-    /// The best champion could not be saved; the run goes on.
+    /// The generation could not be saved. The run is held; going on tries again.
     NotSaved(String),
+    /// The program failed on a genome, in a line; the run goes on.
+    Crashed(String),
     /// The run broke off by an error of the program, and will say no more.
     BrokeOff,
 }
 
-/// An experiment that goes on in the background. Dropping it cancels it; its thread ends by itself
-/// after the evaluations that are under way.
+/// An experiment that goes on in the background. Dropping it cancels it, and waits a moment for what is
+/// being written.
 #[derive(Debug)]
 pub struct Background {
     control: Arc<Control>,
@@ -37,25 +44,39 @@ pub struct Background {
     has_ended: AtomicBool,
 }
 
+/// How long dropping an experiment waits for its thread: much longer than a file takes to be written.
+const LONGEST_FAREWELL: Duration = Duration::from_secs(2);
+
 impl Background {
-    /// Starts an experiment on `pool`, held before its first evaluation: see [`Self::resume`].
+    /// Opens a run and starts it on `pool`, held before its first evaluation: see [`Self::resume`]. If its
+    /// folder may still be in use by `before`, it waits until that has ended, in the background.
     ///
     /// # Errors
     /// The thread could not be started.
     pub fn start(
-        experiment: Experiment,
+        source: RunSource,
         pool: Arc<ThreadPool>,
-        keeper: Keeper,
+        before: Option<Self>,
     ) -> std::io::Result<Self> {
         let control = Arc::new(Control::default());
         control.pause();
         let pause_after_generation = Arc::new(AtomicBool::new(false));
-        let population = experiment.settings().evolution.population;
+        let population = source.plan.settings.evolution.population;
         let (sender, events) = channel();
+        if let Some(before) = &before {
+            before.control.cancel();
+        }
         thread::Builder::new().name("experiment".to_owned()).spawn({
             let (control, pause_after) =
                 (Arc::clone(&control), Arc::clone(&pause_after_generation));
-            move || work(experiment, &pool, keeper, &control, &pause_after, &sender)
+            move || {
+                drop(before);
+                match source.open("the studio") {
+                    Ok(run) => work(run, &pool, &control, &pause_after, &sender),
+                    // A send fails only when nobody listens any more.
+                    Err(error) => drop(sender.send(Event::Refused(error.to_string()))),
+                }
+            }
         })?;
         let events = Mutex::new(events);
         Ok(Self {
@@ -98,7 +119,7 @@ impl Background {
     pub fn poll(&self) -> Option<Event> {
         match self.events.lock().unwrap_or_else(PoisonError::into_inner).try_recv() {
             Ok(event) => {
-                let is_last = matches!(event, Event::Finished { .. });
+                let is_last = matches!(event, Event::Finished { .. } | Event::Refused(_));
                 self.has_ended.fetch_or(is_last, Ordering::Relaxed);
                 Some(event)
             }
@@ -114,51 +135,74 @@ impl Background {
 impl Drop for Background {
     fn drop(&mut self) {
         self.control.cancel();
+        let events = self.events.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let deadline = Instant::now() + LONGEST_FAREWELL;
+        // Its end of the channel is gone when the thread has ended.
+        while events.recv_timeout(deadline.saturating_duration_since(Instant::now()))
+            != Err(RecvTimeoutError::Disconnected)
+            && Instant::now() < deadline
+        {}
     }
 }
 
 fn work(
-    mut experiment: Experiment,
+    run: KeptRun,
     pool: &ThreadPool,
-    mut keeper: Keeper,
     control: &Control,
     pause_after_generation: &AtomicBool,
     events: &Sender<Event>,
 ) {
+    let KeptRun { mut experiment, mut keeper, reports } = run;
     // A send fails only when nobody listens any more; the run is cancelled then anyway.
+    let tell = |event| drop(events.send(event));
+    tell(Event::Opened(reports));
     while !experiment.is_over() {
-        let Ok(report) = experiment.run_generation(pool, control) else { return };
+        let note = |generation, individual, evaluation: &_| {
+            keeper.note(generation, individual, evaluation);
+        };
+        let Ok(report) = experiment.run_generation_noting(pool, control, note) else { return };
+        while let Err(error) = keeper.keep(&experiment, &report) {
+            control.pause();
+            tell(Event::NotSaved(error.to_string()));
+            if control.pass().is_err() {
+                return;
+            }
+        }
         if pause_after_generation.swap(false, Ordering::SeqCst) {
             control.pause();
         }
-        if let Err(error) = keeper.keep(&experiment, report.champion.as_ref()) {
-            let _ = events.send(Event::NotSaved(error.to_string()));
-        }
-        let _ = events.send(Event::Generation(Box::new(report)));
+        report.crashes.iter().for_each(|crash| tell(Event::Crashed(keeper.keep_crash(crash))));
+        tell(Event::Generation(Box::new(report)));
     }
-    let _ = events.send(Event::Finished { run_hash: experiment.run_hash() });
+    tell(Event::Finished { run_hash: experiment.run_hash() });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Settings;
-    use crate::run::pool;
-    use crate::save::SavesFolder;
-    use std::time::Duration;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::run::{Experiment, pool};
+    use crate::save::{Earlier, SavesFolder};
 
-    fn experiment() -> Experiment {
+    fn plan() -> RunPlan {
         let mut settings = Settings::default();
         settings.evolution.population = 8;
         settings.evolution.generations = 3;
         settings.trial.duration_s = 0.5;
-        Experiment::new("test", 1, settings)
+        RunPlan::new("test", 1, settings)
     }
 
     fn start(folder: &tempfile::TempDir) -> Background {
+        let background = start_after(folder, None);
+        assert_eq!(next(&background), Event::Opened(Vec::new()));
+        background
+    }
+
+    fn start_after(folder: &tempfile::TempDir, before: Option<Background>) -> Background {
         let pool = Arc::new(pool(2).expect("a pool"));
-        let keeper = Keeper::new(SavesFolder::find(Some(folder.path())));
-        Background::start(experiment(), pool, keeper).expect("a thread")
+        let saves = SavesFolder::find(Some(folder.path()));
+        let source = RunSource::in_saves(&saves, plan(), Earlier::GoOn);
+        Background::start(source, pool, before).expect("a thread")
     }
 
     fn next(background: &Background) -> Event {
@@ -193,6 +237,38 @@ mod tests {
     }
 
     #[test]
+    fn a_run_that_was_stopped_goes_on_once_the_one_before_has_let_go_of_its_folder() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = start(&folder);
+        first.run_single_generation();
+        let Event::Generation(report) = next(&first) else { panic!("no generation") };
+        let refused = next(&start_after(&folder, None));
+        let owner = format!("in use by process {} (the studio)", std::process::id());
+        assert!(matches!(refused, Event::Refused(text) if text.contains(&owner)));
+        let second = start_after(&folder, Some(first));
+        let Event::Opened(behind) = next(&second) else { panic!("not opened") };
+        assert_eq!((behind.len(), &behind[0].champion), (1, &report.champion));
+    }
+
+    #[test]
+    fn a_generation_that_cannot_be_saved_holds_the_run_and_is_saved_when_it_goes_on() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let background = start(&folder);
+        let saves = SavesFolder::find(Some(folder.path()));
+        let in_the_way = saves.of_run(&plan()).join("generation-1.ron");
+        std::fs::create_dir(&in_the_way).expect("created");
+        background.resume();
+        assert!(
+            matches!(next(&background), Event::NotSaved(text) if text.contains("cannot be written"))
+        );
+        assert!(background.is_paused());
+        std::fs::remove_dir(&in_the_way).expect("removed");
+        background.resume();
+        assert!(matches!(next(&background), Event::Generation(report) if report.generation == 1));
+        assert!(in_the_way.is_file());
+    }
+
+    #[test]
     fn in_the_background_a_run_has_the_same_hash() {
         let folder = tempfile::tempdir().expect("a folder");
         let background = start(&folder);
@@ -202,7 +278,7 @@ mod tests {
                 break run_hash;
             }
         };
-        let mut experiment = experiment();
+        let mut experiment = Experiment::new(plan());
         let pool = pool(1).expect("a pool");
         while !experiment.is_over() {
             experiment.run_generation(&pool, &Control::default()).expect("not cancelled");

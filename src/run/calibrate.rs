@@ -5,16 +5,13 @@
 //! the whole protocol with several seeds; the search starts from the settings it is given and draws
 //! candidates near the best that it has, now and then from anywhere. Test what it finds with other seeds: `snakes table1`.
 
-use std::sync::Arc;
-
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-use rayon::ThreadPool;
 
-use super::table1::{REPORT_MEANS, SeedResult};
-use super::{Cancelled, Control, Experiment, GenerationReport};
+use super::table1::{REPORT_MEANS, SeedResult, run_seed};
+use super::{Cancelled, Experiment, GenerationReport};
 use crate::check::Invalid;
-use crate::evolve::{Settings, with_field};
+use crate::evolve::{RunPlan, Settings, with_field};
 use crate::rng::{Purpose, stream};
 
 /// A setting that the search may turn.
@@ -207,23 +204,17 @@ impl Knob {
 /// Runs the protocol with a candidate's settings and the given seeds, giving up when it is hopeless.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `run` was.
 pub fn try_candidate(
     (values, settings): (Vec<f32>, Settings),
     seeds: std::ops::RangeInclusive<u64>,
     hopeless_below: f64,
-    pool: &ThreadPool,
-    control: &Arc<Control>,
-    mut run: impl FnMut(
-        &mut Experiment,
-        &ThreadPool,
-        &Arc<Control>,
-    ) -> Result<GenerationReport, Cancelled>,
+    mut run: impl FnMut(&mut Experiment) -> Result<GenerationReport, Cancelled>,
 ) -> Result<Candidate, Cancelled> {
     let mut results = Vec::new();
     for seed in seeds {
-        let preset = "calibration";
-        results.push(super::table1::run_seed(preset, &settings, seed, pool, control, &mut run)?);
+        let plan = RunPlan::new("calibration", seed, settings.clone());
+        results.push(run_seed(plan, &mut run)?);
         if score(&results) < hopeless_below {
             break;
         }

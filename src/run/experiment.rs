@@ -1,52 +1,76 @@
 //! A run of the learning method: asks the strategy, evaluates in parallel, tells it in order.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::report::generation_hash;
+use super::panics::caught;
+use super::report::{Crash, generation_hash, meaning};
 use super::{Cancelled, Control, GenerationReport, Statistics};
-use crate::evolve::{Champion, Halving, Origin, Settings, Strategy, ranking};
+use crate::evolve::{
+    Champion, Halving, Origin, RunPlan, Settings, Strategy, StrategyState, ranking,
+};
 use crate::genome::Genome;
-use crate::score::{Evaluation, evaluate};
+use crate::save::Progress;
+use crate::score::{Evaluation, Trial, evaluate};
+use crate::world::Disqualification;
 
 /// A run, between two generations.
 pub struct Experiment {
-    preset: String,
-    seed: u64,
-    settings: Settings,
+    plan: RunPlan,
     strategy: Halving,
     finished: u32,
     hash: Xxh3Default,
     best: Option<Champion>,
+    /// Evaluations of the next generation that were made before a kill.
+    known: BTreeMap<u32, Evaluation>,
+    /// Only a test puts another in its place.
+    evaluate: fn(&Genome, &Trial) -> Evaluation,
 }
 
+/// So many of a generation's crashed genomes are reported; more would tell nothing new.
+const MOST_CRASHES: usize = 3;
+
 impl Experiment {
-    /// A fresh run. The settings must have passed their check.
-    pub fn new(preset: &str, seed: u64, settings: Settings) -> Self {
-        let strategy = Halving::new(
-            settings.evolution.clone(),
-            settings.genome.clone(),
-            seed,
-            settings.trial.agent.joints(),
-            settings.trial.duration_s,
-        );
+    /// A fresh run.
+    pub fn new(plan: RunPlan) -> Self {
         Self {
-            preset: preset.to_owned(),
-            seed,
-            settings,
-            strategy,
+            strategy: Halving::new(&plan),
+            plan,
             finished: 0,
             hash: Xxh3Default::new(),
             best: None,
+            known: BTreeMap::new(),
+            evaluate,
         }
+    }
+
+    /// A run that goes on after what it has behind it, as if it had never been stopped.
+    pub fn resumed(plan: RunPlan, progress: &Progress) -> Self {
+        let finished = progress.records.len() as u32;
+        let mut experiment = Self::new(plan);
+        if let Some(StrategyState::Halving { parents }) = &progress.state {
+            experiment.strategy = Halving::resumed(&experiment.plan, finished, parents.clone());
+        }
+        for record in &progress.records {
+            // Reading the log has checked it.
+            let hash = record.generation_hash().unwrap_or(0);
+            experiment.hash.update(&hash.to_le_bytes());
+        }
+        experiment.finished = finished;
+        experiment.known = progress.evaluations.iter().copied().collect();
+        for champion in &progress.champions {
+            experiment.keep_if_better(champion.as_ref());
+        }
+        experiment
     }
 
     /// The settings of the run.
     pub fn settings(&self) -> &Settings {
-        &self.settings
+        &self.plan.settings
     }
 
     /// Generations finished so far.
@@ -56,7 +80,7 @@ impl Experiment {
 
     /// Whether all generations are done.
     pub fn is_over(&self) -> bool {
-        self.finished >= self.settings.evolution.generations
+        self.finished >= self.plan.settings.evolution.generations
     }
 
     /// The best individual of all generations so far; of equals, the first found.
@@ -69,6 +93,11 @@ impl Experiment {
         self.hash.digest()
     }
 
+    /// What the strategy has learned so far.
+    pub fn state(&self) -> StrategyState {
+        self.strategy.state()
+    }
+
     /// Evaluates one generation on `pool` and lets the strategy learn from it.
     ///
     /// # Errors
@@ -78,52 +107,83 @@ impl Experiment {
         pool: &ThreadPool,
         control: &Control,
     ) -> Result<GenerationReport, Cancelled> {
+        self.run_generation_noting(pool, control, |_, _, _| ())
+    }
+
+    /// The same; `note` is told of each evaluation as soon as it is made: generation, individual, result.
+    ///
+    /// # Errors
+    /// As [`Self::run_generation`].
+    pub fn run_generation_noting(
+        &mut self,
+        pool: &ThreadPool,
+        control: &Control,
+        note: impl Fn(u32, u32, &Evaluation) + Sync,
+    ) -> Result<GenerationReport, Cancelled> {
         let started = Instant::now();
         control.start_generation();
+        let generation = self.finished + 1;
         let genomes = self.strategy.ask();
-        let trial = &self.settings.trial;
-        let score = |genome: &Genome| {
+        let trial = &self.plan.settings.trial;
+        let score = |(index, genome): (usize, &Genome)| {
+            let individual = index as u32;
+            if let Some(known) = self.known.get(&individual) {
+                control.count_one();
+                return Ok((*known, None));
+            }
             control.pass()?;
-            let evaluation = evaluate(genome, trial);
+            let (evaluation, message) = match caught(|| (self.evaluate)(genome, trial)) {
+                Ok(evaluation) => (evaluation, None),
+                Err(message) => (void_evaluation(), Some(message)),
+            };
+            note(generation, individual, &evaluation);
             control.count_one();
-            Ok(evaluation)
+            Ok((evaluation, message))
         };
         // Collecting a parallel iterator keeps the order of the individuals.
-        let evaluations: Vec<Evaluation> =
-            pool.install(|| genomes.par_iter().map(score).collect::<Result<_, _>>())?;
+        let scored: Vec<(Evaluation, Option<String>)> =
+            pool.install(|| genomes.par_iter().enumerate().map(score).collect::<Result<_, _>>())?;
+        let (evaluations, messages): (Vec<Evaluation>, Vec<Option<String>>) =
+            scored.into_iter().unzip();
 
-        let statistics = Statistics::of(&evaluations);
-        let champion = ranking(&evaluations).first().map(|&index| Champion {
+        let individual = |index: usize| Champion {
             genome: genomes[index].clone(),
             trial: trial.clone(),
             evaluation: evaluations[index],
             origin: Origin {
-                preset: self.preset.clone(),
-                seed: self.seed,
-                generation: self.finished + 1,
+                preset: self.plan.preset.clone(),
+                seed: self.plan.seed,
+                generation,
                 individual: index as u32,
             },
-        });
-        let meaning = match statistics {
-            Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
-            None => "all disqualified".to_owned(),
         };
-        let hash = generation_hash(&evaluations);
+        let crashes = messages.into_iter().enumerate().filter_map(|(index, message)| {
+            Some(Crash { individual: individual(index), message: message? })
+        });
+        let count = |is: fn(&Disqualification) -> bool| {
+            let reasons = evaluations.iter().filter_map(|e| e.disqualified.as_ref());
+            reasons.filter(|reason| is(reason)).count() as u32
+        };
+        let statistics = Statistics::of(&evaluations);
+        let report = GenerationReport {
+            generation,
+            evaluations: evaluations.len() as u32,
+            disqualified: count(|_| true),
+            crashed: count(|reason| *reason == Disqualification::Crashed),
+            crashes: crashes.take(MOST_CRASHES).collect(),
+            statistics,
+            meaning: meaning(statistics.as_ref(), trial),
+            hash: generation_hash(&evaluations),
+            elapsed_s: started.elapsed().as_secs_f64(),
+            champion: ranking(&evaluations).first().map(|&index| individual(index)),
+        };
 
         self.strategy.tell(&genomes, &evaluations);
-        self.finished += 1;
-        self.hash.update(&hash.to_le_bytes());
-        self.keep_if_better(champion.as_ref());
-        Ok(GenerationReport {
-            generation: self.finished,
-            evaluations: evaluations.len() as u32,
-            disqualified: evaluations.iter().filter(|e| e.disqualified.is_some()).count() as u32,
-            statistics,
-            meaning,
-            hash,
-            elapsed_s: started.elapsed().as_secs_f64(),
-            champion,
-        })
+        self.finished = generation;
+        self.known.clear();
+        self.hash.update(&report.hash.to_le_bytes());
+        self.keep_if_better(report.champion.as_ref());
+        Ok(report)
     }
 
     fn keep_if_better(&mut self, candidate: Option<&Champion>) {
@@ -136,6 +196,12 @@ impl Experiment {
     }
 }
 
+/// What counts for an agent on which the program failed.
+fn void_evaluation() -> Evaluation {
+    let disqualified = Some(Disqualification::Crashed);
+    Evaluation { fitness: 0.0, centre_y_m: 0.0, disqualified, trace_hash: 0, steps: 0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,7 +212,7 @@ mod tests {
         settings.evolution.population = 12;
         settings.evolution.generations = 3;
         settings.trial.duration_s = 1.0;
-        Experiment::new("test", seed, settings)
+        Experiment::new(RunPlan::new("test", seed, settings))
     }
 
     fn hash_with(threads: usize, seed: u64) -> u64 {
@@ -178,6 +244,63 @@ mod tests {
             experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
         }
         assert_eq!(experiment.run_hash(), hash_with(1, 1));
+    }
+
+    #[test]
+    fn an_evaluation_that_panics_is_void_and_counted_and_its_genome_kept() {
+        let mut experiment = small(1);
+        let healthy = small(1)
+            .run_generation(&pool(1).expect("a pool"), &Control::default())
+            .expect("not cancelled");
+        // The champion's is the one to fail.
+        static FAILS: std::sync::OnceLock<Genome> = std::sync::OnceLock::new();
+        let champion = healthy.champion.expect("somebody was healthy");
+        FAILS.set(champion.genome.clone()).expect("set once");
+        experiment.evaluate = |genome, trial| {
+            assert_ne!(Some(genome), FAILS.get(), "index out of bounds");
+            evaluate(genome, trial)
+        };
+        let hash_with = |experiment: &mut Experiment, threads| {
+            let pool = pool(threads).expect("a pool");
+            experiment.run_generation(&pool, &Control::default()).expect("not cancelled")
+        };
+        let report = hash_with(&mut experiment, 2);
+        assert_eq!((report.crashed, report.disqualified), (1, healthy.disqualified + 1));
+        let crash = report.crashes.first().expect("reported");
+        assert_eq!(crash.individual.genome, champion.genome);
+        assert_eq!(crash.individual.origin, champion.origin);
+        assert!(crash.message.contains("index out of bounds"), "{}", crash.message);
+        assert_ne!(report.champion, Some(champion), "another is the best");
+        assert!(!experiment.is_over(), "and the run goes on");
+        hash_with(&mut experiment, 2);
+    }
+
+    #[test]
+    fn evaluations_that_are_known_are_not_made_again_and_change_nothing() {
+        let pool = pool(2).expect("a pool");
+        let noted = std::sync::Mutex::new(Vec::new());
+        let note = |_, individual, evaluation: &Evaluation| {
+            noted.lock().expect("no panic").push((individual, *evaluation));
+        };
+        let mut first = small(1);
+        first.run_generation_noting(&pool, &Control::default(), note).expect("not cancelled");
+        let mut noted = noted.into_inner().expect("no panic");
+        noted.truncate(7);
+        let progress = Progress {
+            records: Vec::new(),
+            champions: Vec::new(),
+            state: None,
+            evaluations: noted.clone(),
+        };
+        let mut again = Experiment::resumed(first.plan.clone(), &progress);
+        let made = std::sync::atomic::AtomicU32::new(0);
+        let count = |_, individual, _: &Evaluation| {
+            assert!(noted.iter().all(|(known, _)| *known != individual));
+            made.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        };
+        again.run_generation_noting(&pool, &Control::default(), count).expect("not cancelled");
+        assert_eq!(made.into_inner(), 5);
+        assert_eq!(again.run_hash(), first.run_hash());
     }
 
     #[test]

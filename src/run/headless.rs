@@ -9,11 +9,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::{ThreadPool, ThreadPoolBuildError};
 use serde_json::{Value, json};
 
-use super::{Cancelled, Control, Experiment, GenerationReport, Keeper, pool};
+use super::panics::caught;
+use super::{Cancelled, Control, Experiment, GenerationReport, KeptRun, RunSource, pool};
 use crate::ENGINE_VERSION;
-use crate::evolve::Champion;
-use crate::save::{SaveError, SavesFolder, load_champion};
-use crate::score::evaluate;
+use crate::evolve::{Champion, RunPlan};
+use crate::save::{SaveError, load_champion};
+use crate::score::{Evaluation, evaluate};
 
 /// Why a headless command failed.
 #[derive(Debug, thiserror::Error)]
@@ -27,10 +28,44 @@ pub enum HeadlessError {
     /// Standard output was closed or is full.
     #[error("standard output: cannot be written: {0}")]
     Output(#[from] io::Error),
+    /// The interrupt key stopped a run.
+    #[error(
+        "cancelled after generation {finished} of {generations}; it goes on with --resume {}",
+        folder.display()
+    )]
+    Stopped {
+        /// Generations that are finished.
+        finished: u32,
+        /// Generations in the run.
+        generations: u32,
+        /// The run's folder.
+        folder: PathBuf,
+    },
+    /// A generation could not be saved.
+    #[error(
+        "{source}; generations up to {saved} are safe, the run goes on with --resume {}",
+        folder.display()
+    )]
+    NotSaved {
+        /// Why.
+        source: Box<SaveError>,
+        /// Generations that are saved.
+        saved: u32,
+        /// The run's folder.
+        folder: PathBuf,
+    },
+    /// The program failed on the genome of a save.
+    #[error("{}: the program failed on its genome: {message}", path.display())]
+    Crashed {
+        /// The save.
+        path: PathBuf,
+        /// What the program said.
+        message: String,
+    },
     /// The interrupt key was pressed.
     #[error("cancelled; {}", match kept {
         Some(path) => format!("the best so far is saved to {}", path.display()),
-        None => "the first generation was not finished, nothing is saved".to_owned(),
+        None => "the first seed was not finished, nothing is saved".to_owned(),
     })]
     Cancelled {
         /// Where the best so far is.
@@ -49,33 +84,59 @@ pub enum HeadlessError {
     NoChampion,
 }
 
-/// Runs an experiment to its end and prints it to `out`, a line per generation. The best so far is
-/// saved after each generation.
+/// Evolves a run to its end and prints it to `out`, a line per generation, those included that were behind
+/// it. Each generation is saved before its line is printed.
 ///
 /// # Errors
-/// See [`HeadlessError`]. The folder is tried before the first evaluation.
+/// See [`HeadlessError`]. The folder is opened before the first evaluation.
 pub fn evolve(
-    mut experiment: Experiment,
-    saves: SavesFolder,
+    source: RunSource,
     threads: usize,
     json: bool,
     control: &Arc<Control>,
     out: &mut dyn Write,
 ) -> Result<(), HeadlessError> {
-    saves.prepare()?;
+    let RunPlan { preset, seed, settings } = source.plan.clone();
+    let KeptRun { mut experiment, mut keeper, reports } = source.open("snakes --no-render")?;
     let pool = pool(threads)?;
+    let folder = keeper.folder().to_owned();
+    let generations = settings.evolution.generations;
+    let behind = match reports.len() {
+        0 => String::new(),
+        behind => format!("; goes on after generation {behind}"),
+    };
+    say(&format!(
+        "preset {preset}, seed {seed}: generations {generations}, population {}, threads \
+         {threads}{behind}",
+        settings.evolution.population
+    ));
     if !json {
         writeln!(out, "{TABLE_HEAD}")?;
-        out.flush()?;
     }
-    let mut keeper = Keeper::new(saves);
-    while !experiment.is_over() {
-        let report = with_progress(&mut experiment, &pool, control)
-            .map_err(|_| HeadlessError::Cancelled { kept: keeper.best().map(Path::to_owned) })?;
-        keeper.keep(&experiment, report.champion.as_ref())?;
-        let line = if json { json_line(&report).to_string() } else { table_row(&report) };
+    let mut print = |report: &GenerationReport| {
+        let line = if json { json_line(report).to_string() } else { table_row(report) };
         writeln!(out, "{line}")?;
-        out.flush()?;
+        out.flush()
+    };
+    reports.iter().try_for_each(&mut print)?;
+    while !experiment.is_over() {
+        let note = |generation, individual, evaluation: &_| {
+            keeper.note(generation, individual, evaluation);
+        };
+        let report = with_progress(&mut experiment, &pool, control, note);
+        let finished = experiment.finished();
+        let report = report.map_err(|Cancelled| HeadlessError::Stopped {
+            finished,
+            generations,
+            folder: folder.clone(),
+        })?;
+        keeper.keep(&experiment, &report).map_err(|source| HeadlessError::NotSaved {
+            source: Box::new(source),
+            saved: finished - 1,
+            folder: folder.clone(),
+        })?;
+        report.crashes.iter().for_each(|crash| say(&keeper.keep_crash(crash)));
+        print(&report)?;
     }
     let run_hash = format!("{:016x}", experiment.run_hash());
     let best = experiment.best();
@@ -96,7 +157,7 @@ pub fn evolve(
 }
 
 /// Runs one generation with a progress bar on the terminal; where standard error is no terminal, none
-/// is drawn.
+/// is drawn. `note` is told of every evaluation: see [`Experiment::run_generation_noting`].
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was.
@@ -104,6 +165,7 @@ pub fn with_progress(
     experiment: &mut Experiment,
     pool: &ThreadPool,
     control: &Arc<Control>,
+    note: impl Fn(u32, u32, &Evaluation) + Sync,
 ) -> Result<GenerationReport, Cancelled> {
     let population = experiment.settings().evolution.population;
     let bar = ProgressBar::new(population.into());
@@ -123,7 +185,7 @@ pub fn with_progress(
                 bar.set_position(control_seen.done().into());
             }
         });
-        let result = experiment.run_generation(pool, control);
+        let result = experiment.run_generation_noting(pool, control, note);
         drop(finished);
         result
     });
@@ -138,7 +200,9 @@ pub fn with_progress(
 pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), HeadlessError> {
     let loaded = load_champion(path)?;
     let recorded = loaded.champion.evaluation;
-    let found = evaluate(&loaded.champion.genome, &loaded.champion.trial);
+    let Champion { genome, trial, .. } = &loaded.champion;
+    let found = caught(|| evaluate(genome, trial))
+        .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })?;
     let matches = found == recorded;
     let meaning = loaded.champion.trial.meaning(f64::from(found.centre_y_m));
     if json {
@@ -182,6 +246,12 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     Err(HeadlessError::Differs { path: path.to_owned(), difference })
 }
 
+/// Tells a person how it goes; standard output is for results.
+pub fn say(line: &str) {
+    // Nothing is left to do if even standard error is gone.
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
 const TABLE_HEAD: &str =
     "generation     mean     best   median  std.dev.  disqualified  meaning of the mean";
 
@@ -205,6 +275,7 @@ fn json_line(report: &GenerationReport) -> Value {
         "std": statistics.map(|s| s.std),
         "worst": statistics.map(|s| s.worst),
         "disqualified": report.disqualified,
+        "crashed": report.crashed,
         "evaluations": report.evaluations,
         "elapsed_s": report.elapsed_s,
         "meaning": report.meaning,
@@ -241,6 +312,8 @@ mod tests {
             generation: 1,
             evaluations: 500,
             disqualified: 12,
+            crashed: 0,
+            crashes: Vec::new(),
             statistics: Some(statistics),
             meaning: "starting position".to_owned(),
             hash: 0,

@@ -1,51 +1,278 @@
-//! Saves the champion of each generation as soon as it is found, so that a crash or a closed window
-//! loses nothing.
+//! Writes a run down as it goes, so that a kill, a full disk or a power cut loses no finished generation.
 
 use std::path::{Path, PathBuf};
 
-use super::Experiment;
-use crate::evolve::Champion;
-use crate::save::{SaveError, SavesFolder, champion_file_name, run_name, store_champion};
+use super::{Crash, Experiment, GenerationReport};
+use crate::evolve::RunPlan;
+use crate::save::{Earlier, RunFolder, SaveError, SavesFolder, load_plan};
+use crate::score::{Evaluation, Recording};
 
-/// Writes the champions of one run into a folder of its own.
+/// A run in its folder: what is behind it, and what is left to do.
+pub struct KeptRun {
+    /// The run, after its last finished generation.
+    pub experiment: Experiment,
+    /// Its folder.
+    pub keeper: Keeper,
+    /// The generations that are behind it, the first first.
+    pub reports: Vec<GenerationReport>,
+}
+
+/// Writes one run into its folder.
 #[derive(Debug)]
 pub struct Keeper {
-    saves: SavesFolder,
+    folder: RunFolder,
     /// The best champion's file, and what it reached.
     best: Option<(PathBuf, f32)>,
 }
 
-impl Keeper {
-    /// A keeper that makes the run's folder in `saves`.
-    pub fn new(saves: SavesFolder) -> Self {
-        Self { saves, best: None }
+/// Which run to open, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSource {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What run it is.
+    pub plan: RunPlan,
+    /// What to do with what the folder already has of it.
+    pub earlier: Earlier,
+}
+
+impl RunSource {
+    /// A run in the folder among `saves` that has its name.
+    pub fn in_saves(saves: &SavesFolder, plan: RunPlan, earlier: Earlier) -> Self {
+        Self { folder: saves.of_run(&plan), plan, earlier }
     }
 
-    /// Saves the champion of the generation that was just finished, if it has one.
+    /// The run that a folder holds, to go on with.
     ///
     /// # Errors
-    /// The folder or the file cannot be written.
-    pub fn keep(
-        &mut self,
-        experiment: &Experiment,
-        champion: Option<&Champion>,
-    ) -> Result<(), SaveError> {
-        let Some(champion) = champion else { return Ok(()) };
-        let origin = &champion.origin;
-        let run = run_name(&origin.preset, origin.seed, experiment.settings());
-        let folder = SavesFolder::find(Some(&self.saves.path().join(run)));
-        folder.prepare()?;
-        let path = folder.path().join(champion_file_name(origin.generation));
-        store_champion(&path, champion)?;
-        let fitness = champion.evaluation.fitness;
-        if self.best.as_ref().is_none_or(|(_, best)| fitness > *best) {
-            self.best = Some((path, fitness));
+    /// There is none in it, it was recorded by another engine, or its file is damaged.
+    pub fn in_folder(folder: &Path) -> Result<Self, SaveError> {
+        let plan = load_plan(folder)?;
+        Ok(Self { folder: folder.to_owned(), plan, earlier: Earlier::Keep })
+    }
+
+    /// Opens the run. `who` is what others are told who want its folder too.
+    ///
+    /// # Errors
+    /// Another program writes into the folder; it holds another run; something in it is damaged; it cannot
+    /// be written.
+    pub fn open(self, who: &str) -> Result<KeptRun, SaveError> {
+        let (folder, progress) = RunFolder::open(&self.folder, &self.plan, self.earlier, who)?;
+        let experiment = Experiment::resumed(self.plan, &progress);
+        let trial = &experiment.settings().trial;
+        let pairs = progress.records.iter().zip(progress.champions);
+        let reports: Vec<GenerationReport> = pairs
+            .map(|(record, champion)| GenerationReport::of_record(record, champion, trial))
+            .collect();
+        let mut keeper = Keeper { folder, best: None };
+        for report in &reports {
+            if report.champion.is_some() {
+                keeper.remember(report, keeper.folder.champion_path(report.generation));
+            }
         }
-        Ok(())
+        Ok(KeptRun { experiment, keeper, reports })
+    }
+}
+
+impl Keeper {
+    /// The run's folder.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
     }
 
     /// The file of the best champion so far.
     pub fn best(&self) -> Option<&Path> {
         self.best.as_ref().map(|(path, _)| path.as_path())
+    }
+
+    /// Notes an evaluation of the generation under way.
+    pub fn note(&self, generation: u32, individual: u32, evaluation: &Evaluation) {
+        self.folder.note(generation, individual, evaluation);
+    }
+
+    /// Writes down the generation that was just finished. If that fails, it may be tried again.
+    ///
+    /// # Errors
+    /// The folder or a file cannot be written.
+    pub fn keep(
+        &mut self,
+        experiment: &Experiment,
+        report: &GenerationReport,
+    ) -> Result<(), SaveError> {
+        let champion = report.champion.as_ref();
+        // One more evaluation a generation buys a champion that any later engine can show.
+        let recording = champion.map(|champion| Recording::of(&champion.genome, &champion.trial));
+        let path = self.folder.finish_generation(
+            &report.record(),
+            champion.zip(recording.as_ref()),
+            &experiment.state(),
+            experiment.run_hash(),
+        )?;
+        if let Some(path) = path {
+            self.remember(report, path);
+        }
+        Ok(())
+    }
+
+    /// Writes down a genome on which the program failed, and says so in a line.
+    pub fn keep_crash(&self, crash: &Crash) -> String {
+        let origin = &crash.individual.origin;
+        let what = format!(
+            "the program failed on individual {} of generation {} ({})",
+            origin.individual, origin.generation, crash.message
+        );
+        match self.folder.keep_crashed(&crash.individual) {
+            Ok(path) => {
+                format!("{what}; it counts as disqualified, its genome is {}", path.display())
+            }
+            Err(error) => format!("{what}; its genome is not saved: {error}"),
+        }
+    }
+
+    fn remember(&mut self, report: &GenerationReport, path: PathBuf) {
+        let Some(champion) = &report.champion else { return };
+        let fitness = champion.evaluation.fitness;
+        if self.best.as_ref().is_none_or(|(_, best)| fitness > *best) {
+            self.best = Some((path, fitness));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+    use crate::run::{Control, pool};
+    use std::fs;
+
+    fn plan() -> RunPlan {
+        let mut settings = Settings::default();
+        settings.evolution.population = 8;
+        settings.evolution.generations = 6;
+        settings.trial.duration_s = 0.5;
+        RunPlan::new("test", 1, settings)
+    }
+
+    fn source(folder: &Path, earlier: Earlier) -> RunSource {
+        RunSource::in_saves(&SavesFolder::find(Some(folder)), plan(), earlier)
+    }
+
+    /// Evolves `generations` of a kept run, or to its end.
+    fn evolve(run: &mut KeptRun, generations: u32) {
+        let pool = pool(2).expect("a pool");
+        let control = Control::default();
+        for _ in 0..generations {
+            if run.experiment.is_over() {
+                break;
+            }
+            let keeper = &run.keeper;
+            let note = |g, i, evaluation: &Evaluation| keeper.note(g, i, evaluation);
+            let report = run.experiment.run_generation_noting(&pool, &control, note);
+            run.keeper.keep(&run.experiment, &report.expect("not cancelled")).expect("kept");
+        }
+    }
+
+    fn undisturbed() -> Experiment {
+        let mut experiment = Experiment::new(plan());
+        while !experiment.is_over() {
+            let pool = pool(1).expect("a pool");
+            experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
+        }
+        experiment
+    }
+
+    fn files(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("a folder");
+        let names = entries.map(|entry| entry.expect("an entry").file_name());
+        let mut names: Vec<String> =
+            names.map(|name| name.to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_run_that_is_stopped_after_any_generation_goes_on_bit_for_bit() {
+        let expected = undisturbed();
+        for stop in 1..=6 {
+            let saves = tempfile::tempdir().expect("a folder");
+            let mut first = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+            evolve(&mut first, stop);
+            drop(first);
+            let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+            assert_eq!(again.reports.len() as u32, stop);
+            evolve(&mut again, 6);
+            assert_eq!(again.experiment.run_hash(), expected.run_hash(), "stopped after {stop}");
+            assert_eq!(again.experiment.best(), expected.best());
+        }
+    }
+
+    #[test]
+    fn checkpoints_are_thinned_and_champions_are_not() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut run = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        evolve(&mut run, 6);
+        let files = files(run.keeper.folder());
+        let of = |prefix: &str| files.iter().filter(|name| name.starts_with(prefix)).count();
+        assert_eq!(of("generation-"), 6, "{files:?}");
+        let checkpoints: Vec<&String> =
+            files.iter().filter(|name| name.starts_with("checkpoint-")).collect();
+        let kept = ["1", "2", "4", "5", "6"].map(|number| format!("checkpoint-{number}.ron"));
+        assert_eq!(checkpoints, kept.iter().collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn without_its_latest_checkpoint_a_run_goes_on_from_an_earlier_one() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut run = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        evolve(&mut run, 4);
+        let folder = run.keeper.folder().to_owned();
+        drop(run);
+        for removed in ["checkpoint-4.ron", "checkpoint-3.ron"] {
+            fs::remove_file(folder.join(removed)).expect("removed");
+        }
+        let mut again = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        assert_eq!(again.reports.len(), 2);
+        evolve(&mut again, 6);
+        assert_eq!(again.experiment.run_hash(), undisturbed().run_hash());
+    }
+
+    #[test]
+    fn what_is_done_with_an_earlier_run_depends_on_what_is_asked() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let open = |earlier, generations| {
+            let mut run = source(saves.path(), earlier).open("a test").expect("opened");
+            let found = run.reports.len();
+            evolve(&mut run, generations);
+            found
+        };
+        assert_eq!(open(Earlier::GoOn, 2), 0);
+        assert_eq!(open(Earlier::GoOn, 0), 2, "stopped: it goes on");
+        assert_eq!(open(Earlier::Discard, 6), 0, "thrown away");
+        assert_eq!(open(Earlier::Keep, 0), 6, "finished, and left so");
+        assert_eq!(open(Earlier::GoOn, 0), 0, "finished: begun anew");
+    }
+
+    #[test]
+    fn a_folder_of_another_run_is_refused() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut source = source(saves.path(), Earlier::GoOn);
+        source.clone().open("a test").expect("opened");
+        source.plan.seed = 2;
+        let error = source.open("a test").err().expect("refused").to_string();
+        assert!(error.contains("holds another run"), "{error}");
+    }
+
+    #[test]
+    fn a_crashed_genome_is_saved_so_that_it_can_be_replayed() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut run = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        let report = run.experiment.run_generation(&pool(1).expect("a pool"), &Control::default());
+        let individual = report.expect("not cancelled").champion.expect("somebody was healthy");
+        let name = format!("crashed-1-{}.ron", individual.origin.individual);
+        let crash = Crash { individual: individual.clone(), message: "overflow".to_owned() };
+        let said = run.keeper.keep_crash(&crash);
+        assert!(said.contains("(overflow)") && said.contains(&name), "{said}");
+        let loaded = crate::save::load_champion(&run.keeper.folder().join(name)).expect("read");
+        assert_eq!(loaded.champion.genome, individual.genome);
     }
 }

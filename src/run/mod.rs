@@ -7,13 +7,15 @@ mod control;
 mod experiment;
 pub mod headless;
 mod keeper;
+mod panics;
 mod report;
 pub mod table1;
 mod threads;
+pub mod verify;
 
 pub use background::{Background, Event};
 pub use control::{Cancelled, Control};
 pub use experiment::Experiment;
-pub use keeper::Keeper;
-pub use report::{GenerationReport, Statistics};
+pub use keeper::{Keeper, KeptRun, RunSource};
+pub use report::{Crash, GenerationReport, Statistics};
 pub use threads::{THREADS_RANGE, available_cores, pool};

@@ -3,7 +3,8 @@
 use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::evolve::Champion;
-use crate::score::Evaluation;
+use crate::save::{GenerationRecord, StatisticsRecord};
+use crate::score::{Evaluation, Trial};
 
 /// The result of one generation.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,8 +13,12 @@ pub struct GenerationReport {
     pub generation: u32,
     /// Individuals that were evaluated.
     pub evaluations: u32,
-    /// How many of them were disqualified.
+    /// How many of them were disqualified, for whatever reason.
     pub disqualified: u32,
+    /// On how many of them the program failed.
+    pub crashed: u32,
+    /// The first few of these.
+    pub crashes: Vec<Crash>,
     /// Fitness statistics over the others; none if all were disqualified.
     pub statistics: Option<Statistics>,
     /// What the mean means, in the words of the report's Table 1.
@@ -24,6 +29,62 @@ pub struct GenerationReport {
     pub elapsed_s: f64,
     /// The best individual; none if all were disqualified.
     pub champion: Option<Champion>,
+}
+
+/// A genome on which the program failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crash {
+    /// The individual; its evaluation is void.
+    pub individual: Champion,
+    /// What the program said.
+    pub message: String,
+}
+
+impl GenerationReport {
+    /// The line of the log.
+    pub fn record(&self) -> GenerationRecord {
+        GenerationRecord {
+            generation: self.generation,
+            evaluations: self.evaluations,
+            disqualified: self.disqualified,
+            crashed: self.crashed,
+            statistics: self.statistics.map(|statistics| {
+                let Statistics { mean, best, median, std, worst, mean_centre_y_m } = statistics;
+                StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m }
+            }),
+            hash: format!("{:016x}", self.hash),
+            elapsed_s: self.elapsed_s,
+        }
+    }
+
+    /// The report that is in a line of the log, under the trial of its run.
+    pub fn of_record(record: &GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
+        let statistics = record.statistics.map(|statistics| {
+            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m } = statistics;
+            Statistics { mean, best, median, std, worst, mean_centre_y_m }
+        });
+        Self {
+            generation: record.generation,
+            evaluations: record.evaluations,
+            disqualified: record.disqualified,
+            crashed: record.crashed,
+            crashes: Vec::new(),
+            statistics,
+            meaning: meaning(statistics.as_ref(), trial),
+            // Reading the log has checked it.
+            hash: record.generation_hash().unwrap_or(0),
+            elapsed_s: record.elapsed_s,
+            champion,
+        }
+    }
+}
+
+/// What a generation's mean means.
+pub fn meaning(statistics: Option<&Statistics>, trial: &Trial) -> String {
+    match statistics {
+        Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
+        None => "all disqualified".to_owned(),
+    }
 }
 
 /// Statistics over the fitness of those agents of one generation that were not disqualified.

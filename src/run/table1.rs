@@ -1,11 +1,7 @@
 //! The report's Table 1 beside ours: the mean fitness of each generation, over several seeds.
 
-use std::sync::Arc;
-
-use rayon::ThreadPool;
-
-use super::{Cancelled, Control, Experiment, GenerationReport};
-use crate::evolve::Settings;
+use super::{Cancelled, Experiment, GenerationReport};
+use crate::evolve::RunPlan;
 
 /// The means of the report's Table 1, generation 1 first.
 pub const REPORT_MEANS: [f64; 6] = [-7.23, -5.94, -2.05, 3.84, 5.79, 8.05];
@@ -36,26 +32,19 @@ impl SeedResult {
     }
 }
 
-/// Runs the protocol once, telling `each` about every generation.
+/// Runs the protocol once; `run` evolves one generation after the other.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `run` was.
 pub fn run_seed(
-    preset: &str,
-    settings: &Settings,
-    seed: u64,
-    pool: &ThreadPool,
-    control: &Arc<Control>,
-    mut run: impl FnMut(
-        &mut Experiment,
-        &ThreadPool,
-        &Arc<Control>,
-    ) -> Result<GenerationReport, Cancelled>,
+    plan: RunPlan,
+    mut run: impl FnMut(&mut Experiment) -> Result<GenerationReport, Cancelled>,
 ) -> Result<SeedResult, Cancelled> {
-    let mut experiment = Experiment::new(preset, seed, settings.clone());
+    let seed = plan.seed;
+    let mut experiment = Experiment::new(plan);
     let (mut means, mut disqualified) = (Vec::new(), Vec::new());
     while !experiment.is_over() {
-        let report = run(&mut experiment, pool, control)?;
+        let report = run(&mut experiment)?;
         means.push(report.statistics.map(|statistics| statistics.mean));
         disqualified.push(report.disqualified);
     }
@@ -180,7 +169,8 @@ impl Spread {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::pool;
+    use crate::evolve::Settings;
+    use crate::run::{Control, pool};
 
     fn seed(seed: u64, means: &[f64]) -> SeedResult {
         SeedResult {
@@ -217,14 +207,14 @@ mod tests {
         settings.evolution.population = 6;
         settings.evolution.generations = 2;
         settings.trial.duration_s = 0.5;
-        let (pool, control) = (pool(1).expect("a pool"), Arc::new(Control::default()));
-        let run = |experiment: &mut Experiment, pool: &ThreadPool, control: &Arc<Control>| {
-            experiment.run_generation(pool, control)
-        };
-        let result = run_seed("test", &settings, 3, &pool, &control, run).expect("not cancelled");
-        let mut experiment = Experiment::new("test", 3, settings);
+        let plan = RunPlan::new("test", 3, settings);
+        let pool = pool(1).expect("a pool");
+        let mut run =
+            |experiment: &mut Experiment| experiment.run_generation(&pool, &Control::default());
+        let result = run_seed(plan.clone(), &mut run).expect("not cancelled");
+        let mut experiment = Experiment::new(plan);
         while !experiment.is_over() {
-            experiment.run_generation(&pool, &control).expect("not cancelled");
+            run(&mut experiment).expect("not cancelled");
         }
         assert_eq!(result.run_hash, experiment.run_hash());
         assert_eq!(result.means.len(), 2);

@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use ron::ser::PrettyConfig;
-use serde::Deserialize;
 
 use super::SaveError;
-use super::files::{parse, read_text, write_whole};
+use super::files::{Header, parse, read_text, write_whole};
 use super::v1::ChampionV1;
-use super::v2::{ChampionV2, FORMAT, KIND};
+use super::v2::ChampionV2;
+use super::v3::{ChampionV3, FORMAT, KIND};
 use crate::ENGINE_VERSION;
-use crate::check::Invalid;
 use crate::evolve::Champion;
+use crate::score::Recording;
 
 /// A champion read from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,15 +20,8 @@ pub struct LoadedChampion {
     pub champion: Champion,
     /// The engine that recorded it. Another one than [`ENGINE_VERSION`] may compute other bits.
     pub engine: u32,
-}
-
-/// The part of a file that says what it is; everything else is skipped.
-#[derive(Deserialize)]
-struct Header {
-    #[serde(default)]
-    kind: String,
-    #[serde(default)]
-    format: u32,
+    /// What it looked like there; files before format 3 do not know.
+    pub recording: Option<Recording>,
 }
 
 /// Reads a champion.
@@ -36,16 +29,20 @@ struct Header {
 /// # Errors
 /// The file is unreadable, too large, damaged, of another kind, newer, or has a value out of range.
 pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
-    read(path, &read_text(path)?)
+    parse_champion(path, &read_text(path)?)
 }
 
-/// Writes a champion so that a person can read it, whole or not at all.
+/// Writes a champion and, if known, what it looks like, so that a person can read it, whole or not at all.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn store_champion(path: &Path, champion: &Champion) -> Result<(), SaveError> {
+pub fn store_champion(
+    path: &Path,
+    champion: &Champion,
+    recording: Option<&Recording>,
+) -> Result<(), SaveError> {
     let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
-    let file = ChampionV2::from(champion.clone());
+    let file = ChampionV3::new(champion.clone(), recording);
     let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| {
         SaveError::Unwritable { path: path.to_owned(), source: std::io::Error::other(error) }
     })?;
@@ -69,32 +66,23 @@ pub fn store_champion(path: &Path, champion: &Champion) -> Result<(), SaveError>
 /// # Errors
 /// The embedded file is broken, which a test rules out.
 pub fn shipped_champion() -> Result<LoadedChampion, SaveError> {
-    read(Path::new("first-climber.ron"), include_str!("../../saves/first-climber.ron"))
+    parse_champion(Path::new("first-climber.ron"), include_str!("../../saves/first-climber.ron"))
 }
 
-fn read(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
-    let header: Header = parse(path, text)?;
-    if header.kind != KIND {
-        let start: String = header.kind.chars().take(60).collect();
-        let found = format!("{start:?}");
-        return Err(SaveError::Foreign { path: path.to_owned(), found, expected: KIND });
-    }
-    match header.format {
-        1..=FORMAT => {}
-        0 => {
-            let source = Invalid::new("format", "0 or missing", format!("1 to {FORMAT}"));
-            return Err(SaveError::Invalid { path: path.to_owned(), source });
-        }
-        found => return Err(SaveError::Newer { path: path.to_owned(), found, newest: FORMAT }),
-    }
-    let file: ChampionV2 = match header.format {
-        1 => parse::<ChampionV1>(path, text)?.into(),
+/// Reads a champion from a text; `path` is what errors call it.
+///
+/// # Errors
+/// As [`load_champion`], apart from reading.
+pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
+    let file: ChampionV3 = match Header::read(path, text, KIND, FORMAT)? {
+        1 => ChampionV2::from(parse::<ChampionV1>(path, text)?).into(),
+        2 => parse::<ChampionV2>(path, text)?.into(),
         _ => parse(path, text)?,
     };
     let engine = file.engine;
-    let champion = Champion::try_from(file)
-        .map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
-    Ok(LoadedChampion { champion, engine })
+    let (champion, recording) =
+        file.into_parts().map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    Ok(LoadedChampion { champion, engine, recording })
 }
 
 impl LoadedChampion {
@@ -109,7 +97,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    use crate::evolve::Settings;
+    use crate::evolve::{RunPlan, Settings};
     use crate::run::{Control, Experiment, pool};
     use crate::score::{Rollout, evaluate};
 
@@ -117,7 +105,7 @@ mod tests {
         let mut settings = Settings::default();
         settings.evolution.population = 4;
         settings.trial.duration_s = 1.0;
-        let mut experiment = Experiment::new("test", 5, settings);
+        let mut experiment = Experiment::new(RunPlan::new("test", 5, settings));
         let report = experiment.run_generation(&pool(1).expect("a pool"), &Control::default());
         report.expect("not cancelled").champion.expect("somebody was healthy")
     }
@@ -127,9 +115,12 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");
         let champion = champion();
-        store_champion(&path, &champion).expect("written");
+        let recording = Recording::of(&champion.genome, &champion.trial);
+        store_champion(&path, &champion, Some(&recording)).expect("written");
         let loaded = load_champion(&path).expect("read");
         assert_eq!(loaded.champion, champion);
+        let frames = loaded.recording.as_ref().expect("recorded").frames().len();
+        assert_eq!(frames, recording.frames().len());
         assert!(loaded.is_of_this_engine());
         let files = fs::read_dir(folder.path()).expect("a folder").count();
         assert_eq!(files, 1, "and nothing else is left in the folder");
@@ -137,7 +128,7 @@ mod tests {
 
     #[test]
     fn the_shipped_champion_does_what_it_did_when_it_was_found() {
-        let LoadedChampion { champion, engine } = shipped_champion().expect("well formed");
+        let LoadedChampion { champion, engine, .. } = shipped_champion().expect("well formed");
         assert_eq!(engine, ENGINE_VERSION);
         assert_eq!(evaluate(&champion.genome, &champion.trial), champion.evaluation);
         let climbed = champion.trial.stairs.steps_climbed(champion.evaluation.centre_y_m.into());
@@ -151,7 +142,7 @@ mod tests {
     #[test]
     fn a_file_of_format_1_loads_for_ever() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/saves/format-1.ron");
-        let LoadedChampion { champion, engine } = load_champion(&path).expect("it loads");
+        let LoadedChampion { champion, engine, .. } = load_champion(&path).expect("it loads");
         assert_eq!(engine, 1);
         assert_eq!(champion.trial.surface, crate::world::Surface::default());
         assert_eq!(champion.trial.ground, None);
@@ -160,11 +151,20 @@ mod tests {
         assert_eq!(champion.genome.signals.joints.len(), 4);
     }
 
+    #[test]
+    fn a_file_of_format_2_loads_for_ever_and_does_what_it_did() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/saves/format-2.ron");
+        let loaded = load_champion(&path).expect("it loads");
+        assert_eq!((loaded.engine, loaded.recording), (2, None));
+        let shipped = shipped_champion().expect("well formed");
+        assert_eq!(loaded.champion, shipped.champion);
+    }
+
     /// What `load_champion` says to a champion's text after `edit`.
     fn refusal(edit: impl FnOnce(String) -> String) -> String {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");
-        store_champion(&path, &champion()).expect("written");
+        store_champion(&path, &champion(), None).expect("written");
         let text = fs::read_to_string(&path).expect("read");
         let edited = edit(text.clone());
         assert_ne!(text, edited, "the edit did nothing");
@@ -181,8 +181,8 @@ mod tests {
         };
         says(refusal(|text| text[..text.len() / 2].to_owned()), &["damaged or incomplete at line"]);
         says(
-            refusal(|text| text.replace("format: 2", "format: 9")),
-            &["format is 9", "allowed: 1 to 2", "newer version"],
+            refusal(|text| text.replace("format: 3", "format: 9")),
+            &["format is 9", "allowed: 1 to 3", "newer version"],
         );
         says(
             refusal(|text| text.replace("snakes-and-stairs champion", "chess opening")),

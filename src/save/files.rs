@@ -4,6 +4,8 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
+
 use crate::check::Invalid;
 
 /// What can go wrong with a file. Each message is one line that starts with the file's name.
@@ -65,6 +67,20 @@ pub enum SaveError {
         /// The newest format this version reads.
         newest: u32,
     },
+    /// Another program writes into the folder.
+    #[error("{}: in use by {owner}", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+        /// The program's process, and what it is.
+        owner: String,
+    },
+    /// The folder holds the run of another preset, seed or setting.
+    #[error("{}: holds another run; allowed: an empty folder, or one of the same run", path.display())]
+    OtherRun {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Neither a preset nor a file has that name.
     #[error("{0}")]
     UnknownPreset(Invalid),
@@ -79,19 +95,48 @@ pub enum SaveError {
 }
 
 /// The largest file that is read. A champion's torque points are bounded so that it stays below.
-const LARGEST_FILE_MIB: u64 = 10;
+pub const LARGEST_FILE_MIB: u64 = 10;
 
 /// Reads a text file, but never more than [`LARGEST_FILE_MIB`].
 pub fn read_text(path: &Path) -> Result<String, SaveError> {
+    text_of(path, read_bytes(path, LARGEST_FILE_MIB)?)
+}
+
+/// Reads a file, but never more than a limit, and nothing that is no file: a device has no end, and a
+/// pipe may wait for ever.
+pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
     let unreadable = |source| SaveError::Unreadable { path: path.to_owned(), source };
-    let limit = LARGEST_FILE_MIB * 1024 * 1024;
-    let file = File::open(path).map_err(unreadable)?;
-    let mut text = Vec::new();
-    file.take(limit + 1).read_to_end(&mut text).map_err(unreadable)?;
-    if text.len() as u64 > limit {
-        return Err(SaveError::TooLarge { path: path.to_owned(), limit_mib: LARGEST_FILE_MIB });
+    let limit = limit_mib * 1024 * 1024;
+    let about = fs::metadata(path).map_err(unreadable)?;
+    if !about.is_file() {
+        return Err(unreadable(std::io::Error::other("it is no file")));
     }
-    String::from_utf8(text).map_err(|error| SaveError::Damaged {
+    if about.len() > limit {
+        return Err(SaveError::TooLarge { path: path.to_owned(), limit_mib });
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(unreadable)?;
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > limit {
+        return Err(SaveError::TooLarge { path: path.to_owned(), limit_mib });
+    }
+    Ok(bytes)
+}
+
+/// Refuses a symbolic link and whatever else is there but is no file: within a run's folder, which may be
+/// anybody's, no name leads elsewhere.
+pub fn refuse_link(path: &Path) -> std::io::Result<()> {
+    match fs::symlink_metadata(path) {
+        Ok(about) if about.is_file() => Ok(()),
+        Ok(_) => Err(std::io::Error::other("it is a link or no file")),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    }
+}
+
+/// Text from bytes, or where it stops being text.
+pub fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String, SaveError> {
+    String::from_utf8(bytes).map_err(|error| SaveError::Damaged {
         path: path.to_owned(),
         line: 1,
         column: error.utf8_error().valid_up_to() + 1,
@@ -105,8 +150,49 @@ pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<
         path: path.to_owned(),
         line: error.span.start.line,
         column: error.span.start.col,
-        problem: error.code.to_string(),
+        problem: tamed(&error.code.to_string()),
     })
+}
+
+/// What a parser says may repeat what stands in the file: a line's worth of it, and nothing that could
+/// write elsewhere in a terminal.
+pub fn tamed(text: &str) -> String {
+    let plain = text.chars().map(|c| if c.is_control() { ' ' } else { c });
+    plain.take(200).collect()
+}
+
+/// The part of a file that says what it is; everything else is skipped.
+#[derive(Deserialize)]
+pub struct Header {
+    #[serde(default)]
+    kind: String,
+    #[serde(default)]
+    format: u32,
+}
+
+impl Header {
+    /// Reads what a file is, and returns its format: 1 to `newest`.
+    pub fn read(
+        path: &Path,
+        text: &str,
+        expected: &'static str,
+        newest: u32,
+    ) -> Result<u32, SaveError> {
+        let Self { kind, format } = parse(path, text)?;
+        let path = path.to_owned();
+        if kind != expected {
+            let start: String = kind.chars().take(60).collect();
+            return Err(SaveError::Foreign { path, found: format!("{start:?}"), expected });
+        }
+        match format {
+            0 => {
+                let source = Invalid::new("format", "0 or missing", format!("1 to {newest}"));
+                Err(SaveError::Invalid { path, source })
+            }
+            known if known <= newest => Ok(known),
+            found => Err(SaveError::Newer { path, found, newest }),
+        }
+    }
 }
 
 /// Writes a file so that at every instant either the old or the whole new one is there: into a

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use super::SaveError;
 use super::files::{parse, read_text, write_whole};
-use crate::check::Invalid;
+use super::settings::SettingsV1;
+use crate::check::{self, Invalid, within};
 use crate::evolve::Settings;
 
-/// A preset as its file holds it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// Named, explained settings.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Preset {
     /// A short name, for the command line and for file names.
     pub name: String,
@@ -19,6 +19,24 @@ pub struct Preset {
     pub about: String,
     /// All settings.
     pub settings: Settings,
+}
+
+/// Format 1 of a preset's file. Never changed once released.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PresetV1 {
+    /// People write presets by hand: one that does not say its format has the first.
+    #[serde(default = "first_format")]
+    format: u32,
+    name: String,
+    about: String,
+    settings: SettingsV1,
+}
+
+const FORMAT: u32 = 1;
+
+fn first_format() -> u32 {
+    1
 }
 
 /// The preset used when none is named.
@@ -51,7 +69,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
 /// # Errors
 /// An embedded preset is broken, which a test rules out.
 pub fn shipped_presets() -> Result<Vec<Preset>, SaveError> {
-    SHIPPED.iter().map(|(file, text)| read(Path::new(file), text)).collect()
+    SHIPPED.iter().map(|(file, text)| parse_preset(Path::new(file), text)).collect()
 }
 
 /// Loads a preset by the name of a shipped one, or by the path of a person's own file.
@@ -65,7 +83,7 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
     }
     let path = PathBuf::from(name_or_path);
     if path.exists() {
-        return read(&path, &read_text(&path)?);
+        return parse_preset(&path, &read_text(&path)?);
     }
     let names: Vec<&str> = shipped.iter().map(|preset| preset.name.as_str()).collect();
     let allowed = format!("{}, or a file", names.join(", "));
@@ -78,29 +96,42 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
 /// The file cannot be written.
 pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
     let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
-    let text = ron::ser::to_string_pretty(preset, layout).map_err(|error| {
+    let Preset { name, about, settings } = preset.clone();
+    let file = PresetV1 { format: FORMAT, name, about, settings: settings.into() };
+    let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| {
         SaveError::Unwritable { path: path.to_owned(), source: std::io::Error::other(error) }
     })?;
     write_whole(path, format!("{text}\n").as_bytes())
 }
 
-fn read(path: &Path, text: &str) -> Result<Preset, SaveError> {
-    let preset: Preset = parse(path, text)?;
-    let checked = check_name(&preset.name).and_then(|()| preset.settings.check());
-    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+/// Reads a preset from a text; `path` is what errors call it.
+///
+/// # Errors
+/// It is damaged, or something in it is not allowed.
+pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
+    #[derive(Deserialize)]
+    struct Format {
+        #[serde(default = "first_format")]
+        format: u32,
+    }
+    let invalid = |source| SaveError::Invalid { path: path.to_owned(), source };
+    match parse::<Format>(path, text)?.format {
+        FORMAT => {}
+        0 => return Err(invalid(Invalid::new("format", 0, format!("1 to {FORMAT}")))),
+        found => {
+            return Err(SaveError::Newer { path: path.to_owned(), found, newest: FORMAT });
+        }
+    }
+    let PresetV1 { name, about, settings, .. } = parse(path, text)?;
+    let preset = Preset { name, about, settings: settings.into() };
+    check::name("name", &preset.name).map_err(invalid)?;
+    within("about", preset.about.len(), 0..=LONGEST_ABOUT).map_err(invalid)?;
+    preset.settings.check().map_err(invalid)?;
     Ok(preset)
 }
 
-/// A preset's name becomes part of file names.
-fn check_name(name: &str) -> Result<(), Invalid> {
-    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    if (1..=40).contains(&name.len()) && name.chars().all(plain) {
-        Ok(())
-    } else {
-        let allowed = "1 to 40 of a-z, 0-9 and -";
-        Err(Invalid::new("name", format!("{name:?}"), allowed))
-    }
-}
+/// The longest explanation of a preset, in bytes.
+const LONGEST_ABOUT: usize = 10_000;
 
 #[cfg(test)]
 mod tests {

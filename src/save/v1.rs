@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use super::v2::{
-    AgentV2, ChampionV2, FORMAT, GenomeV2, GroundV2, HealthV2, JointTorquesV2, OriginV2, PhysicsV2,
+    AgentV2, ChampionV2, GenomeV2, GroundV2, HealthV2, JointTorquesV2, OriginV2, PhysicsV2,
     RecordedV2, SkinV2, StairsV2, SurfaceV2, TrialV2,
 };
 use crate::score::{Fitness, PerPart};
@@ -79,7 +79,7 @@ impl From<ChampionV1> for ChampionV2 {
         let ChampionV1 { kind, format: _, engine, origin, recorded, trial, genome } = file;
         Self {
             kind,
-            format: FORMAT,
+            format: 2,
             engine,
             origin: OriginV2 {
                 preset: origin.preset,

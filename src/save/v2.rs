@@ -1,41 +1,13 @@
-//! Format 2 of a saved champion, exactly as it stands in files. Never changed once released: a new
-//! need makes a `v3`, and this module keeps reading what it wrote.
+//! Format 2 of a saved champion, and the parts of it that later formats share. Never changed once released:
+//! a part that changes gets a new version beside it, and this module keeps reading what it wrote.
 
 use serde::{Deserialize, Serialize};
 
-use crate::ENGINE_VERSION;
-use crate::check::Invalid;
-use crate::evolve::{Champion, Origin};
+use super::mirror::mirrors;
+use crate::evolve::Origin;
 use crate::genome::{Genome, JointSignals, Signals};
-use crate::score::{AgentSettings, Evaluation, Fitness, PerPart, Trial};
+use crate::score::{AgentSettings, Fitness, PerPart, Trial};
 use crate::world::{HealthLimits, PhysicsSettings, Skin, Stairs, Surface};
-
-/// What every file of this kind says first.
-pub const KIND: &str = "snakes-and-stairs champion";
-/// The number of this format.
-pub const FORMAT: u32 = 2;
-
-/// Declares a struct of the file and its translation from and to the core's struct, field by field.
-/// A field the core gains or loses breaks the build here, where the decision belongs.
-macro_rules! mirrors {
-    ($($file:ident = $core:ident { $($field:ident: $type:ty),* $(,)? })*) => {$(
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub struct $file { $(pub $field: $type),* }
-
-        impl From<$core> for $file {
-            fn from($core { $($field),* }: $core) -> Self {
-                Self { $($field: $field.into()),* }
-            }
-        }
-
-        impl From<$file> for $core {
-            fn from($file { $($field),* }: $file) -> Self {
-                Self { $($field: $field.into()),* }
-            }
-        }
-    )*};
-}
 
 mirrors! {
     TrialV2 = Trial {
@@ -110,7 +82,7 @@ impl From<GroundV2> for Option<Surface> {
 }
 
 /// The whole file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChampionV2 {
     pub kind: String,
@@ -149,69 +121,34 @@ pub struct JointTorquesV2 {
     pub twist: Vec<f32>,
 }
 
-impl From<Champion> for ChampionV2 {
-    fn from(champion: Champion) -> Self {
-        let Champion { genome, trial, evaluation, origin } = champion;
+impl From<Genome> for GenomeV2 {
+    fn from(genome: Genome) -> Self {
         let torques = genome.signals.joints.into_iter();
         Self {
-            kind: KIND.to_owned(),
-            format: FORMAT,
-            engine: ENGINE_VERSION,
-            origin: origin.into(),
-            recorded: RecordedV2 {
-                fitness: evaluation.fitness,
-                centre_y_m: evaluation.centre_y_m,
-                steps: evaluation.steps,
-                trace_hash: format!("{:016x}", evaluation.trace_hash),
-            },
-            trial: trial.into(),
-            genome: GenomeV2 {
-                bend_limit_rad: genome.bend_limit_rad,
-                twist_limit_rad: genome.twist_limit_rad,
-                density_kg_m3: genome.density_kg_m3,
-                points_per_s: genome.signals.points_per_s,
-                torques_nm: torques
-                    .map(|joint| JointTorquesV2 { bend: joint.bend_nm, twist: joint.twist_nm })
-                    .collect(),
-            },
+            bend_limit_rad: genome.bend_limit_rad,
+            twist_limit_rad: genome.twist_limit_rad,
+            density_kg_m3: genome.density_kg_m3,
+            points_per_s: genome.signals.points_per_s,
+            torques_nm: torques
+                .map(|joint| JointTorquesV2 { bend: joint.bend_nm, twist: joint.twist_nm })
+                .collect(),
         }
     }
 }
 
-impl TryFrom<ChampionV2> for Champion {
-    type Error = Invalid;
-
-    /// Translates and checks every value.
-    fn try_from(file: ChampionV2) -> Result<Self, Invalid> {
-        let recorded = file.recorded;
-        let trace_hash = u64::from_str_radix(&recorded.trace_hash, 16).map_err(|_| {
-            let start: String = recorded.trace_hash.chars().take(40).collect();
-            Invalid::new("recorded.trace_hash", format!("{start:?}"), "16 hexadecimal digits")
-        })?;
-        crate::check::within("recorded.fitness", recorded.fitness, -1.0e6..=1.0e6)?;
-        crate::check::within("recorded.centre_y_m", recorded.centre_y_m, -1.0e6..=1.0e6)?;
-        let trial = Trial::from(file.trial);
-        trial.check().map_err(|error| error.inside("trial"))?;
-        let joints = file.genome.torques_nm.into_iter();
-        let genome = Genome {
-            bend_limit_rad: file.genome.bend_limit_rad,
-            twist_limit_rad: file.genome.twist_limit_rad,
-            density_kg_m3: file.genome.density_kg_m3,
+impl From<GenomeV2> for Genome {
+    fn from(file: GenomeV2) -> Self {
+        let joints = file.torques_nm.into_iter();
+        Self {
+            bend_limit_rad: file.bend_limit_rad,
+            twist_limit_rad: file.twist_limit_rad,
+            density_kg_m3: file.density_kg_m3,
             signals: Signals {
-                points_per_s: file.genome.points_per_s,
+                points_per_s: file.points_per_s,
                 joints: joints
                     .map(|joint| JointSignals { bend_nm: joint.bend, twist_nm: joint.twist })
                     .collect(),
             },
-        };
-        trial.check_genome(&genome).map_err(|error| error.inside("genome"))?;
-        let evaluation = Evaluation {
-            fitness: recorded.fitness,
-            centre_y_m: recorded.centre_y_m,
-            disqualified: None,
-            trace_hash,
-            steps: recorded.steps,
-        };
-        Ok(Self { genome, trial, evaluation, origin: file.origin.into() })
+        }
     }
 }

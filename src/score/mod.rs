@@ -7,11 +7,13 @@
 mod agent;
 mod fitness;
 mod per_part;
+mod recording;
 mod rollout;
 mod trial;
 
 pub use agent::AgentSettings;
 pub use fitness::Fitness;
 pub use per_part::PerPart;
+pub use recording::Recording;
 pub use rollout::{Evaluation, Rollout, evaluate};
 pub use trial::Trial;

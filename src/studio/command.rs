@@ -1,11 +1,14 @@
 //! What a person can ask for, and the one place where it is done.
 
+use std::path::PathBuf;
+
 use bevy::prelude::*;
 
 use super::camera::{CameraRig, View};
 use super::evolution::Evolution;
+use super::exhibit::Exhibit;
 use super::notice::Notices;
-use super::stage::{Exhibit, ShowExhibit, Stage};
+use super::stage::{ShowExhibit, Stage};
 use super::{Frame, Opening};
 
 /// Something a panel or a key asks for.
@@ -32,8 +35,14 @@ pub(super) enum Command {
     },
     /// Take this shipped preset for the next run, and show what it does to what is on the stage.
     SetPreset(String),
-    /// Show what is on the stage in the world in which it was found.
-    ShowRecorded,
+    /// Show what is on the stage as it was found.
+    ShowAsFound,
+    /// Let this engine simulate what is on the stage, which another engine found.
+    Simulate,
+    /// Look for runs that were stopped before their end.
+    ListStoppedRuns,
+    /// Go on with the run in this folder.
+    Continue(PathBuf),
     /// Put the champion that the studio opened with on the stage.
     ShowOpening,
     /// Put the champion of this generation on the stage; the first is 1.
@@ -82,11 +91,21 @@ fn apply(
             Command::SetPreset(name) => evolution
                 .set_preset(name)
                 .map(|()| show_changed(&evolution, &stages, &mut show, &mut notices)),
-            Command::ShowRecorded => {
-                let recorded = stages.iter().map(|stage| stage.exhibit().as_recorded());
-                show.write_batch(recorded.map(ShowExhibit));
+            Command::ShowAsFound => {
+                let found = stages.iter().map(|stage| stage.exhibit().as_found());
+                show.write_batch(found.map(ShowExhibit));
                 Ok(())
             }
+            Command::Simulate => {
+                let simulated = stages.iter().map(|stage| stage.exhibit().simulated());
+                show.write_batch(simulated.map(ShowExhibit));
+                Ok(())
+            }
+            Command::ListStoppedRuns => {
+                evolution.list_stopped();
+                Ok(())
+            }
+            Command::Continue(folder) => evolution.go_on_with(folder),
             Command::ShowOpening => {
                 show.write(ShowExhibit(Exhibit::opening(&opening.0)));
                 Ok(())

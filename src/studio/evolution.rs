@@ -1,27 +1,32 @@
 //! The experiment behind the window: started, held, reset; its reports kept for the panels.
 
-use std::sync::Arc;
+use std::path::Path;
+use std::sync::{Arc, PoisonError};
 
 use bevy::prelude::*;
 use rayon::ThreadPool;
 
+use super::exhibit::Exhibit;
 use super::notice::Notices;
-use super::stage::{Exhibit, ShowExhibit, Stage};
+use super::stage::{ShowExhibit, Stage};
+use super::start_up::RunInProgress;
 use super::{Frame, Options, StudioError};
 use crate::check::Invalid;
-use crate::evolve::{Champion, Settings, with_field};
+use crate::evolve::{Champion, RunPlan, Settings, with_field};
 use crate::run::headless::HeadlessError;
-use crate::run::{Background, Event, Experiment, GenerationReport, Keeper, pool};
-use crate::save::{SavesFolder, load_preset};
+use crate::run::{Background, Event, GenerationReport, RunSource, pool};
+use crate::save::{Earlier, RunSummary, SavesFolder, load_preset};
 
 /// What every run of this session shares.
 #[derive(Resource, Debug, Clone)]
 pub(super) struct Engine {
     pool: Arc<ThreadPool>,
     saves: SavesFolder,
-    preset: String,
-    seed: u64,
-    settings: Settings,
+    /// The run the studio opens with.
+    first: RunSource,
+    /// The run after the current one.
+    next: RunPlan,
+    run_folder: RunInProgress,
 }
 
 impl Engine {
@@ -31,10 +36,15 @@ impl Engine {
         Ok(Self {
             pool: Arc::new(pool),
             saves: options.saves.clone(),
-            preset: options.preset.clone(),
-            seed: options.seed,
-            settings: options.settings.clone(),
+            first: options.run.clone(),
+            next: options.run.plan.clone(),
+            run_folder: RunInProgress::default(),
         })
+    }
+
+    /// Where it is kept in which folder a run is going on.
+    pub fn run_folder(&self) -> RunInProgress {
+        Arc::clone(&self.run_folder)
     }
 }
 
@@ -57,11 +67,13 @@ pub(super) struct Evolution {
     engine: Engine,
     /// Which run of this session it is; the first is 0.
     number: u32,
-    /// Preset, seed and settings of the current run; the engine's are those of the next.
-    preset: String,
-    seed: u64,
-    settings: Settings,
+    /// The current run; the engine's plan is that of the next.
+    source: RunSource,
     background: Option<Background>,
+    /// The run before, if it may still be ending.
+    before: Option<Background>,
+    /// Runs that were stopped before their end, once somebody has asked for them.
+    stopped: Option<Vec<RunSummary>>,
     reports: Vec<GenerationReport>,
     run_hash: Option<u64>,
 }
@@ -79,15 +91,20 @@ impl FromWorld for Evolution {
 }
 
 impl Evolution {
-    /// A prepared run.
+    /// The run the studio opens with, prepared.
     pub fn new(engine: Engine) -> Self {
+        Self::prepared(engine.first.clone(), engine)
+    }
+
+    /// A prepared run.
+    fn prepared(source: RunSource, engine: Engine) -> Self {
         Self {
-            preset: engine.preset.clone(),
-            seed: engine.seed,
-            settings: engine.settings.clone(),
+            source,
             engine,
             number: 0,
             background: None,
+            before: None,
+            stopped: None,
             reports: Vec::new(),
             run_hash: None,
         }
@@ -110,42 +127,47 @@ impl Evolution {
 
     /// Name of the preset that the current run started from.
     pub fn preset(&self) -> &str {
-        &self.preset
+        &self.source.plan.preset
     }
 
     /// Seed of the current run.
     pub fn seed(&self) -> u64 {
-        self.seed
+        self.source.plan.seed
     }
 
     /// Seed of the next run.
     pub fn next_seed(&self) -> u64 {
-        self.engine.seed
+        self.engine.next.seed
     }
 
     /// Settings of the current run.
     pub fn settings(&self) -> &Settings {
-        &self.settings
+        &self.source.plan.settings
     }
 
     /// Settings of the next run.
     pub fn next_settings(&self) -> &Settings {
-        &self.engine.settings
+        &self.engine.next.settings
     }
 
     /// Name of the preset that the next run starts from.
     pub fn next_preset(&self) -> &str {
-        &self.engine.preset
+        &self.engine.next.preset
     }
 
     /// Population of the next run.
     pub fn next_population(&self) -> u32 {
-        self.engine.settings.evolution.population
+        self.engine.next.settings.evolution.population
     }
 
     /// Whether seed or settings were changed since the run was prepared.
     pub fn next_run_differs(&self) -> bool {
-        self.seed != self.engine.seed || self.settings != self.engine.settings
+        self.source.plan != self.engine.next
+    }
+
+    /// Runs that were stopped before their end and can go on, once somebody has asked for them.
+    pub fn stopped(&self) -> Option<&[RunSummary]> {
+        self.stopped.as_deref()
     }
 
     /// Reports of the finished generations, the first generation first.
@@ -157,7 +179,7 @@ impl Evolution {
     pub fn progress(&self) -> (u32, u32) {
         match &self.background {
             Some(background) => background.progress(),
-            None => (0, self.settings.evolution.population),
+            None => (0, self.settings().evolution.population),
         }
     }
 
@@ -196,16 +218,45 @@ impl Evolution {
         Ok(())
     }
 
-    /// Throws the current run away and prepares the next.
+    /// Throws the current run away and prepares the next. If that is another run, which was stopped at
+    /// some time, it will go on.
     pub fn reset(&mut self) -> Result<(), String> {
-        let number = self.number + 1;
-        *self = Self { number, ..Self::new(self.engine.clone()) };
+        let is_same = self.engine.next == self.source.plan;
+        self.prepare(if is_same { Earlier::Discard } else { Earlier::GoOn });
         Ok(())
+    }
+
+    /// Prepares the next run.
+    fn prepare(&mut self, earlier: Earlier) {
+        let plan = self.engine.next.clone();
+        self.replace(RunSource::in_saves(&self.engine.saves, plan, earlier));
+    }
+
+    /// Puts another run in the place of the current one, which ends in the background.
+    fn replace(&mut self, source: RunSource) {
+        let before = self.background.take().or(self.before.take());
+        let number = self.number + 1;
+        *self = Self { number, before, ..Self::prepared(source, self.engine.clone()) };
+    }
+
+    /// Looks for runs that were stopped before their end, the current one aside.
+    pub fn list_stopped(&mut self) {
+        let mut runs = self.engine.saves.runs();
+        runs.retain(|run| run.is_stopped() && run.folder != self.source.folder);
+        self.stopped = Some(runs);
+    }
+
+    /// Goes on with a run that was stopped; the current one can be gone on with later.
+    pub fn go_on_with(&mut self, folder: &Path) -> Result<(), String> {
+        let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
+        self.engine.next = source.plan.clone();
+        self.replace(source);
+        self.start()
     }
 
     /// Sets the seed of the next run; a run that has not begun takes it at once.
     pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
-        self.engine.seed = seed;
+        self.engine.next.seed = seed;
         self.take_over_if_ready()
     }
 
@@ -216,7 +267,7 @@ impl Evolution {
 
     /// Sets one setting of the next run, by its name; a run that has not begun takes it at once.
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
-        self.engine.settings = with_field(&self.engine.settings, field, text)
+        self.engine.next.settings = with_field(&self.engine.next.settings, field, text)
             .map_err(|error: Invalid| error.to_string())?;
         self.take_over_if_ready()
     }
@@ -224,13 +275,16 @@ impl Evolution {
     /// Takes a shipped preset for the next run.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
         let preset = load_preset(name).map_err(|error| error.to_string())?;
-        self.engine.preset = preset.name;
-        self.engine.settings = preset.settings;
+        self.engine.next.preset = preset.name;
+        self.engine.next.settings = preset.settings;
         self.take_over_if_ready()
     }
 
     fn take_over_if_ready(&mut self) -> Result<(), String> {
-        if self.status() == Status::Ready { self.reset() } else { Ok(()) }
+        if self.status() == Status::Ready {
+            self.prepare(Earlier::GoOn);
+        }
+        Ok(())
     }
 
     fn begin_next_if_over(&mut self) -> Result<(), String> {
@@ -242,10 +296,10 @@ impl Evolution {
         let background = match self.background.take() {
             Some(background) => background,
             None => {
-                let settings = self.settings.clone();
-                let experiment = Experiment::new(&self.preset, self.seed, settings);
-                let keeper = Keeper::new(self.engine.saves.clone());
-                Background::start(experiment, Arc::clone(&self.engine.pool), keeper)
+                let (source, pool) = (self.source.clone(), Arc::clone(&self.engine.pool));
+                let folder = Some(source.folder.clone());
+                *self.engine.run_folder.lock().unwrap_or_else(PoisonError::into_inner) = folder;
+                Background::start(source, pool, self.before.take())
                     .map_err(|error| format!("evolution could not be started: {error}"))?
             }
         };
@@ -271,28 +325,46 @@ fn take_in(
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
     // Only what was found in the world of this run can be compared with what it finds.
-    let world = &evolution.settings.trial;
+    let world = &evolution.settings().trial;
     let rivals = stages.iter().map(Stage::exhibit);
     let rivals = rivals.filter(|exhibit| exhibit.champion().trial == *world);
     let mut to_beat = rivals.map(Exhibit::fitness).fold(f32::MIN, f32::max);
     // Who holds the stage, or tries out another world than the run's, is looking at something.
     let is_tried = |stage: &Stage| stage.exhibit().is_changed() && stage.trial() != world;
     let is_held = stages.iter().any(|stage| !stage.is_playing() || is_tried(stage));
+    let mut present = |champion: &Champion, number, notices: &mut Notices| {
+        if champion.evaluation.fitness <= to_beat {
+            return;
+        }
+        to_beat = champion.evaluation.fitness;
+        let exhibit = Exhibit::found(champion, number);
+        if is_held {
+            notices.news(format!("Better than what is on show: {}", exhibit.caption()));
+        } else {
+            notices.news(format!("New on stage: {}", exhibit.caption()));
+            show.write(ShowExhibit(exhibit));
+        }
+    };
+    let number = evolution.number;
     for event in events {
         match event {
-            Event::Generation(report) => {
-                if let Some(champion) = &report.champion
-                    && champion.evaluation.fitness > to_beat
-                {
-                    to_beat = champion.evaluation.fitness;
-                    let exhibit = Exhibit::found(champion, evolution.number);
-                    if is_held {
-                        notices.news(format!("Better than what is on show: {}", exhibit.caption()));
-                    } else {
-                        notices.news(format!("New on stage: {}", exhibit.caption()));
-                        show.write(ShowExhibit(exhibit));
-                    }
+            Event::Opened(behind) => {
+                if let Some(last) = behind.last() {
+                    notices.news(format!("The run goes on after generation {}.", last.generation));
                 }
+                let champions = behind.iter().filter_map(|report| report.champion.as_ref());
+                let fitness = |champion: &&Champion| champion.evaluation.fitness;
+                let best = champions.max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
+                best.into_iter().for_each(|best| present(best, number, &mut notices));
+                evolution.reports = behind;
+            }
+            Event::Refused(problem) => {
+                notices.problem(format!("Nothing is evolved: {problem}"));
+                evolution.background = None;
+            }
+            Event::Generation(report) => {
+                let champion = report.champion.iter();
+                champion.for_each(|champion| present(champion, number, &mut notices));
                 evolution.reports.push(*report);
             }
             Event::Finished { run_hash } => {
@@ -303,7 +375,10 @@ fn take_in(
                 notices.problem("The run broke off by an error of the program.".to_owned());
                 evolution.background = None;
             }
-            Event::NotSaved(problem) => notices.problem(format!("Not saved: {problem}")),
+            Event::NotSaved(problem) => {
+                notices.problem(format!("Not saved, and held: {problem}. Start tries again."));
+            }
+            Event::Crashed(problem) => notices.problem(problem),
         }
     }
 }
@@ -312,12 +387,12 @@ fn take_in(
 #[cfg(test)]
 pub(super) fn prepared_run() -> Evolution {
     let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
+    let saves = SavesFolder::find(Some(&folder));
+    let plan = RunPlan::new("report", 1, Settings::default());
     let options = Options {
-        preset: "report".to_owned(),
-        settings: Settings::default(),
-        seed: 1,
+        run: RunSource::in_saves(&saves, plan, Earlier::GoOn),
         threads: 1,
-        saves: SavesFolder::find(Some(&folder)),
+        saves,
         champion: None,
         window_size: (1280, 720),
         exit_after_frames: None,

@@ -14,7 +14,8 @@ use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use std::sync::{Mutex, PoisonError};
 
-use super::stage::{Exhibit, Stage};
+use super::exhibit::Exhibit;
+use super::stage::Stage;
 use super::{Frame, StudioError, camera, look, scene, snake, start_up};
 use crate::evolve::Champion;
 use crate::save::Picture;
@@ -43,7 +44,7 @@ pub fn draw(
 ) -> Result<Vec<(Picture, Evaluation)>, StudioError> {
     let mut pictures = Vec::new();
     let mut problem = None;
-    let result = start_up::guarded(|| {
+    let result = start_up::guarded(&Default::default(), || {
         let mut app = studio_without_window();
         let target = set_up(&mut app, width, height);
         for (index, champion) in champions.iter().enumerate() {
@@ -110,7 +111,7 @@ fn put_in_place(app: &mut App, champion: &Champion) -> Evaluation {
     let earlier: Vec<Entity> = world.query_filtered::<Entity, With<Stage>>().iter(world).collect();
     earlier.into_iter().for_each(|stage| world.entity_mut(stage).despawn());
 
-    let mut stage = Stage::new(Exhibit::opening(champion));
+    let mut stage = Stage::new(Exhibit::found(champion, 0));
     let moments = stage.skip_to_end(MOMENTS);
     let evaluation = stage.evaluation();
     let ends_at_m = stage.drawn_poses().map(|pose| pose.translation.y).fold(f32::MIN, f32::max);

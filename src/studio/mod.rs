@@ -9,12 +9,14 @@
 mod camera;
 mod command;
 mod evolution;
+mod exhibit;
 pub mod figures;
 mod frame_times;
 mod keys;
 mod look;
 mod notice;
 mod panels;
+mod performance;
 mod quality;
 mod scene;
 mod snake;
@@ -22,27 +24,25 @@ mod stage;
 mod start_up;
 mod title;
 
+use std::path::PathBuf;
+
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
 use bevy::window::{PresentMode, WindowResolution};
 use bevy::winit::WinitSettings;
 
-use crate::evolve::{Champion, Settings};
+use crate::run::RunSource;
 use crate::run::headless::HeadlessError;
 use crate::save::{LoadedChampion, SaveError, SavesFolder, shipped_champion};
 
 /// With what the studio opens.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Name of the preset that evolution starts from.
-    pub preset: String,
-    /// Its settings, checked.
-    pub settings: Settings,
-    /// Seed of the first run.
-    pub seed: u64,
+    /// The first run.
+    pub run: RunSource,
     /// Worker threads for evolution.
     pub threads: usize,
-    /// Where champions are saved.
+    /// Where the next runs are saved.
     pub saves: SavesFolder,
     /// The champion to open with; without one, the shipped one.
     pub champion: Option<LoadedChampion>,
@@ -69,6 +69,17 @@ pub enum StudioError {
     /// The threads could not be started.
     #[error(transparent)]
     Threads(#[from] HeadlessError),
+    /// The program failed while the window was open.
+    #[error("the studio failed: {message}; {}", match run {
+        Some(folder) => format!("the run is safe, it goes on with --resume {}", folder.display()),
+        None => "no run was going on".to_owned(),
+    })]
+    Crashed {
+        /// What the program said.
+        message: String,
+        /// The folder of the run that was going on.
+        run: Option<PathBuf>,
+    },
     /// The window closed with an error.
     #[error("the studio ended with an error (exit code {0})")]
     Ended(u8),
@@ -89,7 +100,7 @@ enum Frame {
 
 /// The champion on show when the studio opens.
 #[derive(Resource, Debug, Clone)]
-struct Opening(Champion);
+struct Opening(LoadedChampion);
 
 /// Opens the studio and returns when its window is closed.
 ///
@@ -101,8 +112,9 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         None => shipped_champion()?,
     };
     let engine = evolution::Engine::new(&options)?;
+    let run_folder = engine.run_folder();
     let exit_after = options.exit_after_frames;
-    let exit = start_up::guarded(move || {
+    let exit = start_up::guarded(&run_folder, move || {
         let mut app = App::new();
         app.add_plugins(
             DefaultPlugins
@@ -111,7 +123,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         )
         // A champion that climbs while the presenter types elsewhere goes on climbing.
         .insert_resource(WinitSettings::continuous())
-        .insert_resource(Opening(opening.champion))
+        .insert_resource(Opening(opening))
         .insert_resource(engine)
         .configure_sets(Update, (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain())
         .add_plugins((

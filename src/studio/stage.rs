@@ -1,4 +1,4 @@
-//! The stage: one rollout, played in real time.
+//! The stage: one rollout, or the recording of one, played in real time.
 //!
 //! Between frames the physics world lives in a bevy_rapier3d context, so that its debug drawing
 //! sees the very bodies that are scored. To advance, the world is lent back to the rollout,
@@ -12,109 +12,23 @@ use bevy_rapier3d::plugin::context::{
 use bevy_rapier3d::render::RapierDebugRenderPlugin;
 use std::mem::swap;
 
+use super::exhibit::Exhibit;
 use super::notice::Notices;
+use super::performance::Performance;
 use super::{Frame, Opening};
-use crate::evolve::Champion;
-use crate::score::{Evaluation, Rollout, Trial};
+use crate::ENGINE_VERSION;
+use crate::score::{Evaluation, Trial};
 use crate::world::{PhysicsWorld, Pose};
-
-/// A champion with the words under it.
-#[derive(Debug, Clone)]
-pub(super) struct Exhibit {
-    champion: Champion,
-    source: Source,
-    /// The world in which it is shown, if not the one in which it was found.
-    changed: Option<Trial>,
-}
-
-/// Where an exhibit is from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Source {
-    /// The save the studio opened with.
-    Opening,
-    /// A run of this session; the first is 0. The generation is the champion's origin's.
-    Run(u32),
-}
-
-impl Exhibit {
-    /// The champion the studio opened with.
-    pub fn opening(champion: &Champion) -> Self {
-        Self { champion: champion.clone(), source: Source::Opening, changed: None }
-    }
-
-    /// A champion that a run of this session found.
-    pub fn found(champion: &Champion, run: u32) -> Self {
-        Self { champion: champion.clone(), source: Source::Run(run), changed: None }
-    }
-
-    /// The same in another world; none if its genome does not fit into that.
-    pub fn in_world(&self, trial: &Trial) -> Option<Self> {
-        trial.check_genome(&self.champion.genome).ok()?;
-        let is_changed = *trial != self.champion.trial;
-        Some(Self { changed: is_changed.then(|| trial.clone()), ..self.clone() })
-    }
-
-    /// The same in the world in which it was found.
-    pub fn as_recorded(&self) -> Self {
-        Self { changed: None, ..self.clone() }
-    }
-
-    /// What stands between its name and what it reached, in the world in which it was found.
-    fn colon(&self) -> &'static str {
-        if self.is_changed() { " in another world; on record " } else { ": " }
-    }
-
-    /// Whether it is shown in another world than the one in which it was found.
-    pub fn is_changed(&self) -> bool {
-        self.changed.is_some()
-    }
-
-    /// The champion as it was found.
-    pub fn champion(&self) -> &Champion {
-        &self.champion
-    }
-
-    /// The world in which it is shown.
-    fn trial(&self) -> &Trial {
-        self.changed.as_ref().unwrap_or(&self.champion.trial)
-    }
-
-    /// Where it is from.
-    pub fn source(&self) -> Source {
-        self.source
-    }
-
-    /// The generation it is from, in whichever run; the first is 1.
-    pub fn generation(&self) -> u32 {
-        self.champion.origin.generation
-    }
-
-    /// What it reached.
-    pub fn fitness(&self) -> f32 {
-        self.champion.evaluation.fitness
-    }
-
-    /// What it is and what it reached, in a line.
-    pub fn caption(&self) -> String {
-        let reached = self.champion.reached();
-        match self.source {
-            Source::Run(_) => {
-                format!("Generation {}{}{reached}", self.generation(), self.colon())
-            }
-            Source::Opening => format!("Saved champion{}{reached}", self.colon()),
-        }
-    }
-}
 
 /// Asks for an exhibit to be put on the stage, in place of what is there.
 #[derive(Message, Debug, Clone)]
 pub(super) struct ShowExhibit(pub Exhibit);
 
-/// A rollout on show. Its entity carries the physics context.
+/// An exhibit on show. Its entity carries the physics context.
 #[derive(Component)]
 pub(super) struct Stage {
     exhibit: Exhibit,
-    rollout: Rollout,
+    performance: Performance,
     /// Poses before the last step, head first.
     before: Vec<Pose>,
     /// How much time has been shown beyond the last but one step, in seconds.
@@ -152,14 +66,13 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 impl Stage {
-    /// A stage at the start of the exhibit's rollout.
+    /// A stage at the start of the exhibit's performance.
     pub fn new(exhibit: Exhibit) -> Self {
-        let trial = exhibit.trial();
-        let rollout = Rollout::new(&exhibit.champion.genome, trial);
+        let performance = Performance::of(&exhibit);
         Self {
-            before: rollout.poses().to_vec(),
-            step_s: trial.physics.step_s(),
-            rollout,
+            before: performance.poses().to_vec(),
+            step_s: exhibit.trial().physics.step_s(),
+            performance,
             exhibit,
             owed_s: 0.0,
             is_playing: true,
@@ -176,14 +89,14 @@ impl Stage {
         let every = (self.trial().steps() / moments.max(1)).max(1);
         let mut seen = Vec::new();
         loop {
-            if self.rollout.step().is_multiple_of(every) && seen.len() < moments as usize {
-                seen.push(self.rollout.poses().to_vec());
+            if self.performance.step().is_multiple_of(every) && seen.len() < moments as usize {
+                seen.push(self.performance.poses().to_vec());
             }
-            if !self.rollout.advance() {
+            if !self.performance.advance() {
                 break;
             }
         }
-        self.before.copy_from_slice(self.rollout.poses());
+        self.before.copy_from_slice(self.performance.poses());
         seen
     }
 
@@ -199,7 +112,7 @@ impl Stage {
 
     /// Simulated time of the last step, in seconds.
     pub fn time_s(&self) -> f32 {
-        self.rollout.step() as f32 * self.step_s
+        self.performance.step() as f32 * self.step_s
     }
 
     /// Length of the rollout, in simulated seconds.
@@ -209,7 +122,7 @@ impl Stage {
 
     /// What there is to say of the rollout so far; at its end, the score.
     pub fn evaluation(&self) -> Evaluation {
-        self.rollout.evaluation()
+        self.performance.evaluation(&self.exhibit)
     }
 
     /// Whether time passes on the stage.
@@ -230,7 +143,7 @@ impl Stage {
     /// The limbs' poses between the last two steps, head first: where to draw them.
     pub fn drawn_poses(&self) -> impl Iterator<Item = Pose> + '_ {
         let share = (self.owed_s / self.step_s).clamp(0.0, 1.0);
-        let pairs = self.before.iter().zip(self.rollout.poses());
+        let pairs = self.before.iter().zip(self.performance.poses());
         pairs.map(move |(before, after)| before.lerp(after, share))
     }
 
@@ -238,12 +151,12 @@ impl Stage {
     /// lent to the rollout.
     fn pass(&mut self, elapsed_s: f32) {
         self.owed_s += elapsed_s.min(MOST_CATCH_UP_S);
-        while self.owed_s >= self.step_s && !self.rollout.is_over() {
+        while self.owed_s >= self.step_s && !self.performance.is_over() {
             self.owed_s -= self.step_s;
-            self.before.copy_from_slice(self.rollout.poses());
-            self.rollout.advance();
+            self.before.copy_from_slice(self.performance.poses());
+            self.performance.advance();
         }
-        if self.rollout.is_over() {
+        if self.performance.is_over() {
             self.owed_s = self.step_s;
             self.rested_s += elapsed_s;
         }
@@ -260,10 +173,14 @@ fn put_on_stage(
     mut asked: MessageReader<ShowExhibit>,
     stages: Query<(Entity, &Stage)>,
     mut commands: Commands,
+    mut notices: ResMut<Notices>,
 ) {
     // Of several requests in a frame only the last is seen.
     let Some(ShowExhibit(exhibit)) = asked.read().last() else { return };
     let mut stage = Stage::new(exhibit.clone());
+    if !stages.iter().any(|(_, earlier)| earlier.is_looping) {
+        explain_other_engine(exhibit, &mut notices);
+    }
     for (entity, earlier) in &stages {
         // Who holds the stage in the very moment in which it begins again still wants it held.
         stage.is_playing &= earlier.is_playing || !earlier.is_looping;
@@ -275,13 +192,14 @@ fn put_on_stage(
 /// Spawns a stage whose physics world lives in a context of its own.
 fn spawn(commands: &mut Commands, mut stage: Stage) {
     let entity = commands.spawn_empty().id();
-    let physics = stage.rollout.simulation_mut().physics_mut();
-    // The engine's tools find the owner of a collider here. It plays no part in the physics.
-    for (_, collider) in physics.colliders.iter_mut() {
-        collider.user_data = u128::from(entity.to_bits());
-    }
     let (mut simulation, mut colliders, mut joints, mut bodies) = Default::default();
-    exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
+    if let Some(physics) = stage.performance.physics_mut() {
+        // The engine's tools find the owner of a collider here. It plays no part in the physics.
+        for (_, collider) in physics.colliders.iter_mut() {
+            collider.user_data = u128::from(entity.to_bits());
+        }
+        exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
+    }
     commands.entity(entity).insert((simulation, colliders, joints, bodies, stage));
 }
 
@@ -302,26 +220,38 @@ fn advance(
         }
         if stage.is_playing {
             let mut lend = |stage: &mut Stage| {
-                let physics = stage.rollout.simulation_mut().physics_mut();
-                exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
+                if let Some(physics) = stage.performance.physics_mut() {
+                    exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
+                }
             };
             lend(&mut stage);
             stage.pass(time.delta_secs());
             lend(&mut stage);
         }
-        if stage.rollout.is_over() && !stage.is_checked {
+        if stage.performance.is_over() && !stage.is_checked {
             stage.is_checked = true;
-            let recorded = &stage.exhibit.champion.evaluation;
-            if !stage.exhibit.is_changed() && stage.evaluation() != *recorded {
+            let differs = stage.evaluation() != stage.exhibit.champion().evaluation;
+            if stage.exhibit.must_match_record() && differs {
                 notices.problem(format!(
                     "This replay differs from its record ({:.2} instead of {:.2}): the file was \
-                     edited, or another engine recorded it.",
+                     edited, or this machine computes other bits (see snakes verify).",
                     stage.evaluation().fitness,
                     stage.exhibit.fitness(),
                 ));
             }
         }
     }
+}
+
+/// Says what is not to be taken for granted about an exhibit of another engine.
+fn explain_other_engine(exhibit: &Exhibit, notices: &mut Notices) {
+    let Some(engine) = exhibit.other_engine() else { return };
+    let text = if exhibit.recording().is_some() {
+        "you see what was recorded then. \"Simulate here\" shows what this engine makes of it."
+    } else {
+        "what you see is simulated anew, and may go another way than it did then."
+    };
+    notices.news(format!("Found by engine {engine}, this is engine {ENGINE_VERSION}: {text}"));
 }
 
 /// Swaps a physics world with the one in a context: lends it out, or gives it back.
@@ -347,17 +277,22 @@ fn exchange(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
-    use crate::score::evaluate;
+    use crate::evolve::Champion;
+    use crate::save::{LoadedChampion, shipped_champion};
+    use crate::score::{Recording, evaluate};
     use bevy::time::TimeUpdateStrategy;
     use std::time::Duration;
 
     /// A stage without a window, whose frames last as long as `frames_s` says, in turn.
     fn play(frames_s: &[f32], until: impl Fn(&Stage) -> bool) -> App {
-        play_champion(shipped_champion().expect("well formed").champion, frames_s, until)
+        play_loaded(shipped_champion().expect("well formed"), frames_s, until)
     }
 
-    fn play_champion(opening: Champion, frames_s: &[f32], until: impl Fn(&Stage) -> bool) -> App {
+    fn play_loaded(
+        opening: LoadedChampion,
+        frames_s: &[f32],
+        until: impl Fn(&Stage) -> bool,
+    ) -> App {
         let mut app = App::new();
         app.add_plugins(MinimalPlugins)
             .add_message::<ShowExhibit>()
@@ -382,7 +317,7 @@ mod tests {
         let opening = shipped_champion().expect("well formed").champion;
         let headless = evaluate(&opening.genome, &opening.trial);
         for frames_s in [&[1.0 / 60.0][..], &[0.25], &[0.004, 0.1, 0.031]] {
-            let mut app = play(frames_s, |stage| stage.rollout.is_over());
+            let mut app = play(frames_s, |stage| stage.performance.is_over());
             let mut stages = app.world_mut().query::<&Stage>();
             let stage = stages.single(app.world()).expect("one stage");
             assert_eq!(stage.evaluation(), headless, "with frames of {frames_s:?} s");
@@ -397,39 +332,69 @@ mod tests {
         app.update();
         app.update();
         let stage = stages.single(app.world()).expect("one stage");
-        assert!(!stage.is_playing() && stage.rollout.step() == 0, "held at the start");
+        assert!(!stage.is_playing() && stage.performance.step() == 0, "held at the start");
     }
 
     #[test]
     fn a_replay_that_differs_from_its_record_says_so_once() {
-        let honest = shipped_champion().expect("well formed").champion;
+        let honest = shipped_champion().expect("well formed");
         let mut edited = honest.clone();
-        edited.genome.density_kg_m3 *= 1.2;
-        for (champion, notices) in [(honest, 0), (edited, 1)] {
-            let mut app = play_champion(champion, &[0.1], |stage| stage.rested_s > 1.0);
+        edited.champion.genome.density_kg_m3 *= 1.2;
+        for (loaded, notices) in [(honest, 0), (edited, 1)] {
+            let mut app = play_loaded(loaded, &[0.1], |stage| stage.rested_s > 1.0);
             app.update();
             assert_eq!(app.world().resource::<Notices>().len(), notices);
         }
     }
 
     #[test]
+    fn what_another_engine_found_is_played_from_its_recording_and_can_be_simulated() {
+        let mut loaded = shipped_champion().expect("well formed");
+        let Champion { genome, trial, .. } = &loaded.champion;
+        let recording = Recording::of(genome, trial);
+        // It went elsewhere then: a metre to the side.
+        let aside = |pose: &Pose| Pose { translation: pose.translation + Vec3::X, ..*pose };
+        let poses = recording.frames().flatten().map(aside).collect();
+        loaded.recording = Recording::new(recording.every_steps(), recording.limbs(), poses);
+        loaded.engine = 1;
+        let last = loaded.recording.as_ref().expect("whole frames").at(1.0e9);
+        let mut app = play_loaded(loaded.clone(), &[0.1], |stage| stage.rested_s > 1.0);
+        assert_eq!(app.world().resource::<Notices>().len(), 1, "it says so, and finds no fault");
+        let mut stages = app.world_mut().query::<&Stage>();
+        let stage = stages.single(app.world()).expect("one stage");
+        for (drawn, recorded) in stage.drawn_poses().zip(last) {
+            assert!((drawn.translation - recorded.translation).length() < 1e-5);
+        }
+        assert!(stage.exhibit().caption().contains("as engine 1 recorded it"));
+        let simulated = stage.exhibit().simulated();
+        app.world_mut().write_message(ShowExhibit(simulated));
+        for _ in 0..40 {
+            app.update();
+        }
+        let stage = stages.single(app.world()).expect("one stage");
+        assert_eq!(stage.evaluation().trace_hash, loaded.champion.evaluation.trace_hash);
+        assert!(stage.exhibit().could_be_as_found());
+    }
+
+    #[test]
     fn between_frames_the_world_is_in_the_rapier_context() {
-        let mut app = play(&[0.1], |stage| stage.rollout.step() > 20);
+        let mut app = play(&[0.1], |stage| stage.performance.step() > 20);
         let mut contexts = app.world_mut().query::<(&Stage, &RapierRigidBodySet)>();
         let (stage, bodies) = contexts.single(app.world()).expect("one stage");
-        assert_eq!(stage.rollout.simulation().physics().bodies.len(), 0);
-        let in_context = stage.rollout.simulation().limb_handles().iter();
+        assert_eq!(stage.performance.simulation().expect("simulated").physics().bodies.len(), 0);
+        let simulation = stage.performance.simulation().expect("simulated");
+        let in_context = simulation.limb_handles().iter();
         let poses: Vec<Pose> = in_context.map(|&limb| *bodies.bodies[limb].position()).collect();
-        assert_eq!(poses, stage.rollout.poses());
+        assert_eq!(poses, stage.performance.poses());
     }
 
     #[test]
     fn it_draws_between_the_last_two_steps() {
-        let mut app = play(&[0.0251], |stage| stage.rollout.step() > 60);
+        let mut app = play(&[0.0251], |stage| stage.performance.step() > 60);
         let mut stages = app.world_mut().query::<&Stage>();
         let stage = stages.single(app.world()).expect("one stage");
         let (before, after) =
-            (stage.before[0].translation.y, stage.rollout.poses()[0].translation.y);
+            (stage.before[0].translation.y, stage.performance.poses()[0].translation.y);
         let drawn = stage.drawn_poses().next().expect("a head").translation.y;
         assert!((after - before).abs() > 1e-4, "the head moves: {before} to {after}");
         let share = stage.owed_s / stage.step_s;

@@ -1,15 +1,20 @@
-//! From "no display" to one line of text.
+//! From "no display", or a failure later on, to one line of text.
 //!
 //! Without a display or a graphics driver, winit and the renderer end in a panic. Until the first frame
-//! is drawn a panic therefore means that no window can be opened; after it, that the program is broken.
+//! is drawn a panic therefore means that no window can be opened; after it, that the program is broken. The
+//! run that is going on then is safe: whatever is finished of it was written down at once.
 
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::prelude::*;
 
 use super::StudioError;
+
+/// The folder of the run that is going on, if one is.
+pub(super) type RunInProgress = Arc<Mutex<Option<PathBuf>>>;
 
 static WINDOW_IS_OPEN: AtomicBool = AtomicBool::new(false);
 static FIRST_PANIC: Mutex<Option<String>> = Mutex::new(None);
@@ -18,24 +23,39 @@ pub(super) fn plugin(app: &mut App) {
     app.add_systems(Last, || WINDOW_IS_OPEN.store(true, Ordering::Relaxed));
 }
 
-/// Runs the app; a panic before its first frame becomes [`StudioError::NoWindow`].
-pub(super) fn guarded(run: impl FnOnce() -> AppExit) -> Result<AppExit, StudioError> {
+/// Runs the app. A panic before its first frame becomes [`StudioError::NoWindow`], a later one
+/// [`StudioError::Crashed`].
+pub(super) fn guarded(
+    run_folder: &RunInProgress,
+    run: impl FnOnce() -> AppExit,
+) -> Result<AppExit, StudioError> {
     let usual_hook = panic::take_hook();
     panic::set_hook(Box::new(move |info| {
-        if WINDOW_IS_OPEN.load(Ordering::Relaxed) {
+        let is_open = WINDOW_IS_OPEN.load(Ordering::Relaxed);
+        if is_open {
             usual_hook(info);
-        } else {
-            let mut first = FIRST_PANIC.lock().unwrap_or_else(PoisonError::into_inner);
-            first.get_or_insert_with(|| reason(info));
         }
-    }));
-    panic::catch_unwind(AssertUnwindSafe(run)).map_err(|_| {
         let mut first = FIRST_PANIC.lock().unwrap_or_else(PoisonError::into_inner);
-        match first.take() {
-            Some(reason) => StudioError::NoWindow(reason),
-            None => StudioError::Ended(1),
+        first.get_or_insert_with(|| if is_open { said(info) } else { reason(info) });
+    }));
+    // Unwinding drops the app, and with it the run in the background, which finishes what it is writing.
+    panic::catch_unwind(AssertUnwindSafe(run)).map_err(|_| {
+        let first = FIRST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let message = first.unwrap_or_else(|| "unknown reason".to_owned());
+        if WINDOW_IS_OPEN.load(Ordering::Relaxed) {
+            let run = run_folder.lock().unwrap_or_else(PoisonError::into_inner).take();
+            StudioError::Crashed { message, run }
+        } else {
+            StudioError::NoWindow(message)
         }
     })
+}
+
+/// The panic's message and place.
+fn said(info: &PanicHookInfo<'_>) -> String {
+    let message = info.payload_as_str().unwrap_or("a panic without a message");
+    let place = info.location().map(|place| format!(" at {place}")).unwrap_or_default();
+    message.lines().next().unwrap_or_default().to_owned() + &place
 }
 
 /// The panic's message in a few words.

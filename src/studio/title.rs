@@ -5,7 +5,8 @@ use bevy::window::PrimaryWindow;
 
 use super::Frame;
 use super::evolution::{Evolution, Status};
-use super::stage::{Source, Stage};
+use super::exhibit::Source;
+use super::stage::Stage;
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, update.in_set(Frame::Draw));

@@ -19,6 +19,8 @@ pub enum Disqualification {
     TooFast,
     /// The agent left the arena.
     LeftArena,
+    /// The program failed while it simulated the agent.
+    Crashed,
 }
 
 impl Disqualification {
@@ -29,6 +31,7 @@ impl Disqualification {
             Self::JointBroke => "a joint came apart",
             Self::TooFast => "it outran the speed limit",
             Self::LeftArena => "it left the arena",
+            Self::Crashed => "the program failed on it",
         }
     }
 }

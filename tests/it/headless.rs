@@ -33,6 +33,7 @@ fn json_lines_have_the_documented_fields() {
             keys,
             [
                 "best",
+                "crashed",
                 "disqualified",
                 "elapsed_s",
                 "evaluations",
@@ -205,7 +206,8 @@ fn the_interrupt_key_ends_a_run_in_good_order_and_keeps_its_best() {
     child.stderr.take().expect("piped").read_to_string(&mut stderr).expect("read");
     assert_eq!(child.wait().expect("ended").code(), Some(1), "{stderr}");
     assert!(
-        stderr.contains("cancelled; the best so far is saved to out/report-seed1-"),
+        stderr.contains("cancelled after generation ")
+            && stderr.contains("it goes on with --resume out/report-seed1-"),
         "{stderr}"
     );
     assert!(std::fs::read_dir(folder.path().join("out")).expect("a folder").count() >= 1);

@@ -3,8 +3,9 @@
 use bevy_egui::egui;
 
 use crate::studio::command::Command;
+use crate::studio::exhibit::Source;
 use crate::studio::look;
-use crate::studio::stage::{Source, Stage};
+use crate::studio::stage::Stage;
 
 /// Draws the caption in the middle of what is left of the window, and adds what was asked for. `run` is
 /// the number of the current run.
@@ -62,10 +63,17 @@ fn contents(ui: &mut egui::Ui, stage: &Stage, run: u32, asked: &mut Vec<Command>
             ui.label(egui::RichText::new(state).color(look::TEXT_WEAK).monospace());
         });
     });
-    if stage.exhibit().is_changed() {
-        let hint = "Play it again in the world in which it was found";
+    let exhibit = stage.exhibit();
+    if exhibit.could_be_as_found() {
+        let hint = "Play it again as it was found";
         if ui.button("As recorded").on_hover_text(hint).clicked() {
-            asked.push(Command::ShowRecorded);
+            asked.push(Command::ShowAsFound);
+        }
+    } else if exhibit.recording().is_some() {
+        let hint =
+            "Simulate it with this engine, which computes other bits than the one that found it";
+        if ui.button("Simulate here").on_hover_text(hint).clicked() {
+            asked.push(Command::Simulate);
         }
     }
 }

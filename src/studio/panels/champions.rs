@@ -69,7 +69,7 @@ fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, reached: &str) -> egui::Re
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Settings;
+    use crate::evolve::{RunPlan, Settings};
     use crate::run::{Control, Experiment, pool};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -79,7 +79,7 @@ mod tests {
         let mut settings = Settings::default();
         settings.evolution.population = 4;
         settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new("test", 1, settings);
+        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
         let pool = pool(1).expect("a pool");
         let mut report = || experiment.run_generation(&pool, &Control::default()).expect("done");
         let reports = [report(), report()];

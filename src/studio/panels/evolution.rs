@@ -4,7 +4,7 @@ use bevy_egui::egui;
 
 use super::number_field::NumberField;
 use super::title;
-use crate::evolve::LARGEST_POPULATION;
+use crate::evolve::{LARGEST_POPULATION, RunPlan};
 use crate::studio::command::Command;
 use crate::studio::evolution::{Evolution, Status};
 use crate::studio::look;
@@ -25,6 +25,7 @@ impl EvolutionPanel {
         self.buttons(ui, run, &mut pressed);
         self.progress(ui, run);
         self.fields(ui, run, asked);
+        stopped_runs(ui, run, asked);
         asked.append(&mut pressed);
     }
 
@@ -48,7 +49,7 @@ impl EvolutionPanel {
         let reset = if is_wrong {
             "Correct the value below first"
         } else {
-            "Throw this run away and prepare a fresh one with the seed and population below"
+            "Stop this run and prepare a fresh one with the seed and population below"
         };
         ui.horizontal(|ui| {
             for (is_on, button, hint, command) in [
@@ -112,6 +113,35 @@ impl EvolutionPanel {
             let hint = "Reset to begin a run with these values.";
             ui.label(egui::RichText::new(hint).color(look::SECOND));
         }
+    }
+}
+
+/// Runs that were stopped before their end, to go on with.
+fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+    let header = egui::CollapsingHeader::new("Continue a stopped run");
+    let opened = header.show(ui, |ui| {
+        let Some(stopped) = run.stopped() else { return };
+        if stopped.is_empty() {
+            let hint = "No other run was stopped before its end.";
+            ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK));
+        }
+        for summary in stopped {
+            let RunPlan { preset, seed, settings } = &summary.plan;
+            let (finished, all) = (summary.finished, settings.evolution.generations);
+            let behind = egui::RichText::new(format!("{finished} of {all}")).color(look::TEXT_WEAK);
+            let button = egui::Button::new(format!("{preset}, seed {seed}")).right_text(behind);
+            let row = ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)));
+            let hint = format!(
+                "{finished} of {all} generations are finished; the current run is kept.\n{}",
+                summary.folder.display()
+            );
+            if row.on_hover_text(hint).clicked() {
+                asked.push(Command::Continue(summary.folder.clone()));
+            }
+        }
+    });
+    if opened.header_response.clicked() {
+        asked.push(Command::ListStoppedRuns);
     }
 }
 

@@ -16,9 +16,10 @@ use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use super::Opening;
 use super::command::Command;
 use super::evolution::Evolution;
+use super::exhibit::Source;
 use super::keys::KEYS;
 use super::look;
-use super::stage::{Source, Stage};
+use super::stage::Stage;
 
 use caption::caption;
 use champions::{ChampionsPanel, Shown};
@@ -109,7 +110,7 @@ fn draw(
                         panels.evolution.ui(ui, &evolution, &mut asked);
                         panels.chart.ui(ui, evolution.settings(), evolution.reports());
                         let reports = evolution.reports();
-                        panels.champions.ui(ui, &opening.0, reports, shown, &mut asked);
+                        panels.champions.ui(ui, &opening.0.champion, reports, shown, &mut asked);
                     }
                     Tab::World => panels.world.ui(ui, &evolution, &mut asked),
                 }

@@ -1,0 +1,70 @@
+//! `snakes verify`: a table, a fingerprint, and in plain words whether this machine agrees.
+
+use indicatif::ProgressBar;
+
+use super::args::Args;
+use super::{CliError, cancel_on_interrupt, print};
+use crate::ENGINE_VERSION;
+use crate::run::headless::HeadlessError;
+use crate::run::pool;
+use crate::run::verify::Trajectories;
+
+/// Computes the golden trajectories and compares them with the reference.
+pub fn verify(args: &Args) -> Result<(), CliError> {
+    let reference = Trajectories::reference()?;
+    let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
+    let control = cancel_on_interrupt();
+    let bar = ProgressBar::new(1);
+    let computed = Trajectories::computed(&pool, &control, |done, all| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+    });
+    bar.finish_and_clear();
+    let computed = computed?;
+    let expected: Vec<&str> =
+        reference.trajectories.iter().map(|trajectory| trajectory.hash.as_str()).collect();
+    let rows = computed.trajectories.iter().zip(&expected);
+    let differ = rows.clone().filter(|(found, expected)| found.hash != **expected).count();
+    let fingerprint = computed.fingerprint();
+    let agrees = computed == reference;
+    if args.json {
+        for (found, expected) in rows {
+            let line = serde_json::json!({
+                "what": found.what,
+                "hash": found.hash,
+                "reference": expected,
+                "agrees": found.hash == **expected,
+            });
+            print(&format!("{line}\n"))?;
+        }
+        let line = serde_json::json!({
+            "done": true,
+            "engine": ENGINE_VERSION,
+            "fingerprint": fingerprint,
+            "reference": reference.fingerprint(),
+            "agrees": agrees,
+        });
+        print(&format!("{line}\n"))?;
+    } else {
+        let width = computed.trajectories.iter().map(|t| t.what.chars().count()).max().unwrap_or(0);
+        let mut text = format!("{:<width$}  hash of this machine  reference\n", "trajectory");
+        for (found, expected) in rows {
+            let verdict = if found.hash == **expected { "the same" } else { expected };
+            text += &format!("{:<width$}  {:<20}  {verdict}\n", found.what, found.hash);
+        }
+        text += &format!("\nfingerprint  {fingerprint}  (engine {ENGINE_VERSION})\n");
+        if agrees {
+            text += &format!(
+                "This machine computes the reference's bits in all {} trajectories: a save from \
+                 elsewhere replays here exactly, and yours elsewhere.\n",
+                expected.len()
+            );
+        }
+        print(&text)?;
+    }
+    if agrees {
+        return Ok(());
+    }
+    let all = expected.len();
+    Err(CliError::OtherBits { differ, all, fingerprint, reference: reference.fingerprint() })
+}

@@ -1,0 +1,63 @@
+//! A panic in an evaluation ends that evaluation, not the program.
+
+use std::any::Any;
+use std::cell::RefCell;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::Once;
+
+thread_local! {
+    /// Whether this thread expects panics, and the message of the last one.
+    static EXPECTED: RefCell<Option<String>> = const { RefCell::new(None) };
+}
+
+/// Runs `work`; a panic in it becomes its message and place, and is printed nowhere.
+///
+/// # Errors
+/// `work` panicked. What it was changing may be half changed: it must not be used again.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    listen();
+    EXPECTED.set(Some(String::new()));
+    let result = panic::catch_unwind(AssertUnwindSafe(work));
+    let heard = EXPECTED.take().unwrap_or_default();
+    result.map_err(|payload| if heard.is_empty() { words(payload.as_ref()) } else { heard })
+}
+
+/// Lets a panic on a thread that expects it leave its message there instead of on standard error.
+fn listen() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let usual = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            let is_expected = EXPECTED.with_borrow_mut(|expected| {
+                if let Some(message) = expected {
+                    let place = info.location().map(|place| format!(" at {place}"));
+                    *message = words(info.payload()) + &place.unwrap_or_default();
+                }
+                expected.is_some()
+            });
+            if !is_expected {
+                usual(info);
+            }
+        }));
+    });
+}
+
+/// A panic's message, on one line.
+fn words(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let text = text.unwrap_or("a panic without a message");
+    text.split_whitespace().collect::<Vec<&str>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_its_message_and_place() {
+        assert_eq!(caught(|| 2 + 2), Ok(4));
+        let message = caught(|| panic!("limb {}\nis gone", 3)).expect_err("it panicked");
+        assert!(message.starts_with("limb 3 is gone at src/run/panics.rs:"), "{message}");
+    }
+}

@@ -1,0 +1,379 @@
+//! Does this machine compute the bits that every other one does?
+//!
+//! Short runs that between them reach everything that decides bits: each controller, each strategy, each
+//! feature of surface, body and stairs. Their hashes stand in `assets/golden.ron`, which is part of the
+//! program. Whoever adds a setting adds a run that changes it: a test counts.
+
+use rayon::ThreadPool;
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::calibrate::Calibration;
+use super::{Cancelled, Control, Experiment};
+use crate::ENGINE_VERSION;
+use crate::check::Invalid;
+use crate::evolve::{RunPlan, Settings, with_fields};
+use crate::save::{SaveError, shipped_presets};
+use crate::score::Fitness;
+
+/// Something that has bits, and their hash.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trajectory {
+    /// What is computed.
+    pub what: String,
+    /// Hash over all its bits, in 16 hexadecimal digits.
+    pub hash: String,
+}
+
+/// What an engine computes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trajectories {
+    /// The engine.
+    pub engine: u32,
+    /// In a fixed order.
+    pub trajectories: Vec<Trajectory>,
+}
+
+/// Why there is nothing to compare.
+#[derive(Debug, thiserror::Error)]
+pub enum VerifyError {
+    /// An embedded preset is broken, which a test rules out.
+    #[error(transparent)]
+    Preset(#[from] SaveError),
+    /// A case is not allowed, which a test rules out.
+    #[error(transparent)]
+    Case(#[from] Invalid),
+    /// The embedded reference is broken, which a test rules out.
+    #[error("the reference is broken: {0}")]
+    Reference(#[from] ron::error::SpannedError),
+    /// The interrupt key was pressed.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Trajectories {
+    /// One hash over all, in 16 hexadecimal digits.
+    pub fn fingerprint(&self) -> String {
+        let mut hash = Xxh3Default::new();
+        hash.update(&self.engine.to_le_bytes());
+        for Trajectory { what, hash: bits } in &self.trajectories {
+            hash.update(what.as_bytes());
+            hash.update(bits.as_bytes());
+        }
+        format!("{:016x}", hash.digest())
+    }
+
+    /// What the reference machine computed with this engine.
+    ///
+    /// # Errors
+    /// The embedded reference is broken, which a test rules out.
+    pub fn reference() -> Result<Self, VerifyError> {
+        Ok(ron::from_str(include_str!("../../assets/golden.ron"))?)
+    }
+
+    /// What this machine computes. `each` is told how many of how many are done.
+    ///
+    /// # Errors
+    /// [`VerifyError::Cancelled`], if `control` was.
+    pub fn computed(
+        pool: &ThreadPool,
+        control: &Control,
+        mut each: impl FnMut(usize, usize),
+    ) -> Result<Self, VerifyError> {
+        let cases = cases()?;
+        let all = cases.len() + 1;
+        let mut trajectories = Vec::with_capacity(all);
+        for (index, (what, plan)) in cases.into_iter().enumerate() {
+            each(index, all);
+            let mut experiment = Experiment::new(plan);
+            while !experiment.is_over() {
+                experiment.run_generation(pool, control)?;
+            }
+            let hash = format!("{:016x}", experiment.run_hash());
+            trajectories.push(Trajectory { what, hash });
+        }
+        trajectories.push(search_for_settings()?);
+        each(all, all);
+        Ok(Self { engine: ENGINE_VERSION, trajectories })
+    }
+}
+
+/// The numbers that the search for settings draws: random streams, logarithms, exponentials.
+fn search_for_settings() -> Result<Trajectory, VerifyError> {
+    let mut hash = Xxh3Default::new();
+    for seed in 0..20 {
+        let mut search = Calibration::new(Settings::default(), seed);
+        for _ in 0..5 {
+            let (values, _) = search.next_point()?;
+            values.iter().for_each(|value| hash.update(&value.to_bits().to_le_bytes()));
+        }
+    }
+    let what = "100 points of the search for settings".to_owned();
+    Ok(Trajectory { what, hash: format!("{:016x}", hash.digest()) })
+}
+
+/// A case: what it is, seed, population, generations, and what it changes of the preset `report`.
+type Case = (&'static str, u64, u32, u32, &'static [(&'static str, &'static str)]);
+
+const CASES: &[Case] = &[
+    ("report, 3 generations of 40, seed 1", 1, 40, 3, &[]),
+    ("the same with seed 2", 2, 40, 3, &[]),
+    (
+        "120 steps a second, 8 substeps, moon gravity, 30 points a second",
+        1,
+        40,
+        3,
+        &[
+            ("steps_per_s", "120"),
+            ("substeps", "8"),
+            ("gravity_m_s2", "1.62"),
+            ("genome.points_per_s", "30"),
+        ],
+    ),
+    (
+        "bouncy ice, soft undamped joints, seven limbs",
+        1,
+        40,
+        3,
+        &[
+            ("surface.friction", "0.05"),
+            ("surface.bounce", "0.8"),
+            ("joint_damping_nms_per_rad", "0"),
+            ("joint_cfm_m_s_per_n", "0.0001"),
+            ("agent.limbs", "7"),
+        ],
+    ),
+    (
+        "stairs that slip, a soft damping ground, a squishy snake of unlike parts, steps climbed",
+        1,
+        40,
+        3,
+        &[
+            ("surface.slip_m_s_per_n", "0.01"),
+            ("surface.bounce", "0.4"),
+            ("surface.bounce_velocity_m_s", "1"),
+            ("ground.soft_erp", "0.5"),
+            ("ground.soft_cfm_m_s_per_n", "0.003"),
+            ("ground.dampen_per_s", "0.5"),
+            ("trial.fitness", "steps_climbed"),
+            ("skin.soft_cfm_m_s_per_n", "0.001"),
+            ("limb_length_m", "[1, 2, 2, 2, 1.5]"),
+            ("agent.density_kg_m3", "[2, 2, 3, 2, 2]"),
+            ("agent.bend_limit_rad", "0.9"),
+        ],
+    ),
+    ("bouncing stairs", 3, 6, 2, &[("surface.bounce", "0.5"), ("first_riser_y_m", "-1.5")]),
+    (
+        "springy stairs",
+        3,
+        6,
+        2,
+        &[("surface.bounce_velocity_m_s", "2"), ("first_riser_y_m", "-1.5")],
+    ),
+    (
+        "soft stairs",
+        3,
+        6,
+        2,
+        &[
+            ("surface.soft_cfm_m_s_per_n", "0.002"),
+            ("surface.soft_erp", "0.4"),
+            ("first_riser_y_m", "-1.5"),
+        ],
+    ),
+    (
+        "slipping stairs",
+        3,
+        6,
+        2,
+        &[("surface.slip_m_s_per_n", "0.005"), ("first_riser_y_m", "-1.5")],
+    ),
+    ("damping stairs", 3, 6, 2, &[("surface.dampen_per_s", "0.6"), ("first_riser_y_m", "-1.5")]),
+    ("ice on the ground only", 3, 6, 2, &[("ground.friction", "0.03"), ("ground.bounce", "0.2")]),
+    (
+        "a slipping, springy ground",
+        3,
+        6,
+        2,
+        &[("ground.slip_m_s_per_n", "0.01"), ("ground.bounce_velocity_m_s", "1")],
+    ),
+    (
+        "a rubber skin",
+        3,
+        6,
+        2,
+        &[("skin.friction", "2"), ("skin.bounce", "0.6"), ("skin.soft_erp", "0.5")],
+    ),
+    ("a soft skin", 3, 6, 2, &[("skin.soft_cfm_m_s_per_n", "0.002")]),
+    ("two limbs", 3, 6, 2, &[("agent.limbs", "2")]),
+    ("three limbs, no stairs", 3, 6, 2, &[("agent.limbs", "3"), ("stairs.steps", "0")]),
+    ("twelve limbs, one step", 3, 6, 2, &[("agent.limbs", "12"), ("stairs.steps", "1")]),
+    (
+        "a hundred low steps",
+        3,
+        6,
+        2,
+        &[
+            ("stairs.steps", "100"),
+            ("rise_m", "0.1"),
+            ("tread_m", "0.3"),
+            ("first_riser_y_m", "-2"),
+        ],
+    ),
+    (
+        "a short landing, a wide stair",
+        3,
+        6,
+        2,
+        &[
+            ("landing_m", "2"),
+            ("stairs.width_m", "9"),
+            ("stairs.steps", "1"),
+            ("first_riser_y_m", "-1.5"),
+        ],
+    ),
+    (
+        "limbs of unlike size",
+        3,
+        6,
+        2,
+        &[("limb_width_m", "[1, 1.2, 1, 1, 0.8]"), ("limb_height_m", "[0.8, 1, 1, 1, 1.1]")],
+    ),
+    (
+        "joints of unlike limits and torques",
+        3,
+        6,
+        2,
+        &[
+            ("agent.bend_limit_rad", "[0.5, 1, 1, 2.9]"),
+            ("agent.twist_limit_rad", "[1, 0, 1, 0.2]"),
+            ("max_bend_torque_nm", "[1000, 500, 1000, 100]"),
+            ("max_twist_torque_nm", "[300, 1000, 0, 1000]"),
+        ],
+    ),
+    (
+        "joints of unlike damping and softness",
+        3,
+        6,
+        2,
+        &[
+            ("joint_damping_nms_per_rad", "[0, 30, 100, 10]"),
+            ("joint_cfm_m_s_per_n", "[0, 0.00001, 0.0001, 0]"),
+            ("angular_damping_per_s", "2"),
+        ],
+    ),
+    ("a density of its own for all", 3, 6, 2, &[("agent.density_kg_m3", "3")]),
+    (
+        "a thousand steps a second, one substep",
+        3,
+        4,
+        1,
+        &[("steps_per_s", "1000"), ("substeps", "1"), ("trial.duration_s", "1")],
+    ),
+    ("twenty steps a second", 3, 6, 2, &[("steps_per_s", "20"), ("substeps", "8")]),
+    ("from elsewhere, for longer", 3, 6, 2, &[("start_y_m", "2"), ("trial.duration_s", "6.03")]),
+    (
+        "narrow limits of health",
+        3,
+        20,
+        1,
+        &[
+            ("joint_drift_m", "0.01"),
+            ("speed_m_s", "8"),
+            ("arena_half_width_m", "2"),
+            ("arena_back_m", "13"),
+        ],
+    ),
+    (
+        "other genomes",
+        3,
+        6,
+        2,
+        &[
+            ("torque_range_nm", "400"),
+            ("torque_step_nm", "50"),
+            ("bend_limits_rad", "[0.3, 0.7]"),
+            ("twist_limits_rad", "[0.4]"),
+            ("density_max_kg_m3", "8"),
+            ("density_min_kg_m3", "1"),
+        ],
+    ),
+    (
+        "halving, one parent, five generations",
+        3,
+        8,
+        5,
+        &[("parents", "1"), ("mutation_range_nm", "300"), ("mutation_decay", "0.8")],
+    ),
+];
+
+/// All runs, with what they are: the cases, each kind of fitness, each shipped preset.
+fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
+    let presets = shipped_presets()?;
+    let sized = |settings: &mut Settings, population, generations| {
+        settings.evolution.population = population;
+        settings.evolution.generations = generations;
+    };
+    let report = presets.first().map(|preset| preset.settings.clone()).unwrap_or_default();
+    let mut plans = Vec::new();
+    for (what, seed, population, generations, changes) in CASES {
+        let mut settings = with_fields(&report, changes.iter().copied())?;
+        sized(&mut settings, *population, *generations);
+        settings.check()?;
+        plans.push(((*what).to_owned(), RunPlan::new("verify", *seed, settings)));
+    }
+    // Each with a seed of its own: what differs only in the size of its runs must not compute the same.
+    for (fitness, seed) in Fitness::ALL.into_iter().zip(100..) {
+        let mut settings = report.clone();
+        settings.trial.fitness = fitness;
+        sized(&mut settings, 6, 2);
+        plans.push((format!("fitness {fitness}"), RunPlan::new("verify", seed, settings)));
+    }
+    for (preset, seed) in presets.into_iter().zip(200..) {
+        let mut settings = preset.settings;
+        sized(&mut settings, 6, 2);
+        plans.push((format!("preset {}", preset.name), RunPlan::new("verify", seed, settings)));
+    }
+    Ok(plans)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::fields;
+
+    #[test]
+    fn every_setting_is_changed_by_some_case() {
+        let mut report = shipped_presets().expect("well formed")[0].settings.clone();
+        report.trial.ground = Some(report.trial.surface.clone());
+        let unchanged = fields(&report);
+        let cases = cases().expect("allowed");
+        let changed = |(path, value): &(String, String)| {
+            cases.iter().any(|(_, plan)| {
+                fields(&plan.settings).iter().any(|(p, v)| p == path && v != value)
+            })
+        };
+        let missing: Vec<&String> =
+            unchanged.iter().filter(|field| !changed(field)).map(|(path, _)| path).collect();
+        assert_eq!(missing, Vec::<&String>::new(), "add a case to src/run/verify.rs");
+    }
+
+    #[test]
+    fn every_case_has_bits_of_its_own() {
+        let reference = Trajectories::reference().expect("well formed");
+        assert_eq!(reference.engine, ENGINE_VERSION);
+        let mut hashes: Vec<&String> = reference.trajectories.iter().map(|t| &t.hash).collect();
+        let all = hashes.len();
+        hashes.sort();
+        hashes.dedup();
+        assert_eq!(hashes.len(), all, "two cases compute the same");
+    }
+
+    #[test]
+    fn a_single_other_bit_gives_another_fingerprint() {
+        let reference = Trajectories::reference().expect("well formed");
+        let mut other = reference.clone();
+        other.trajectories[7].hash.replace_range(0..1, "x");
+        assert_ne!(reference.fingerprint(), other.fingerprint());
+    }
+}

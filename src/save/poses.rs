@@ -1,0 +1,219 @@
+//! Recorded poses as compact text: base64 of small numbers.
+//!
+//! Each pose is its place, then its turn. A coordinate is in whole millimetres, as the difference to the
+//! same limb's in the frame before, in zigzag and then LEB128 (the variable-length integers of DWARF and
+//! Protocol Buffers). A turn is the three smaller components of its unit quaternion with ten bits each,
+//! and two bits that say which is missing ("smallest three"): 32 bits, little-endian, right to 0.1°.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD_NO_PAD as BASE64;
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
+use crate::score::Recording;
+use crate::world::{Pose, Rotation, Vector};
+
+/// A recording as it stands in files.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PosesV3 {
+    pub every_steps: u32,
+    pub limbs: u32,
+    pub frames: u32,
+    pub data: String,
+}
+
+const MM_PER_M: f32 = 1000.0;
+/// Farther out than any arena.
+const LARGEST_MM: i64 = 100_000_000;
+/// The least bytes a pose takes: one for each coordinate, four for the turn.
+const LEAST_POSE_BYTES: usize = 7;
+/// Ten bits on either side of the middle.
+const TURN_STEPS: f32 = 511.0;
+const TURN_MASK: u32 = 0x3ff;
+
+impl From<&Recording> for PosesV3 {
+    #[expect(clippy::cast_possible_truncation, reason = "rounded to whole millimetres on purpose")]
+    fn from(recording: &Recording) -> Self {
+        let mut bytes = Vec::new();
+        let mut before = vec![[0_i64; 3]; recording.limbs()];
+        for frame in recording.frames() {
+            for (pose, before) in frame.iter().zip(&mut before) {
+                for (metres, before) in pose.translation.to_array().into_iter().zip(before) {
+                    let mm = (metres * MM_PER_M).round() as i64;
+                    write_number(mm - *before, &mut bytes);
+                    *before = mm;
+                }
+                bytes.extend_from_slice(&packed(pose.rotation).to_le_bytes());
+            }
+        }
+        Self {
+            every_steps: recording.every_steps(),
+            limbs: recording.limbs() as u32,
+            frames: recording.frames().len() as u32,
+            data: BASE64.encode(bytes),
+        }
+    }
+}
+
+impl PosesV3 {
+    /// The recording of a snake with so many limbs.
+    ///
+    /// # Errors
+    /// The counts do not fit each other, the data end too early or late, or a limb is out of this world.
+    pub fn recording(&self, limbs: u32) -> Result<Recording, Invalid> {
+        within("every_steps", self.every_steps, 1..=1_000_000)?;
+        within("limbs", self.limbs, limbs..=limbs)?;
+        let limbs = limbs as usize;
+        let most = Recording::MOST_POSES / limbs.max(1);
+        within("frames", self.frames as usize, 1..=most)?;
+        let poses = limbs * self.frames as usize;
+        let wrong = |value: &str| Invalid::new("data", value, format!("{poses} poses in base64"));
+        let bytes = BASE64.decode(&self.data).map_err(|_| wrong("no base64"))?;
+        if bytes.len() < poses * LEAST_POSE_BYTES {
+            return Err(wrong("too short"));
+        }
+        let mut rest = bytes.as_slice();
+        let mut before = vec![[0_i64; 3]; limbs];
+        let mut read = Vec::with_capacity(poses);
+        for index in 0..poses {
+            let at = &mut before[index % limbs];
+            for mm in at.iter_mut() {
+                let change = read_number(&mut rest).ok_or_else(|| wrong("damaged"))?;
+                *mm = mm.saturating_add(change);
+                if !(-LARGEST_MM..=LARGEST_MM).contains(mm) {
+                    return Err(wrong("a place more than 100 km away"));
+                }
+            }
+            let turn;
+            (turn, rest) = rest.split_first_chunk().ok_or_else(|| wrong("too short"))?;
+            let turn = unpacked(u32::from_le_bytes(*turn)).ok_or_else(|| wrong("damaged"))?;
+            let [x, y, z] = at.map(|mm| mm as f32 / MM_PER_M);
+            read.push(Pose::from_parts(Vector::new(x, y, z), turn));
+        }
+        if !rest.is_empty() {
+            return Err(wrong("too long"));
+        }
+        Recording::new(self.every_steps, limbs, read).ok_or_else(|| wrong("incomplete"))
+    }
+}
+
+fn write_number(number: i64, bytes: &mut Vec<u8>) {
+    // Zigzag: small numbers of either sign are small.
+    let mut rest = (number.wrapping_shl(1) ^ (number >> 63)).cast_unsigned();
+    loop {
+        let [low, ..] = (rest & 0x7f).to_le_bytes();
+        rest >>= 7;
+        bytes.push(if rest == 0 { low } else { low | 0x80 });
+        if rest == 0 {
+            break;
+        }
+    }
+}
+
+/// None, if the bytes end within the number or it is longer than 64 bits.
+fn read_number(bytes: &mut &[u8]) -> Option<i64> {
+    let mut number = 0_u64;
+    for shift in (0..63).step_by(7) {
+        let (&byte, rest) = bytes.split_first()?;
+        *bytes = rest;
+        number |= u64::from(byte & 0x7f) << shift;
+        if byte & 0x80 == 0 {
+            return Some((number >> 1).cast_signed() ^ -(number & 1).cast_signed());
+        }
+    }
+    None
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "within ±511 by its construction")]
+fn packed(turn: Rotation) -> u32 {
+    let components = turn.to_array();
+    let largest = (1..4).fold(0, |largest, index| {
+        if components[index].abs() > components[largest].abs() { index } else { largest }
+    });
+    // A quaternion and its negative are the same turn: the missing component is positive.
+    let sign = if components[largest] < 0.0 { -1.0 } else { 1.0 };
+    let others = (0..4).filter(|&index| index != largest).map(|index| components[index] * sign);
+    others.fold(largest as u32, |bits, component| {
+        // None of the three is larger than 1/√2.
+        let share = (component * std::f32::consts::SQRT_2).clamp(-1.0, 1.0);
+        let steps = (share * TURN_STEPS).round() as i32 + TURN_STEPS as i32;
+        bits << 10 | steps.cast_unsigned()
+    })
+}
+
+/// None, if the three components are too large to belong to a unit quaternion.
+fn unpacked(bits: u32) -> Option<Rotation> {
+    let largest = (bits >> 30) as usize;
+    let mut components = [0.0; 4];
+    let mut sum = 0.0;
+    let places = (0..4).filter(|&index| index != largest);
+    for (place, shift) in places.zip([20, 10, 0]) {
+        let steps = (bits >> shift & TURN_MASK) as f32 - TURN_STEPS;
+        components[place] = steps / TURN_STEPS / std::f32::consts::SQRT_2;
+        sum += components[place] * components[place];
+    }
+    components[largest] = (1.0 - sum).max(0.0).sqrt();
+    // Rounding may carry three equal ones a little beyond 1.
+    (sum < 1.01).then(|| Rotation::from_array(components).normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::GenomeSpace;
+    use crate::rng::{Purpose, stream};
+    use crate::score::Trial;
+
+    fn recording() -> Recording {
+        let trial = Trial::default();
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = GenomeSpace::default().birth(4, trial.duration_s, &mut rng);
+        Recording::of(&genome, &trial)
+    }
+
+    #[test]
+    fn poses_come_back_within_a_millimetre_and_a_fifth_of_a_degree() {
+        let recording = recording();
+        let file = PosesV3::from(&recording);
+        assert!(file.data.len() < 16_000, "{} bytes for five seconds", file.data.len());
+        let read = file.recording(5).expect("as written");
+        assert_eq!(read.frames().len(), recording.frames().len());
+        for (a, b) in recording.frames().flatten().zip(read.frames().flatten()) {
+            assert!((a.translation - b.translation).abs().max_element() < 0.000_51);
+            let angle = a.rotation.angle_between(b.rotation).to_degrees();
+            assert!(angle < 0.2, "{angle}°");
+        }
+    }
+
+    #[test]
+    fn numbers_of_any_size_come_back() {
+        for number in [0, 1, -1, 63, -64, 64, 300, -100_000, i64::MAX / 2, i64::MIN / 2] {
+            let mut bytes = Vec::new();
+            write_number(number, &mut bytes);
+            let mut rest = bytes.as_slice();
+            assert_eq!((read_number(&mut rest), rest.len()), (Some(number), 0));
+        }
+        assert_eq!(read_number(&mut [0xff; 20].as_slice()), None, "endless");
+        assert_eq!(read_number(&mut [0x80].as_slice()), None, "cut off");
+    }
+
+    #[test]
+    fn poses_that_are_not_what_was_written_are_refused() {
+        let good = PosesV3::from(&recording());
+        let says = |edit: fn(&mut PosesV3), message: &str| {
+            let mut file = good.clone();
+            edit(&mut file);
+            let found = file.recording(5).expect_err("refused").to_string();
+            assert!(found.starts_with(message), "{found} instead of {message}");
+        };
+        says(|file| file.limbs = 4, "limbs is 4; allowed: 5 to 5");
+        says(|file| file.frames = u32::MAX, "frames is 4294967295; allowed: 1 to 20000");
+        says(|file| file.frames += 1, "data is damaged");
+        says(|file| file.frames -= 1, "data is too long");
+        says(|file| file.frames *= 100, "data is too short");
+        says(|file| file.every_steps = 0, "every_steps is 0");
+        says(|file| file.data.push('*'), "data is no base64");
+        says(|file| file.data = BASE64.encode([0xff; 7000]), "data is damaged");
+    }
+}

@@ -1,0 +1,157 @@
+//! What can be put on the stage: a champion, where it is from, how it is shown.
+
+use std::sync::Arc;
+
+use crate::evolve::Champion;
+use crate::save::LoadedChampion;
+use crate::score::{Recording, Trial};
+
+/// A champion with the words under it.
+#[derive(Debug, Clone)]
+pub(super) struct Exhibit {
+    champion: Champion,
+    source: Source,
+    /// The engine that found it and what it looked like there, if that was another engine than this.
+    elsewhere: Option<(u32, Option<Arc<Recording>>)>,
+    manner: Manner,
+}
+
+/// Where an exhibit is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    /// The save the studio opened with.
+    Opening,
+    /// A run of this session; the first is 0. The generation is the champion's origin's.
+    Run(u32),
+}
+
+/// How an exhibit is shown.
+#[derive(Debug, Clone, PartialEq)]
+enum Manner {
+    /// As it was found. What another engine found is played from its recording, if there is one.
+    Found,
+    /// Simulated by this engine, in the world in which it was found.
+    Simulated,
+    /// Simulated by this engine in another world.
+    Changed(Box<Trial>),
+}
+
+impl Exhibit {
+    /// The champion the studio opened with.
+    pub fn opening(loaded: &LoadedChampion) -> Self {
+        let recording = loaded.recording.clone().map(Arc::new);
+        Self {
+            champion: loaded.champion.clone(),
+            source: Source::Opening,
+            elsewhere: (!loaded.is_of_this_engine()).then_some((loaded.engine, recording)),
+            manner: Manner::Found,
+        }
+    }
+
+    /// A champion that a run of this session found.
+    pub fn found(champion: &Champion, run: u32) -> Self {
+        Self {
+            champion: champion.clone(),
+            source: Source::Run(run),
+            elsewhere: None,
+            manner: Manner::Found,
+        }
+    }
+
+    /// The same in another world; none if its genome does not fit into that.
+    pub fn in_world(&self, trial: &Trial) -> Option<Self> {
+        trial.check_genome(&self.champion.genome).ok()?;
+        if *trial == self.champion.trial {
+            return Some(self.as_found());
+        }
+        Some(Self { manner: Manner::Changed(Box::new(trial.clone())), ..self.clone() })
+    }
+
+    /// The same as it was found.
+    pub fn as_found(&self) -> Self {
+        Self { manner: Manner::Found, ..self.clone() }
+    }
+
+    /// The same, simulated by this engine in the world in which it was found.
+    pub fn simulated(&self) -> Self {
+        Self { manner: Manner::Simulated, ..self.clone() }
+    }
+
+    /// Whether it is shown in another world than the one in which it was found.
+    pub fn is_changed(&self) -> bool {
+        matches!(self.manner, Manner::Changed(_))
+    }
+
+    /// The recording that is played in place of a simulation, if one is.
+    pub fn recording(&self) -> Option<&Arc<Recording>> {
+        match (&self.manner, &self.elsewhere) {
+            (Manner::Found, Some((_, recording))) => recording.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The engine that found it, if that was another one than this.
+    pub fn other_engine(&self) -> Option<u32> {
+        self.elsewhere.as_ref().map(|(engine, _)| *engine)
+    }
+
+    /// Whether a simulation should end as recorded, because this engine recorded it in this world.
+    pub fn must_match_record(&self) -> bool {
+        self.elsewhere.is_none() && !self.is_changed()
+    }
+
+    /// Whether it is shown otherwise than it was found, though it could be.
+    pub fn could_be_as_found(&self) -> bool {
+        let is_resimulated = self.manner == Manner::Simulated && self.has_recording();
+        self.is_changed() || is_resimulated
+    }
+
+    fn has_recording(&self) -> bool {
+        matches!(self.elsewhere, Some((_, Some(_))))
+    }
+
+    /// The champion as it was found.
+    pub fn champion(&self) -> &Champion {
+        &self.champion
+    }
+
+    /// The world in which it is shown.
+    pub fn trial(&self) -> &Trial {
+        match &self.manner {
+            Manner::Changed(trial) => trial,
+            Manner::Found | Manner::Simulated => &self.champion.trial,
+        }
+    }
+
+    /// Where it is from.
+    pub fn source(&self) -> Source {
+        self.source
+    }
+
+    /// The generation it is from, in whichever run; the first is 1.
+    pub fn generation(&self) -> u32 {
+        self.champion.origin.generation
+    }
+
+    /// What it reached.
+    pub fn fitness(&self) -> f32 {
+        self.champion.evaluation.fitness
+    }
+
+    /// What it is and what it reached, in a line.
+    pub fn caption(&self) -> String {
+        let name = match self.source {
+            Source::Run(_) => format!("Generation {}", self.generation()),
+            Source::Opening => "Saved champion".to_owned(),
+        };
+        let manner = match (&self.manner, self.other_engine()) {
+            (Manner::Changed(_), _) => " in another world; on record ".to_owned(),
+            (_, None) => ": ".to_owned(),
+            (_, Some(engine)) if self.recording().is_some() => {
+                format!(" as engine {engine} recorded it: ")
+            }
+            (_, Some(engine)) => format!(" simulated anew; engine {engine} recorded "),
+        };
+        format!("{name}{manner}{}", self.champion.reached())
+    }
+}

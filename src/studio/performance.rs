@@ -1,0 +1,116 @@
+//! What happens on the stage, step by step: a simulation, or a recording where other bits are computed.
+
+use std::sync::Arc;
+
+use super::exhibit::Exhibit;
+use crate::score::{Evaluation, Recording, Rollout};
+#[cfg(test)]
+use crate::world::Simulation;
+use crate::world::{PhysicsWorld, Pose};
+
+/// A performance on its way.
+pub(super) enum Performance {
+    /// The rollout that scores.
+    Simulated(Box<Rollout>),
+    /// What it looked like where it was recorded.
+    Recorded(Recorded),
+}
+
+/// A recording on its way.
+pub(super) struct Recorded {
+    recording: Arc<Recording>,
+    step: u32,
+    last_step: u32,
+    poses: Vec<Pose>,
+    middle_limb: usize,
+}
+
+impl Performance {
+    /// The start of an exhibit's performance.
+    pub fn of(exhibit: &Exhibit) -> Self {
+        match exhibit.recording() {
+            Some(recording) => Self::Recorded(Recorded {
+                poses: recording.at(0.0),
+                recording: Arc::clone(recording),
+                step: 0,
+                last_step: exhibit.trial().steps(),
+                middle_limb: exhibit
+                    .trial()
+                    .world_plan(&exhibit.champion().genome)
+                    .body
+                    .middle_limb(),
+            }),
+            None => {
+                let rollout = Rollout::new(&exhibit.champion().genome, exhibit.trial());
+                Self::Simulated(Box::new(rollout))
+            }
+        }
+    }
+
+    /// Takes one step, unless it is over. Returns whether it took one.
+    pub fn advance(&mut self) -> bool {
+        match self {
+            Self::Simulated(rollout) => rollout.advance(),
+            Self::Recorded(recorded) => {
+                let goes_on = recorded.step < recorded.last_step;
+                if goes_on {
+                    recorded.step += 1;
+                    recorded.poses = recorded.recording.at(recorded.step as f32);
+                }
+                goes_on
+            }
+        }
+    }
+
+    /// Whether it is over.
+    pub fn is_over(&self) -> bool {
+        match self {
+            Self::Simulated(rollout) => rollout.is_over(),
+            Self::Recorded(recorded) => recorded.step >= recorded.last_step,
+        }
+    }
+
+    /// Steps taken so far.
+    pub fn step(&self) -> u32 {
+        match self {
+            Self::Simulated(rollout) => rollout.step(),
+            Self::Recorded(recorded) => recorded.step,
+        }
+    }
+
+    /// The poses of the limbs after the last step, head first.
+    pub fn poses(&self) -> &[Pose] {
+        match self {
+            Self::Simulated(rollout) => rollout.poses(),
+            Self::Recorded(recorded) => &recorded.poses,
+        }
+    }
+
+    /// What there is to say so far. A recording knows only the result, and where the snake is.
+    pub fn evaluation(&self, exhibit: &Exhibit) -> Evaluation {
+        match self {
+            Self::Simulated(rollout) => rollout.evaluation(),
+            Self::Recorded(recorded) => Evaluation {
+                centre_y_m: recorded.poses[recorded.middle_limb].translation.y,
+                ..exhibit.champion().evaluation
+            },
+        }
+    }
+
+    /// The simulated world, if it is one.
+    #[cfg(test)]
+    pub fn simulation(&self) -> Option<&Simulation> {
+        match self {
+            Self::Simulated(rollout) => Some(rollout.simulation()),
+            Self::Recorded(_) => None,
+        }
+    }
+
+    /// The simulated world, to be lent out between steps.
+    pub fn physics_mut(&mut self) -> Option<&mut PhysicsWorld> {
+        match self {
+            Self::Simulated(rollout) => Some(rollout.simulation_mut().physics_mut()),
+            Self::Recorded(_) => None,
+        }
+    }
+}

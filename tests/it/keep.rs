@@ -1,0 +1,237 @@
+//! No finished generation is lost: to a kill, a full disk, or a second program.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rand::RngExt;
+use serde_json::{Value, json};
+use snakes_and_stairs::evolve::{RunPlan, Settings};
+use snakes_and_stairs::rng::{Purpose, stream};
+use snakes_and_stairs::run::RunSource;
+use snakes_and_stairs::save::{Earlier, SavesFolder};
+
+use super::program::{folder, json_lines, run, snakes};
+
+/// So short that most of the time goes into writing.
+const TINY: &str = "--no-render --json --population 4 --generations 40 --duration 0.2 --threads 2";
+
+/// The only run in a folder of saves, if there is one yet.
+fn run_in(saves: &Path) -> Option<PathBuf> {
+    let mut runs = fs::read_dir(saves).ok()?.map(|entry| entry.expect("an entry").path());
+    let run = runs.next()?;
+    assert_eq!(runs.next(), None, "one run only");
+    Some(run)
+}
+
+/// The whole lines of a run's log.
+fn finished(run: &Path) -> usize {
+    let log = fs::read_to_string(run.join("log.jsonl")).unwrap_or_default();
+    log.split_inclusive('\n').filter(|line| line.ends_with("\"}\n")).count()
+}
+
+/// Starts the program and kills it after `delay`. Returns how many generations it had reported.
+fn kill_after(delay: Duration, folder: &Path, arguments: &str) -> usize {
+    let mut child = snakes(folder, arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let out = BufReader::new(child.stdout.take().expect("piped"));
+    // The pipe is read meanwhile, so that the program never waits for its reader.
+    let reader = thread::spawn(move || {
+        out.lines().filter(|line| line.as_ref().is_ok_and(|line| line.contains("\"hash\""))).count()
+    });
+    thread::sleep(delay);
+    // SIGKILL: the program cannot do anything about it.
+    child.kill().expect("killed");
+    child.wait().expect("ended");
+    reader.join().expect("read")
+}
+
+#[test]
+fn a_run_that_is_killed_at_any_instant_goes_on_and_ends_with_the_same_hash() {
+    let saves = folder();
+    let began = Instant::now();
+    let lines = json_lines(saves.path(), &format!("{TINY} --out undisturbed"));
+    let lasts = began.elapsed();
+    let expected: Value = lines[40]["run_hash"].clone();
+    let mut rng = stream(1, 0, 0, Purpose::Calibration);
+    let (mut killed_on_the_way, mut cut_lines) = (0, 0);
+    for round in 0..50 {
+        let out = format!("out-{round}");
+        let mut instant = || lasts.mul_f64(rng.random_range(0.0..1.0));
+        let reported = kill_after(instant(), saves.path(), &format!("{TINY} --out {out}"));
+        let Some(run) = run_in(&saves.path().join(&out)) else { continue };
+        let after_first = finished(&run);
+        assert!(after_first >= reported, "{reported} were reported, {after_first} are left");
+        killed_on_the_way += usize::from((1..40).contains(&after_first));
+        cut_lines += usize::from(
+            fs::read(run.join("log.jsonl"))
+                .is_ok_and(|log| log.last().is_some_and(|b| *b != b'\n')),
+        );
+        // And once more, while it goes on.
+        if run.join("run.ron").exists() {
+            let resume = format!("--no-render --json --resume {} --threads 2", run.display());
+            kill_after(instant(), saves.path(), &resume);
+            let after_second = finished(&run);
+            assert!(after_second >= after_first, "{after_first} became {after_second}");
+            let lines = json_lines(saves.path(), &resume);
+            assert_eq!(lines.len(), 41, "all generations are printed");
+            assert_eq!(lines[40]["run_hash"], expected, "round {round}");
+        }
+        let unfinished = fs::read_dir(&run).expect("a folder").map(|file| file.expect("a file"));
+        let unfinished =
+            unfinished.filter(|file| file.file_name().to_string_lossy().starts_with('.'));
+        assert!(unfinished.count() <= 2, "a kill leaves at most one half-written file");
+    }
+    assert!(killed_on_the_way >= 20, "only {killed_on_the_way} of 50 were killed on the way");
+    println!(
+        "killed on the way: {killed_on_the_way} of 50, in the middle of a log's line: {cut_lines}"
+    );
+}
+
+#[test]
+fn the_same_command_goes_on_with_a_run_that_was_stopped_and_restart_begins_it_anew() {
+    let saves = folder();
+    let whole = json_lines(saves.path(), &format!("{TINY} --out whole"));
+    kill_after(Duration::from_secs(30), saves.path(), &format!("{TINY} --out out"));
+    let run_folder = run_in(&saves.path().join("out")).expect("a run");
+    // As a kill after the third generation would have left it.
+    let log = fs::read_to_string(run_folder.join("log.jsonl")).expect("read");
+    let three: String = log.split_inclusive('\n').take(3).collect();
+    let stop = || fs::write(run_folder.join("log.jsonl"), &three).expect("written");
+    stop();
+    for (flag, goes_on) in [("", true), ("--restart", false)] {
+        let output = run(saves.path(), &format!("{TINY} --out out {flag}"));
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{stderr}");
+        // Checkpoint 3 is thinned away by the end of the run; 2 is there.
+        assert_eq!(stderr.contains("goes on after generation 2"), goes_on, "{stderr}");
+        let stdout = String::from_utf8_lossy(&output.stdout);
+        let last: Value =
+            serde_json::from_str(stdout.lines().last().expect("lines")).expect("JSON");
+        assert_eq!(last["run_hash"], whole[40]["run_hash"]);
+        stop();
+    }
+}
+
+#[test]
+fn a_second_program_on_the_same_run_is_refused_and_the_owner_named() {
+    let saves = folder();
+    let arguments = "--no-render --population 4 --generations 2 --duration 0.2 --out out --seed 3";
+    let mut settings: Settings =
+        snakes_and_stairs::save::load_preset("report").expect("shipped").settings;
+    settings.evolution.population = 4;
+    settings.evolution.generations = 2;
+    settings.trial.duration_s = 0.2;
+    let plan = RunPlan::new("report", 3, settings);
+    let out = SavesFolder::find(Some(&saves.path().join("out")));
+    let held = RunSource::in_saves(&out, plan, Earlier::GoOn).open("the studio").expect("opened");
+    let output = run(saves.path(), arguments);
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8_lossy(&output.stderr);
+    let owner = format!("in use by process {} (the studio)", std::process::id());
+    assert!(
+        message.starts_with("error: out/report-seed3-") && message.contains(&owner),
+        "{message}"
+    );
+    assert_eq!(message.lines().count(), 1, "{message}");
+    drop(held);
+    assert!(run(saves.path(), arguments).status.success());
+}
+
+/// The last line of standard error, which must be an error.
+fn error_of(output: &std::process::Output) -> String {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    let errors: Vec<&str> = stderr.lines().filter(|line| line.starts_with("error: ")).collect();
+    assert_eq!(errors.len(), 1, "{stderr}");
+    errors[0].to_owned()
+}
+
+/// Resumes a run to its end, which must be that of an undisturbed one.
+fn goes_on_to_the_same_end(saves: &Path, run: &Path) {
+    assert!((1..40).contains(&finished(run)), "it was stopped on the way: {}", finished(run));
+    let resumed = json_lines(saves, &format!("--no-render --json --resume {}", run.display()));
+    let whole = json_lines(saves, &format!("{TINY} --out whole"));
+    assert_eq!(resumed[40]["run_hash"], whole[40]["run_hash"]);
+}
+
+/// A quota: no file may grow beyond a limit, which the log reaches in the middle of the run.
+#[cfg(unix)]
+#[test]
+fn a_log_that_can_grow_no_more_ends_the_run_with_an_error_and_it_can_go_on() {
+    let saves = folder();
+    let program = env!("CARGO_BIN_EXE_snakes");
+    // In units of 512 bytes. A refused write must be an error, not a signal.
+    let script = format!("trap '' XFSZ; ulimit -f 16; exec {program} {TINY} --out out");
+    let output = Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(saves.path())
+        .output()
+        .expect("sh starts");
+    let run = run_in(&saves.path().join("out")).expect("a run");
+    let error = error_of(&output);
+    assert!(error.contains("log.jsonl: cannot be written: File too large"), "{error}");
+    let safe = format!("generations up to {} are safe", finished(&run));
+    assert!(error.contains(&safe) && error.contains("goes on with --resume out/"), "{error}");
+    goes_on_to_the_same_end(saves.path(), &run);
+}
+
+/// A disk that is really full. It takes a mount of one's own; where the system does not give one, the test
+/// above has to do.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_that_fills_up_ends_the_run_with_an_error_and_it_can_go_on() {
+    let saves = folder();
+    let program = env!("CARGO_BIN_EXE_snakes");
+    let script = format!(
+        "mount -t tmpfs -o size=192k none small || exit 99; \
+         {program} {TINY} --out small/out; code=$?; cp -r small/out kept; exit $code"
+    );
+    fs::create_dir(saves.path().join("small")).expect("created");
+    let output = Command::new("unshare")
+        .args(["--user", "--map-root-user", "--mount", "sh", "-c", &script])
+        .current_dir(saves.path())
+        .output();
+    let refused = |output: &std::process::Output| {
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        output.status.code() == Some(99) || stderr.starts_with("unshare: ")
+    };
+    let output = match output {
+        Ok(output) if !refused(&output) => output,
+        other => return eprintln!("no mount of one's own here, skipped: {other:?}"),
+    };
+    let error = error_of(&output);
+    assert!(error.contains("No space left on device"), "{error}");
+    assert!(error.contains("are safe, the run goes on with --resume small/out/"), "{error}");
+    let run = run_in(&saves.path().join("kept")).expect("a run");
+    goes_on_to_the_same_end(saves.path(), &run);
+}
+
+#[test]
+fn a_run_is_a_folder_of_settings_log_checkpoints_and_champions() {
+    let saves = folder();
+    let lines = json_lines(saves.path(), &format!("{TINY} --out out"));
+    let run = run_in(&saves.path().join("out")).expect("a run");
+    let mut files: Vec<String> = fs::read_dir(&run)
+        .expect("a folder")
+        .map(|file| file.expect("a file").file_name().to_string_lossy().into_owned())
+        .filter(|name| !name.starts_with("generation-"))
+        .collect();
+    files.sort();
+    let kept = [1, 16, 2, 32, 39, 4, 40, 8].map(|number| format!("checkpoint-{number}.ron"));
+    assert_eq!(files[..8], kept, "{files:?}");
+    assert_eq!(files[8..], ["lock", "log.jsonl", "run.ron"]);
+    let log = fs::read_to_string(run.join("log.jsonl")).expect("read");
+    for (line, printed) in log.lines().zip(&lines) {
+        let line: Value = serde_json::from_str(line).expect("JSON");
+        assert_eq!(line["hash"], printed["hash"]);
+        assert_eq!(line["statistics"]["mean"], printed["mean"]);
+        assert_eq!(line["crashed"], json!(0));
+    }
+}
