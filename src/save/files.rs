@@ -161,6 +161,16 @@ pub fn tamed(text: &str) -> String {
     plain.take(200).collect()
 }
 
+/// A hash of 64 bits from its 16 hexadecimal digits.
+pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
+    let digits = text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let hash = u64::from_str_radix(text, 16).ok().filter(|_| digits);
+    hash.ok_or_else(|| {
+        let start: String = text.chars().take(40).collect();
+        Invalid::new(field, format!("{start:?}"), "16 hexadecimal digits")
+    })
+}
+
 /// The part of a file that says what it is; everything else is skipped.
 #[derive(Deserialize)]
 pub struct Header {

@@ -63,16 +63,13 @@ impl Log {
     }
 }
 
-/// Reads the whole lines of a log. A log that is not there has none.
+/// Reads the bytes of a log. A log that is not there has none.
 ///
 /// # Errors
-/// The file is unreadable or too large, or a line that is not the last is damaged.
-pub fn read_log<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, SaveError> {
+/// The file is unreadable or too large.
+pub fn read_log_bytes(path: &Path) -> Result<Vec<u8>, SaveError> {
     refuse_link(path).map_err(|source| SaveError::Unreadable { path: path.to_owned(), source })?;
-    if !path.exists() {
-        return Ok(Vec::new());
-    }
-    parse_log(path, &read_bytes(path, LARGEST_FILE_MIB)?)
+    if path.exists() { read_bytes(path, LARGEST_FILE_MIB) } else { Ok(Vec::new()) }
 }
 
 /// Reads the whole lines of a log's bytes; `path` is what errors call it.
@@ -126,6 +123,10 @@ mod tests {
     struct Entry {
         number: u32,
         mean: f64,
+    }
+
+    fn read_log<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, SaveError> {
+        parse_log(path, &read_log_bytes(path)?)
     }
 
     fn entries() -> Vec<Entry> {

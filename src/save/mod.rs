@@ -25,10 +25,9 @@ pub use champion::{
 };
 pub use files::SaveError;
 pub use folder::{RunSummary, SavesFolder, load_run, run_name};
-pub use log::parse_log;
 pub use picture::{Picture, store_csv, store_picture};
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
 };
 pub use run::{Earlier, GenerationRecord, Progress, RunFolder, StatisticsRecord};
-pub use run::{load_plan, parse_checkpoint, parse_plan};
+pub use run::{load_plan, parse_checkpoint, parse_evaluations, parse_plan, parse_records};

@@ -23,10 +23,12 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use super::SaveError;
 use super::champion::{load_champion, store_champion};
-use super::files::{Header, parse, prepare_folder, read_bytes, refuse_link, text_of, write_whole};
+use super::files::{
+    Header, hash_of, parse, prepare_folder, read_bytes, refuse_link, text_of, write_whole,
+};
 use super::folder::champion_file_name;
 use super::lock::Lock;
-use super::log::{Log, read_log};
+use super::log::{Log, parse_log, read_log_bytes};
 use super::settings::SettingsV1;
 use super::v2::GenomeV2;
 use crate::ENGINE_VERSION;
@@ -326,11 +328,11 @@ impl Progress {
         let state = latest.map(|of| load_checkpoint(folder, of, &records, &plan.settings));
         let champion = |record: &GenerationRecord| {
             let path = folder.join(champion_file_name(record.generation));
+            let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
+            refuse_link(&path).map_err(unreadable)?;
             if record.statistics.is_none() || !path.exists() {
                 return Ok(None);
             }
-            let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
-            refuse_link(&path).map_err(unreadable)?;
             Ok(Some(load_champion(&path)?.champion))
         };
         Ok(Self {
@@ -407,14 +409,26 @@ pub fn read_records(
     settings: &Settings,
 ) -> Result<Vec<GenerationRecord>, SaveError> {
     let path = folder.join(LOG_FILE);
-    let records: Vec<GenerationRecord> = read_log(&path)?;
+    parse_records(&path, &read_log_bytes(&path)?, settings)
+}
+
+/// Reads finished generations from the bytes of a log; `path` is what errors call it.
+///
+/// # Errors
+/// A line that is not the last is damaged, out of its order, or beyond the end of the run.
+pub fn parse_records(
+    path: &Path,
+    bytes: &[u8],
+    settings: &Settings,
+) -> Result<Vec<GenerationRecord>, SaveError> {
+    let records: Vec<GenerationRecord> = parse_log(path, bytes)?;
     let check = |(record, generation): (&GenerationRecord, u32)| {
         within("generation", record.generation, generation..=generation)?;
         within("generation", generation, 1..=settings.evolution.generations)?;
         hash_of("hash", &record.hash).map(drop)
     };
     let checked = records.iter().zip(1..).try_for_each(check);
-    checked.map_err(|source| SaveError::Invalid { path, source })?;
+    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
     Ok(records)
 }
 
@@ -512,13 +526,6 @@ impl GenerationRecord {
     }
 }
 
-fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
-    u64::from_str_radix(text, 16).map_err(|_| {
-        let start: String = text.chars().take(40).collect();
-        Invalid::new(field, format!("{start:?}"), "16 hexadecimal digits")
-    })
-}
-
 /// The evaluations of the generation under way, in the order in which they were written.
 fn read_evaluations(
     folder: &Path,
@@ -526,7 +533,21 @@ fn read_evaluations(
     settings: &Settings,
 ) -> Result<Vec<(u32, Evaluation)>, SaveError> {
     let path = folder.join(EVALUATIONS_FILE);
-    let records: Vec<EvaluationRecord> = read_log(&path)?;
+    parse_evaluations(&path, &read_log_bytes(&path)?, generation, settings)
+}
+
+/// Reads the evaluations of a generation from the bytes of a log; `path` is what errors call it. Those of
+/// another generation are none of this one.
+///
+/// # Errors
+/// A line that is not the last is damaged, or has a value that is not allowed.
+pub fn parse_evaluations(
+    path: &Path,
+    bytes: &[u8],
+    generation: u32,
+    settings: &Settings,
+) -> Result<Vec<(u32, Evaluation)>, SaveError> {
+    let records: Vec<EvaluationRecord> = parse_log(path, bytes)?;
     if records.iter().any(|record| record.generation != generation) {
         return Ok(Vec::new());
     }
@@ -541,5 +562,5 @@ fn read_evaluations(
         Ok((record.individual, evaluation))
     };
     let read = records.into_iter().map(read).collect::<Result<_, Invalid>>();
-    read.map_err(|source| SaveError::Invalid { path, source })
+    read.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })
 }

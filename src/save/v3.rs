@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::files::hash_of;
 use super::poses::PosesV3;
 use super::v2::{ChampionV2, GenomeV2, OriginV2, RecordedV2, TrialV2};
 use crate::ENGINE_VERSION;
@@ -60,10 +61,7 @@ impl ChampionV3 {
     /// Translates and checks every value.
     pub fn into_parts(self) -> Result<(Champion, Option<Recording>), Invalid> {
         let recorded = self.recorded;
-        let trace_hash = u64::from_str_radix(&recorded.trace_hash, 16).map_err(|_| {
-            let start: String = recorded.trace_hash.chars().take(40).collect();
-            Invalid::new("recorded.trace_hash", format!("{start:?}"), "16 hexadecimal digits")
-        })?;
+        let trace_hash = hash_of("recorded.trace_hash", &recorded.trace_hash)?;
         name("origin.preset", &self.origin.preset)?;
         within("recorded.fitness", recorded.fitness, -1.0e6..=1.0e6)?;
         within("recorded.centre_y_m", recorded.centre_y_m, -1.0e6..=1.0e6)?;

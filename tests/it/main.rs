@@ -5,6 +5,7 @@ mod architecture;
 mod bad_input;
 mod determinism;
 mod headless;
+mod hostile;
 mod keep;
 mod program;
 #[cfg(all(feature = "studio", target_os = "linux"))]

@@ -1,0 +1,16 @@
+//! A setting by name, as --set and the panels take it.
+#![no_main]
+
+use std::sync::LazyLock;
+
+use libfuzzer_sys::fuzz_target;
+use snakes_and_stairs::evolve::{Settings, with_field};
+
+static SETTINGS: LazyLock<Settings> = LazyLock::new(Settings::default);
+
+fuzz_target!(|text: &str| {
+    let (field, value) = text.split_once('=').unwrap_or((text, ""));
+    if let Ok(settings) = with_field(&SETTINGS, field, value) {
+        assert_eq!(settings.check(), Ok(()));
+    }
+});

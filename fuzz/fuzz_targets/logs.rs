@@ -1,0 +1,30 @@
+//! The logs of a run. The first byte says which, and whether the lines get true checksums, without which a
+//! fuzzer would see little more than the checksum.
+#![no_main]
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use libfuzzer_sys::fuzz_target;
+use snakes_and_stairs::evolve::Settings;
+use snakes_and_stairs::save::{parse_evaluations, parse_records};
+use xxhash_rust::xxh3::xxh3_64;
+
+static SETTINGS: LazyLock<Settings> = LazyLock::new(Settings::default);
+
+fuzz_target!(|input: (u8, Vec<u8>)| {
+    let (how, mut bytes) = input;
+    if how & 1 == 0 {
+        let lines = bytes.split(|byte| *byte == b'\n').map(|line| {
+            let sum = format!(",\"sum\":\"{:016x}\"}}\n", xxh3_64(line));
+            [line, sum.as_bytes()].concat()
+        });
+        bytes = lines.collect::<Vec<_>>().concat();
+    }
+    let error = if how & 2 == 0 {
+        parse_records(Path::new("x"), &bytes, &SETTINGS).err()
+    } else {
+        parse_evaluations(Path::new("x"), &bytes, 1, &SETTINGS).err()
+    };
+    assert!(!error.is_some_and(|error| error.to_string().contains('\n')));
+});

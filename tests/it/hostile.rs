@@ -1,0 +1,495 @@
+//! Files that mean harm, or look like it: each gets one line of complaint, and is left as it was.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use rayon::prelude::*;
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::program::{folder, run};
+
+const CHAMPION: &str = include_str!("../../saves/first-climber.ron");
+const PRESET: &str = include_str!("../../assets/presets/mud.ron");
+
+/// What the program is asked to do with a hostile file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum As {
+    Champion,
+    Preset,
+    Run,
+}
+
+/// A hostile file: what is wrong with it, how it is opened, its place below the test's folder, its bytes.
+struct Hostile {
+    what: String,
+    opened: As,
+    path: PathBuf,
+    bytes: Vec<u8>,
+}
+
+/// All of them; those of a run lie in a copy of a good run each.
+#[derive(Default)]
+struct Collection(Vec<Hostile>);
+
+impl Collection {
+    fn add(&mut self, what: impl Into<String>, opened: As, bytes: impl Into<Vec<u8>>) {
+        let path = PathBuf::from(format!("hostile-{}.ron", self.0.len()));
+        self.0.push(Hostile { what: what.into(), opened, path, bytes: bytes.into() });
+    }
+
+    /// One of the files of a run.
+    fn add_to_run(&mut self, what: impl Into<String>, file: &str, bytes: impl Into<Vec<u8>>) {
+        let path = Path::new(&format!("run-{}", self.0.len())).join(file);
+        self.0.push(Hostile { what: what.into(), opened: As::Run, path, bytes: bytes.into() });
+    }
+
+    /// The text cut off at the beginning of each of its lines, and within it.
+    fn cut_everywhere(&mut self, opened: As, text: &str, every: usize) {
+        let mut at = 0;
+        for (number, line) in text.split_inclusive('\n').enumerate() {
+            let place = if number % 2 == 0 { at } else { at + line.len() / 2 };
+            // Comments may be cut off anywhere: what follows them is what is missed.
+            if number % every == 0 && (1..text.trim_end().len()).contains(&place) {
+                self.add(format!("cut off at {place}"), opened, &text.as_bytes()[..place]);
+            }
+            at += line.len();
+        }
+    }
+
+    /// Each number of the text in turn replaced by each of `others`.
+    fn replace_numbers(&mut self, opened: As, text: &str, others: &[&str]) {
+        for (number, line) in text.lines().enumerate() {
+            let Some((field, value)) = line.trim_end_matches(',').split_once(": ") else {
+                continue;
+            };
+            if value.parse::<f64>().is_err() || line.trim_start().starts_with("//") {
+                continue;
+            }
+            let field = field.trim();
+            for other in others {
+                let lines = text.lines().enumerate().map(|(n, l)| {
+                    if n == number { format!("{field}: {other},\n") } else { format!("{l}\n") }
+                });
+                self.add(format!("{field} is {other}"), opened, lines.collect::<String>());
+            }
+        }
+    }
+
+    /// Each line that has a field in turn left out.
+    fn leave_out_fields(&mut self, opened: As, text: &str) {
+        for (number, line) in text.lines().enumerate() {
+            // What is not there is none of what may be none.
+            let is_needed = !line.contains("//") && !line.ends_with(": None,");
+            if line.ends_with(',') && line.contains(": ") && is_needed {
+                let lines = text.lines().enumerate().filter(|(n, _)| *n != number);
+                let lines: Vec<&str> = lines.map(|(_, line)| line).collect();
+                self.add(format!("without {}", line.trim()), opened, lines.join("\n"));
+            }
+        }
+    }
+
+    fn replace(&mut self, opened: As, text: &str, from: &str, to: &str) {
+        assert!(text.contains(from), "{from}");
+        let what = format!("{from} -> {}", to.chars().take(60).collect::<String>());
+        self.add(what, opened, text.replacen(from, to, 1));
+    }
+}
+
+/// What is wrong in general: damaged, nested, huge, foreign.
+fn of_any_kind(all: &mut Collection, opened: As, text: &str) {
+    all.add("empty", opened, "");
+    all.add("white space", opened, " \n\t\n");
+    all.add("a byte order mark only", opened, "\u{feff}");
+    all.add(
+        "a zero byte in the middle",
+        opened,
+        text.replacen("engine", "eng\0ine", 1).replacen("about", "ab\0out", 1),
+    );
+    all.add("no text", opened, [0xff, 0xfe, 0x00, 0x80].repeat(100));
+    all.add("not quite text", opened, [text.as_bytes(), &[0xc3]].concat());
+    all.add("an executable", opened, [b"\x7fELF\x02\x01\x01".as_slice(), &[0; 500]].concat());
+    all.add("JSON", opened, "{\"kind\": \"snakes-and-stairs champion\", \"format\": 3}");
+    all.add("XML", opened, "<!DOCTYPE x [<!ENTITY a SYSTEM \"file:///etc/passwd\">]><x>&a;</x>");
+    all.add("something behind the end", opened, format!("{text}\n()"));
+    all.add("twice", opened, format!("{text}\n{text}"));
+    for (name, open) in [
+        ("parentheses", "("),
+        ("brackets", "["),
+        ("options", "Some("),
+        ("fields", "(a:"),
+        ("maps", "{1:"),
+        ("comments", "/*"),
+    ] {
+        all.add(format!("nested {name}"), opened, open.repeat(200_000));
+        all.add(
+            format!("nested {name} where a field is"),
+            opened,
+            text.replacen("settings: (", &format!("settings: ({}", open.repeat(100_000)), 1)
+                .replacen("kind: ", &format!("kind: {}", open.repeat(100_000)), 1),
+        );
+    }
+    all.add("ten million of nothing", opened, "[(),".repeat(2_600_000));
+    all.add("a name of ten megabytes", opened, format!("({}: 1)", "a".repeat(10_000_000)));
+    all.add("a text of ten megabytes", opened, format!("(kind: \"{}\")", "a".repeat(10_000_000)));
+    all.add("a number of ten megabytes", opened, format!("(format: {})", "9".repeat(10_000_000)));
+    all.add("white space without end", opened, " ".repeat(11 * 1024 * 1024));
+    all.add("terminal controls", opened, "(\u{1b}[2J\u{1b}[31mkind\u{7}: \"\u{9b}31m\")");
+    all.add(
+        "a field twice",
+        opened,
+        text.replacen("    settings: (", "    name: \"x\",\n    settings: (", 1).replacen(
+            "    engine: 2,",
+            "    engine: 2,\n    engine: 2,",
+            1,
+        ),
+    );
+    all.add(
+        "a field that is not known",
+        opened,
+        text.replacen("    settings: (", "    include: \"/etc/passwd\",\n    settings: (", 1)
+            .replacen("    engine: 2,", "    engine: 2,\n    include: \"/etc/passwd\",", 1),
+    );
+}
+
+fn champions(all: &mut Collection) {
+    of_any_kind(all, As::Champion, CHAMPION);
+    all.cut_everywhere(As::Champion, CHAMPION, 3);
+    all.replace_numbers(As::Champion, CHAMPION, &["NaN", "inf", "-1.0e30", "\"1\""]);
+    all.leave_out_fields(As::Champion, CHAMPION);
+    for format in ["4", "4294967295", "99999999999999999999", "-1", "1.5", "\"3\"", "0"] {
+        all.replace(As::Champion, CHAMPION, "format: 3", &format!("format: {format}"));
+    }
+    for preset in
+        ["../../etc/passwd", "/etc/passwd", "..", "", "a b", "C:\\\\x", "x\\n", "\u{202e}x"]
+    {
+        all.replace(As::Champion, CHAMPION, "preset: \"report\"", &format!("preset: \"{preset}\""));
+    }
+    for (from, to) in [
+        ("frames: 85", "frames: 4294967295"),
+        ("frames: 85", "frames: 84"),
+        ("frames: 85", "frames: 0"),
+        ("every_steps: 2", "every_steps: 0"),
+        ("data: \"", "data: \"****"),
+        ("data: \"", "data: \"AAAA"),
+        ("limbs: 5,\n        frames", "limbs: 4294967295,\n        frames"),
+        ("torques_nm: [", "torques_nm: [(bend: [], twist: []),"),
+        ("bend: [", "bend: [NaN, "),
+        ("bend: [", "bend: [1.0e39, "),
+        ("bend: [", "bend: [], was: ["),
+        ("fitness: centre", "fitness: kilos"),
+        ("ground: None", "ground: Some(1)"),
+        ("trace_hash: \"", "trace_hash: \"g"),
+        ("trace_hash: \"", "trace_hash: \"00000000000000000"),
+        ("steps: 168", "steps: 167"),
+        ("limbs: 5", "limbs: 6"),
+        ("kind: \"snakes-and-stairs champion\"", "kind: \"snakes-and-stairs run\""),
+    ] {
+        all.replace(As::Champion, CHAMPION, from, to);
+    }
+    let joints = "(bend: [0.0], twist: [0.0]),".repeat(350_000);
+    all.replace(As::Champion, CHAMPION, "torques_nm: [", &format!("torques_nm: [{joints}"));
+    let points = "0,".repeat(5_000_000);
+    all.replace(As::Champion, CHAMPION, "bend: [", &format!("bend: [{points}"));
+    // What a flipped bit turns into something else that can be read does something else, which is said.
+    // Digits before a point: behind it they may be too small to matter.
+    let bytes = CHAMPION.as_bytes();
+    let digits = (600..CHAMPION.len() - 1)
+        .filter(|&place| bytes[place].is_ascii_digit() && bytes[place + 1] == b'.');
+    let torques = CHAMPION.find("torques_nm").expect("a genome");
+    let poses = CHAMPION.find("poses").expect("poses");
+    for place in digits.filter(|place| (torques..poses).contains(place)).step_by(3) {
+        let mut bytes = CHAMPION.as_bytes().to_vec();
+        bytes[place] ^= 1;
+        all.add(format!("the last bit of byte {place} flipped"), As::Champion, bytes);
+    }
+    for (place, byte) in
+        CHAMPION.bytes().enumerate().skip(500).filter(|(_, b)| b"(),:[]\"".contains(b)).step_by(9)
+    {
+        let mut bytes = CHAMPION.as_bytes().to_vec();
+        bytes[place] = byte ^ 0x40;
+        all.add(
+            format!("a bit of the {:?} at byte {place} flipped", char::from(byte)),
+            As::Champion,
+            bytes,
+        );
+    }
+}
+
+fn presets(all: &mut Collection) {
+    of_any_kind(all, As::Preset, PRESET);
+    all.cut_everywhere(As::Preset, PRESET, 7);
+    all.replace_numbers(As::Preset, PRESET, &["NaN", "-1.0e30"]);
+    for name in ["../x", "/tmp/x", "", ".", "mud/../../x", "MUD", "m\\u{0}d"] {
+        all.replace(As::Preset, PRESET, "name: \"mud\"", &format!("name: \"{name}\""));
+    }
+    all.replace(As::Preset, PRESET, "name: \"mud\"", "format: 2, name: \"mud\"");
+    all.replace(As::Preset, PRESET, "population: 500", "population: 100000, x: ");
+    let limits = "0.5,".repeat(2_500_000);
+    all.replace(As::Preset, PRESET, "bend_limits_rad: [", &format!("bend_limits_rad: [{limits}"));
+    let widths = format!("limb_width_m: [{}1.0]", "1.0,".repeat(2_500_000));
+    all.replace(As::Preset, PRESET, "limb_width_m: 1.0", &widths);
+    let about = format!("about: \"{}", "very ".repeat(10_000));
+    all.replace(As::Preset, PRESET, "about: \"", &about);
+}
+
+/// A line of a log with the checksum that belongs to it.
+fn line(json: &str) -> String {
+    let open = json.strip_suffix('}').expect("an object");
+    format!("{open},\"sum\":\"{:016x}\"}}\n", xxh3_64(open.as_bytes()))
+}
+
+fn runs(all: &mut Collection, good: &Path) {
+    let read = |file: &str| fs::read_to_string(good.join(file)).expect("a file of the good run");
+    let (plan, log, checkpoint) = (read("run.ron"), read("log.jsonl"), read("checkpoint-2.ron"));
+    for (from, to) in [
+        ("format: 1", "format: 2"),
+        ("engine: 2", "engine: 1"),
+        ("engine: 2", "engine: 3"),
+        ("kind: \"snakes-and-stairs run\"", "kind: \"snakes-and-stairs champion\""),
+        ("preset: \"report\"", "preset: \"../../../etc\""),
+        ("population: 4", "population: 4000000000"),
+        ("population: 4", "population: 0"),
+        ("generations: 3", "generations: NaN"),
+        ("duration_s: 0.2", "duration_s: inf"),
+        ("seed: 1", "seed: -1"),
+        ("seed: 1", "seed: 18446744073709551616"),
+        ("settings: (", "settings: [("),
+    ] {
+        assert!(plan.contains(from), "{from} in {plan}");
+        all.add_to_run(format!("run.ron with {to}"), "run.ron", plan.replacen(from, to, 1));
+    }
+    for place in [0, 1, plan.len() / 3, plan.len() / 2, plan.len() - 3] {
+        all.add_to_run(format!("run.ron cut off at {place}"), "run.ron", &plan.as_bytes()[..place]);
+    }
+    for (from, to) in [
+        ("format: 1", "format: 2"),
+        ("engine: 2", "engine: 1"),
+        ("generation: 2", "generation: 1"),
+        ("run_hash: \"", "run_hash: \"0"),
+        ("run_hash: \"", "run_hash: \"x"),
+        ("Halving(", "Genetic("),
+        ("parents: [", "parents: [1, "),
+        ("parents: [", "parents: [], was: ["),
+        ("bend: [", "bend: [NaN, "),
+        ("bend_limit_rad: ", "bend_limit_rad: -"),
+        ("density_kg_m3: ", "density_kg_m3: 1.0e38, x: "),
+    ] {
+        assert!(checkpoint.contains(from), "{from} in {checkpoint}");
+        let what = format!("checkpoint with {to}");
+        all.add_to_run(what, "checkpoint-2.ron", checkpoint.replacen(from, to, 1));
+    }
+    for place in [0, 20, checkpoint.len() / 2, checkpoint.len() - 3] {
+        let what = format!("checkpoint cut off at {place}");
+        all.add_to_run(what, "checkpoint-2.ron", &checkpoint.as_bytes()[..place]);
+    }
+    let lines: Vec<&str> = log.split_inclusive('\n').collect();
+    let objects: Vec<String> = lines
+        .iter()
+        .map(|line| format!("{}}}", line.split_once(",\"sum\"").expect("a sum").0))
+        .collect();
+    let mut logs = vec![
+        ("lines in another order".to_owned(), format!("{}{}", lines[1], lines[0])),
+        ("a line left out".to_owned(), lines[1].to_owned()),
+        ("the first line twice".to_owned(), format!("{}{}", lines[0], lines[0])),
+        ("a line without a sum".to_owned(), format!("{}\n{}", objects[0], lines[1])),
+        ("an empty line".to_owned(), format!("\n{log}")),
+        ("lines of another program".to_owned(), "GET / HTTP/1.1\nHost: x\n\n".to_owned()),
+        (
+            "deep brackets".to_owned(),
+            format!("{}{}", line(&format!("{{\"generation\":{}}}", "[".repeat(100_000))), log),
+        ),
+        (
+            "more generations than there are".to_owned(),
+            (1..=5)
+                .map(|n| {
+                    line(&objects[0].replace("\"generation\":1", &format!("\"generation\":{n}")))
+                })
+                .collect(),
+        ),
+    ];
+    for (from, to) in [
+        ("\"generation\":1", "\"generation\":4294967296"),
+        ("\"generation\":1", "\"generation\":-1"),
+        ("\"generation\":1", "\"generation\":2"),
+        ("\"evaluations\":4", "\"evaluations\":\"4\""),
+        ("\"hash\":\"", "\"hash\":\"not hexadecimal "),
+        ("\"elapsed_s\":", "\"elapsed_s\":1e999,\"x\":"),
+        ("\"crashed\":0", "\"crashed\":null"),
+        ("\"mean\":", "\"mean\":NaN,\"x\":"),
+    ] {
+        assert!(objects[0].contains(from), "{from} in {}", objects[0]);
+        let first = line(&objects[0].replacen(from, to, 1));
+        logs.push((format!("a log with {to}"), format!("{first}{}", lines[1])));
+    }
+    for place in (0..lines[0].len()).step_by(31) {
+        let mut text = log.clone().into_bytes();
+        text[place] ^= 2;
+        all.add_to_run(format!("a bit of byte {place} of the log flipped"), "log.jsonl", text);
+    }
+    for (what, text) in logs {
+        all.add_to_run(what, "log.jsonl", text);
+    }
+    all.add_to_run(
+        "a log of eleven megabytes",
+        "log.jsonl",
+        log.repeat(11 * 1024 * 1024 / log.len() + 1),
+    );
+    let evaluation = "{\"generation\":3,\"individual\":1,\"fitness\":0.5,\"centre_y_m\":0.5,\"disqualified\":null,\"trace_hash\":\"0123456789abcdef\",\"steps\":1}";
+    for (from, to) in [
+        ("\"individual\":1", "\"individual\":4"),
+        ("\"fitness\":0.5", "\"fitness\":1e30"),
+        ("\"fitness\":0.5", "\"fitness\":1e999"),
+        ("\"trace_hash\":\"0123456789abcdef\"", "\"trace_hash\":\"-\""),
+        ("\"disqualified\":null", "\"disqualified\":\"Bored\""),
+    ] {
+        let bad = line(&evaluation.replacen(from, to, 1));
+        all.add_to_run(
+            format!("an evaluation with {to}"),
+            "evaluations.jsonl",
+            bad + &line(evaluation),
+        );
+    }
+    all.add_to_run("a champion cut off", "generation-1.ron", "(kind: ");
+    all.add_to_run("another file as champion", "generation-2.ron", plan);
+}
+
+/// Runs the program within 200 MiB, apart from its own code.
+fn in_little_memory(folder: &Path, arguments: &str) -> Output {
+    let program = env!("CARGO_BIN_EXE_snakes");
+    let code_kib = fs::metadata(program).expect("the program").len() / 1024;
+    // One arena for all threads: what an arena reserves without using counts here, too.
+    let script = format!("ulimit -v {}; exec {program} {arguments}", 200 * 1024 + code_kib);
+    let mut command = Command::new("sh");
+    command.args(["-c", &script]).current_dir(folder).env("MALLOC_ARENA_MAX", "1");
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env("HOME", folder);
+    command.output().expect("sh starts")
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("created");
+    for file in fs::read_dir(from).expect("a folder") {
+        let file = file.expect("a file").path();
+        fs::copy(&file, to.join(file.file_name().expect("a name"))).expect("copied");
+    }
+}
+
+/// A run that was stopped after two of its three generations.
+fn good_run(folder: &Path) -> PathBuf {
+    let arguments = "--no-render --population 4 --generations 3 --duration 0.2 --out good";
+    assert!(run(folder, arguments).status.success());
+    let good = fs::read_dir(folder.join("good")).expect("a folder").next().expect("a run");
+    let good = good.expect("a run").path();
+    let log = fs::read_to_string(good.join("log.jsonl")).expect("read");
+    let two: String = log.split_inclusive('\n').take(2).collect();
+    fs::write(good.join("log.jsonl"), two).expect("written");
+    good
+}
+
+/// What is wrong with how the program takes a hostile file, if anything is.
+fn fault(folder: &Path, opened: As, path: &Path) -> Option<String> {
+    let arguments = match opened {
+        As::Champion => format!("replay {} --no-render", path.display()),
+        As::Preset => format!("--no-render --generations 1 --out out --preset {}", path.display()),
+        As::Run => format!("--no-render --resume {}", path.parent().expect("a run").display()),
+    };
+    let output = in_little_memory(folder, &arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let problem = if output.status.code() != Some(1) {
+        format!("ended with {:?}", output.status)
+    } else if stderr.lines().count() != 1 || !stderr.starts_with("error: ") {
+        "not one line of error".to_owned()
+    } else if stderr.len() > 1000 {
+        format!("{} bytes of error", stderr.len())
+    } else if stderr.trim_end().contains(char::is_control) {
+        "control characters".to_owned()
+    } else if opened == As::Run && !stderr.contains("run-") {
+        "the file is not named".to_owned()
+    } else {
+        return None;
+    };
+    let start: String = stderr.chars().take(300).collect();
+    Some(format!("{problem}: {start}"))
+}
+
+#[test]
+fn every_hostile_file_gets_one_line_of_error_within_200_mib() {
+    let folder = folder();
+    let good = good_run(folder.path());
+    let mut all = Collection::default();
+    champions(&mut all);
+    presets(&mut all);
+    runs(&mut all, &good);
+    let faults: Vec<String> = all
+        .0
+        .par_iter()
+        .filter_map(|Hostile { what, opened, path, bytes }| {
+            let place = folder.path().join(path);
+            if *opened == As::Run {
+                copy(&good, place.parent().expect("a run"));
+            }
+            fs::write(&place, bytes).expect("written");
+            let fault = fault(folder.path(), *opened, path);
+            let kept = fs::read(&place).expect("read");
+            let touched = (kept != *bytes).then(|| "the file was changed".to_owned());
+            fs::remove_file(&place).expect("removed");
+            let fault = fault.or(touched)?;
+            Some(format!("{opened:?}: {what}: {fault}\n"))
+        })
+        .collect();
+    println!("{} hostile files", all.0.len());
+    assert!(all.0.len() >= 200);
+    assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), all.0.len(), faults.concat());
+    assert!(!folder.path().join("out").exists(), "nothing was begun");
+}
+
+/// What is no file, or leads elsewhere.
+#[cfg(unix)]
+#[test]
+fn links_folders_and_pipes_in_the_place_of_files_are_refused_and_not_followed() {
+    use std::os::unix::fs::symlink;
+
+    let folder = folder();
+    let good = good_run(folder.path());
+    let secret = folder.path().join("secret");
+    fs::write(&secret, "do not touch").expect("written");
+    let files = [
+        "run.ron",
+        "log.jsonl",
+        "checkpoint-2.ron",
+        "generation-1.ron",
+        "evaluations.jsonl",
+        "lock",
+    ];
+    let mut number = 0;
+    for file in files {
+        for kind in ["link", "link to itself", "link to a good one", "folder", "pipe"] {
+            number += 1;
+            let path = PathBuf::from(format!("run-{number}")).join(file);
+            let place = folder.path().join(&path);
+            copy(&good, place.parent().expect("a run"));
+            let _ = fs::remove_file(&place);
+            match kind {
+                "link" => symlink(&secret, &place).expect("linked"),
+                "link to itself" => symlink(&place, &place).expect("linked"),
+                "link to a good one" => symlink(good.join(file), &place).expect("linked"),
+                "folder" => fs::create_dir(&place).expect("created"),
+                _ => {
+                    assert!(Command::new("mkfifo").arg(&place).status().expect("mkfifo").success())
+                }
+            }
+            let fault = fault(folder.path(), As::Run, &path);
+            assert_eq!(fault, None, "{file} is a {kind}");
+        }
+    }
+    assert_eq!(fs::read_to_string(&secret).expect("read"), "do not touch");
+    // A person may name a link, but neither a folder nor a pipe, which might never end.
+    assert!(
+        Command::new("mkfifo").arg(folder.path().join("pipe")).status().expect("mkfifo").success()
+    );
+    for path in ["pipe", "good", "/dev/zero"] {
+        for opened in [As::Champion, As::Preset] {
+            assert_eq!(fault(folder.path(), opened, Path::new(path)), None, "{path}");
+        }
+    }
+}
