@@ -4,6 +4,7 @@
 mod architecture;
 mod bad_input;
 mod determinism;
+mod fuzz;
 mod headless;
 mod hostile;
 mod keep;

@@ -1,0 +1,160 @@
+//! A bounded fuzz run over everything that reads a file. `fuzz/` goes on without a bound; both begin with
+//! the files in `fuzz/corpus`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+use proptest::test_runner::FileFailurePersistence;
+use snakes_and_stairs::evolve::{Settings, with_field};
+use snakes_and_stairs::save::{
+    parse_champion, parse_checkpoint, parse_evaluations, parse_plan, parse_preset, parse_records,
+};
+
+/// A change to a file's bytes.
+#[derive(Debug, Clone)]
+enum Edit {
+    CutOff(Index),
+    Remove(Index, usize),
+    Flip(Index, u8),
+    Insert(Index, Vec<u8>),
+    /// A piece of the file once more, elsewhere.
+    Repeat(Index, usize, Index),
+}
+
+/// What a grammar may stumble over.
+const TOKENS: [&str; 24] = [
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    ",",
+    ":",
+    "\"",
+    "'",
+    "\\",
+    "/*",
+    "*/",
+    "//",
+    "r#\"",
+    "Some(",
+    "None",
+    "NaN",
+    "-inf",
+    "1e999",
+    "99999999999999999999",
+    "-1",
+    "\0",
+    "\u{feff}",
+];
+
+fn edit() -> impl Strategy<Value = Edit> {
+    let token = select(&TOKENS[..]).prop_map(|token| token.as_bytes().to_vec());
+    prop_oneof![
+        1 => any::<Index>().prop_map(Edit::CutOff),
+        3 => (any::<Index>(), 1..40_usize).prop_map(|(at, length)| Edit::Remove(at, length)),
+        3 => (any::<Index>(), 0..8_u8).prop_map(|(at, bit)| Edit::Flip(at, bit)),
+        3 => (any::<Index>(), token).prop_map(|(at, token)| Edit::Insert(at, token)),
+        1 => (any::<Index>(), prop::collection::vec(any::<u8>(), 1..9))
+            .prop_map(|(at, bytes)| Edit::Insert(at, bytes)),
+        2 => (any::<Index>(), 1..400_usize, any::<Index>())
+            .prop_map(|(from, length, to)| Edit::Repeat(from, length, to)),
+    ]
+}
+
+fn edited(mut bytes: Vec<u8>, edits: &[Edit]) -> Vec<u8> {
+    for edit in edits {
+        let place = |index: &Index| index.index(bytes.len() + 1);
+        match edit {
+            Edit::CutOff(at) => bytes.truncate(place(at)),
+            Edit::Remove(at, length) => {
+                let at = place(at);
+                bytes.drain(at..(at + length).min(bytes.len()));
+            }
+            Edit::Flip(at, bit) => {
+                let at = place(at);
+                bytes.get_mut(at).into_iter().for_each(|byte| *byte ^= 1 << bit);
+            }
+            Edit::Insert(at, inserted) => {
+                let at = place(at);
+                bytes.splice(at..at, inserted.iter().copied());
+            }
+            Edit::Repeat(from, length, to) => {
+                let (from, to) = (place(from), place(to));
+                let piece = bytes[from..(from + length).min(bytes.len())].to_vec();
+                bytes.splice(to..to, piece);
+            }
+        }
+    }
+    bytes
+}
+
+/// The files that fuzzing begins with, and edits to one of them.
+fn inputs(target: &str) -> impl Strategy<Value = Vec<u8>> + use<> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
+    let mut files: Vec<PathBuf> =
+        fs::read_dir(folder).expect("a corpus").map(|file| file.expect("a file").path()).collect();
+    files.sort();
+    let files: Vec<Vec<u8>> = files.iter().map(|file| fs::read(file).expect("read")).collect();
+    (select(files), prop::collection::vec(edit(), 1..6))
+        .prop_map(|(file, edits)| edited(file, &edits))
+}
+
+fn rules(cases: u32) -> ProptestConfig {
+    // Failures become tests by hand, with a name that says what was wrong.
+    let failure_persistence = Some(Box::new(FileFailurePersistence::Off) as Box<_>);
+    ProptestConfig { cases, failure_persistence, ..ProptestConfig::default() }
+}
+
+/// Whatever stands in the bytes: an answer, and of errors a line.
+fn read_all<T, E: ToString>(target: &str, parse: impl Fn(&Path, &str) -> Result<T, E>) {
+    proptest!(rules(3000), |(bytes in inputs(target))| {
+        if let Ok(text) = String::from_utf8(bytes)
+            && let Err(error) = parse(Path::new("x"), &text)
+        {
+            let message = error.to_string();
+            prop_assert!(!message.contains(char::is_control), "{message}");
+            prop_assert!(message.len() < 1000, "{message}");
+        }
+    });
+}
+
+#[test]
+fn no_champion_stops_the_program() {
+    read_all("champion", parse_champion);
+}
+
+#[test]
+fn no_preset_stops_the_program() {
+    read_all("preset", parse_preset);
+}
+
+#[test]
+fn no_plan_of_a_run_stops_the_program() {
+    read_all("plan", parse_plan);
+}
+
+#[test]
+fn no_checkpoint_stops_the_program() {
+    let settings = Settings::default();
+    read_all("checkpoint", |path, text| parse_checkpoint(path, text, &settings));
+}
+
+#[test]
+fn no_log_stops_the_program() {
+    let settings = Settings::default();
+    read_all("logs", |path, text| parse_records(path, text.as_bytes(), &settings));
+    read_all("logs", |path, text| parse_evaluations(path, text.as_bytes(), 1, &settings));
+}
+
+#[test]
+fn no_value_of_a_setting_stops_the_program() {
+    let settings = Settings::default();
+    read_all("field", |_, text| {
+        let (field, value) = text.split_once('=').unwrap_or((text, ""));
+        with_field(&settings, field, value)
+    });
+}
