@@ -69,3 +69,45 @@ fn reason(info: &PanicHookInfo<'_>) -> String {
         message.lines().next().unwrap_or_default().chars().take(120).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::run::{Background, Event, RunSource, pool};
+    use crate::save::{Earlier, SavesFolder};
+    use std::time::Duration;
+
+    #[test]
+    fn a_panic_while_the_window_is_open_names_the_run_which_can_go_on() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut settings = Settings::default();
+        settings.evolution.population = 6;
+        settings.evolution.generations = 10_000;
+        settings.trial.duration_s = 0.5;
+        let plan = RunPlan::new("test", 1, settings);
+        let saves = SavesFolder::find(Some(folder.path()));
+        let source = RunSource::in_saves(&saves, plan, Earlier::GoOn);
+        let run_folder = RunInProgress::default();
+        run_folder.lock().expect("no panic").replace(source.folder.clone());
+        let mut last = 0;
+        let ended = guarded(&run_folder, || {
+            WINDOW_IS_OPEN.store(true, Ordering::Relaxed);
+            let pool = Arc::new(pool(1).expect("a pool"));
+            let background = Background::start(source.clone(), pool, None).expect("a thread");
+            background.resume();
+            while last < 3 {
+                if let Some(Event::Generation(report)) = background.poll() {
+                    last = report.generation;
+                }
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            panic!("a panel divided by zero")
+        });
+        let Err(StudioError::Crashed { run, .. }) = ended else { panic!("{ended:?}") };
+        assert_eq!(run.as_ref(), Some(&source.folder));
+        // Its thread has let go of it, and nothing that was said to be finished is lost.
+        let again = RunSource::in_folder(&source.folder).expect("a run").open("a test");
+        assert!(again.expect("free and whole").reports.len() as u32 >= last);
+    }
+}

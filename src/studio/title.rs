@@ -32,9 +32,13 @@ fn update(
                 Source::Run(run) if run == evolution.number() => format!("generation {generation}"),
                 Source::Run(_) => format!("generation {generation} of an earlier run"),
             };
-            let world = if stage.exhibit().is_changed() { " in another world" } else { "" };
+            let manner = match (stage.exhibit().is_changed(), stage.exhibit().recording()) {
+                (true, _) => " in another world",
+                (false, Some(_)) => " as recorded",
+                (false, None) => "",
+            };
             let held = if stage.is_playing() { "" } else { ", held" };
-            format!("{what}{world}{held}")
+            format!("{what}{manner}{held}")
         }
     };
     let title = format!(

@@ -9,5 +9,7 @@ mod headless;
 mod hostile;
 mod keep;
 mod program;
+mod same_bits;
+mod soak;
 #[cfg(all(feature = "studio", target_os = "linux"))]
 mod window;

@@ -7,7 +7,7 @@
 
 mod display;
 
-use super::program::{folder, json_lines, stdout_of};
+use super::program::{folder, json_lines, run, stdout_of};
 use display::{Picture, Studio};
 use std::time::Duration;
 
@@ -218,4 +218,93 @@ fn a_saved_champion_opens_in_the_studio() {
         return;
     };
     studio.wait_for_title("showing saved champion");
+}
+
+#[test]
+fn what_another_engine_found_is_shown_as_recorded_and_can_be_simulated_here() {
+    let folder = folder();
+    let save = folder.path().join("elsewhere.ron");
+    let text = include_str!("../../saves/first-climber.ron").replace("engine: 2", "engine: 1");
+    std::fs::write(&save, text).expect("written");
+    let arguments = format!("replay {} --preset quick", save.display());
+    let Some(studio) = Studio::open("recorded", &arguments) else { return };
+    studio.wait_for_title("showing saved champion as recorded");
+    studio.pause_evolution();
+    studio.click_button("Simulate here");
+    studio.wait_for_title_without("as recorded");
+    studio.click_button("As recorded");
+    studio.wait_for_title("showing saved champion as recorded");
+}
+
+/// A run that would go on for hours, so that what ends it is the test.
+const ENDLESS: &str = "--preset quick --generations 10000";
+
+#[test]
+fn a_studio_that_was_killed_goes_on_with_its_run_and_headless_mode_goes_on_with_it_too() {
+    let folder = folder();
+    let saves = folder.path().join("saves");
+    let arguments = format!("--preset quick --saves {}", saves.display());
+    let Some(studio) = Studio::open("killed", &arguments) else { return };
+    studio.wait_for_title("2 of 4 generations");
+    // Dropping it kills it.
+    drop(studio);
+    let log = std::fs::read_dir(&saves).expect("saves").next().expect("a run").expect("a run");
+    let text = std::fs::read_to_string(log.path().join("log.jsonl")).expect("a log");
+    let two: String = text.split_inclusive('\n').take(2).collect();
+    std::fs::write(log.path().join("log.jsonl"), two).expect("written");
+    let resume = format!("--resume {}", log.path().display());
+    let Some(studio) = Studio::open("resumed", &resume) else { return };
+    studio.wait_for_title("4 of 4 generations, finished");
+    drop(studio);
+    let undisturbed = json_lines(folder.path(), "--no-render --json --preset quick --out other");
+    let resumed = json_lines(folder.path(), &format!("--no-render --json {resume}"));
+    assert_eq!(resumed[4]["run_hash"], undisturbed[4]["run_hash"]);
+}
+
+#[test]
+fn a_headless_run_in_the_studios_folder_is_refused_and_the_studio_named_and_the_other_way_round() {
+    let folder = folder();
+    let arguments = format!("{ENDLESS} --saves {}", folder.path().join("saves").display());
+    let Some(studio) = Studio::open("locked", &arguments) else { return };
+    studio.wait_for_title("running");
+    let output = run(folder.path(), &format!("--no-render {arguments}"));
+    let message = String::from_utf8_lossy(&output.stderr);
+    let owner = format!("in use by process {} (the studio)", studio.process());
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.starts_with("error: ") && message.contains(&owner), "{message}");
+    drop(studio);
+    let mut headless = super::program::snakes(folder.path(), &format!("--no-render {arguments}"))
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(Duration::from_secs(1));
+    let studio = Studio::open("refused", &arguments).expect("it opened before");
+    // It opens, shows its champion, and evolves nothing.
+    studio.wait_for_title("generations, ready");
+    headless.kill().expect("killed");
+    headless.wait().expect("ended");
+    studio.click_button("Start");
+    studio.wait_for_title("running");
+}
+
+#[test]
+fn a_run_that_was_stopped_goes_on_from_the_list() {
+    let folder = folder();
+    let saves = folder.path().join("saves");
+    std::fs::create_dir(&saves).expect("created");
+    let arguments = format!("--preset quick --saves {}", saves.display());
+    json_lines(folder.path(), &format!("--no-render --json --seed 7 {arguments}"));
+    let log = std::fs::read_dir(&saves).expect("saves").next().expect("a run").expect("a run");
+    let log = log.path().join("log.jsonl");
+    let text = std::fs::read_to_string(&log).expect("a log");
+    let two: String = text.split_inclusive('\n').take(2).collect();
+    std::fs::write(&log, two).expect("written");
+    let Some(studio) = Studio::open("continue", &arguments) else { return };
+    studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
+    studio.click_button("Continue a stopped run");
+    std::thread::sleep(Duration::from_secs(2));
+    studio.click_button("the first stopped run");
+    studio.wait_for_title("seed 7 - 4 of 4 generations, finished");
+    assert_eq!(std::fs::read_to_string(&log).expect("a log").lines().count(), 4);
 }

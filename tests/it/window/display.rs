@@ -109,6 +109,11 @@ impl Studio {
         Some(studio)
     }
 
+    /// The program's process.
+    pub fn process(&self) -> u32 {
+        self.program.lock().expect("no panic").id()
+    }
+
     /// Waits for the window; the error is what the program said when it ended instead.
     fn find_window(&mut self) -> Result<(), String> {
         let started = Instant::now();
@@ -179,6 +184,9 @@ impl Studio {
             "Reset" => "249",
             // Not a button: a place in the panel where there is nothing.
             "the empty panel" => return self.click("300", "60"),
+            "Continue a stopped run" => return self.click("100", "236"),
+            "the first stopped run" => return self.click("100", "267"),
+            "Simulate here" => return self.click("397", "562"),
             "World" => return self.click("275", "29"),
             "The ground has a surface of its own" => return self.click("41", "275"),
             "As recorded" => return self.click("397", "562"),
@@ -312,7 +320,7 @@ impl Studio {
 /// Where things are in the panel, in pixels at a scale of 1.
 const BUTTONS_Y: &str = "123";
 const SEED_Y: &str = "205";
-const CHAMPIONS_Y: u32 = 504;
+const CHAMPIONS_Y: u32 = 534;
 const ROW_HEIGHT: u32 = 31;
 
 impl Drop for Studio {
