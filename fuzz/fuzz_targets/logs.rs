@@ -6,14 +6,19 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::evolve::Settings;
-use snakes_and_stairs::save::{parse_evaluations, parse_records};
+use snakes_and_stairs::evolve::{RunPlan, Settings};
+use snakes_and_stairs::save::{fingerprint, parse_evaluations, parse_records};
 use xxhash_rust::xxh3::xxh3_64;
 
-static SETTINGS: LazyLock<Settings> = LazyLock::new(Settings::default);
+static PLAN: LazyLock<(RunPlan, String)> = LazyLock::new(|| {
+    let plan = RunPlan::new("x", 1, Settings::default());
+    let fingerprint = fingerprint(&plan);
+    (plan, fingerprint)
+});
 
 fuzz_target!(|input: (u8, Vec<u8>)| {
-    let (how, mut bytes) = input;
+    let (how, bytes) = input;
+    let mut bytes = String::from_utf8_lossy(&bytes).replace("PLAN", &PLAN.1).into_bytes();
     if how & 1 == 0 {
         let lines = bytes.split(|byte| *byte == b'\n').map(|line| {
             let sum = format!(",\"sum\":\"{:016x}\"}}\n", xxh3_64(line));
@@ -22,9 +27,9 @@ fuzz_target!(|input: (u8, Vec<u8>)| {
         bytes = lines.collect::<Vec<_>>().concat();
     }
     let error = if how & 2 == 0 {
-        parse_records(Path::new("x"), &bytes, &SETTINGS).err()
+        parse_records(Path::new("x"), &bytes, &PLAN.0.settings).err()
     } else {
-        parse_evaluations(Path::new("x"), &bytes, 1, &SETTINGS).err()
+        parse_evaluations(Path::new("x"), &bytes, 1, &PLAN.0).err()
     };
     assert!(!error.is_some_and(|error| error.to_string().contains('\n')));
 });

@@ -20,7 +20,9 @@ fuzz_target!(|input: (u16, u8, &[u8])| {
     if let Ok(loaded) = parse_champion(Path::new("x"), &text) {
         let recording = loaded.recording.expect("it has poses");
         assert_eq!(recording.frames().len(), usize::from(frames));
-        let finite = |pose: &snakes_and_stairs::world::Pose| pose.translation.is_finite() && pose.rotation.is_normalized();
+        let finite = |pose: &snakes_and_stairs::world::Pose| {
+            pose.translation.is_finite() && pose.rotation.is_normalized()
+        };
         assert!(recording.frames().flatten().all(finite));
         assert_eq!(recording.at(f32::from(frames)).len(), 5);
     }

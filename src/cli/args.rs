@@ -76,7 +76,7 @@ pub struct Args {
         ]
     )]
     resume: Option<PathBuf>,
-    /// Begin the run anew, even if it was stopped before its end; without this it goes on
+    /// Begin the run anew; without this, one that was stopped goes on, and a finished one is shown
     #[arg(long, global = true)]
     restart: bool,
     /// Worker threads [default: all cores; with a window, all but one]
@@ -210,7 +210,7 @@ impl Args {
         }
         let (preset, settings) = self.settings()?;
         let plan = RunPlan { preset, seed: self.seed()?, settings };
-        let earlier = if self.restart { Earlier::Discard } else { Earlier::GoOn };
+        let earlier = if self.restart { Earlier::Discard } else { Earlier::Keep };
         Ok(RunSource::in_saves(&self.saves_folder(), plan, earlier))
     }
 

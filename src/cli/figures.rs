@@ -8,7 +8,7 @@ use super::args::Args;
 use super::{CliError, print};
 use crate::evolve::Champion;
 use crate::plot;
-use crate::save::{Picture, SavesFolder, load_run, store_picture};
+use crate::save::{LoadedChampion, Picture, SavesFolder, load_run, store_picture};
 use crate::studio::figures;
 
 /// Size of the pictures, in pixels.
@@ -17,10 +17,11 @@ const SIZE: (u32, u32) = (1280, 720);
 /// Draws the champions of a run's folder: the report's Figures 5 to 10, and one signal as its Figure 4. They
 /// go into the run's own folder `figures`, unless another is named.
 pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
-    let (numbers, champions): (Vec<u32>, Vec<Champion>) =
-        load_run(run)?.into_iter().map(|(number, loaded)| (number, loaded.champion)).unzip();
-    let beside = run.join("figures");
-    let folder = SavesFolder::find(Some(args.out_folder().unwrap_or(&beside)));
+    let (numbers, champions): (Vec<u32>, Vec<LoadedChampion>) = load_run(run)?.into_iter().unzip();
+    let folder = match args.out_folder() {
+        Some(named) => SavesFolder::find(Some(named)),
+        None => SavesFolder::within_run(run, "figures")?,
+    };
     folder.prepare()?;
     let mut said = String::from("saved to\n");
     let mut keep = |name: String, picture: &Picture| -> Result<(), CliError> {
@@ -31,19 +32,20 @@ pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
     };
     if let (Some(last), Some(number)) = (champions.last(), numbers.last()) {
         let title = format!("Bend torque of the first joint, champion of generation {number}");
-        keep("signal.png".to_owned(), &plot::signal(last, &title)?)?;
+        keep("signal.png".to_owned(), &plot::signal(&last.champion, &title)?)?;
     }
     let bar = ProgressBar::new(champions.len() as u64);
     let pictures = figures::draw(&champions, SIZE, |_| bar.inc(1));
     bar.finish_and_clear();
-    for ((number, champion), (mut picture, evaluation)) in
+    for ((number, loaded), (mut picture, evaluation)) in
         numbers.iter().zip(&champions).zip(pictures?)
     {
+        let champion = &loaded.champion;
         let origin = &champion.origin;
-        let note = if evaluation == champion.evaluation {
-            ""
-        } else {
-            "   REPLAYED OTHERWISE THAN RECORDED"
+        let note = match (loaded.is_of_this_engine(), &loaded.recording) {
+            (false, Some(_)) => format!("   as engine {} recorded it", loaded.engine),
+            _ if evaluation == champion.evaluation => String::new(),
+            _ => "   REPLAYED OTHERWISE THAN RECORDED".to_owned(),
         };
         let shown = Champion { evaluation, ..champion.clone() };
         let text = format!(

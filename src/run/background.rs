@@ -70,7 +70,12 @@ impl Background {
             let (control, pause_after) =
                 (Arc::clone(&control), Arc::clone(&pause_after_generation));
             move || {
-                drop(before);
+                if let Some(before) = before {
+                    before.end();
+                }
+                if control.is_cancelled() {
+                    return;
+                }
                 match source.open("the studio") {
                     Ok(run) => work(run, &pool, &control, &pause_after, &sender),
                     // A send fails only when nobody listens any more.
@@ -132,6 +137,16 @@ impl Background {
     }
 }
 
+impl Background {
+    /// Cancels the experiment, and waits for as long as it takes until its folder is free.
+    fn end(self) {
+        self.control.cancel();
+        let events = self.events.lock().unwrap_or_else(PoisonError::into_inner);
+        // Until its end of the channel is gone.
+        events.iter().for_each(drop);
+    }
+}
+
 impl Drop for Background {
     fn drop(&mut self) {
         self.control.cancel();
@@ -161,17 +176,22 @@ fn work(
             keeper.note(generation, individual, evaluation);
         };
         let Ok(report) = experiment.run_generation_noting(pool, control, note) else { return };
-        while let Err(error) = keeper.keep(&experiment, &report) {
-            control.pause();
-            tell(Event::NotSaved(error.to_string()));
+        let crashes = loop {
+            match keeper.keep(&experiment, &report) {
+                Ok(crashes) => break crashes,
+                Err(error) => {
+                    control.pause();
+                    tell(Event::NotSaved(error.to_string()));
+                }
+            }
             if control.pass().is_err() {
                 return;
             }
-        }
+        };
         if pause_after_generation.swap(false, Ordering::SeqCst) {
             control.pause();
         }
-        report.crashes.iter().for_each(|crash| tell(Event::Crashed(keeper.keep_crash(crash))));
+        crashes.into_iter().for_each(|crash| tell(Event::Crashed(crash)));
         tell(Event::Generation(Box::new(report)));
     }
     tell(Event::Finished { run_hash: experiment.run_hash() });
@@ -201,7 +221,7 @@ mod tests {
     fn start_after(folder: &tempfile::TempDir, before: Option<Background>) -> Background {
         let pool = Arc::new(pool(2).expect("a pool"));
         let saves = SavesFolder::find(Some(folder.path()));
-        let source = RunSource::in_saves(&saves, plan(), Earlier::GoOn);
+        let source = RunSource::in_saves(&saves, plan(), Earlier::Keep);
         Background::start(source, pool, before).expect("a thread")
     }
 

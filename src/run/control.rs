@@ -54,6 +54,11 @@ impl Control {
         self.move_gate(Gate::Cancelled);
     }
 
+    /// Whether the run was ended.
+    pub(super) fn is_cancelled(&self) -> bool {
+        *self.gate() == Gate::Cancelled
+    }
+
     /// Waits while paused; then whether to go on.
     pub(super) fn pass(&self) -> Result<(), Cancelled> {
         let held = self.gate_moved.wait_while(self.gate(), |gate| *gate == Gate::Paused);

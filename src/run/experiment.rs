@@ -7,9 +7,8 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::panics::caught;
 use super::report::{Crash, generation_hash, meaning};
-use super::{Cancelled, Control, GenerationReport, Statistics};
+use super::{Cancelled, Control, GenerationReport, Statistics, caught};
 use crate::evolve::{
     Champion, Halving, Origin, RunPlan, Settings, Strategy, StrategyState, ranking,
 };
@@ -136,7 +135,10 @@ impl Experiment {
                 Ok(evaluation) => (evaluation, None),
                 Err(message) => (void_evaluation(), Some(message)),
             };
-            note(generation, individual, &evaluation);
+            // A crash is tried again: the next program may have been mended.
+            if message.is_none() {
+                note(generation, individual, &evaluation);
+            }
             control.count_one();
             Ok((evaluation, message))
         };

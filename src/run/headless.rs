@@ -9,8 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::{ThreadPool, ThreadPoolBuildError};
 use serde_json::{Value, json};
 
-use super::panics::caught;
-use super::{Cancelled, Control, Experiment, GenerationReport, KeptRun, RunSource, pool};
+use super::{Cancelled, Control, Experiment, GenerationReport, KeptRun, RunSource, caught, pool};
 use crate::ENGINE_VERSION;
 use crate::evolve::{Champion, RunPlan};
 use crate::save::{SaveError, load_champion};
@@ -103,6 +102,7 @@ pub fn evolve(
     let generations = settings.evolution.generations;
     let behind = match reports.len() {
         0 => String::new(),
+        _ if experiment.is_over() => "; finished before (--restart evolves it again)".to_owned(),
         behind => format!("; goes on after generation {behind}"),
     };
     say(&format!(
@@ -119,6 +119,7 @@ pub fn evolve(
         out.flush()
     };
     reports.iter().try_for_each(&mut print)?;
+    drop(reports);
     while !experiment.is_over() {
         let note = |generation, individual, evaluation: &_| {
             keeper.note(generation, individual, evaluation);
@@ -130,12 +131,13 @@ pub fn evolve(
             generations,
             folder: folder.clone(),
         })?;
-        keeper.keep(&experiment, &report).map_err(|source| HeadlessError::NotSaved {
-            source: Box::new(source),
-            saved: finished - 1,
-            folder: folder.clone(),
-        })?;
-        report.crashes.iter().for_each(|crash| say(&keeper.keep_crash(crash)));
+        let crashes =
+            keeper.keep(&experiment, &report).map_err(|source| HeadlessError::NotSaved {
+                source: Box::new(source),
+                saved: experiment.finished() - 1,
+                folder: folder.clone(),
+            })?;
+        crashes.iter().for_each(|crash| say(crash));
         print(&report)?;
     }
     let run_hash = format!("{:016x}", experiment.run_hash());

@@ -90,7 +90,8 @@ impl Keeper {
         self.folder.note(generation, individual, evaluation);
     }
 
-    /// Writes down the generation that was just finished. If that fails, it may be tried again.
+    /// Writes down the generation that was just finished. If that fails, it may be tried again. Returns a
+    /// line for each genome on which the program failed.
     ///
     /// # Errors
     /// The folder or a file cannot be written.
@@ -98,7 +99,8 @@ impl Keeper {
         &mut self,
         experiment: &Experiment,
         report: &GenerationReport,
-    ) -> Result<(), SaveError> {
+    ) -> Result<Vec<String>, SaveError> {
+        let crashes = report.crashes.iter().map(|crash| self.keep_crash(crash)).collect();
         let champion = report.champion.as_ref();
         // One more evaluation a generation buys a champion that any later engine can show.
         let recording = champion.map(|champion| Recording::of(&champion.genome, &champion.trial));
@@ -111,11 +113,11 @@ impl Keeper {
         if let Some(path) = path {
             self.remember(report, path);
         }
-        Ok(())
+        Ok(crashes)
     }
 
     /// Writes down a genome on which the program failed, and says so in a line.
-    pub fn keep_crash(&self, crash: &Crash) -> String {
+    fn keep_crash(&self, crash: &Crash) -> String {
         let origin = &crash.individual.origin;
         let what = format!(
             "the program failed on individual {} of generation {} ({})",
@@ -195,7 +197,7 @@ mod tests {
         let expected = undisturbed();
         for stop in 1..=6 {
             let saves = tempfile::tempdir().expect("a folder");
-            let mut first = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+            let mut first = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
             evolve(&mut first, stop);
             drop(first);
             let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
@@ -209,7 +211,7 @@ mod tests {
     #[test]
     fn checkpoints_are_thinned_and_champions_are_not() {
         let saves = tempfile::tempdir().expect("a folder");
-        let mut run = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         evolve(&mut run, 6);
         let files = files(run.keeper.folder());
         let of = |prefix: &str| files.iter().filter(|name| name.starts_with(prefix)).count();
@@ -223,14 +225,14 @@ mod tests {
     #[test]
     fn without_its_latest_checkpoint_a_run_goes_on_from_an_earlier_one() {
         let saves = tempfile::tempdir().expect("a folder");
-        let mut run = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         evolve(&mut run, 4);
         let folder = run.keeper.folder().to_owned();
         drop(run);
         for removed in ["checkpoint-4.ron", "checkpoint-3.ron"] {
             fs::remove_file(folder.join(removed)).expect("removed");
         }
-        let mut again = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         assert_eq!(again.reports.len(), 2);
         evolve(&mut again, 6);
         assert_eq!(again.experiment.run_hash(), undisturbed().run_hash());
@@ -245,17 +247,17 @@ mod tests {
             evolve(&mut run, generations);
             found
         };
-        assert_eq!(open(Earlier::GoOn, 2), 0);
-        assert_eq!(open(Earlier::GoOn, 0), 2, "stopped: it goes on");
+        assert_eq!(open(Earlier::Keep, 2), 0);
+        assert_eq!(open(Earlier::Keep, 0), 2, "stopped: it goes on");
         assert_eq!(open(Earlier::Discard, 6), 0, "thrown away");
         assert_eq!(open(Earlier::Keep, 0), 6, "finished, and left so");
-        assert_eq!(open(Earlier::GoOn, 0), 0, "finished: begun anew");
+        assert_eq!(open(Earlier::Discard, 0), 0, "thrown away again");
     }
 
     #[test]
     fn a_folder_of_another_run_is_refused() {
         let saves = tempfile::tempdir().expect("a folder");
-        let mut source = source(saves.path(), Earlier::GoOn);
+        let mut source = source(saves.path(), Earlier::Keep);
         source.clone().open("a test").expect("opened");
         source.plan.seed = 2;
         let error = source.open("a test").err().expect("refused").to_string();
@@ -263,9 +265,44 @@ mod tests {
     }
 
     #[test]
+    fn a_run_whose_settings_were_edited_does_not_go_on_as_another() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+        evolve(&mut run, 2);
+        let folder = run.keeper.folder().to_owned();
+        drop(run);
+        let file = folder.join("run.ron");
+        let text = fs::read_to_string(&file).expect("read");
+        fs::write(&file, text.replace("seed: 1", "seed: 2")).expect("written");
+        let edited = RunSource::in_folder(&folder).expect("well formed").open("a test");
+        let error = edited.err().expect("refused").to_string();
+        assert!(
+            error.contains("checkpoint-2.ron: plan is") && error.contains("run.ron"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn damaged_notes_of_the_generation_under_way_are_no_harm() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+        evolve(&mut run, 1);
+        let folder = run.keeper.folder().to_owned();
+        drop(run);
+        for damage in [vec![0; 500], b"{}\n{}\n".to_vec(), vec![b'x'; 11 * 1024 * 1024]] {
+            fs::write(folder.join("evaluations.jsonl"), damage).expect("written");
+            let again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+            assert_eq!(again.reports.len(), 1);
+        }
+        let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+        evolve(&mut again, 6);
+        assert_eq!(again.experiment.run_hash(), undisturbed().run_hash());
+    }
+
+    #[test]
     fn a_crashed_genome_is_saved_so_that_it_can_be_replayed() {
         let saves = tempfile::tempdir().expect("a folder");
-        let mut run = source(saves.path(), Earlier::GoOn).open("a test").expect("opened");
+        let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         let report = run.experiment.run_generation(&pool(1).expect("a pool"), &Control::default());
         let individual = report.expect("not cancelled").champion.expect("somebody was healthy");
         let name = format!("crashed-1-{}.ron", individual.origin.individual);

@@ -42,12 +42,13 @@ fn listen() {
     });
 }
 
-/// A panic's message, on one line.
+/// A panic's message, on one line that is not too long.
 fn words(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     let text = text.unwrap_or("a panic without a message");
-    text.split_whitespace().collect::<Vec<&str>>().join(" ")
+    let line = text.split_whitespace().collect::<Vec<&str>>().join(" ");
+    line.chars().take(300).collect()
 }
 
 #[cfg(test)]

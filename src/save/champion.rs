@@ -5,7 +5,7 @@ use std::path::Path;
 use ron::ser::PrettyConfig;
 
 use super::SaveError;
-use super::files::{Header, parse, read_text, write_whole};
+use super::files::{Header, LARGEST_FILE_MIB, parse, read_text, write_whole};
 use super::v1::ChampionV1;
 use super::v2::ChampionV2;
 use super::v3::{ChampionV3, FORMAT, KIND};
@@ -32,7 +32,11 @@ pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
     parse_champion(path, &read_text(path)?)
 }
 
+/// Room for the comment at the top, in bytes.
+const HEADER: u64 = 10_000;
+
 /// Writes a champion and, if known, what it looks like, so that a person can read it, whole or not at all.
+/// What it looks like is left out of a file that would become too large to be read again.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -42,10 +46,20 @@ pub fn store_champion(
     recording: Option<&Recording>,
 ) -> Result<(), SaveError> {
     let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
-    let file = ChampionV3::new(champion.clone(), recording);
-    let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| {
-        SaveError::Unwritable { path: path.to_owned(), source: std::io::Error::other(error) }
-    })?;
+    let unwritable = |source| SaveError::Unwritable { path: path.to_owned(), source };
+    let text_with = |recording| {
+        let file = ChampionV3::new(champion.clone(), recording);
+        ron::ser::to_string_pretty(&file, layout.clone())
+            .map_err(|error| unwritable(std::io::Error::other(error)))
+    };
+    let is_readable = |text: &String| text.len() as u64 <= LARGEST_FILE_MIB * 1024 * 1024 - HEADER;
+    let mut text = text_with(recording)?;
+    if !is_readable(&text) {
+        text = text_with(None)?;
+    }
+    if !is_readable(&text) {
+        return Err(SaveError::TooLarge { path: path.to_owned(), limit_mib: LARGEST_FILE_MIB });
+    }
     let origin = &champion.origin;
     let header = format!(
         "// A champion of Snakes & Stairs: preset {}, seed {}, generation {}, individual {}.\n\

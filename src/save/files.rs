@@ -94,7 +94,7 @@ pub enum SaveError {
     },
 }
 
-/// The largest file that is read. A champion's torque points are bounded so that it stays below.
+/// The largest file that is read; what is written stays below.
 pub const LARGEST_FILE_MIB: u64 = 10;
 
 /// Reads a text file, but never more than [`LARGEST_FILE_MIB`].
@@ -212,7 +212,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".unfinished-");
+        builder.prefix(UNFINISHED);
         // Readable by others as far as the person's umask allows; the default is for secrets.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
@@ -228,10 +228,29 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
     write().map_err(|source| SaveError::Unwritable { path: path.to_owned(), source })
 }
 
+/// How the name of a file begins that is not whole yet.
+const UNFINISHED: &str = ".unfinished-";
+
+/// Removes what a kill left half written in a folder into which nobody else writes.
+pub fn remove_unfinished(folder: &Path) {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(UNFINISHED))
+    {
+        // One that stays is no harm.
+        let _ = fs::remove_file(entry.path());
+    }
+}
+
 /// Makes sure that files can be written into `folder`, creating it if need be.
 pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
     let unwritable = |source| SaveError::Unwritable { path: folder.to_owned(), source };
+    let is_new = !folder.exists();
     fs::create_dir_all(folder).map_err(unwritable)?;
+    if is_new {
+        // That the folder's name survives a power cut is up to the platform.
+        #[cfg(unix)]
+        let _ = folder.parent().map(File::open).map(|parent| parent.and_then(|p| p.sync_all()));
+    }
     // Permissions alone do not tell (read-only mounts, quotas): try it. The file goes when dropped.
     tempfile::tempfile_in(folder).map(drop).map_err(unwritable)
 }

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use directories::ProjectDirs;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::files::prepare_folder;
-use super::run::{load_plan, numbered, read_records};
+use super::files::{prepare_folder, refuse_link};
+use super::run::{count_records, load_plan, numbered};
 use super::{LoadedChampion, SaveError, load_champion};
 use crate::ENGINE_VERSION;
 use crate::evolve::RunPlan;
@@ -32,6 +32,19 @@ impl SavesFolder {
         Self(data.map_or(here, |data| data.data_dir().join("saves")))
     }
 
+    /// A folder within a run's, which may be anybody's: it must not be a link to elsewhere.
+    ///
+    /// # Errors
+    /// It is one.
+    pub fn within_run(run: &Path, name: &str) -> Result<Self, SaveError> {
+        let path = run.join(name);
+        if path.is_symlink() {
+            let source = std::io::Error::other("it is a link");
+            return Err(SaveError::Unwritable { path, source });
+        }
+        Ok(Self(path))
+    }
+
     /// The folder's path.
     pub fn path(&self) -> &Path {
         &self.0
@@ -51,7 +64,7 @@ impl SavesFolder {
         folders.sort();
         let summary = |folder: PathBuf| {
             let plan = load_plan(&folder).ok()?;
-            let finished = read_records(&folder, &plan.settings).ok()?.len() as u32;
+            let finished = count_records(&folder).ok()?;
             Some(RunSummary { folder, plan, finished })
         };
         folders.into_iter().filter_map(summary).collect()
@@ -84,12 +97,22 @@ impl RunSummary {
 /// The name of a run's folder: it names the preset, the seed, and in eight hex digits everything else
 /// that decides the bits. So two folders of one name hold the same run, and no run overwrites another.
 pub fn run_name(plan: &RunPlan) -> String {
-    let RunPlan { preset, seed, settings } = plan;
-    let settings = ron::to_string(settings).unwrap_or_default();
-    let fingerprint = xxh3_64(format!("{ENGINE_VERSION} {settings}").as_bytes()) as u32;
-    let preset: String =
-        preset.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
-    format!("{preset}-seed{seed}-{fingerprint:08x}")
+    let plain = plan.preset.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-');
+    let preset: String = plain.take(40).collect();
+    format!("{preset}-seed{}-{}", plan.seed, settings_fingerprint(plan))
+}
+
+/// Eight hexadecimal digits that stand for a plan's settings and the engine.
+fn settings_fingerprint(plan: &RunPlan) -> String {
+    let settings = ron::to_string(&plan.settings).unwrap_or_default();
+    let hash = xxh3_64(format!("{ENGINE_VERSION} {settings}").as_bytes()) as u32;
+    format!("{hash:08x}")
+}
+
+/// Sixteen hexadecimal digits that stand for all that decides a run's bits.
+pub fn fingerprint(plan: &RunPlan) -> String {
+    let settings = settings_fingerprint(plan);
+    format!("{:016x}", xxh3_64(format!("{} {settings}", plan.seed).as_bytes()))
 }
 
 /// The name of the file, in a run's folder, of the champion of a generation; the first is 1.
@@ -109,7 +132,12 @@ pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> 
         let source = std::io::Error::other(missing);
         return Err(SaveError::Unreadable { path: folder.to_owned(), source });
     }
-    let load = |number| Ok((number, load_champion(&folder.join(champion_file_name(number)))?));
+    let load = |number| {
+        let path = folder.join(champion_file_name(number));
+        refuse_link(&path)
+            .map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
+        Ok((number, load_champion(&path)?))
+    };
     generations.into_iter().map(load).collect()
 }
 
@@ -117,6 +145,21 @@ pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> 
 mod tests {
     use super::*;
     use crate::evolve::Settings;
+
+    #[cfg(unix)]
+    #[test]
+    fn no_link_in_a_runs_folder_is_followed() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().expect("a folder");
+        let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
+        symlink(shipped, folder.path().join("generation-1.ron")).expect("linked");
+        let error = load_run(folder.path()).expect_err("refused").to_string();
+        assert!(error.contains("generation-1.ron: cannot be read: it is a link"), "{error}");
+        symlink("/tmp", folder.path().join("figures")).expect("linked");
+        let error = SavesFolder::within_run(folder.path(), "figures").expect_err("refused");
+        assert!(error.to_string().contains("figures: cannot be written: it is a link"), "{error}");
+        assert!(SavesFolder::within_run(folder.path(), "other").is_ok());
+    }
 
     #[test]
     fn a_folders_name_tells_runs_apart_and_stays_in_its_folder() {

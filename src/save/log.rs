@@ -46,20 +46,32 @@ impl Log {
         Ok(Self { path: path.to_owned(), file, end: end as u64 })
     }
 
-    /// Adds a line. If that fails, the log is as it was before, and may be tried again.
+    /// Adds a line that survives a power cut. If that fails, the next line takes its place.
     pub fn append(&mut self, entry: &impl Serialize) -> Result<(), SaveError> {
-        let unwritable = |source| SaveError::Unwritable { path: self.path.clone(), source };
-        let line = line_of(entry).map_err(|error| unwritable(std::io::Error::other(error)))?;
-        self.file.seek(SeekFrom::Start(self.end)).map_err(unwritable)?;
-        self.file.write_all(line.as_bytes()).map_err(unwritable)?;
-        self.end += line.len() as u64;
-        Ok(())
+        self.write(entry, true)
     }
 
-    /// Makes sure that what was added survives a power cut.
-    pub fn flush_to_disk(&self) -> Result<(), SaveError> {
+    /// Adds a line that survives a kill, and a power cut only with luck; none, if the log would become too
+    /// long to be read again.
+    pub fn append_lightly(&mut self, entry: &impl Serialize) -> Result<(), SaveError> {
+        self.write(entry, false)
+    }
+
+    fn write(&mut self, entry: &impl Serialize, to_disk: bool) -> Result<(), SaveError> {
         let unwritable = |source| SaveError::Unwritable { path: self.path.clone(), source };
-        self.file.sync_data().map_err(unwritable)
+        let line = line_of(entry).map_err(|error| unwritable(std::io::Error::other(error)))?;
+        let end = self.end + line.len() as u64;
+        if end > LARGEST_FILE_MIB * 1024 * 1024 {
+            let (path, limit_mib) = (self.path.clone(), LARGEST_FILE_MIB);
+            return Err(SaveError::TooLarge { path, limit_mib });
+        }
+        self.file.seek(SeekFrom::Start(self.end)).map_err(unwritable)?;
+        self.file.write_all(line.as_bytes()).map_err(unwritable)?;
+        if to_disk {
+            self.file.sync_data().map_err(unwritable)?;
+        }
+        self.end = end;
+        Ok(())
     }
 }
 
@@ -135,6 +147,24 @@ mod tests {
             .zip(1..)
             .map(|(mean, number)| Entry { number, mean })
             .collect()
+    }
+
+    #[test]
+    fn a_log_does_not_grow_beyond_what_is_read_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("log.jsonl");
+        let mut log = Log::open(&path, 0).expect("opened");
+        let long = vec![0.123_456_78; 100_000];
+        let written =
+            (0..20).take_while(|_| log.append_lightly(&Long { long: long.clone() }).is_ok());
+        let written = written.count();
+        assert!((5..20).contains(&written), "{written}");
+        assert_eq!(read_log::<serde_json::Value>(&path).expect("read").len(), written);
+    }
+
+    #[derive(Serialize)]
+    struct Long {
+        long: Vec<f64>,
     }
 
     fn written(folder: &tempfile::TempDir) -> PathBuf {

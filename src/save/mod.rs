@@ -24,7 +24,7 @@ pub use champion::{
     LoadedChampion, load_champion, parse_champion, shipped_champion, store_champion,
 };
 pub use files::SaveError;
-pub use folder::{RunSummary, SavesFolder, load_run, run_name};
+pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name};
 pub use picture::{Picture, store_csv, store_picture};
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,

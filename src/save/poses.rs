@@ -24,8 +24,8 @@ pub struct PosesV3 {
 }
 
 const MM_PER_M: f32 = 1000.0;
-/// Farther out than any arena.
-const LARGEST_MM: i64 = 100_000_000;
+/// Farther than any limb gets: ten minutes at the highest speed that a trial allows are 600 km.
+const LARGEST_MM: i64 = 10_000_000_000;
 /// The least bytes a pose takes: one for each coordinate, four for the turn.
 const LEAST_POSE_BYTES: usize = 7;
 /// Ten bits on either side of the middle.
@@ -82,7 +82,7 @@ impl PosesV3 {
                 let change = read_number(&mut rest).ok_or_else(|| wrong("damaged"))?;
                 *mm = mm.saturating_add(change);
                 if !(-LARGEST_MM..=LARGEST_MM).contains(mm) {
-                    return Err(wrong("a place more than 100 km away"));
+                    return Err(wrong("a place more than 10 000 km away"));
                 }
             }
             let turn;
@@ -111,7 +111,7 @@ fn write_number(number: i64, bytes: &mut Vec<u8>) {
     }
 }
 
-/// None, if the bytes end within the number or it is longer than 64 bits.
+/// None, if the bytes end within the number or it is longer than 63 bits, which no sum of them is.
 fn read_number(bytes: &mut &[u8]) -> Option<i64> {
     let mut number = 0_u64;
     for shift in (0..63).step_by(7) {

@@ -13,6 +13,7 @@
 //! So a kill at any instant leaves a log whose last whole line has its checkpoint beside it. What is lost
 //! is computed again, with the same bits.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -24,16 +25,17 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::SaveError;
 use super::champion::{load_champion, store_champion};
 use super::files::{
-    Header, hash_of, parse, prepare_folder, read_bytes, refuse_link, text_of, write_whole,
+    Header, hash_of, parse, prepare_folder, read_bytes, refuse_link, remove_unfinished, text_of,
+    write_whole,
 };
-use super::folder::champion_file_name;
+use super::folder::{champion_file_name, fingerprint};
 use super::lock::Lock;
 use super::log::{Log, parse_log, read_log_bytes};
 use super::settings::SettingsV1;
 use super::v2::GenomeV2;
 use crate::ENGINE_VERSION;
 use crate::check::{Invalid, name, within};
-use crate::evolve::{Champion, RunPlan, Settings, StrategyState};
+use crate::evolve::{Champion, HalvingSettings, RunPlan, Settings, StrategyState};
 use crate::genome::Genome;
 use crate::score::{Evaluation, Recording};
 use crate::world::Disqualification;
@@ -46,6 +48,8 @@ const CHECKPOINT_FORMAT: u32 = 1;
 /// The parents' torque points are bounded so that a checkpoint stays below.
 const LARGEST_CHECKPOINT_MIB: u64 = 64;
 const LOG_FILE: &str = "log.jsonl";
+/// A run keeps so many genomes on which the program failed.
+const MOST_CRASHED: usize = 30;
 const EVALUATIONS_FILE: &str = "evaluations.jsonl";
 
 /// The file that says what run it is.
@@ -66,6 +70,8 @@ struct CheckpointV1 {
     kind: String,
     format: u32,
     engine: u32,
+    /// Hash over the plan of the run.
+    plan: String,
     /// Generations that were finished.
     generation: u32,
     /// Hash over them: it ties the checkpoint to its log.
@@ -116,6 +122,8 @@ pub struct StatisticsRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EvaluationRecord {
+    /// Hash over the plan of the run.
+    plan: String,
     generation: u32,
     individual: u32,
     fitness: f32,
@@ -145,15 +153,15 @@ pub struct RunFolder {
     log: Log,
     /// The generation under way, and the evaluations written of it.
     evaluations: Mutex<Option<(u32, Log)>>,
+    /// Ties what is written to the plan of the run.
+    plan: String,
     _lock: Lock,
 }
 
 /// What to do with what a folder already holds of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Earlier {
-    /// Go on with a run that was stopped; begin one anew that is finished.
-    GoOn,
-    /// Go on with a run that was stopped; a finished one stays as it is.
+    /// Go on with it; if it is finished, there is nothing left to do.
     Keep,
     /// Begin anew.
     Discard,
@@ -173,10 +181,12 @@ impl RunFolder {
     ) -> Result<(Self, Progress), SaveError> {
         prepare_folder(path)?;
         let lock = Lock::take(path, who)?;
+        remove_unfinished(path);
         let file = path.join(RUN_FILE);
         let unreadable = |source| SaveError::Unreadable { path: file.clone(), source };
         refuse_link(&file).map_err(unreadable)?;
-        if file.exists() {
+        // Whatever stands there, a run that begins anew is what was asked for.
+        if file.exists() && earlier == Earlier::Keep {
             let stored = load_plan(path)?;
             if stored != *plan {
                 return Err(SaveError::OtherRun { path: path.to_owned() });
@@ -185,15 +195,15 @@ impl RunFolder {
             store_plan(&file, plan)?;
         }
         let log_path = path.join(LOG_FILE);
-        let mut progress = Progress::read(path, plan, earlier)?;
-        let is_finished = progress.records.len() >= plan.settings.evolution.generations as usize;
-        if is_finished && earlier == Earlier::GoOn {
-            progress = Progress::none();
-        }
+        let progress = match earlier {
+            Earlier::Keep => Progress::read(path, plan)?,
+            Earlier::Discard => Progress::none(),
+        };
         let folder = Self {
             path: path.to_owned(),
             log: Log::open(&log_path, progress.records.len())?,
             evaluations: Mutex::new(None),
+            plan: fingerprint(plan),
             _lock: lock,
         };
         let next = progress.records.len() as u32 + 1;
@@ -204,7 +214,7 @@ impl RunFolder {
             let log = Log::open(&path.join(EVALUATIONS_FILE), progress.evaluations.len())?;
             folder.evaluations_log().replace((next, log));
         }
-        folder.thin(progress.records.len() as u32)?;
+        folder.thin(progress.records.len() as u32);
         Ok((folder, progress))
     }
 
@@ -227,7 +237,8 @@ impl RunFolder {
             *log = fresh.ok().map(|fresh| (generation, fresh));
         }
         if let Some((_, log)) = log.as_mut() {
-            let _ = log.append(&EvaluationRecord {
+            let _ = log.append_lightly(&EvaluationRecord {
+                plan: self.plan.clone(),
                 generation,
                 individual,
                 fitness: evaluation.fitness,
@@ -239,8 +250,8 @@ impl RunFolder {
         }
     }
 
-    /// Writes a finished generation down. If that fails, the folder is as it was before, and it may be
-    /// tried again. Returns the champion's file.
+    /// Writes a finished generation down. If that fails, it is not finished yet, and may be tried again.
+    /// Returns the champion's file.
     ///
     /// # Errors
     /// Something cannot be written.
@@ -260,6 +271,7 @@ impl RunFolder {
             kind: CHECKPOINT_KIND.to_owned(),
             format: CHECKPOINT_FORMAT,
             engine: ENGINE_VERSION,
+            plan: self.plan.clone(),
             generation: record.generation,
             run_hash: format!("{run_hash:016x}"),
             strategy: StrategyV1::Halving {
@@ -268,35 +280,40 @@ impl RunFolder {
         };
         store_ron(&checkpoint_path(&self.path, record.generation), &checkpoint)?;
         self.log.append(record)?;
-        self.log.flush_to_disk()?;
         // They are in the champion, the checkpoint and the log now.
         self.evaluations_log().take();
         let _ = fs::remove_file(self.path.join(EVALUATIONS_FILE));
-        self.thin(record.generation)?;
+        self.thin(record.generation);
         Ok(champion.map(|_| champion_path))
     }
 
     /// Writes a genome down on which the program failed, to be looked into.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or there are enough of them.
     pub fn keep_crashed(&self, crashed: &Champion) -> Result<PathBuf, SaveError> {
         let origin = &crashed.origin;
         let name = format!("crashed-{}-{}.ron", origin.generation, origin.individual);
+        let unwritable = |source| SaveError::Unwritable { path: self.path.clone(), source };
+        let entries = fs::read_dir(&self.path).map_err(unwritable)?.flatten();
+        let is_crash = |name: &OsStr| name.to_string_lossy().starts_with("crashed-");
+        if entries.filter(|entry| is_crash(&entry.file_name())).count() >= MOST_CRASHED {
+            let enough = format!("{MOST_CRASHED} crashed genomes are enough");
+            return Err(unwritable(std::io::Error::other(enough)));
+        }
         let path = self.path.join(name);
         store_champion(&path, crashed, None)?;
         Ok(path)
     }
 
     /// Removes the checkpoints that are not kept when `finished` generations are: see [`is_kept`].
-    fn thin(&self, finished: u32) -> Result<(), SaveError> {
-        for generation in checkpoints(&self.path)? {
+    fn thin(&self, finished: u32) {
+        // One too many is no harm.
+        for generation in checkpoints(&self.path).unwrap_or_default() {
             if !is_kept(generation, finished) {
-                // One too many is no harm.
                 let _ = fs::remove_file(checkpoint_path(&self.path, generation));
             }
         }
-        Ok(())
     }
 
     fn evaluations_log(&self) -> std::sync::MutexGuard<'_, Option<(u32, Log)>> {
@@ -317,15 +334,12 @@ impl Progress {
     }
 
     /// Reads what a folder has of a run.
-    fn read(folder: &Path, plan: &RunPlan, earlier: Earlier) -> Result<Self, SaveError> {
-        if earlier == Earlier::Discard {
-            return Ok(Self::none());
-        }
+    fn read(folder: &Path, plan: &RunPlan) -> Result<Self, SaveError> {
         let mut records = read_records(folder, &plan.settings)?;
         let known = checkpoints(folder)?;
         let latest = known.into_iter().filter(|&of| of as usize <= records.len()).max();
         records.truncate(latest.unwrap_or(0) as usize);
-        let state = latest.map(|of| load_checkpoint(folder, of, &records, &plan.settings));
+        let state = latest.map(|of| load_checkpoint(folder, of, &records, plan));
         let champion = |record: &GenerationRecord| {
             let path = folder.join(champion_file_name(record.generation));
             let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
@@ -338,7 +352,7 @@ impl Progress {
         Ok(Self {
             state: state.transpose()?,
             champions: records.iter().map(champion).collect::<Result<_, _>>()?,
-            evaluations: read_evaluations(folder, records.len() as u32 + 1, &plan.settings)?,
+            evaluations: read_evaluations(folder, records.len() as u32 + 1, plan)?,
             records,
         })
     }
@@ -403,11 +417,14 @@ fn store_ron(path: &Path, file: &impl Serialize) -> Result<(), SaveError> {
     write_whole(path, format!("{text}\n").as_bytes())
 }
 
+/// How many generations of a run's folder are finished: the whole lines of its log, which are not read.
+pub fn count_records(folder: &Path) -> Result<u32, SaveError> {
+    let bytes = read_log_bytes(&folder.join(LOG_FILE))?;
+    Ok(bytes.iter().filter(|byte| **byte == b'\n').count() as u32)
+}
+
 /// The finished generations of a run's folder.
-pub fn read_records(
-    folder: &Path,
-    settings: &Settings,
-) -> Result<Vec<GenerationRecord>, SaveError> {
+fn read_records(folder: &Path, settings: &Settings) -> Result<Vec<GenerationRecord>, SaveError> {
     let path = folder.join(LOG_FILE);
     parse_records(&path, &read_log_bytes(&path)?, settings)
 }
@@ -422,9 +439,19 @@ pub fn parse_records(
     settings: &Settings,
 ) -> Result<Vec<GenerationRecord>, SaveError> {
     let records: Vec<GenerationRecord> = parse_log(path, bytes)?;
+    let HalvingSettings { generations, population, .. } = settings.evolution;
     let check = |(record, generation): (&GenerationRecord, u32)| {
         within("generation", record.generation, generation..=generation)?;
-        within("generation", generation, 1..=settings.evolution.generations)?;
+        within("generation", generation, 1..=generations)?;
+        within("evaluations", record.evaluations, 0..=population)?;
+        within("disqualified", record.disqualified, 0..=record.evaluations)?;
+        within("crashed", record.crashed, 0..=record.disqualified)?;
+        within("elapsed_s", record.elapsed_s, 0.0..=1.0e9)?;
+        if let Some(statistics) = record.statistics {
+            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m } = statistics;
+            let values = [mean, best, median, std, worst, mean_centre_y_m];
+            values.into_iter().try_for_each(|value| within("statistics", value, -1.0e6..=1.0e6))?;
+        }
         hash_of("hash", &record.hash).map(drop)
     };
     let checked = records.iter().zip(1..).try_for_each(check);
@@ -462,13 +489,13 @@ fn load_checkpoint(
     folder: &Path,
     generation: u32,
     records: &[GenerationRecord],
-    settings: &Settings,
+    plan: &RunPlan,
 ) -> Result<StrategyState, SaveError> {
     let path = checkpoint_path(folder, generation);
     let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
     refuse_link(&path).map_err(unreadable)?;
     let text = text_of(&path, read_bytes(&path, LARGEST_CHECKPOINT_MIB)?)?;
-    let (found, run_hash, state) = parse_checkpoint(&path, &text, settings)?;
+    let (found, run_hash, state) = parse_checkpoint(&path, &text, plan)?;
     let checked = within("generation", found, generation..=generation).and_then(|()| {
         let expected = run_hash_of(records)?;
         if run_hash == expected {
@@ -488,13 +515,21 @@ fn load_checkpoint(
 pub fn parse_checkpoint(
     path: &Path,
     text: &str,
-    settings: &Settings,
+    plan: &RunPlan,
 ) -> Result<(u32, u64, StrategyState), SaveError> {
     Header::read(path, text, CHECKPOINT_KIND, CHECKPOINT_FORMAT)?;
-    let CheckpointV1 { engine, generation, run_hash, strategy, .. } = parse(path, text)?;
+    let file: CheckpointV1 = parse(path, text)?;
+    let CheckpointV1 { engine, plan: of, generation, run_hash, strategy, .. } = file;
     let StrategyV1::Halving { parents } = strategy;
+    let settings = &plan.settings;
     let read = || {
         check_engine(engine)?;
+        let expected = fingerprint(plan);
+        if of != expected {
+            let of: String = of.chars().take(40).collect();
+            let allowed = format!("{expected}, as its run.ron has it");
+            return Err(Invalid::new("plan", format!("{of:?}"), allowed));
+        }
         let run_hash = hash_of("run_hash", &run_hash)?;
         within("parents", parents.len(), 0..=settings.evolution.parents as usize)?;
         let parents: Vec<Genome> = parents.into_iter().map(Into::into).collect();
@@ -527,17 +562,21 @@ impl GenerationRecord {
 }
 
 /// The evaluations of the generation under way, in the order in which they were written.
+///
+/// They are no more than a saving: where they are damaged, they are computed again.
 fn read_evaluations(
     folder: &Path,
     generation: u32,
-    settings: &Settings,
+    plan: &RunPlan,
 ) -> Result<Vec<(u32, Evaluation)>, SaveError> {
     let path = folder.join(EVALUATIONS_FILE);
-    parse_evaluations(&path, &read_log_bytes(&path)?, generation, settings)
+    refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
+    let Ok(bytes) = read_log_bytes(&path) else { return Ok(Vec::new()) };
+    Ok(parse_evaluations(&path, &bytes, generation, plan).unwrap_or_default())
 }
 
 /// Reads the evaluations of a generation from the bytes of a log; `path` is what errors call it. Those of
-/// another generation are none of this one.
+/// another generation or another run are none of this one.
 ///
 /// # Errors
 /// A line that is not the last is damaged, or has a value that is not allowed.
@@ -545,14 +584,15 @@ pub fn parse_evaluations(
     path: &Path,
     bytes: &[u8],
     generation: u32,
-    settings: &Settings,
+    plan: &RunPlan,
 ) -> Result<Vec<(u32, Evaluation)>, SaveError> {
     let records: Vec<EvaluationRecord> = parse_log(path, bytes)?;
-    if records.iter().any(|record| record.generation != generation) {
+    let of = fingerprint(plan);
+    if records.iter().any(|record| record.generation != generation || record.plan != of) {
         return Ok(Vec::new());
     }
     let read = |record: EvaluationRecord| {
-        let last = settings.evolution.population.saturating_sub(1);
+        let last = plan.settings.evolution.population.saturating_sub(1);
         within("individual", record.individual, 0..=last)?;
         within("fitness", record.fitness, -1.0e6..=1.0e6)?;
         within("centre_y_m", record.centre_y_m, -1.0e6..=1.0e6)?;

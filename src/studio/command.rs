@@ -101,13 +101,10 @@ fn apply(
                 show.write_batch(simulated.map(ShowExhibit));
                 Ok(())
             }
-            Command::ListStoppedRuns => {
-                evolution.list_stopped();
-                Ok(())
-            }
+            Command::ListStoppedRuns => evolution.list_stopped(),
             Command::Continue(folder) => evolution.go_on_with(folder),
             Command::ShowOpening => {
-                show.write(ShowExhibit(Exhibit::opening(&opening.0)));
+                show.write(ShowExhibit(Exhibit::saved(&opening.0)));
                 Ok(())
             }
             Command::ShowGeneration(generation) => {

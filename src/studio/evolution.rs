@@ -14,7 +14,7 @@ use super::{Frame, Options, StudioError};
 use crate::check::Invalid;
 use crate::evolve::{Champion, RunPlan, Settings, with_field};
 use crate::run::headless::HeadlessError;
-use crate::run::{Background, Event, GenerationReport, RunSource, pool};
+use crate::run::{Background, Event, GenerationReport, Listing, RunSource, pool};
 use crate::save::{Earlier, RunSummary, SavesFolder, load_preset};
 
 /// What every run of this session shares.
@@ -74,6 +74,8 @@ pub(super) struct Evolution {
     before: Option<Background>,
     /// Runs that were stopped before their end, once somebody has asked for them.
     stopped: Option<Vec<RunSummary>>,
+    /// A look for them that is under way.
+    listing: Option<Listing>,
     reports: Vec<GenerationReport>,
     run_hash: Option<u64>,
 }
@@ -105,6 +107,7 @@ impl Evolution {
             background: None,
             before: None,
             stopped: None,
+            listing: None,
             reports: Vec::new(),
             run_hash: None,
         }
@@ -196,7 +199,7 @@ impl Evolution {
 
     /// Evolves until held or finished. After the end of a run it begins the next one.
     pub fn start(&mut self) -> Result<(), String> {
-        self.begin_next_if_over()?;
+        self.begin_next_if_over();
         self.background()?.resume();
         Ok(())
     }
@@ -218,18 +221,21 @@ impl Evolution {
         Ok(())
     }
 
-    /// Throws the current run away and prepares the next. If that is another run, which was stopped at
-    /// some time, it will go on.
+    /// Prepares the next run. The same run is thrown away, and begins anew; another, which was stopped at
+    /// some time, will go on.
     pub fn reset(&mut self) -> Result<(), String> {
-        let is_same = self.engine.next == self.source.plan;
-        self.prepare(if is_same { Earlier::Discard } else { Earlier::GoOn });
+        if self.next_run_differs() {
+            self.prepare_next();
+        } else {
+            self.replace(RunSource { earlier: Earlier::Discard, ..self.source.clone() });
+        }
         Ok(())
     }
 
     /// Prepares the next run.
-    fn prepare(&mut self, earlier: Earlier) {
+    fn prepare_next(&mut self) {
         let plan = self.engine.next.clone();
-        self.replace(RunSource::in_saves(&self.engine.saves, plan, earlier));
+        self.replace(RunSource::in_saves(&self.engine.saves, plan, Earlier::Keep));
     }
 
     /// Puts another run in the place of the current one, which ends in the background.
@@ -240,10 +246,19 @@ impl Evolution {
     }
 
     /// Looks for runs that were stopped before their end, the current one aside.
-    pub fn list_stopped(&mut self) {
-        let mut runs = self.engine.saves.runs();
+    pub fn list_stopped(&mut self) -> Result<(), String> {
+        match Listing::start(self.engine.saves.clone()) {
+            Ok(listing) => self.listing = Some(listing),
+            Err(error) => return Err(format!("The runs cannot be listed: {error}")),
+        }
+        Ok(())
+    }
+
+    fn take_in_listing(&mut self) {
+        let Some(mut runs) = self.listing.as_ref().and_then(Listing::poll) else { return };
         runs.retain(|run| run.is_stopped() && run.folder != self.source.folder);
         self.stopped = Some(runs);
+        self.listing = None;
     }
 
     /// Goes on with a run that was stopped; the current one can be gone on with later.
@@ -282,13 +297,24 @@ impl Evolution {
 
     fn take_over_if_ready(&mut self) -> Result<(), String> {
         if self.status() == Status::Ready {
-            self.prepare(Earlier::GoOn);
+            self.prepare_next();
         }
         Ok(())
     }
 
-    fn begin_next_if_over(&mut self) -> Result<(), String> {
-        if self.status() == Status::Finished { self.reset() } else { Ok(()) }
+    /// After the end of a run the next one: what was asked for meanwhile, or the next seed.
+    fn begin_next_if_over(&mut self) {
+        if self.status() == Status::Finished {
+            if !self.next_run_differs() {
+                self.engine.next.seed = self.engine.next.seed.wrapping_add(1);
+            }
+            self.prepare_next();
+        }
+    }
+
+    /// No run is going on that could go on later.
+    fn forget_folder(&self) {
+        *self.engine.run_folder.lock().unwrap_or_else(PoisonError::into_inner) = None;
     }
 
     /// The run's thread, started if it was not.
@@ -322,6 +348,7 @@ fn take_in(
     mut show: MessageWriter<ShowExhibit>,
     stages: Query<&Stage>,
 ) {
+    evolution.take_in_listing();
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
     // Only what was found in the world of this run can be compared with what it finds.
@@ -349,6 +376,8 @@ fn take_in(
     for event in events {
         match event {
             Event::Opened(behind) => {
+                // Whatever happens from now on, it is not thrown away once more.
+                evolution.source.earlier = Earlier::Keep;
                 if let Some(last) = behind.last() {
                     notices.news(format!("The run goes on after generation {}.", last.generation));
                 }
@@ -361,6 +390,7 @@ fn take_in(
             Event::Refused(problem) => {
                 notices.problem(format!("Nothing is evolved: {problem}"));
                 evolution.background = None;
+                evolution.forget_folder();
             }
             Event::Generation(report) => {
                 let champion = report.champion.iter();
@@ -369,6 +399,7 @@ fn take_in(
             }
             Event::Finished { run_hash } => {
                 evolution.run_hash = Some(run_hash);
+                evolution.forget_folder();
                 notices.news("The run is finished.".to_owned());
             }
             Event::BrokeOff => {
@@ -390,7 +421,7 @@ pub(super) fn prepared_run() -> Evolution {
     let saves = SavesFolder::find(Some(&folder));
     let plan = RunPlan::new("report", 1, Settings::default());
     let options = Options {
-        run: RunSource::in_saves(&saves, plan, Earlier::GoOn),
+        run: RunSource::in_saves(&saves, plan, Earlier::Keep),
         threads: 1,
         saves,
         champion: None,

@@ -37,8 +37,8 @@ enum Manner {
 }
 
 impl Exhibit {
-    /// The champion the studio opened with.
-    pub fn opening(loaded: &LoadedChampion) -> Self {
+    /// A champion from a file.
+    pub fn saved(loaded: &LoadedChampion) -> Self {
         let recording = loaded.recording.clone().map(Arc::new);
         Self {
             champion: loaded.champion.clone(),

@@ -17,8 +17,7 @@ use std::sync::{Mutex, PoisonError};
 use super::exhibit::Exhibit;
 use super::stage::Stage;
 use super::{Frame, StudioError, camera, look, scene, snake, start_up};
-use crate::evolve::Champion;
-use crate::save::Picture;
+use crate::save::{LoadedChampion, Picture};
 use crate::score::Evaluation;
 
 /// How many faint snakes show the way to the end; the first is the start.
@@ -38,7 +37,7 @@ struct Developed(Mutex<Option<Picture>>);
 /// # Errors
 /// There is no graphics driver.
 pub fn draw(
-    champions: &[Champion],
+    champions: &[LoadedChampion],
     (width, height): (u32, u32),
     mut each: impl FnMut(usize),
 ) -> Result<Vec<(Picture, Evaluation)>, StudioError> {
@@ -106,12 +105,13 @@ fn set_up(app: &mut App, width: u32, height: u32) -> Handle<Image> {
 }
 
 /// Replaces what is in front of the camera by a champion at the end of its rollout. Returns what it reached.
-fn put_in_place(app: &mut App, champion: &Champion) -> Evaluation {
+fn put_in_place(app: &mut App, loaded: &LoadedChampion) -> Evaluation {
+    let champion = &loaded.champion;
     let world = app.world_mut();
     let earlier: Vec<Entity> = world.query_filtered::<Entity, With<Stage>>().iter(world).collect();
     earlier.into_iter().for_each(|stage| world.entity_mut(stage).despawn());
 
-    let mut stage = Stage::new(Exhibit::found(champion, 0));
+    let mut stage = Stage::new(Exhibit::saved(loaded));
     let moments = stage.skip_to_end(MOMENTS);
     let evaluation = stage.evaluation();
     let ends_at_m = stage.drawn_poses().map(|pose| pose.translation.y).fold(f32::MIN, f32::max);

@@ -17,6 +17,7 @@ use super::notice::Notices;
 use super::performance::Performance;
 use super::{Frame, Opening};
 use crate::ENGINE_VERSION;
+use crate::run::caught;
 use crate::score::{Evaluation, Trial};
 use crate::world::{PhysicsWorld, Pose};
 
@@ -40,6 +41,8 @@ pub(super) struct Stage {
     is_looping: bool,
     /// How long the end has been on show, in seconds.
     rested_s: f32,
+    /// Whether the program failed on it: it stays as it was then.
+    is_broken: bool,
     /// Whether the end was compared with what was recorded of the champion.
     is_checked: bool,
 }
@@ -79,6 +82,7 @@ impl Stage {
             restart: false,
             is_looping: false,
             rested_s: 0.0,
+            is_broken: false,
             is_checked: false,
         }
     }
@@ -165,7 +169,7 @@ impl Stage {
 
 /// Puts the exhibit the studio opens with on the stage.
 fn show_opening(opening: Res<Opening>, mut show: MessageWriter<ShowExhibit>) {
-    show.write(ShowExhibit(Exhibit::opening(&opening.0)));
+    show.write(ShowExhibit(Exhibit::saved(&opening.0)));
 }
 
 /// Replaces what is on the stage.
@@ -177,7 +181,11 @@ fn put_on_stage(
 ) {
     // Of several requests in a frame only the last is seen.
     let Some(ShowExhibit(exhibit)) = asked.read().last() else { return };
-    let mut stage = Stage::new(exhibit.clone());
+    let stage = caught(|| Stage::new(exhibit.clone()));
+    let mut stage = match stage {
+        Ok(stage) => stage,
+        Err(message) => return notices.problem(format!("The program failed on it: {message}")),
+    };
     if !stages.iter().any(|(_, earlier)| earlier.is_looping) {
         explain_other_engine(exhibit, &mut notices);
     }
@@ -218,14 +226,17 @@ fn advance(
             stage.rested_s = 0.0;
             continue;
         }
-        if stage.is_playing {
+        if stage.is_playing && !stage.is_broken {
             let mut lend = |stage: &mut Stage| {
                 if let Some(physics) = stage.performance.physics_mut() {
                     exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
                 }
             };
             lend(&mut stage);
-            stage.pass(time.delta_secs());
+            if let Err(message) = caught(|| stage.pass(time.delta_secs())) {
+                stage.is_broken = true;
+                notices.problem(format!("The program failed on it: {message}"));
+            }
             lend(&mut stage);
         }
         if stage.performance.is_over() && !stage.is_checked {

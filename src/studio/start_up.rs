@@ -87,7 +87,7 @@ mod tests {
         settings.trial.duration_s = 0.5;
         let plan = RunPlan::new("test", 1, settings);
         let saves = SavesFolder::find(Some(folder.path()));
-        let source = RunSource::in_saves(&saves, plan, Earlier::GoOn);
+        let source = RunSource::in_saves(&saves, plan, Earlier::Keep);
         let run_folder = RunInProgress::default();
         run_folder.lock().expect("no panic").replace(source.folder.clone());
         let mut last = 0;

@@ -66,7 +66,7 @@ fn the_program_gives_one_run_hash_for_any_number_of_threads() {
     let folder = folder();
     let hash = |threads: usize| {
         let arguments = format!(
-            "--no-render --json --seed 9 --population 30 --generations 2 --out out --threads {threads}"
+            "--no-render --json --seed 9 --population 30 --generations 2 --out out-{threads} --threads {threads}"
         );
         json_lines(folder.path(), &arguments)[2]["run_hash"].clone()
     };

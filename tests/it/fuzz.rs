@@ -7,10 +7,12 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::FileFailurePersistence;
-use snakes_and_stairs::evolve::{Settings, with_field};
+use snakes_and_stairs::evolve::{RunPlan, Settings, with_field};
 use snakes_and_stairs::save::{
-    parse_champion, parse_checkpoint, parse_evaluations, parse_plan, parse_preset, parse_records,
+    fingerprint, parse_champion, parse_checkpoint, parse_evaluations, parse_plan, parse_preset,
+    parse_records,
 };
+use xxhash_rust::xxh3::xxh3_64;
 
 /// A change to a file's bytes.
 #[derive(Debug, Clone)]
@@ -137,17 +139,48 @@ fn no_plan_of_a_run_stops_the_program() {
     read_all("plan", parse_plan);
 }
 
+/// A plan, and the word by which the corpus names its fingerprint, which another engine would change.
+fn plan() -> (RunPlan, String) {
+    let plan = RunPlan::new("x", 1, Settings::default());
+    let fingerprint = fingerprint(&plan);
+    (plan, fingerprint)
+}
+
 #[test]
 fn no_checkpoint_stops_the_program() {
-    let settings = Settings::default();
-    read_all("checkpoint", |path, text| parse_checkpoint(path, text, &settings));
+    let (plan, fingerprint) = plan();
+    let read = |path: &Path, text: &str| {
+        parse_checkpoint(path, &text.replace("PLAN", &fingerprint), &plan).map(drop)
+    };
+    let untouched = include_str!("../../fuzz/corpus/checkpoint/two-parents");
+    read(Path::new("x"), untouched).expect("the corpus begins with what is allowed");
+    read_all("checkpoint", read);
+}
+
+/// The lines with true checksums, without which hardly any would get past them.
+fn summed(bytes: &[u8]) -> Vec<u8> {
+    let lines = bytes.split(|byte| *byte == b'\n').map(|line| {
+        let sum = format!(",\"sum\":\"{:016x}\"}}\n", xxh3_64(line));
+        [line, sum.as_bytes()].concat()
+    });
+    lines.collect::<Vec<_>>().concat()
 }
 
 #[test]
 fn no_log_stops_the_program() {
-    let settings = Settings::default();
-    read_all("logs", |path, text| parse_records(path, text.as_bytes(), &settings));
-    read_all("logs", |path, text| parse_evaluations(path, text.as_bytes(), 1, &settings));
+    let (plan, fingerprint) = plan();
+    // The first byte tells the fuzz target of the same name what to do.
+    let lines =
+        |text: &str| summed(text.replace("PLAN", &fingerprint).get(1..).unwrap_or("").as_bytes());
+    let records = |path: &Path, text: &str| parse_records(path, &lines(text), &plan.settings);
+    let evaluations = |path: &Path, text: &str| parse_evaluations(path, &lines(text), 1, &plan);
+    let untouched = include_str!("../../fuzz/corpus/logs/generations");
+    assert_eq!(records(Path::new("x"), untouched).expect("allowed").len(), 3);
+    let untouched = include_str!("../../fuzz/corpus/logs/evaluations");
+    assert_eq!(evaluations(Path::new("x"), untouched).expect("allowed").len(), 2);
+    read_all("logs", records);
+    read_all("logs", evaluations);
+    read_all("logs", |path, text| parse_records(path, text.as_bytes(), &plan.settings));
 }
 
 #[test]

@@ -335,21 +335,6 @@ fn runs(all: &mut Collection, good: &Path) {
         "log.jsonl",
         log.repeat(11 * 1024 * 1024 / log.len() + 1),
     );
-    let evaluation = "{\"generation\":3,\"individual\":1,\"fitness\":0.5,\"centre_y_m\":0.5,\"disqualified\":null,\"trace_hash\":\"0123456789abcdef\",\"steps\":1}";
-    for (from, to) in [
-        ("\"individual\":1", "\"individual\":4"),
-        ("\"fitness\":0.5", "\"fitness\":1e30"),
-        ("\"fitness\":0.5", "\"fitness\":1e999"),
-        ("\"trace_hash\":\"0123456789abcdef\"", "\"trace_hash\":\"-\""),
-        ("\"disqualified\":null", "\"disqualified\":\"Bored\""),
-    ] {
-        let bad = line(&evaluation.replacen(from, to, 1));
-        all.add_to_run(
-            format!("an evaluation with {to}"),
-            "evaluations.jsonl",
-            bad + &line(evaluation),
-        );
-    }
     all.add_to_run("a champion cut off", "generation-1.ron", "(kind: ");
     all.add_to_run("another file as champion", "generation-2.ron", plan);
 }

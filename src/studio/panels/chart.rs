@@ -43,8 +43,10 @@ impl ChartPanel {
         let stairs = HLine::new("the first step", settings.trial.stairs.first_riser_y_m)
             .color(look::TEXT_WEAK)
             .style(LineStyle::dashed_dense());
+        // In a low window the champions below it come before a high chart.
+        let height = look::CHART_HEIGHT.min(ui.ctx().viewport_rect().height() / 5.0);
         Plot::new("fitness")
-            .height(look::CHART_HEIGHT)
+            .height(height)
             .allow_drag(false)
             .allow_zoom(false)
             .allow_scroll(false)

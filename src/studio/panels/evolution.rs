@@ -46,14 +46,19 @@ impl EvolutionPanel {
         } else {
             "Evolve to the end of a generation, then pause (G)"
         };
+        let first_hint = if is_finished && !run.next_run_differs() {
+            "Begin a run with the next seed (E)"
+        } else {
+            "Evolve in the background (E)"
+        };
         let reset = if is_wrong {
             "Correct the value below first"
         } else {
-            "Stop this run and prepare a fresh one with the seed and population below"
+            "Throw this run away and prepare it anew; or, with another seed or population, prepare that"
         };
         ui.horizontal(|ui| {
             for (is_on, button, hint, command) in [
-                (!(is_finished && is_wrong), first, "Evolve in the background (E)", start),
+                (!(is_finished && is_wrong), first, first_hint, start),
                 (
                     !is_finished,
                     egui::Button::new("One generation"),
@@ -120,7 +125,10 @@ impl EvolutionPanel {
 fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
     let header = egui::CollapsingHeader::new("Continue a stopped run");
     let opened = header.show(ui, |ui| {
-        let Some(stopped) = run.stopped() else { return };
+        let Some(stopped) = run.stopped() else {
+            ui.label(egui::RichText::new("Looking ...").color(look::TEXT_WEAK));
+            return;
+        };
         if stopped.is_empty() {
             let hint = "No other run was stopped before its end.";
             ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK));

@@ -320,7 +320,7 @@ impl Studio {
 /// Where things are in the panel, in pixels at a scale of 1.
 const BUTTONS_Y: &str = "123";
 const SEED_Y: &str = "205";
-const CHAMPIONS_Y: u32 = 534;
+const CHAMPIONS_Y: u32 = 484;
 const ROW_HEIGHT: u32 = 31;
 
 impl Drop for Studio {
