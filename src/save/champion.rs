@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use ron::ser::PrettyConfig;
-
 use super::SaveError;
-use super::files::{Header, LARGEST_FILE_MIB, parse, read_text, write_whole};
+use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, write_whole};
 use super::v1::ChampionV1;
 use super::v2::ChampionV2;
 use super::v3::{ChampionV3, FORMAT, KIND};
@@ -45,13 +43,7 @@ pub fn store_champion(
     champion: &Champion,
     recording: Option<&Recording>,
 ) -> Result<(), SaveError> {
-    let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
-    let unwritable = |source| SaveError::Unwritable { path: path.to_owned(), source };
-    let text_with = |recording| {
-        let file = ChampionV3::new(champion.clone(), recording);
-        ron::ser::to_string_pretty(&file, layout.clone())
-            .map_err(|error| unwritable(std::io::Error::other(error)))
-    };
+    let text_with = |recording| pretty(path, &ChampionV3::new(champion.clone(), recording));
     let is_readable = |text: &String| text.len() as u64 <= LARGEST_FILE_MIB * 1024 * 1024 - HEADER;
     let mut text = text_with(recording)?;
     if !is_readable(&text) {
@@ -72,7 +64,7 @@ pub fn store_champion(
         champion.trial.fitness.words(),
         champion.reached(),
     );
-    write_whole(path, format!("{header}{text}\n").as_bytes())
+    write_whole(path, format!("{header}{text}").as_bytes())
 }
 
 /// The champion that comes with the program.

@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+use ron::ser::PrettyConfig;
+use serde::{Deserialize, Serialize};
 
 use crate::check::Invalid;
 
@@ -226,6 +227,36 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
         Ok(())
     };
     write().map_err(|source| SaveError::Unwritable { path: path.to_owned(), source })
+}
+
+/// The numbers N for which a folder has a file `<prefix>N.ron`, in no order.
+pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
+    let unreadable = |source| SaveError::Unreadable { path: folder.to_owned(), source };
+    let mut numbers = Vec::new();
+    for entry in fs::read_dir(folder).map_err(unreadable)? {
+        let file = entry.map_err(unreadable)?.file_name();
+        let number = file.to_str().and_then(|file| {
+            let digits = file.strip_prefix(prefix)?.strip_suffix(".ron")?;
+            let number = digits.parse::<u32>().ok()?;
+            // Not a copy that a person named `generation-01.ron`.
+            (number.to_string() == digits).then_some(number)
+        });
+        numbers.extend(number);
+    }
+    Ok(numbers)
+}
+
+/// RON as a person can read it.
+pub fn pretty(path: &Path, file: &impl Serialize) -> Result<String, SaveError> {
+    let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
+    ron::ser::to_string_pretty(file, layout).map(|text| text + "\n").map_err(|error| {
+        SaveError::Unwritable { path: path.to_owned(), source: std::io::Error::other(error) }
+    })
+}
+
+/// Writes a file of RON so that a person can read it, whole or not at all.
+pub fn store_ron(path: &Path, file: &impl Serialize) -> Result<(), SaveError> {
+    write_whole(path, pretty(path, file)?.as_bytes())
 }
 
 /// How the name of a file begins that is not whole yet.

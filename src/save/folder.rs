@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use directories::ProjectDirs;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::files::{prepare_folder, refuse_link};
-use super::run::{count_records, load_plan, numbered};
+use super::files::{numbered, prepare_folder, refuse_link};
+use super::plan::load_plan;
+use super::record::count_records;
 use super::{LoadedChampion, SaveError, load_champion};
 use crate::ENGINE_VERSION;
 use crate::evolve::RunPlan;

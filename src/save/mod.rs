@@ -6,14 +6,17 @@
 //! used; what is wrong with it is said with the file, the field, the value and what is allowed.
 
 mod champion;
+mod checkpoint;
 mod files;
 mod folder;
 mod lock;
 mod log;
 mod mirror;
 mod picture;
+mod plan;
 mod poses;
 mod preset;
+mod record;
 mod run;
 mod settings;
 mod v1;
@@ -23,11 +26,13 @@ mod v3;
 pub use champion::{
     LoadedChampion, load_champion, parse_champion, shipped_champion, store_champion,
 };
+pub use checkpoint::parse_checkpoint;
 pub use files::SaveError;
 pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name};
 pub use picture::{Picture, store_csv, store_picture};
+pub use plan::{load_plan, parse_plan};
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
 };
-pub use run::{Earlier, GenerationRecord, Progress, RunFolder, StatisticsRecord};
-pub use run::{load_plan, parse_checkpoint, parse_evaluations, parse_plan, parse_records};
+pub use record::{GenerationRecord, StatisticsRecord, parse_evaluations, parse_records};
+pub use run::{Earlier, Progress, RunFolder};

@@ -1,11 +1,10 @@
 //! Presets: named, explained settings, as RON. The shipped ones are embedded in the program.
 
-use ron::ser::PrettyConfig;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 use super::SaveError;
-use super::files::{parse, read_text, write_whole};
+use super::files::{parse, read_text, store_ron};
 use super::settings::SettingsV1;
 use crate::check::{self, Invalid, within};
 use crate::evolve::Settings;
@@ -95,13 +94,9 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
 /// # Errors
 /// The file cannot be written.
 pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
-    let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
     let Preset { name, about, settings } = preset.clone();
     let file = PresetV1 { format: FORMAT, name, about, settings: settings.into() };
-    let text = ron::ser::to_string_pretty(&file, layout).map_err(|error| {
-        SaveError::Unwritable { path: path.to_owned(), source: std::io::Error::other(error) }
-    })?;
-    write_whole(path, format!("{text}\n").as_bytes())
+    store_ron(path, &file)
 }
 
 /// Reads a preset from a text; `path` is what errors call it.

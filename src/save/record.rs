@@ -1,0 +1,164 @@
+//! Lines of a run's logs: finished generations, and the evaluations of the one under way.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::SaveError;
+use super::files::{hash_of, refuse_link};
+use super::folder::fingerprint;
+use super::log::{parse_log, read_log_bytes};
+use crate::check::{Invalid, within};
+use crate::evolve::{HalvingSettings, RunPlan, Settings};
+use crate::score::Evaluation;
+use crate::world::Disqualification;
+
+pub const LOG_FILE: &str = "log.jsonl";
+pub const EVALUATIONS_FILE: &str = "evaluations.jsonl";
+
+/// A finished generation, as a line of the log.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GenerationRecord {
+    /// The first is 1.
+    pub generation: u32,
+    /// Individuals that were evaluated.
+    pub evaluations: u32,
+    /// How many of them were disqualified, for whatever reason.
+    pub disqualified: u32,
+    /// On how many of them the program failed.
+    pub crashed: u32,
+    /// Fitness statistics over the healthy ones; none if there were none.
+    pub statistics: Option<StatisticsRecord>,
+    /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
+    pub hash: String,
+    /// Wall-clock time it took, in seconds.
+    pub elapsed_s: f64,
+}
+
+/// Fitness statistics of a generation, as in the log.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the fields are those of run::Statistics, which explains them")]
+pub struct StatisticsRecord {
+    pub mean: f64,
+    pub best: f64,
+    pub median: f64,
+    pub std: f64,
+    pub worst: f64,
+    pub mean_centre_y_m: f64,
+}
+
+/// An evaluation of the generation under way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EvaluationRecord {
+    /// Hash over the plan of the run.
+    pub plan: String,
+    pub generation: u32,
+    pub individual: u32,
+    pub fitness: f32,
+    pub centre_y_m: f32,
+    pub disqualified: Option<Disqualification>,
+    pub trace_hash: String,
+    pub steps: u32,
+}
+
+impl GenerationRecord {
+    /// Hash over the bits of every evaluation.
+    ///
+    /// # Errors
+    /// It is not written as a hash.
+    pub fn generation_hash(&self) -> Result<u64, Invalid> {
+        hash_of("hash", &self.hash)
+    }
+}
+
+/// How many generations of a run's folder are finished: the whole lines of its log, which are not read.
+pub fn count_records(folder: &Path) -> Result<u32, SaveError> {
+    let bytes = read_log_bytes(&folder.join(LOG_FILE))?;
+    Ok(bytes.iter().filter(|byte| **byte == b'\n').count() as u32)
+}
+
+/// The finished generations of a run's folder.
+pub fn read_records(
+    folder: &Path,
+    settings: &Settings,
+) -> Result<Vec<GenerationRecord>, SaveError> {
+    let path = folder.join(LOG_FILE);
+    parse_records(&path, &read_log_bytes(&path)?, settings)
+}
+
+/// Reads finished generations from the bytes of a log; `path` is what errors call it.
+///
+/// # Errors
+/// A line that is not the last is damaged, out of its order, or beyond the end of the run.
+pub fn parse_records(
+    path: &Path,
+    bytes: &[u8],
+    settings: &Settings,
+) -> Result<Vec<GenerationRecord>, SaveError> {
+    let records: Vec<GenerationRecord> = parse_log(path, bytes)?;
+    let HalvingSettings { generations, population, .. } = settings.evolution;
+    let check = |(record, generation): (&GenerationRecord, u32)| {
+        within("generation", record.generation, generation..=generation)?;
+        within("generation", generation, 1..=generations)?;
+        within("evaluations", record.evaluations, 0..=population)?;
+        within("disqualified", record.disqualified, 0..=record.evaluations)?;
+        within("crashed", record.crashed, 0..=record.disqualified)?;
+        within("elapsed_s", record.elapsed_s, 0.0..=1.0e9)?;
+        if let Some(statistics) = record.statistics {
+            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m } = statistics;
+            let values = [mean, best, median, std, worst, mean_centre_y_m];
+            values.into_iter().try_for_each(|value| within("statistics", value, -1.0e6..=1.0e6))?;
+        }
+        hash_of("hash", &record.hash).map(drop)
+    };
+    let checked = records.iter().zip(1..).try_for_each(check);
+    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    Ok(records)
+}
+
+/// The evaluations of the generation under way, in the order in which they were written.
+///
+/// They are no more than a saving: where they are damaged, they are computed again.
+pub fn read_evaluations(
+    folder: &Path,
+    generation: u32,
+    plan: &RunPlan,
+) -> Result<Vec<(u32, Evaluation)>, SaveError> {
+    let path = folder.join(EVALUATIONS_FILE);
+    refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
+    let Ok(bytes) = read_log_bytes(&path) else { return Ok(Vec::new()) };
+    Ok(parse_evaluations(&path, &bytes, generation, plan).unwrap_or_default())
+}
+
+/// Reads the evaluations of a generation from the bytes of a log; `path` is what errors call it. Those of
+/// another generation or another run are none of this one.
+///
+/// # Errors
+/// A line that is not the last is damaged, or has a value that is not allowed.
+pub fn parse_evaluations(
+    path: &Path,
+    bytes: &[u8],
+    generation: u32,
+    plan: &RunPlan,
+) -> Result<Vec<(u32, Evaluation)>, SaveError> {
+    let records: Vec<EvaluationRecord> = parse_log(path, bytes)?;
+    let of = fingerprint(plan);
+    if records.iter().any(|record| record.generation != generation || record.plan != of) {
+        return Ok(Vec::new());
+    }
+    let read = |record: EvaluationRecord| {
+        let last = plan.settings.evolution.population.saturating_sub(1);
+        within("individual", record.individual, 0..=last)?;
+        within("fitness", record.fitness, -1.0e6..=1.0e6)?;
+        within("centre_y_m", record.centre_y_m, -1.0e6..=1.0e6)?;
+        let trace_hash = hash_of("trace_hash", &record.trace_hash)?;
+        let EvaluationRecord { fitness, centre_y_m, disqualified, steps, .. } = record;
+        let evaluation = Evaluation { fitness, centre_y_m, disqualified, trace_hash, steps };
+        Ok((record.individual, evaluation))
+    };
+    let read = records.into_iter().map(read).collect::<Result<_, Invalid>>();
+    read.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })
+}
