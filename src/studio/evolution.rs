@@ -378,7 +378,9 @@ fn take_in(
             Event::Opened(behind) => {
                 // Whatever happens from now on, it is not thrown away once more.
                 evolution.source.earlier = Earlier::Keep;
-                if let Some(last) = behind.last() {
+                let generations = evolution.settings().evolution.generations;
+                let last = behind.last().filter(|last| last.generation < generations);
+                if let Some(last) = last {
                     notices.news(format!("The run goes on after generation {}.", last.generation));
                 }
                 let champions = behind.iter().filter_map(|report| report.champion.as_ref());
@@ -400,7 +402,7 @@ fn take_in(
             Event::Finished { run_hash } => {
                 evolution.run_hash = Some(run_hash);
                 evolution.forget_folder();
-                notices.news("The run is finished.".to_owned());
+                notices.news("The run is finished; \"New run\" begins another.".to_owned());
             }
             Event::BrokeOff => {
                 notices.problem("The run broke off by an error of the program.".to_owned());
