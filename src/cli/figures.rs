@@ -44,7 +44,7 @@ pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
         let origin = &champion.origin;
         let note = match (loaded.is_of_this_engine(), &loaded.recording) {
             (false, Some(_)) => format!("   as engine {} recorded it", loaded.engine),
-            _ if evaluation == champion.evaluation => String::new(),
+            _ if evaluation.agrees_with(&champion.evaluation) => String::new(),
             _ => "   REPLAYED OTHERWISE THAN RECORDED".to_owned(),
         };
         let shown = Champion { evaluation, ..champion.clone() };

@@ -136,7 +136,14 @@ mod tests {
 
     fn evaluated(fitness: f32) -> Evaluation {
         let disqualified = None;
-        Evaluation { fitness, centre_y_m: fitness, disqualified, trace_hash: 0, steps: 1 }
+        Evaluation {
+            fitness,
+            centre_y_m: fitness,
+            disqualified,
+            trace_hash: 0,
+            steps: 1,
+            effort: None,
+        }
     }
 
     fn small() -> Halving {

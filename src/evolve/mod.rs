@@ -61,6 +61,7 @@ mod tests {
             disqualified,
             trace_hash: 0,
             steps: 0,
+            effort: None,
         };
         let evaluations = [
             evaluation(1.0, None),

@@ -201,7 +201,14 @@ impl Experiment {
 /// What counts for an agent on which the program failed.
 fn void_evaluation() -> Evaluation {
     let disqualified = Some(Disqualification::Crashed);
-    Evaluation { fitness: 0.0, centre_y_m: 0.0, disqualified, trace_hash: 0, steps: 0 }
+    Evaluation {
+        fitness: 0.0,
+        centre_y_m: 0.0,
+        disqualified,
+        trace_hash: 0,
+        steps: 0,
+        effort: None,
+    }
 }
 
 #[cfg(test)]

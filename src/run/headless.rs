@@ -14,6 +14,7 @@ use crate::ENGINE_VERSION;
 use crate::evolve::{Champion, RunPlan};
 use crate::save::{SaveError, load_champion};
 use crate::score::{Evaluation, evaluate};
+use crate::world::{Effort, HealthLimits};
 
 /// Why a headless command failed.
 #[derive(Debug, thiserror::Error)]
@@ -205,7 +206,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let Champion { genome, trial, .. } = &loaded.champion;
     let found = caught(|| evaluate(genome, trial))
         .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })?;
-    let matches = found == recorded;
+    let matches = found.agrees_with(&recorded);
     let meaning = loaded.champion.trial.meaning(f64::from(found.centre_y_m));
     if json {
         let line = json!({
@@ -214,6 +215,10 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
             "recorded_fitness": recorded.fitness,
             "recorded_trace_hash": format!("{:016x}", recorded.trace_hash),
             "steps": found.steps,
+            "energy_j": found.effort.map(|effort| effort.energy_j),
+            "top_speed_m_s": found.effort.map(|effort| effort.top_speed_m_s),
+            "joint_drift_m": found.effort.map(|effort| effort.joint_drift_m),
+            "sideways_m": found.effort.map(|effort| effort.sideways_m),
             "disqualified": found.disqualified.map(|reason| reason.words()),
             "meaning": meaning,
             "engine": loaded.engine,
@@ -223,6 +228,9 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     } else {
         let unit = loaded.champion.trial.fitness.unit();
         writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;
+        if let Some(effort) = &found.effort {
+            writeln!(out, "{}", effort_lines(effort, &trial.health))?;
+        }
         writeln!(out, "trace_hash  {:016x}", found.trace_hash)?;
         if matches {
             writeln!(out, "equal to the record, bit for bit")?;
@@ -246,6 +254,23 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
         recorded.trace_hash,
     );
     Err(HeadlessError::Differs { path: path.to_owned(), difference })
+}
+
+/// What a run demanded, each with the limit beyond which it would have been disqualified.
+fn effort_lines(effort: &Effort, health: &HealthLimits) -> String {
+    format!(
+        "energy      {:.1} J\n\
+         top speed   {:.2} m/s of {} m/s\n\
+         joint drift {:.4} m of {} m\n\
+         sideways    {:.2} m of {} m",
+        effort.energy_j,
+        effort.top_speed_m_s,
+        health.speed_m_s,
+        effort.joint_drift_m,
+        health.joint_drift_m,
+        effort.sideways_m,
+        health.arena_half_width_m,
+    )
 }
 
 /// Tells a person how it goes; standard output is for results.

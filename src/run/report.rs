@@ -140,7 +140,14 @@ mod tests {
     use crate::world::Disqualification;
 
     fn evaluation(fitness: f32, disqualified: Option<Disqualification>) -> Evaluation {
-        Evaluation { fitness, centre_y_m: fitness + 1.0, disqualified, trace_hash: 0, steps: 1 }
+        Evaluation {
+            fitness,
+            centre_y_m: fitness + 1.0,
+            disqualified,
+            trace_hash: 0,
+            steps: 1,
+            effort: None,
+        }
     }
 
     #[test]

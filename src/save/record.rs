@@ -8,6 +8,7 @@ use super::SaveError;
 use super::files::{hash_of, refuse_link};
 use super::folder::fingerprint;
 use super::log::{parse_log, read_log_bytes};
+use super::v3::EffortV3;
 use crate::check::{Invalid, within};
 use crate::evolve::{HalvingSettings, RunPlan, Settings};
 use crate::score::Evaluation;
@@ -62,6 +63,7 @@ pub struct EvaluationRecord {
     pub disqualified: Option<Disqualification>,
     pub trace_hash: String,
     pub steps: u32,
+    pub effort: Option<EffortV3>,
 }
 
 impl GenerationRecord {
@@ -155,8 +157,13 @@ pub fn parse_evaluations(
         within("fitness", record.fitness, -1.0e6..=1.0e6)?;
         within("centre_y_m", record.centre_y_m, -1.0e6..=1.0e6)?;
         let trace_hash = hash_of("trace_hash", &record.trace_hash)?;
-        let EvaluationRecord { fitness, centre_y_m, disqualified, steps, .. } = record;
-        let evaluation = Evaluation { fitness, centre_y_m, disqualified, trace_hash, steps };
+        if let Some(effort) = &record.effort {
+            effort.check()?;
+        }
+        let EvaluationRecord { fitness, centre_y_m, disqualified, steps, effort, .. } = record;
+        let effort = effort.map(Into::into);
+        let evaluation =
+            Evaluation { fitness, centre_y_m, disqualified, trace_hash, steps, effort };
         Ok((record.individual, evaluation))
     };
     let read = records.into_iter().map(read).collect::<Result<_, Invalid>>();

@@ -145,6 +145,7 @@ impl RunFolder {
                 disqualified: evaluation.disqualified,
                 trace_hash: format!("{:016x}", evaluation.trace_hash),
                 steps: evaluation.steps,
+                effort: evaluation.effort.map(Into::into),
             });
         }
     }

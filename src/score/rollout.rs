@@ -6,7 +6,7 @@ use super::fitness::Ending;
 use super::{Fitness, Trial};
 use crate::control::SignalPlayer;
 use crate::genome::Genome;
-use crate::world::{Disqualification, JointTorque, LimbPlan, Pose, Simulation, Stairs};
+use crate::world::{Disqualification, Effort, JointTorque, LimbPlan, Pose, Simulation, Stairs};
 
 /// What a rollout ended with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +23,17 @@ pub struct Evaluation {
     pub trace_hash: u64,
     /// Healthy physics steps taken.
     pub steps: u32,
+    /// What these steps demanded of the snake. None in what was recorded before it was measured.
+    pub effort: Option<Effort>,
+}
+
+impl Evaluation {
+    /// Whether both are of the same bits. What one of them did not measure does not count.
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        let is_unknown = self.effort.is_none() || other.effort.is_none();
+        Self { effort: None, ..*self } == Self { effort: None, ..*other }
+            && (is_unknown || self.effort == other.effort)
+    }
 }
 
 /// A rollout on its way.
@@ -121,6 +132,7 @@ impl Rollout {
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
             steps: self.step,
+            effort: Some(self.simulation.effort()),
         }
     }
 

@@ -241,7 +241,7 @@ fn advance(
         }
         if stage.performance.is_over() && !stage.is_checked {
             stage.is_checked = true;
-            let differs = stage.evaluation() != stage.exhibit.champion().evaluation;
+            let differs = !stage.evaluation().agrees_with(&stage.exhibit.champion().evaluation);
             if stage.exhibit.must_match_record() && differs {
                 notices.problem(format!(
                     "This replay differs from its record ({:.2} instead of {:.2}): the file was \

@@ -7,6 +7,7 @@
 mod body;
 mod bounce;
 mod contact;
+mod effort;
 mod health;
 mod physics;
 mod simulation;
@@ -14,6 +15,7 @@ mod stairs;
 mod surface;
 
 pub use body::{BodyPlan, JointPlan, LimbPlan};
+pub use effort::Effort;
 pub use health::{Disqualification, HealthLimits};
 pub use physics::PhysicsSettings;
 pub use rapier3d::math::{Pose, Rotation, Vector};

@@ -8,8 +8,8 @@ use super::bounce::{Velocity, finish_bounce};
 use super::contact::{ContactLaws, Hooks, joint_coefficients, soften};
 use super::surface::ContactLaw;
 use super::{
-    BodyPlan, Disqualification, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld, Skin,
-    Stairs, Surface,
+    BodyPlan, Disqualification, Effort, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld,
+    Skin, Stairs, Surface,
 };
 
 /// All that determines a world: build it twice and step it with the same torques, and the two agree
@@ -56,6 +56,10 @@ pub struct Simulation {
     health: HealthLimits,
     arena_front_y_m: f32,
     torques_in_world: Vec<Vector>,
+    /// The torques of this step after clamping, joint by joint, and the turns of the front limbs about whose
+    /// axes they act.
+    applied: Vec<(Rotation, JointTorque)>,
+    effort: Effort,
 }
 
 /// What a step needs to know of the contacts.
@@ -123,6 +127,8 @@ impl Simulation {
                 snake_kg: plan.body.mass_kg(),
             },
             torques_in_world: vec![Vector::ZERO; limbs.len()],
+            applied: vec![(Rotation::IDENTITY, JointTorque::default()); plan.body.joints.len()],
+            effort: Effort::default(),
             limbs,
             joints: plan.body.joints.clone(),
             half_lengths_m: plan.body.limbs.iter().map(|limb| limb.length_m / 2.0).collect(),
@@ -139,7 +145,28 @@ impl Simulation {
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
         self.advance();
-        self.check_health()
+        let mut effort = self.check_health()?;
+        effort.energy_j = self.energy_j();
+        self.effort = self.effort.and(effort);
+        Ok(())
+    }
+
+    /// What the healthy steps so far demanded.
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
+    /// Energy that the joints spent in the last step, in J. A torque acts through the whole step about the
+    /// axes at its start, and the engine moves limbs by their velocity at its end; so this is the
+    /// rectangle rule with the rates at the end.
+    fn energy_j(&self) -> f32 {
+        let turn = |index: usize| self.physics.bodies[self.limbs[index]].angvel();
+        let joints = self.applied.iter().enumerate();
+        let power_w = joints.map(|(index, (front, torque))| {
+            let rate = front.inverse() * (turn(index + 1) - turn(index));
+            (torque.bend_nm * rate.x).abs() + (torque.twist_nm * rate.y).abs()
+        });
+        power_w.sum::<f32>() * self.physics.integration_parameters.dt
     }
 
     /// Lets the engine take one step, and what touches a damping surface slow down.
@@ -230,6 +257,7 @@ impl Simulation {
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
             let front = self.physics.bodies[self.limbs[index]].rotation();
             let couple = *front * Vector::new(bend_nm, twist_nm, 0.0);
+            self.applied[index] = (*front, JointTorque { bend_nm, twist_nm });
             self.torques_in_world[index] -= couple;
             self.torques_in_world[index + 1] += couple;
         }
@@ -241,7 +269,8 @@ impl Simulation {
     }
 
     /// Looks for what disqualifies: see [`HealthLimits`].
-    fn check_health(&self) -> Result<(), Disqualification> {
+    fn check_health(&self) -> Result<Effort, Disqualification> {
+        let mut seen = Effort::default();
         // Rapier rolls a body with a non-finite state back and reports it here.
         if !self.physics.quarantine().is_empty() {
             return Err(Disqualification::NotFinite);
@@ -266,14 +295,20 @@ impl Simulation {
                 return Err(Disqualification::LeftArena);
             }
             let forward = *body.rotation() * Vector::new(0.0, half_length_m, 0.0);
-            if let Some(rear_anchor) = rear_anchor_of_previous
-                && rear_anchor.distance_squared(centre + forward) > drift_limit_squared
-            {
+            let drift_squared = rear_anchor_of_previous
+                .map_or(0.0, |rear_anchor| rear_anchor.distance_squared(centre + forward));
+            if drift_squared > drift_limit_squared {
                 return Err(Disqualification::JointBroke);
             }
+            seen = seen.and(Effort {
+                energy_j: 0.0,
+                top_speed_m_s: speed_squared.sqrt(),
+                joint_drift_m: drift_squared.sqrt(),
+                sideways_m: centre.x.abs(),
+            });
             rear_anchor_of_previous = Some(centre - forward);
         }
-        Ok(())
+        Ok(seen)
     }
 }
 

@@ -196,6 +196,51 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
 }
 
 #[test]
+fn the_energy_that_joints_spend_is_what_the_limbs_gain() {
+    for torque in
+        [JointTorque { bend_nm: 1.0, twist_nm: 0.0 }, JointTorque { bend_nm: 0.0, twist_nm: 0.25 }]
+    {
+        let (_, mut simulation) = weightless(2);
+        let gained = |simulation: &Simulation| {
+            let bodies = simulation.limbs.iter().map(|&limb| &simulation.physics.bodies[limb]);
+            bodies.map(RigidBody::kinetic_energy).sum::<f32>()
+        };
+        assert_eq!(simulation.effort(), Effort::default());
+        for _ in 0..40 {
+            simulation.step(&[torque]).expect("healthy");
+        }
+        let (spent, gained) = (simulation.effort().energy_j, gained(&simulation));
+        // The rectangle rule counts half a step too much on the way up, and too little on the way down.
+        let expected = gained * (1.0 + 1.0 / 40.0);
+        assert!(
+            gained > 0.01 && (spent / expected - 1.0).abs() < 0.01,
+            "{spent} J for {expected} J"
+        );
+        // Held back by the opposite torque, they spend as much again.
+        let back = JointTorque { bend_nm: -torque.bend_nm, twist_nm: -torque.twist_nm };
+        for _ in 0..40 {
+            simulation.step(&[back]).expect("healthy");
+        }
+        let both = simulation.effort().energy_j;
+        assert!((both / (2.0 * gained) - 1.0).abs() < 0.02, "{both} J for twice {gained} J");
+    }
+}
+
+#[test]
+fn a_thrown_snake_remembers_how_near_it_came_to_its_limits() {
+    let (_, mut simulation) = weightless(3);
+    for limb in simulation.limbs.clone() {
+        simulation.physics.bodies[limb].set_linvel(Vector::new(3.0, 0.0, 4.0), true);
+    }
+    for _ in 0..60 {
+        simulation.step(&[JointTorque::default(); 2]).expect("healthy");
+    }
+    let Effort { energy_j, top_speed_m_s, joint_drift_m, sideways_m } = simulation.effort();
+    assert!(energy_j == 0.0 && joint_drift_m < 1e-3, "{energy_j} J, {joint_drift_m} m");
+    assert!((top_speed_m_s - 5.0).abs() < 0.01 && (sideways_m - 3.0).abs() < 0.01);
+}
+
+#[test]
 fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     let (plan, mut simulation) = weightless(2);
     let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
