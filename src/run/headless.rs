@@ -228,6 +228,10 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     } else {
         let unit = loaded.champion.trial.fitness.unit();
         writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;
+        if let Some(reason) = found.disqualified {
+            let words = reason.words();
+            writeln!(out, "disqualified after {} steps: {words}", found.steps)?;
+        }
         if let Some(effort) = &found.effort {
             writeln!(out, "{}", effort_lines(effort, &trial.health))?;
         }

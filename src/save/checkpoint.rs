@@ -133,7 +133,8 @@ pub fn parse_checkpoint(
         let expected = fingerprint(plan);
         if of != expected {
             let of: String = of.chars().take(40).collect();
-            let allowed = format!("{expected}, as its run.ron has it");
+            let allowed =
+                format!("{expected}, for the seed and settings in run.ron: one was edited");
             return Err(Invalid::new("plan", format!("{of:?}"), allowed));
         }
         let run_hash = hash_of("run_hash", &run_hash)?;

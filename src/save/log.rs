@@ -1,8 +1,8 @@
 //! Lines of JSON that are only ever added to, each with a checksum of its own.
 //!
 //! The checksum (XXH3, 64 bits) is the last field of the line, over all that stands before it. A line that
-//! was cut off by a kill, a full disk or a power cut is at the end, and is left out; a line that is wrong
-//! in the middle is damage.
+//! was cut off by a kill, a full disk or a power cut is at the end and does not end, and is left out; a whole
+//! line that is wrong is damage.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -87,15 +87,14 @@ pub fn read_log_bytes(path: &Path) -> Result<Vec<u8>, SaveError> {
 /// Reads the whole lines of a log's bytes; `path` is what errors call it.
 ///
 /// # Errors
-/// A line that is not the last is damaged.
+/// A whole line is damaged.
 pub fn parse_log<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<Vec<T>, SaveError> {
     let mut entries = Vec::new();
-    let mut lines = bytes.split_inclusive(|byte| *byte == b'\n').enumerate().peekable();
-    while let Some((index, line)) = lines.next() {
+    for (index, line) in bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
         match entry_of(line) {
             Ok(entry) => entries.push(entry),
             // Cut off while it was written.
-            Err(_) if lines.peek().is_none() => break,
+            Err(_) if !line.ends_with(b"\n") => break,
             Err(problem) => {
                 let path = path.to_owned();
                 return Err(SaveError::Damaged { path, line: index + 1, column: 1, problem });
@@ -209,7 +208,7 @@ mod tests {
         let path = written(&folder);
         let whole = fs::read(&path).expect("read");
         let first = whole.iter().position(|byte| *byte == b'\n').expect("a line");
-        for place in 0..first {
+        for place in (0..first).chain(whole.len() - first / 2..whole.len() - 1) {
             let mut bytes = whole.clone();
             bytes[place] ^= 1;
             let error = parse_log::<Entry>(&path, &bytes).expect_err("damaged").to_string();

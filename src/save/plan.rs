@@ -33,6 +33,10 @@ struct RunV1 {
 /// There is no run in it, it was recorded by another engine, or its file is damaged.
 pub fn load_plan(folder: &Path) -> Result<RunPlan, SaveError> {
     let path = folder.join(RUN_FILE);
+    if !path.is_symlink() && !path.exists() {
+        let source = std::io::Error::other("no run.ron in it; a run's folder is wanted");
+        return Err(SaveError::Unreadable { path: folder.to_owned(), source });
+    }
     let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
     refuse_link(&path).map_err(unreadable)?;
     parse_plan(&path, &read_text(&path)?)

@@ -108,9 +108,16 @@ pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
     struct Format {
         #[serde(default = "first_format")]
         format: u32,
+        /// Saves and runs have one.
+        kind: Option<String>,
     }
     let invalid = |source| SaveError::Invalid { path: path.to_owned(), source };
-    match parse::<Format>(path, text)?.format {
+    let Format { format, kind } = parse(path, text)?;
+    if let Some(kind) = kind {
+        let start: String = kind.chars().take(60).collect();
+        return Err(invalid(Invalid::new("kind", format!("{start:?}"), "none: it is no preset")));
+    }
+    match format {
         FORMAT => {}
         0 => return Err(invalid(Invalid::new("format", 0, format!("1 to {FORMAT}")))),
         found => {

@@ -33,7 +33,7 @@ pub struct GenerationRecord {
     pub statistics: Option<StatisticsRecord>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
     pub hash: String,
-    /// Wall-clock time it took, in seconds.
+    /// Wall-clock time it took since the program was started or the generation began, in seconds.
     pub elapsed_s: f64,
 }
 
@@ -94,7 +94,7 @@ pub fn read_records(
 /// Reads finished generations from the bytes of a log; `path` is what errors call it.
 ///
 /// # Errors
-/// A line that is not the last is damaged, out of its order, or beyond the end of the run.
+/// A whole line is damaged, out of its order, or beyond the end of the run.
 pub fn parse_records(
     path: &Path,
     bytes: &[u8],
@@ -139,7 +139,7 @@ pub fn read_evaluations(
 /// another generation or another run are none of this one.
 ///
 /// # Errors
-/// A line that is not the last is damaged, or has a value that is not allowed.
+/// A whole line is damaged, or has a value that is not allowed.
 pub fn parse_evaluations(
     path: &Path,
     bytes: &[u8],

@@ -113,7 +113,9 @@ impl RunFolder {
             let log = Log::open(&path.join(EVALUATIONS_FILE), progress.evaluations.len())?;
             folder.evaluations_log().replace((next, log));
         }
-        thin(path, progress.records.len() as u32);
+        if earlier == Earlier::Discard {
+            thin(path, 0);
+        }
         Ok((folder, progress))
     }
 

@@ -241,8 +241,14 @@ impl Evolution {
     /// Puts another run in the place of the current one, which ends in the background.
     fn replace(&mut self, source: RunSource) {
         let before = self.background.take().or(self.before.take());
-        let number = self.number + 1;
+        let (number, stopped) = (self.number + 1, self.stopped.take());
         *self = Self { number, before, ..Self::prepared(source, self.engine.clone()) };
+        if stopped.is_some() {
+            // Somebody may be looking at the list: the run that was replaced belongs into it. What cannot
+            // be listed now is listed when it is asked for again.
+            self.stopped = stopped;
+            let _ = self.list_stopped();
+        }
     }
 
     /// Looks for runs that were stopped before their end, the current one aside.

@@ -119,7 +119,7 @@ fn the_same_command_goes_on_with_a_run_that_was_stopped_and_restart_begins_it_an
         let output = run(saves.path(), &format!("{TINY} --out out {flag}"));
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{stderr}");
-        // Checkpoint 3 is thinned away by the end of the run; 2 is there.
+        // By the end of the run checkpoint 3 was thinned away; 2 is there.
         assert_eq!(stderr.contains("goes on after generation 2"), goes_on, "{stderr}");
         let stdout = String::from_utf8_lossy(&output.stdout);
         let last: Value =
