@@ -18,6 +18,8 @@ pub enum Purpose {
     Mutation = 2,
     /// Drawing a candidate of the search for settings.
     Calibration = 3,
+    /// Putting a trial off, to see how robust a champion is.
+    Perturbation = 4,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

@@ -12,6 +12,7 @@ use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::run::{RunSource, THREADS_RANGE, available_cores};
 use crate::save::{DEFAULT_PRESET, Earlier, Preset, SavesFolder, load_preset};
+use crate::score::PerturbationRange;
 
 /// A five-block snake evolves until it climbs a staircase.
 ///
@@ -111,6 +112,17 @@ pub enum Command {
     Bench,
     /// Check that this machine computes the same bits as every other: golden trajectories, one fingerprint
     Verify,
+    /// In how many trials that are a little off does a champion reach each step?
+    Robust {
+        /// The saved champion
+        file: PathBuf,
+        /// How many trials
+        #[arg(long, value_name = "N", default_value_t = 100)]
+        trials: u32,
+        /// How far they are off
+        #[command(flatten)]
+        range: OffBy,
+    },
     /// Run the report's protocol with several seeds and print its Table 1 beside ours
     Table1 {
         /// How many seeds
@@ -141,6 +153,38 @@ pub enum Command {
     Presets,
     /// List every setting and its value, as --set takes them
     Settings,
+}
+
+/// How far perturbed trials are off.
+#[derive(Debug, clap::Args)]
+pub struct OffBy {
+    /// Share by which friction is larger or smaller
+    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().friction)]
+    off_friction: f32,
+    /// Share by which the steps are higher or lower
+    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().rise)]
+    off_rise: f32,
+    /// Share by which the limbs are heavier or lighter
+    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().density)]
+    off_density: f32,
+    /// Distance of the start, along and across, in metres
+    #[arg(long, value_name = "M", default_value_t = PerturbationRange::default().start_m)]
+    off_start: f32,
+    /// Turn of the snake at the start, in degrees
+    #[arg(long, value_name = "DEG", default_value_t = PerturbationRange::default().turn_deg)]
+    off_turn: f32,
+}
+
+impl From<&OffBy> for PerturbationRange {
+    fn from(off: &OffBy) -> Self {
+        Self {
+            friction: off.off_friction,
+            rise: off.off_rise,
+            density: off.off_density,
+            start_m: off.off_start,
+            turn_deg: off.off_turn,
+        }
+    }
 }
 
 /// What the arguments ask for.

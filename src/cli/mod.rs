@@ -6,6 +6,7 @@ mod args;
 mod error;
 #[cfg(feature = "studio")]
 mod figures;
+mod robust;
 mod table1;
 mod verify;
 
@@ -49,6 +50,9 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         Some(Command::Settings) => print_settings(&args),
         Some(Command::Bench) => print_bench(&args),
         Some(Command::Verify) => verify::verify(&args),
+        Some(Command::Robust { file, trials, range }) => {
+            robust::robust(&args, file, *trials, &range.into())
+        }
         Some(Command::Table1 { seeds, first_seed }) => {
             table1::table1(&args, table1::seeds(*first_seed, *seeds)?)
         }

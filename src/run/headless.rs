@@ -177,18 +177,22 @@ pub fn with_progress(
         bar.set_style(style);
     }
     bar.set_message(format!("generation {}", experiment.finished() + 1));
+    watched(&bar, control, || experiment.run_generation_noting(pool, control, note))
+}
+
+/// Does `work` while a bar shows how much of it `control` has counted.
+pub fn watched<T>(bar: &ProgressBar, control: &Control, work: impl FnOnce() -> T) -> T {
     let result = std::thread::scope(|scope| {
         let (finished, watched) = std::sync::mpsc::channel::<()>();
-        let (bar, control_seen) = (&bar, control);
         scope.spawn(move || {
             // Ends when the sender is dropped.
             while watched.recv_timeout(Duration::from_millis(100))
                 == Err(std::sync::mpsc::RecvTimeoutError::Timeout)
             {
-                bar.set_position(control_seen.done().into());
+                bar.set_position(control.done().into());
             }
         });
-        let result = experiment.run_generation_noting(pool, control, note);
+        let result = work();
         drop(finished);
         result
     });

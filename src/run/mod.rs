@@ -10,6 +10,7 @@ mod keeper;
 mod listing;
 mod panics;
 mod report;
+pub mod robust;
 pub mod table1;
 mod threads;
 pub mod verify;

@@ -7,6 +7,7 @@
 mod agent;
 mod fitness;
 mod per_part;
+mod perturbation;
 mod recording;
 mod rollout;
 mod trial;
@@ -14,6 +15,7 @@ mod trial;
 pub use agent::AgentSettings;
 pub use fitness::Fitness;
 pub use per_part::PerPart;
+pub use perturbation::{Perturbation, PerturbationRange};
 pub use recording::Recording;
 pub use rollout::{Evaluation, Rollout, evaluate};
 pub use trial::Trial;

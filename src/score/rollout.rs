@@ -3,10 +3,12 @@
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::fitness::Ending;
-use super::{Fitness, Trial};
+use super::{Fitness, Perturbation, Trial};
 use crate::control::SignalPlayer;
 use crate::genome::Genome;
-use crate::world::{Disqualification, Effort, JointTorque, LimbPlan, Pose, Simulation, Stairs};
+use crate::world::{
+    Disqualification, Effort, JointTorque, LimbPlan, Pose, Simulation, Stairs, WorldPlan,
+};
 
 /// What a rollout ended with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +58,17 @@ pub struct Rollout {
 impl Rollout {
     /// Builds the trial's world around the genome. Both must have passed their checks.
     pub fn new(genome: &Genome, trial: &Trial) -> Self {
-        let plan = trial.world_plan(genome);
+        Self::in_world(genome, trial, trial.world_plan(genome))
+    }
+
+    /// The same in a world that is a little otherwise.
+    pub fn perturbed(genome: &Genome, trial: &Trial, perturbation: &Perturbation) -> Self {
+        let mut plan = trial.world_plan(genome);
+        perturbation.apply(&mut plan);
+        Self::in_world(genome, trial, plan)
+    }
+
+    fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
         let simulation = Simulation::new(&plan);
         let mut rollout = Self {
             player: SignalPlayer::new(genome.signals.clone(), trial.physics.steps_per_s),
@@ -134,6 +146,11 @@ impl Rollout {
             steps: self.step,
             effort: Some(self.simulation.effort()),
         }
+    }
+
+    /// How many steps are under the middle limb now: see [`Stairs::steps_under`].
+    pub fn steps_under(&self) -> u32 {
+        self.stairs.steps_under(self.poses[self.middle_limb].translation.to_array())
     }
 
     /// The world, to look at.

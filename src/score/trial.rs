@@ -110,6 +110,8 @@ impl Trial {
             health: self.health.clone(),
             body: self.agent.body_plan(genome),
             start_y_m: self.start_y_m,
+            start_x_m: 0.0,
+            start_turn_rad: 0.0,
         }
     }
 

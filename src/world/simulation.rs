@@ -32,6 +32,11 @@ pub struct WorldPlan {
     pub body: BodyPlan,
     /// Where the middle of the straight snake starts on the y axis, in metres.
     pub start_y_m: f32,
+    /// Where it starts on the x axis, in metres; 0 is in front of the middle of the stairs.
+    pub start_x_m: f32,
+    /// How far the snake is turned at the start, in radians, counterclockwise seen from above; at 0 it heads for the
+    /// stairs.
+    pub start_turn_rad: f32,
 }
 
 /// The torques a controller commands at one joint, in N·m, positive by the right-hand rule about the
@@ -356,15 +361,26 @@ fn insert_limbs(
     law: &ContactLaw,
 ) -> Vec<RigidBodyHandle> {
     let axis_z_m = plan.body.axis_height_m();
+    let middle = Vector::new(plan.start_x_m, plan.start_y_m, 0.0);
+    let (sin, cos) = libm::sincosf(plan.start_turn_rad);
+    let (half_sin, half_cos) = libm::sincosf(plan.start_turn_rad / 2.0);
+    let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
     let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
     plan.body
         .limbs
         .iter()
         .map(|limb| {
-            let centre = Vector::new(0.0, front_y_m - limb.length_m / 2.0, axis_z_m);
+            let straight_y_m = front_y_m - limb.length_m / 2.0;
             front_y_m -= limb.length_m;
+            let centre = if plan.start_turn_rad == 0.0 {
+                // Not around the middle and back: rounding would make other bits of it.
+                Vector::new(plan.start_x_m, straight_y_m, axis_z_m)
+            } else {
+                let along_m = straight_y_m - plan.start_y_m;
+                middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
+            };
             let body = RigidBodyBuilder::dynamic()
-                .translation(centre)
+                .pose(Pose::from_parts(centre, turn))
                 .angular_damping(plan.body.angular_damping_per_s)
                 .can_sleep(false);
             let collider = ColliderBuilder::cuboid(

@@ -163,6 +163,23 @@ fn table_1_is_printed_and_written_as_csv_and_png() {
 }
 
 #[test]
+fn robustness_prints_a_share_with_its_interval_for_each_step() {
+    let folder = folder();
+    let save = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
+    let text = stdout_of(folder.path(), &format!("robust {save} --trials 20"));
+    assert!(text.starts_with("20 trials from seed 1: friction ±20 %, rise ±10 %"), "{text}");
+    assert_eq!(text.lines().filter(|line| line.contains(" to ")).count(), 10, "{text}");
+    let still = "--off-friction 0 --off-rise 0 --off-start 0 --off-turn 0";
+    let lines = json_lines(folder.path(), &format!("robust {save} --trials 3 {still} --json"));
+    assert_eq!(lines[0]["share"], json!(1.0));
+    assert_eq!(lines[10]["disqualified"], json!(0));
+    let output = run(folder.path(), &format!("robust {save} --off-rise 2"));
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(message.trim_end(), "error: rise is 2; allowed: 0 to 0.9");
+}
+
+#[test]
 fn calibration_writes_its_best_as_a_preset_that_runs() {
     let folder = folder();
     let small = "--preset ice --duration 1 --population 4 --generations 2";

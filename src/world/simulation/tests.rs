@@ -29,6 +29,8 @@ fn plan(limbs: usize) -> WorldPlan {
             angular_damping_per_s: 0.0,
         },
         start_y_m: -7.23,
+        start_x_m: 0.0,
+        start_turn_rad: 0.0,
     }
 }
 
@@ -224,6 +226,24 @@ fn the_energy_that_joints_spend_is_what_the_limbs_gain() {
         let both = simulation.effort().energy_j;
         assert!((both / (2.0 * gained) - 1.0).abs() < 0.02, "{both} J for twice {gained} J");
     }
+}
+
+#[test]
+fn a_snake_that_starts_turned_is_the_same_snake_elsewhere() {
+    let turned = WorldPlan { start_x_m: 0.3, start_turn_rad: 0.5, ..plan(5) };
+    let mut simulation = Simulation::new(&turned);
+    let centres: Vec<Vector> = simulation.poses().map(|pose| pose.translation).collect();
+    assert_eq!(centres[2], Vector::new(0.3, -7.23, 0.5));
+    let along = (centres[0] - centres[4]).normalize();
+    let expected = Vector::new(-libm::sinf(0.5), libm::cosf(0.5), 0.0);
+    assert!((along - expected).length() < 1e-5, "{along}");
+    let heading = simulation.poses().next().expect("a head").rotation * Vector::Y;
+    assert!((heading - expected).length() < 1e-5, "{heading}");
+    // Its joints fit: nothing pulls it anywhere.
+    for _ in 0..60 {
+        simulation.step(&[JointTorque::default(); 4]).expect("healthy");
+    }
+    assert!(simulation.effort().joint_drift_m < 1e-3 && simulation.effort().top_speed_m_s < 0.1);
 }
 
 #[test]

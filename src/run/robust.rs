@@ -1,0 +1,124 @@
+//! How robust a champion is: the same genome in many worlds that are a little otherwise.
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use super::{Cancelled, Control, caught};
+use crate::evolve::Champion;
+use crate::rng::{Purpose, stream};
+use crate::score::{PerturbationRange, Rollout};
+
+/// What became of the trials.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Robustness {
+    /// How many trials there were.
+    pub trials: u32,
+    /// In how many of them the agent was disqualified.
+    pub disqualified: u32,
+    /// In how many of them the agent stood at least so many steps high at the end: first one step, then two.
+    pub reached: Vec<u32>,
+}
+
+/// A share, and where the true one lies in 95 % of cases.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// The share that was seen.
+    pub seen: f64,
+    /// Lower end of the interval.
+    pub least: f64,
+    /// Upper end of the interval.
+    pub most: f64,
+}
+
+/// Runs a champion through `trials` perturbed trials, drawn from `seed`.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn robustness(
+    champion: &Champion,
+    range: &PerturbationRange,
+    trials: u32,
+    seed: u64,
+    pool: &ThreadPool,
+    control: &Control,
+) -> Result<Robustness, Cancelled> {
+    let Champion { genome, trial, .. } = champion;
+    control.start_generation();
+    let one = |number: u32| {
+        control.pass()?;
+        let mut rng = stream(seed, 0, number, Purpose::Perturbation);
+        let perturbation = range.draw(&mut rng);
+        let steps = caught(|| {
+            let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
+            while rollout.advance() {}
+            let is_healthy = rollout.evaluation().disqualified.is_none();
+            is_healthy.then(|| rollout.steps_under())
+        });
+        control.count_one();
+        // A world on which the program fails is none that the agent climbed.
+        Ok(steps.unwrap_or_default())
+    };
+    let ends: Vec<Option<u32>> =
+        pool.install(|| (0..trials).into_par_iter().map(one).collect::<Result<_, _>>())?;
+    let reached = |steps: u32| ends.iter().flatten().filter(|&&end| end >= steps).count() as u32;
+    Ok(Robustness {
+        trials,
+        disqualified: ends.iter().filter(|end| end.is_none()).count() as u32,
+        reached: (1..=trial.stairs.steps).map(reached).collect(),
+    })
+}
+
+impl Share {
+    /// The share of `count` in `of`, with the score interval of Wilson (Probable inference, the law of
+    /// succession, and statistical inference, 1927) at 95 %.
+    pub fn of(count: u32, of: u32) -> Self {
+        // The 97.5th percentile of the normal distribution.
+        const Z: f64 = 1.959_963_984_540_054;
+        let n = f64::from(of.max(1));
+        let seen = f64::from(count) / n;
+        let middle = (seen + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
+        let half = Z / (1.0 + Z * Z / n) * (seen * (1.0 - seen) / n + Z * Z / (4.0 * n * n)).sqrt();
+        Self { seen, least: (middle - half).max(0.0), most: (middle + half).min(1.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::pool;
+    use crate::save::shipped_champion;
+
+    #[test]
+    fn the_interval_is_wilsons() {
+        // Newcombe, Statistics in Medicine 17 (1998), table I: 81 of 263 and 15 of 148.
+        for (count, of, least, most) in
+            [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611)]
+        {
+            let share = Share::of(count, of);
+            assert!((share.least - least).abs() < 5e-5, "{share:?}");
+            assert!((share.most - most).abs() < 5e-5, "{share:?}");
+        }
+    }
+
+    #[test]
+    fn without_perturbation_every_trial_ends_as_recorded_and_with_it_not() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let measured = |range: &PerturbationRange, threads| {
+            let pool = pool(threads).expect("a pool");
+            robustness(&champion, range, 12, 1, &pool, &Control::default()).expect("not cancelled")
+        };
+        let none = PerturbationRange {
+            friction: 0.0,
+            rise: 0.0,
+            density: 0.0,
+            start_m: 0.0,
+            turn_deg: 0.0,
+        };
+        let still = measured(&none, 1);
+        assert_eq!((still.disqualified, still.reached[0], still.reached[9]), (0, 12, 0));
+        let shaken = measured(&PerturbationRange::default(), 1);
+        assert_eq!(shaken, measured(&PerturbationRange::default(), 3), "for any number of threads");
+        assert_ne!(shaken, still);
+        assert!(shaken.reached.windows(2).all(|pair| pair[1] <= pair[0]));
+    }
+}
