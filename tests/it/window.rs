@@ -76,7 +76,7 @@ fn the_keys_of_evolution_start_pause_and_single_step_it() {
     studio.wait_for_title("showing saved champion");
     studio.key("e");
     studio.wait_for_title("running");
-    studio.wait_for_title(&format!(" {} of 1000", before + 3));
+    studio.wait_for_generations(before + 3);
 }
 
 #[test]

@@ -147,6 +147,12 @@ impl Studio {
         number.and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("title: {title}"))
     }
 
+    /// Waits until so many generations are finished, or more: a fast run passes any number between two looks.
+    pub fn wait_for_generations(&self, count: u32) {
+        let title = || format!("{count} generations in {:?}", self.title());
+        self.wait(|| self.generations() >= count, title);
+    }
+
     /// Waits until the title contains `part`.
     pub fn wait_for_title(&self, part: &str) {
         self.wait(|| self.title().contains(part), || format!("{part:?} in {:?}", self.title()));
