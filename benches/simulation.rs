@@ -10,7 +10,7 @@ use snakes_and_stairs::score::{Rollout, Trial, evaluate};
 
 fn newborn(trial: &Trial) -> Genome {
     let mut rng = stream(1, 1, 0, Purpose::Birth);
-    GenomeSpace::default().birth(trial.agent.joints(), trial.duration_s, &mut rng)
+    GenomeSpace::default().birth(trial.descent(), &mut rng)
 }
 
 /// One step in the middle of a rollout, when the snake is in contact and in motion.

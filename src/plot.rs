@@ -7,9 +7,11 @@ use std::sync::OnceLock;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
-use crate::evolve::Champion;
+use crate::evolve::{Champion, StrategyKind};
+use crate::genome::{Controller, ControllerKind, Wave, Waves};
+use crate::run::compare::{Quartiles, Row};
 use crate::run::table1::{REPORT_MEANS, Table1};
-use crate::save::Picture;
+use crate::save::{CURVE_POINTS, Comparison, Picture};
 
 /// A plot could not be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -102,18 +104,39 @@ pub fn table1(table: &Table1, title: &str) -> Result<Picture, PlotError> {
     })
 }
 
-/// One torque signal of a champion over time, as in the report's Figure 4: the first joint's bend.
+/// How often a wave is sampled.
+const SAMPLES_PER_S: f64 = 60.0;
+
+/// What one joint axis of a champion is told over time, as in the report's Figure 4: the first joint's bend.
 ///
 /// # Errors
 /// The plotting library failed.
 pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
-    let signals = &champion.genome.signals;
-    let torques = signals.joints.first().map_or(&[][..], |joint| &joint.bend_nm);
     let duration_s = f64::from(champion.trial.duration_s);
-    let at_s = |index: usize| index as f64 / f64::from(signals.points_per_s);
-    let points: Vec<(f64, f64)> =
-        torques.iter().enumerate().map(|(index, &nm)| (at_s(index), f64::from(nm))).collect();
-    let y_range = padded(points.iter().map(|(_, torque)| *torque).chain([-1000.0, 1000.0]));
+    let samples = |wave: &Wave, frequency_hz: f32| {
+        let count = (duration_s * SAMPLES_PER_S) as usize;
+        let sample = |index: usize| {
+            let time_s = index as f64 / SAMPLES_PER_S;
+            (time_s, f64::from(wave.at(f64::from(frequency_hz) * time_s)))
+        };
+        (0..=count).map(sample).collect::<Vec<_>>()
+    };
+    let of_waves = |waves: &Waves| {
+        waves.joints.first().map_or(Vec::new(), |joint| samples(&joint.bend, waves.frequency_hz))
+    };
+    // Points that hold are marked; a wave has none.
+    let (points, dot, unit, digits, least) = match &champion.genome.controller {
+        Controller::Signal(signals) => {
+            let torques = signals.joints.first().map_or(&[][..], |joint| &joint.bend_nm);
+            let at_s = |index: usize| index as f64 / f64::from(signals.points_per_s);
+            let points = torques.iter().enumerate();
+            let points = points.map(|(index, &nm)| (at_s(index), f64::from(nm))).collect();
+            (points, 3, "torque in N·m", 0, 1000.0)
+        }
+        Controller::Wave(waves) => (of_waves(waves), 0, "torque in N·m", 0, 1000.0),
+        Controller::Gait(gait) => (of_waves(&gait.waves), 0, "target angle in rad", 1, 1.0),
+    };
+    let y_range = padded(points.iter().map(|(_, value)| *value).chain([-least, least]));
     draw((960, 420), |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, (FONT, TITLE_PIXELS).into_font().color(&INK))
@@ -124,17 +147,100 @@ pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
         chart
             .configure_mesh()
             .x_desc("time in s")
-            .y_desc("torque in N·m")
+            .y_desc(unit)
             .y_labels(9)
-            .y_label_formatter(&|torque| format!("{torque:.0}"))
+            .y_label_formatter(&|value| format!("{value:.digits$}"))
             .light_line_style(WHITE)
             .bold_line_style(FAINT)
             .axis_style(INK)
             .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
             .draw()?;
         chart.draw_series(LineSeries::new([(0.0, 0.0), (duration_s, 0.0)], INK.mix(0.4)))?;
-        let line = LineSeries::new(points.clone(), OURS.stroke_width(2)).point_size(3);
+        let line = LineSeries::new(points.clone(), OURS.stroke_width(2)).point_size(dot);
         chart.draw_series(line)?;
+        Ok(())
+    })
+}
+
+/// A colour per strategy, in their order: those of Okabe and Ito, which colour-blind people tell apart too.
+const STRATEGY_COLORS: [RGBColor; 6] = [
+    RGBColor(0xd5, 0x5e, 0x00),
+    RGBColor(0x00, 0x9e, 0x73),
+    RGBColor(0x00, 0x72, 0xb2),
+    RGBColor(0xcc, 0x79, 0xa7),
+    RGBColor(0xe6, 0x9f, 0x00),
+    RGBColor(0x80, 0x80, 0x80),
+];
+
+/// The colour of a strategy, as red, green and blue.
+pub fn strategy_color(strategy: StrategyKind) -> [u8; 3] {
+    let place = StrategyKind::ALL.iter().position(|kind| *kind == strategy);
+    let RGBColor(red, green, blue) = STRATEGY_COLORS[place.unwrap_or(0)];
+    [red, green, blue]
+}
+
+/// Learning curves of a comparison: a chart per controller, a line with its band per strategy.
+///
+/// # Errors
+/// The plotting library failed.
+pub fn comparison(comparison: &Comparison) -> Result<Picture, PlotError> {
+    let rows = comparison.rows();
+    let is_there = |kind: &ControllerKind| rows.iter().any(|row| row.controller == *kind);
+    let controllers: Vec<ControllerKind> =
+        ControllerKind::ALL.into_iter().filter(is_there).collect();
+    let curves: Vec<(&Row<'_>, Vec<(usize, Quartiles)>)> =
+        rows.iter().map(|row| (row, row.curve())).collect();
+    let ends = curves.iter().flat_map(|(_, curve)| curve.iter().map(|(_, q)| [q.low, q.high]));
+    let y_range = padded(ends.flatten());
+    let budget = f64::from(comparison.evaluations);
+    let x_of = |point: usize| budget * (point + 1) as f64 / CURVE_POINTS as f64;
+    let columns = controllers.len().max(1);
+    draw((120 + 480 * columns as u32, 560), |area| {
+        let panels = area.split_evenly((1, columns));
+        for (column, (panel, controller)) in panels.iter().zip(&controllers).enumerate() {
+            let mut chart = ChartBuilder::on(panel)
+                .caption(controller.name(), (FONT, TITLE_PIXELS).into_font().color(&INK))
+                .margin(16)
+                .x_label_area_size(48)
+                .y_label_area_size(64)
+                .build_cartesian_2d(0.0..budget, y_range.clone())?;
+            chart
+                .configure_mesh()
+                .x_labels(5)
+                .x_label_formatter(&|x| format!("{x:.0}"))
+                .x_desc("evaluations")
+                .y_label_formatter(&|y| format!("{y:.0}"))
+                .y_desc(if column == 0 { "best fitness so far" } else { "" })
+                .light_line_style(WHITE)
+                .bold_line_style(FAINT)
+                .axis_style(INK)
+                .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
+                .draw()?;
+            for (row, curve) in curves.iter().filter(|(row, _)| row.controller == *controller) {
+                let [red, green, blue] = strategy_color(row.strategy);
+                let color = RGBColor(red, green, blue);
+                let above = curve.iter().map(|&(point, q)| (x_of(point), q.high));
+                let below = curve.iter().rev().map(|&(point, q)| (x_of(point), q.low));
+                let band: Vec<(f64, f64)> = above.chain(below).collect();
+                chart.draw_series([Polygon::new(band, color.mix(0.13).filled())])?;
+                let median = curve.iter().map(|&(point, q)| (x_of(point), q.median));
+                chart
+                    .draw_series(LineSeries::new(median, color.stroke_width(3)))?
+                    .label(row.strategy.title())
+                    .legend(move |(x, y)| {
+                        PathElement::new(vec![(x, y), (x + 22, y)], color.stroke_width(3))
+                    });
+            }
+            if column == 0 {
+                chart
+                    .configure_series_labels()
+                    .position(SeriesLabelPosition::UpperLeft)
+                    .background_style(WHITE.mix(0.85))
+                    .border_style(FAINT)
+                    .label_font((FONT, TEXT_PIXELS).into_font().color(&INK))
+                    .draw()?;
+            }
+        }
         Ok(())
     })
 }

@@ -20,6 +20,14 @@ pub enum Purpose {
     Calibration = 3,
     /// Putting a trial off, to see how robust a champion is.
     Perturbation = 4,
+    /// Putting the further trials of an evaluation off.
+    Repeat = 5,
+    /// Drawing a point of a search distribution.
+    Sample = 6,
+    /// Drawing where a search begins again.
+    Restart = 7,
+    /// Choosing what is kept in an archive.
+    Archive = 8,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

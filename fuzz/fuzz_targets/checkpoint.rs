@@ -5,29 +5,34 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::evolve::{Halving, RunPlan, Settings, Strategy, StrategyState};
+use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume};
 use snakes_and_stairs::save::{fingerprint, parse_checkpoint};
 
-static PLAN: LazyLock<(RunPlan, String)> = LazyLock::new(|| {
+/// A plan for each strategy, and its fingerprint.
+static PLANS: LazyLock<Vec<(RunPlan, String)>> = LazyLock::new(|| StrategyKind::ALL.map(plan).to_vec());
+
+fn plan(strategy: StrategyKind) -> (RunPlan, String) {
     let mut settings = Settings::default();
+    settings.evolution.strategy = strategy;
     settings.evolution.population = 3;
+    settings.trial.duration_s = 0.1;
     let plan = RunPlan::new("x", 1, settings);
     let fingerprint = fingerprint(&plan);
     (plan, fingerprint)
-});
+}
 
-fuzz_target!(|text: &str| match parse_checkpoint(
-    Path::new("x"),
-    &text.replace("PLAN", &PLAN.1),
-    &PLAN.0
-) {
-    Ok((generation, _, StrategyState::Halving { parents })) => {
-        // What is accepted can be gone on with.
-        let children = Halving::resumed(&PLAN.0, generation % 100, parents).ask();
-        assert_eq!(children.len(), 3);
-        for child in children {
-            assert_eq!(PLAN.0.settings.trial.check_genome(&child), Ok(()));
+fuzz_target!(|text: &str| {
+    for (plan, fingerprint) in PLANS.iter() {
+        match parse_checkpoint(Path::new("x"), &text.replace("PLAN", fingerprint), plan) {
+            Ok((generation, _, knowledge)) => {
+                // What is accepted can be gone on with.
+                let strategy = resume(plan, generation % 100, knowledge.strategy);
+                let children = strategy.expect("it passed the same check").ask();
+                for child in children {
+                    assert_eq!(plan.settings.trial.check_genome(&child), Ok(()));
+                }
+            }
+            Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
         }
     }
-    Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
 });

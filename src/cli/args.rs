@@ -8,6 +8,7 @@ use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
 use super::CliError;
+use super::compare::CompareArgs;
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::run::{RunSource, THREADS_RANGE, available_cores};
@@ -79,7 +80,7 @@ pub struct Args {
     resume: Option<PathBuf>,
     /// Begin the run anew; without this, one that was stopped goes on, and a finished one is shown
     #[arg(long, global = true)]
-    restart: bool,
+    pub restart: bool,
     /// Worker threads [default: all cores; with a window, all but one]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     threads: Option<String>,
@@ -123,6 +124,8 @@ pub enum Command {
         #[command(flatten)]
         range: OffBy,
     },
+    /// Run several methods under equal budgets and show who learns what
+    Compare(CompareArgs),
     /// Run the report's protocol with several seeds and print its Table 1 beside ours
     Table1 {
         /// How many seeds
@@ -226,9 +229,14 @@ const WHOLE: &str = "a whole number from 0 up";
 const DECIMAL: &str = "a number";
 
 impl Args {
-    /// The preset that was named, or the default, as it stands in its file.
+    /// The preset that was named, or the default of the command, as it stands in its file.
     pub fn preset(&self) -> Result<Preset, CliError> {
-        Ok(load_preset(self.preset.as_deref().unwrap_or(DEFAULT_PRESET))?)
+        let default = match self.command {
+            // What they are about is the report's run.
+            Some(Command::Table1 { .. } | Command::Calibrate { .. } | Command::Bench) => "report",
+            _ => DEFAULT_PRESET,
+        };
+        Ok(load_preset(self.preset.as_deref().unwrap_or(default))?)
     }
 
     /// Where this run's champions go.
@@ -266,7 +274,7 @@ impl Args {
         for (flag, given, target) in [
             ("population", &self.population, &mut evolution.population),
             ("generations", &self.generations, &mut evolution.generations),
-            ("parents", &self.parents, &mut evolution.parents),
+            ("parents", &self.parents, &mut evolution.halving.parents),
             ("steps-per-s", &self.steps_per_s, &mut trial.physics.steps_per_s),
             ("substeps", &self.substeps, &mut trial.physics.substeps),
         ] {
@@ -275,7 +283,7 @@ impl Args {
             }
         }
         for (flag, given, target) in [
-            ("mutation-range", &self.mutation_range, &mut evolution.mutation_range_nm),
+            ("mutation-range", &self.mutation_range, &mut evolution.halving.mutation_range_nm),
             ("points-per-s", &self.points_per_s, &mut genome.points_per_s),
             ("duration", &self.duration, &mut trial.duration_s),
             ("gravity", &self.gravity, &mut trial.physics.gravity_m_s2),
@@ -385,7 +393,7 @@ mod tests {
     fn flags_override_the_preset() {
         let args = args("--no-render --seed 7 --population 20 --duration 2.5").expect("allowed");
         let (preset, settings) = args.settings().expect("allowed");
-        assert_eq!(preset, "report");
+        assert_eq!(preset, "climb");
         assert_eq!(settings.evolution.population, 20);
         assert_eq!(settings.trial.duration_s, 2.5);
         assert_eq!(args.seed().expect("allowed"), 7);
@@ -409,7 +417,7 @@ mod tests {
             ),
             (
                 "--preset nosuch",
-                "preset is \"nosuch\"; allowed: report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file",
+                "preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file",
             ),
             ("--threads 0", "threads is 0; allowed: 1 to 1024"),
             ("--set surface.bounce=2", "trial.surface.bounce is 2; allowed: 0 to 1"),

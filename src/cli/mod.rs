@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 failed, 2 used wrongly. Every error is one line on standard error.
 
 mod args;
+mod compare;
 mod error;
 #[cfg(feature = "studio")]
 mod figures;
@@ -53,6 +54,7 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         Some(Command::Robust { file, trials, range }) => {
             robust::robust(&args, file, *trials, &range.into())
         }
+        Some(Command::Compare(what)) => compare::compare(&args, what),
         Some(Command::Table1 { seeds, first_seed }) => {
             table1::table1(&args, table1::seeds(*first_seed, *seeds)?)
         }

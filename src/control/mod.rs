@@ -1,50 +1,76 @@
-//! From genes to torques: what the snake's joints are told in each step.
+//! From genes, and what the agent feels, to torques: what the snake's joints are told in each step.
 
-use crate::genome::Signals;
-use crate::world::JointTorque;
+mod gait;
+mod signal;
 
-/// Plays back torque signals: each point holds until the next takes effect, the last one to the end.
+use gait::Servo;
+use signal::SignalPlayer;
+
+use crate::genome::{Controller, Genome, Wave, Waves};
+use crate::world::{JointState, JointTorque};
+
+/// A controller at work in one world.
 #[derive(Debug, Clone)]
-pub struct SignalPlayer {
-    signals: Signals,
-    points_per_step: f64,
+pub struct Driver {
+    kind: Kind,
+    steps_per_s: f64,
 }
 
-impl SignalPlayer {
-    /// A player for a world that takes `steps_per_s` steps a second.
-    pub fn new(signals: Signals, steps_per_s: u32) -> Self {
-        let points_per_step = f64::from(signals.points_per_s) / f64::from(steps_per_s);
-        Self { signals, points_per_step }
+#[derive(Debug, Clone)]
+enum Kind {
+    Signal(SignalPlayer),
+    Wave(Waves),
+    Gait { waves: Waves, servo: Servo },
+}
+
+impl Driver {
+    /// What drives a genome in a world that takes `steps_per_s` steps a second.
+    pub fn new(genome: &Genome, steps_per_s: u32) -> Self {
+        let kind = match &genome.controller {
+            Controller::Signal(signals) => {
+                Kind::Signal(SignalPlayer::new(signals.clone(), steps_per_s))
+            }
+            Controller::Wave(waves) => Kind::Wave(waves.clone()),
+            Controller::Gait(gait) => {
+                Kind::Gait { waves: gait.waves.clone(), servo: Servo::new(gait) }
+            }
+        };
+        Self { kind, steps_per_s: f64::from(steps_per_s) }
     }
 
-    /// Writes the torques of step number `step` (0 is the first), one per joint from the head.
-    pub fn torques(&self, step: u32, torques: &mut [JointTorque]) {
-        let point = (f64::from(step) * self.points_per_step) as usize;
-        let at_point = |signal: &[f32]| signal.get(point).or(signal.last()).copied().unwrap_or(0.0);
-        for (torque, joint) in torques.iter_mut().zip(&self.signals.joints) {
-            torque.bend_nm = at_point(&joint.bend_nm);
-            torque.twist_nm = at_point(&joint.twist_nm);
+    /// Whether it wants to know how the joints stand.
+    pub fn feels(&self) -> bool {
+        matches!(self.kind, Kind::Gait { .. })
+    }
+
+    /// Writes the torques of step number `step` (0 is the first), one per joint from the head. `felt` is how
+    /// the joints stand, for a driver that wants to know; they are clamped to the joints' limits later.
+    pub fn torques(&self, step: u32, felt: &[JointState], torques: &mut [JointTorque]) {
+        match &self.kind {
+            Kind::Signal(player) => player.torques(step, torques),
+            Kind::Wave(waves) => {
+                let turns = self.turns(step, waves);
+                for (torque, joint) in torques.iter_mut().zip(&waves.joints) {
+                    torque.bend_nm = joint.bend.at(turns);
+                    torque.twist_nm = joint.twist.at(turns);
+                }
+            }
+            Kind::Gait { waves, servo } => {
+                let turns = self.turns(step, waves);
+                let joints = waves.joints.iter().zip(felt);
+                for (torque, (joint, state)) in torques.iter_mut().zip(joints) {
+                    let pull = |wave: &Wave, angle_rad, rate_rad_s| {
+                        servo.torque_nm(wave.at(turns), angle_rad, rate_rad_s)
+                    };
+                    torque.bend_nm = pull(&joint.bend, state.bend_rad, state.bend_rad_s);
+                    torque.twist_nm = pull(&joint.twist, state.twist_rad, state.twist_rad_s);
+                }
+            }
         }
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::genome::JointSignals;
-
-    #[test]
-    fn a_point_holds_until_the_next_and_the_last_to_the_end() {
-        let joints = vec![JointSignals { bend_nm: vec![1.0, 2.0, 3.0], twist_nm: vec![-1.0] }];
-        let player = SignalPlayer::new(Signals { points_per_s: 20.0, joints }, 60);
-        let mut torques = [JointTorque::default()];
-        let bends: Vec<f32> = (0..12)
-            .map(|step| {
-                player.torques(step, &mut torques);
-                torques[0].bend_nm
-            })
-            .collect();
-        assert_eq!(bends, [1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0, 3.0, 3.0, 3.0]);
-        assert_eq!(torques[0].twist_nm, -1.0);
+    /// Periods of the fundamental that have passed when a step begins.
+    fn turns(&self, step: u32, waves: &Waves) -> f64 {
+        f64::from(waves.frequency_hz) * f64::from(step) / self.steps_per_s
     }
 }

@@ -3,9 +3,10 @@
 use serde_json::{Map, Value};
 use std::fmt::Write;
 
-use super::Settings;
+use super::{Descriptor, Settings, StrategyKind};
 use crate::check::Invalid;
-use crate::score::Fitness;
+use crate::genome::ControllerKind;
+use crate::score::{Counts, Fitness};
 
 /// All settings with their values as text, by name: `trial.surface.friction`, `1`.
 pub fn fields(settings: &Settings) -> Vec<(String, String)> {
@@ -54,8 +55,9 @@ fn unchecked(mut settings: Settings, path: &str, text: &str) -> Result<Settings,
     let path = resolve(&root, path)?;
     let target = at(&mut root, &path);
     let allowed = allowed(&path, target);
+    // A restart of none is a name; elsewhere none means that there is no value.
     *target = match text {
-        "none" => Value::Null,
+        "none" if names_in(path.rsplit('.').next().unwrap_or_default()).is_none() => Value::Null,
         text => serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.to_owned())),
     };
     serde_json::from_value(root).map_err(|_| Invalid::new(path, format!("{text:?}"), allowed))
@@ -123,11 +125,29 @@ fn at<'a>(root: &'a mut Value, path: &str) -> &'a mut Value {
     })
 }
 
+/// The names that may stand in a field, if it takes names.
+fn names_in(last: &str) -> Option<Vec<&'static str>> {
+    let of = |names: &[&'static str]| Some(names.to_vec());
+    match last {
+        "fitness" => of(&Fitness::ALL.map(Fitness::name)),
+        "controller" => of(&ControllerKind::ALL.map(ControllerKind::name)),
+        "strategy" => of(&StrategyKind::ALL.map(StrategyKind::name)),
+        "counts" => of(&Counts::ALL.map(Counts::name)),
+        "x" | "y" | "first" | "second" => of(&Descriptor::ALL.map(Descriptor::name)),
+        "selection" => of(&["tournament", "rank"]),
+        "crossover" => of(&["uniform", "one_point"]),
+        "mutation" => of(&["gaussian", "uniform"]),
+        "restarts" => of(&["none", "ipop", "bipop"]),
+        "active" => of(&["true", "false"]),
+        _ => None,
+    }
+}
+
 /// What may stand in a field, by its name and what stands there now.
 fn allowed(path: &str, now: &Value) -> String {
     let last = path.rsplit('.').next().unwrap_or_default();
-    if last == "fitness" {
-        return Fitness::ALL.map(Fitness::name).join(", ");
+    if let Some(names) = names_in(last) {
+        return names.join(", ");
     }
     let is_optional = ["density_kg_m3", "bend_limit_rad", "twist_limit_rad"].contains(&last);
     match now {
@@ -248,8 +268,9 @@ mod tests {
         assert!(refusal("surface.soft_cfm", "1").contains("trial.surface.soft_cfm_m_s_per_n"));
         let message = refusal("friction", "1");
         assert!(
-            message.contains("trial.surface.friction, trial.agent.skin.friction")
-                || message.contains("trial.agent.skin.friction, trial.surface.friction"),
+            ["surface", "agent.skin", "repeats.off"]
+                .iter()
+                .all(|place| message.contains(&format!("trial.{place}.friction"))),
             "{message}"
         );
     }

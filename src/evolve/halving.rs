@@ -3,9 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{RunPlan, Strategy, StrategyState, ranking};
+use super::{LARGEST_POPULATION, RunPlan, Strategy, StrategyState, ranking};
 use crate::check::{Invalid, within};
-use crate::genome::{Genome, GenomeSpace};
+use crate::genome::{Descent, Genome, GenomeSpace};
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
 
@@ -13,10 +13,6 @@ use crate::score::Evaluation;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalvingSettings {
-    /// Individuals per generation. The report simulated 500 to 1000.
-    pub population: u32,
-    /// Generations in a run. The report has six.
-    pub generations: u32,
     /// How many of the best become parents. The report has four.
     pub parents: u32,
     /// Mutation range of the second generation, in N·m. The report has 100.
@@ -27,24 +23,13 @@ pub struct HalvingSettings {
 
 impl Default for HalvingSettings {
     fn default() -> Self {
-        Self {
-            population: 500,
-            generations: 6,
-            parents: 4,
-            mutation_range_nm: 100.0,
-            mutation_decay: 0.5,
-        }
+        Self { parents: 4, mutation_range_nm: 100.0, mutation_decay: 0.5 }
     }
 }
-
-/// The most individuals a generation may have: their genomes must fit into memory.
-pub const LARGEST_POPULATION: u32 = 100_000;
 
 impl HalvingSettings {
     /// Checks every field against its range.
     pub fn check(&self) -> Result<(), Invalid> {
-        within("population", self.population, 1..=LARGEST_POPULATION)?;
-        within("generations", self.generations, 1..=10_000)?;
         within("parents", self.parents, 1..=LARGEST_POPULATION)?;
         within("mutation_range_nm", self.mutation_range_nm, 0.0..=1.0e6)?;
         within("mutation_decay", self.mutation_decay, 0.0..=1.0)
@@ -55,10 +40,10 @@ impl HalvingSettings {
 #[derive(Debug, Clone)]
 pub struct Halving {
     settings: HalvingSettings,
+    population: u32,
     space: GenomeSpace,
     run_seed: u64,
-    joints: usize,
-    duration_s: f32,
+    descent: Descent,
     /// The generation that `ask` returns; the first is 1.
     generation: u32,
     parents: Vec<Genome>,
@@ -67,21 +52,42 @@ pub struct Halving {
 impl Halving {
     /// A fresh search.
     pub fn new(plan: &RunPlan) -> Self {
-        Self::resumed(plan, 0, Vec::new())
+        let settings = &plan.settings;
+        Self {
+            settings: settings.evolution.halving.clone(),
+            population: settings.evolution.population,
+            space: settings.genome.clone(),
+            run_seed: plan.seed,
+            descent: settings.trial.descent(),
+            generation: 1,
+            parents: Vec::new(),
+        }
     }
 
     /// A search that goes on after its first `finished` generations, of which `parents` are left.
-    pub fn resumed(plan: &RunPlan, finished: u32, parents: Vec<Genome>) -> Self {
-        let settings = &plan.settings;
-        Self {
-            settings: settings.evolution.clone(),
-            space: settings.genome.clone(),
-            run_seed: plan.seed,
-            joints: settings.trial.agent.joints(),
-            duration_s: settings.trial.duration_s,
-            generation: finished + 1,
-            parents,
+    ///
+    /// # Errors
+    /// There are more parents than there may be, or one does not fit the trial.
+    pub fn resumed(plan: &RunPlan, finished: u32, parents: Vec<Genome>) -> Result<Self, Invalid> {
+        let fresh = Self::new(plan);
+        let most = plan.settings.evolution.halving.parents as usize;
+        within("parents", parents.len(), 0..=most)?;
+        for (index, parent) in parents.iter().enumerate() {
+            let place = format!("parents[{index}]");
+            let kind = plan.settings.genome.controller;
+            if parent.controller.kind() != kind {
+                let found = parent.controller.kind();
+                return Err(Invalid::new(place, found, format!("a {kind}")));
+            }
+            plan.settings.trial.check_genome(parent).map_err(|error| error.inside(&place))?;
+            // A child is as long as its parent, and there are many children.
+            let (found, expected) =
+                (parent.controller.numbers(), fresh.newborn(0).controller.numbers());
+            if found != expected {
+                return Err(Invalid::new(place, format!("{found} numbers"), expected.to_string()));
+            }
         }
+        Ok(Self { generation: finished + 1, parents, ..fresh })
     }
 
     /// The range within which the children of the current generation are shifted, in N·m.
@@ -93,7 +99,7 @@ impl Halving {
 
     fn newborn(&self, individual: u32) -> Genome {
         let mut rng = stream(self.run_seed, self.generation, individual, Purpose::Birth);
-        self.space.birth(self.joints, self.duration_s, &mut rng)
+        self.space.birth(self.descent, &mut rng)
     }
 
     fn child(&self, individual: u32) -> Genome {
@@ -108,12 +114,16 @@ impl Strategy for Halving {
     /// The first generation is drawn from nothing; so is a later one that found nobody fit to be a
     /// parent because all were disqualified.
     fn ask(&self) -> Vec<Genome> {
-        let individuals = 0..self.settings.population;
+        let individuals = 0..self.population;
         if self.parents.is_empty() {
             individuals.map(|individual| self.newborn(individual)).collect()
         } else {
             individuals.map(|individual| self.child(individual)).collect()
         }
+    }
+
+    fn population(&self) -> usize {
+        self.population as usize
     }
 
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
@@ -124,7 +134,7 @@ impl Strategy for Halving {
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::Halving { parents: self.parents.clone() }
+        StrategyState::Halving(self.parents.clone())
     }
 }
 
@@ -132,6 +142,7 @@ impl Strategy for Halving {
 mod tests {
     use super::*;
     use crate::evolve::Settings;
+    use crate::genome::Controller;
     use crate::world::Disqualification;
 
     fn evaluated(fitness: f32) -> Evaluation {
@@ -143,20 +154,24 @@ mod tests {
             trace_hash: 0,
             steps: 1,
             effort: None,
+            behaviour: None,
         }
     }
 
     fn small() -> Halving {
-        let evolution = HalvingSettings { population: 8, parents: 2, ..HalvingSettings::default() };
-        let mut settings = Settings { evolution, ..Settings::default() };
+        let mut settings = Settings::default();
+        settings.evolution.population = 8;
+        settings.evolution.halving.parents = 2;
         settings.trial.duration_s = 1.0;
         Halving::new(&RunPlan::new("test", 1, settings))
     }
 
     /// The largest difference between two genomes' torque points, in N·m.
     fn distance_nm(a: &Genome, b: &Genome) -> f32 {
-        let (mut a, mut b) = (a.clone(), b.clone());
-        let pairs = a.signals.all_mut().flatten().zip(b.signals.all_mut().flatten());
+        let (Controller::Signal(a), Controller::Signal(b)) = (&a.controller, &b.controller) else {
+            panic!("no signals")
+        };
+        let pairs = a.all().flatten().zip(b.all().flatten());
         pairs.map(|(x, y)| (*x - *y).abs()).fold(0.0, f32::max)
     }
 

@@ -3,23 +3,49 @@
 //! A strategy sees genomes and evaluations, never the world, a thread or a clock. All its randomness
 //! comes from streams named after the individual it is for.
 
+mod archive;
 mod champion;
+mod cma;
+mod cma_es;
+mod descriptor;
+mod eigen;
 mod field;
+mod front;
+mod ga;
 mod halving;
+mod map_elites;
+mod novelty;
+mod random;
+mod restarts;
+mod search;
 mod settings;
 
+pub use archive::{Archive, Elite};
 pub use champion::{Champion, Origin};
+pub use cma_es::CmaEsSettings;
+pub use descriptor::Descriptor;
 pub use field::{fields, with_field, with_fields};
-pub use halving::{Halving, HalvingSettings, LARGEST_POPULATION};
-pub use settings::{RunPlan, Settings};
+pub use front::{Front, FrontMember};
+pub use ga::{Crossover, GaSettings, Mutation, Selection};
+pub use halving::HalvingSettings;
+pub use map_elites::MapElitesSettings;
+pub use novelty::NoveltySettings;
+pub use restarts::RestartKind;
+pub use settings::{EvolutionSettings, LARGEST_POPULATION, RunPlan, Settings, StrategyKind};
 
+use serde::{Deserialize, Serialize};
+
+use crate::check::Invalid;
 use crate::genome::Genome;
 use crate::score::Evaluation;
 
 /// A way to search, one generation at a time.
-pub trait Strategy {
-    /// The genomes of the next generation, in the order of their indices.
+pub trait Strategy: Send {
+    /// The genomes of the next generation, in the order of their indices. Asking twice gives the same.
     fn ask(&self) -> Vec<Genome>;
+
+    /// How many genomes the next generation has.
+    fn population(&self) -> usize;
 
     /// How the genomes of the last `ask` did, in the same order.
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]);
@@ -27,16 +53,77 @@ pub trait Strategy {
     /// All that it has learned: together with settings, seed and the number of finished generations,
     /// enough to go on bit for bit.
     fn state(&self) -> StrategyState;
+
+    /// The best of every kind that it has seen, if it keeps such an archive.
+    fn archive(&self) -> Option<&Archive> {
+        None
+    }
 }
 
 /// What a strategy has learned.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StrategyState {
-    /// Of [`Halving`].
-    Halving {
-        /// The parents of the next generation, best first.
-        parents: Vec<Genome>,
-    },
+    /// Of the report's method: the parents of the next generation, best first.
+    Halving(Vec<Genome>),
+    /// Of a method that searches among points of the unit cube.
+    Points(PointState),
+}
+
+/// What a strategy that searches among points has learned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum PointState {
+    /// Of the genetic algorithm.
+    Ga(ga::GaState),
+    /// Of CMA-ES.
+    CmaEs(cma_es::CmaEsState),
+    /// Of MAP-Elites.
+    MapElites(map_elites::MapElitesState),
+    /// Of novelty search.
+    Novelty(novelty::NoveltyState),
+    /// Of random search, which learns nothing.
+    Random,
+}
+
+/// The strategy of a run at its beginning.
+pub fn begin(plan: &RunPlan) -> Box<dyn Strategy> {
+    match plan.settings.evolution.strategy {
+        StrategyKind::Halving => Box::new(halving::Halving::new(plan)),
+        StrategyKind::Ga => Box::new(ga::Ga::new(plan)),
+        StrategyKind::CmaEs => Box::new(cma_es::CmaEs::new(plan)),
+        StrategyKind::MapElites => Box::new(map_elites::MapElites::new(plan)),
+        StrategyKind::Novelty => Box::new(novelty::Novelty::new(plan)),
+        StrategyKind::Random => Box::new(random::Random::new(plan)),
+    }
+}
+
+/// The strategy of a run that goes on after its first `finished` generations, of which it learned `state`.
+///
+/// # Errors
+/// The state is that of another strategy or another space, or out of all bounds.
+pub fn resume(
+    plan: &RunPlan,
+    finished: u32,
+    state: StrategyState,
+) -> Result<Box<dyn Strategy>, Invalid> {
+    use {PointState as P, StrategyKind as K, StrategyState as S};
+    let kind = plan.settings.evolution.strategy;
+    Ok(match (kind, state) {
+        (K::Halving, S::Halving(parents)) => {
+            Box::new(halving::Halving::resumed(plan, finished, parents)?)
+        }
+        (K::Ga, S::Points(P::Ga(state))) => Box::new(ga::Ga::resumed(plan, finished, state)?),
+        (K::CmaEs, S::Points(P::CmaEs(state))) => {
+            Box::new(cma_es::CmaEs::resumed(plan, finished, state)?)
+        }
+        (K::MapElites, S::Points(P::MapElites(state))) => {
+            Box::new(map_elites::MapElites::resumed(plan, finished, state)?)
+        }
+        (K::Novelty, S::Points(P::Novelty(state))) => {
+            Box::new(novelty::Novelty::resumed(plan, finished, state)?)
+        }
+        (K::Random, S::Points(P::Random)) => Box::new(random::Random::resumed(plan, finished)),
+        _ => return Err(Invalid::new("strategy", "another strategy's", format!("that of {kind}"))),
+    })
 }
 
 /// The indices of the agents that may become parents, best first. Disqualified ones may not; of equals
@@ -48,6 +135,17 @@ pub fn ranking(evaluations: &[Evaluation]) -> Vec<usize> {
     ranked
 }
 
+/// The indices of all agents, best first: those of [`ranking`], then the disqualified, the longer they lasted
+/// the better, so that a method which needs everybody's rank learns which way is out of trouble.
+pub fn full_ranking(evaluations: &[Evaluation]) -> Vec<usize> {
+    let mut ranked = ranking(evaluations);
+    let mut others: Vec<usize> =
+        (0..evaluations.len()).filter(|&i| evaluations[i].disqualified.is_some()).collect();
+    others.sort_by_key(|&i| std::cmp::Reverse(evaluations[i].steps));
+    ranked.append(&mut others);
+    ranked
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,20 +153,23 @@ mod tests {
 
     #[test]
     fn the_disqualified_are_not_ranked_and_ties_go_to_the_first() {
-        let evaluation = |fitness, disqualified| Evaluation {
+        let evaluation = |fitness, steps, disqualified| Evaluation {
             fitness,
             centre_y_m: fitness,
             disqualified,
             trace_hash: 0,
-            steps: 0,
+            steps,
             effort: None,
+            behaviour: None,
         };
         let evaluations = [
-            evaluation(1.0, None),
-            evaluation(180.0, Some(Disqualification::TooFast)),
-            evaluation(3.0, None),
-            evaluation(1.0, None),
+            evaluation(1.0, 9, None),
+            evaluation(180.0, 3, Some(Disqualification::TooFast)),
+            evaluation(3.0, 9, None),
+            evaluation(150.0, 7, Some(Disqualification::TooFast)),
+            evaluation(1.0, 9, None),
         ];
-        assert_eq!(ranking(&evaluations), [2, 0, 3]);
+        assert_eq!(ranking(&evaluations), [2, 0, 4]);
+        assert_eq!(full_ranking(&evaluations), [2, 0, 4, 3, 1]);
     }
 }

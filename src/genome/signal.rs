@@ -3,6 +3,9 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::{LARGEST_GENOME_TORQUES, LARGEST_TORQUE_NM, POINTS_PER_S_RANGE};
+use crate::check::{Invalid, within};
+
 /// One torque signal per joint axis. Each holds its value until the next point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signals {
@@ -25,6 +28,43 @@ impl Signals {
     /// Every signal of the snake in a fixed order: joints from the head, bend before twist.
     pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
         self.joints.iter_mut().flat_map(|joint| [&mut joint.bend_nm, &mut joint.twist_nm])
+    }
+
+    /// The same, to read.
+    pub fn all(&self) -> impl Iterator<Item = &Vec<f32>> {
+        self.joints.iter().flat_map(|joint| [&joint.bend_nm, &joint.twist_nm])
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// The first one that is not allowed.
+    pub fn check(&self) -> Result<(), Invalid> {
+        within("points_per_s", self.points_per_s, POINTS_PER_S_RANGE)?;
+        let points = |joint: &JointSignals| joint.bend_nm.len() + joint.twist_nm.len();
+        let torques: usize = self.joints.iter().map(points).sum();
+        within("torque points", torques, 1..=LARGEST_GENOME_TORQUES)?;
+        for (index, joint) in self.joints.iter().enumerate() {
+            for (axis, signal) in [("bend_nm", &joint.bend_nm), ("twist_nm", &joint.twist_nm)] {
+                let field = format!("joints[{index}].{axis}");
+                if signal.is_empty() {
+                    return Err(Invalid::new(field, "empty", "at least one point"));
+                }
+                let range = -LARGEST_TORQUE_NM..=LARGEST_TORQUE_NM;
+                signal.iter().try_for_each(|&torque| within(&field, torque, range.clone()))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// How often per second a torque changes its sign, on average over all signals.
+    pub(super) fn sign_changes_per_s(&self) -> f32 {
+        let changes = |signal: &Vec<f32>| {
+            signal.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count()
+        };
+        let points: usize = self.all().map(Vec::len).sum();
+        let changes: usize = self.all().map(changes).sum();
+        self.points_per_s * changes as f32 / points.max(1) as f32
     }
 }
 

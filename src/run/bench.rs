@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::pool;
-use crate::control::SignalPlayer;
+use crate::control::Driver;
 use crate::evolve::Settings;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
@@ -54,7 +54,7 @@ pub fn bench(
     let genomes: Vec<Genome> = (0..10 * GENOMES as u32)
         .map(|individual| {
             let mut rng = stream(1, 1, individual, Purpose::Birth);
-            settings.genome.birth(trial.agent.joints(), trial.duration_s, &mut rng)
+            settings.genome.birth(trial.descent(), &mut rng)
         })
         .filter(|genome| evaluate(genome, trial).disqualified.is_none())
         .take(GENOMES)
@@ -122,10 +122,15 @@ fn steps_per_s(
 /// program would do that drives this snake with rapier. Returns the world at the end.
 fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
     let mut simulation = Simulation::new(&trial.world_plan(genome));
-    let player = SignalPlayer::new(genome.signals.clone(), trial.physics.steps_per_s);
+    let driver = Driver::new(genome, trial.physics.steps_per_s);
+    let mut felt = Vec::new();
     let mut torques = vec![JointTorque::default(); trial.agent.joints()];
     for step in 0..trial.steps() {
-        player.torques(step, &mut torques);
+        if driver.feels() {
+            felt.clear();
+            felt.extend(simulation.joint_states());
+        }
+        driver.torques(step, &felt, &mut torques);
         simulation.apply(&torques);
         simulation.physics_mut().step();
     }
@@ -147,7 +152,7 @@ mod tests {
     fn the_bare_loop_computes_the_very_motion_that_is_scored() {
         let settings = Settings::default();
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = settings.genome.birth(4, 5.0, &mut rng);
+        let genome = settings.genome.birth(settings.trial.descent(), &mut rng);
         let bare: Vec<Pose> = step_bare(&genome, &settings.trial).poses().collect();
         let mut rollout = Rollout::new(&genome, &settings.trial);
         while rollout.advance() {}

@@ -9,19 +9,23 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use super::report::{Crash, generation_hash, meaning};
 use super::{Cancelled, Control, GenerationReport, Statistics, caught};
+use crate::check::Invalid;
 use crate::evolve::{
-    Champion, Halving, Origin, RunPlan, Settings, Strategy, StrategyState, ranking,
+    Archive, Champion, Front, FrontMember, Origin, RunPlan, Settings, Strategy, begin, ranking,
+    resume,
 };
 use crate::genome::Genome;
-use crate::save::Progress;
+use crate::save::{Knowledge, Progress};
 use crate::score::{Evaluation, Trial, evaluate};
 use crate::world::Disqualification;
 
 /// A run, between two generations.
 pub struct Experiment {
     plan: RunPlan,
-    strategy: Halving,
+    strategy: Box<dyn Strategy>,
+    front: Front,
     finished: u32,
+    evaluated: u64,
     hash: Xxh3Default,
     best: Option<Champion>,
     /// Evaluations of the next generation that were made before a kill.
@@ -37,9 +41,11 @@ impl Experiment {
     /// A fresh run.
     pub fn new(plan: RunPlan) -> Self {
         Self {
-            strategy: Halving::new(&plan),
+            strategy: begin(&plan),
             plan,
+            front: Front::default(),
             finished: 0,
+            evaluated: 0,
             hash: Xxh3Default::new(),
             best: None,
             known: BTreeMap::new(),
@@ -48,11 +54,15 @@ impl Experiment {
     }
 
     /// A run that goes on after what it has behind it, as if it had never been stopped.
-    pub fn resumed(plan: RunPlan, progress: &Progress) -> Self {
+    ///
+    /// # Errors
+    /// What was learned does not fit the plan.
+    pub fn resumed(plan: RunPlan, progress: &Progress) -> Result<Self, Invalid> {
         let finished = progress.records.len() as u32;
         let mut experiment = Self::new(plan);
-        if let Some(StrategyState::Halving { parents }) = &progress.state {
-            experiment.strategy = Halving::resumed(&experiment.plan, finished, parents.clone());
+        if let Some(Knowledge { strategy, front }) = &progress.knowledge {
+            experiment.strategy = resume(&experiment.plan, finished, strategy.clone())?;
+            experiment.front = front.clone();
         }
         for record in &progress.records {
             // Reading the log has checked it.
@@ -60,11 +70,13 @@ impl Experiment {
             experiment.hash.update(&hash.to_le_bytes());
         }
         experiment.finished = finished;
+        experiment.evaluated =
+            progress.records.iter().map(|record| u64::from(record.evaluations)).sum();
         experiment.known = progress.evaluations.iter().copied().collect();
         for champion in &progress.champions {
             experiment.keep_if_better(champion.as_ref());
         }
-        experiment
+        Ok(experiment)
     }
 
     /// The settings of the run.
@@ -77,9 +89,31 @@ impl Experiment {
         self.finished
     }
 
-    /// Whether all generations are done.
+    /// Whether all generations are done, or the next would cost more evaluations than are left.
     pub fn is_over(&self) -> bool {
-        self.finished >= self.plan.settings.evolution.generations
+        let evolution = &self.plan.settings.evolution;
+        self.finished >= evolution.generations
+            || self.evaluated + u64::from(self.population()) > evolution.budget()
+    }
+
+    /// How many individuals the next generation has.
+    pub fn population(&self) -> u32 {
+        u32::try_from(self.strategy.population()).unwrap_or(u32::MAX)
+    }
+
+    /// Evaluations of the finished generations.
+    pub fn evaluated(&self) -> u64 {
+        self.evaluated
+    }
+
+    /// The best of every kind so far, if the strategy keeps such an archive.
+    pub fn archive(&self) -> Option<&Archive> {
+        self.strategy.archive()
+    }
+
+    /// Who is beaten by nobody in distance and energy so far.
+    pub fn front(&self) -> &Front {
+        &self.front
     }
 
     /// The best individual of all generations so far; of equals, the first found.
@@ -92,9 +126,9 @@ impl Experiment {
         self.hash.digest()
     }
 
-    /// What the strategy has learned so far.
-    pub fn state(&self) -> StrategyState {
-        self.strategy.state()
+    /// What has been learned so far.
+    pub fn knowledge(&self) -> Knowledge {
+        Knowledge { strategy: self.strategy.state(), front: self.front.clone() }
     }
 
     /// Evaluates one generation on `pool` and lets the strategy learn from it.
@@ -167,8 +201,12 @@ impl Experiment {
             reasons.filter(|reason| is(reason)).count() as u32
         };
         let statistics = Statistics::of(&evaluations);
+        let landed = |evaluation: &&Evaluation| evaluation.is_on_landing(&trial.stairs);
+        let first_on_landing = evaluations.iter().position(|e| landed(&e));
         let report = GenerationReport {
             generation,
+            on_landing: evaluations.iter().filter(landed).count() as u32,
+            first_on_landing: first_on_landing.map(|index| index as u32),
             evaluations: evaluations.len() as u32,
             disqualified: count(|_| true),
             crashed: count(|reason| *reason == Disqualification::Crashed),
@@ -180,8 +218,15 @@ impl Experiment {
             champion: ranking(&evaluations).first().map(|&index| individual(index)),
         };
 
+        for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
+            let (genome, evaluation) = (genome.clone(), *evaluation);
+            let individual = index as u32;
+            let member = FrontMember { genome, evaluation, generation, individual };
+            self.front.add(member, trial.start_y_m);
+        }
         self.strategy.tell(&genomes, &evaluations);
         self.finished = generation;
+        self.evaluated += evaluations.len() as u64;
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
         self.keep_if_better(report.champion.as_ref());
@@ -208,6 +253,7 @@ fn void_evaluation() -> Evaluation {
         trace_hash: 0,
         steps: 0,
         effort: None,
+        behaviour: None,
     }
 }
 
@@ -298,10 +344,10 @@ mod tests {
         let progress = Progress {
             records: Vec::new(),
             champions: Vec::new(),
-            state: None,
+            knowledge: None,
             evaluations: noted.clone(),
         };
-        let mut again = Experiment::resumed(first.plan.clone(), &progress);
+        let mut again = Experiment::resumed(first.plan.clone(), &progress).expect("it fits");
         let made = std::sync::atomic::AtomicU32::new(0);
         let count = |_, individual, _: &Evaluation| {
             assert!(noted.iter().all(|(known, _)| *known != individual));

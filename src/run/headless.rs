@@ -170,8 +170,7 @@ pub fn with_progress(
     control: &Arc<Control>,
     note: impl Fn(u32, u32, &Evaluation) + Sync,
 ) -> Result<GenerationReport, Cancelled> {
-    let population = experiment.settings().evolution.population;
-    let bar = ProgressBar::new(population.into());
+    let bar = ProgressBar::new(experiment.population().into());
     // The template is a constant; if it were wrong, the default bar would do.
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {eta} left") {
         bar.set_style(style);
@@ -311,6 +310,8 @@ fn json_line(report: &GenerationReport) -> Value {
         "worst": statistics.map(|s| s.worst),
         "disqualified": report.disqualified,
         "crashed": report.crashed,
+        "on_landing": report.on_landing,
+        "first_on_landing": report.first_on_landing,
         "evaluations": report.evaluations,
         "elapsed_s": report.elapsed_s,
         "meaning": report.meaning,
@@ -349,6 +350,8 @@ mod tests {
             disqualified: 12,
             crashed: 0,
             crashes: Vec::new(),
+            on_landing: 0,
+            first_on_landing: None,
             statistics: Some(statistics),
             meaning: "starting position".to_owned(),
             hash: 0,

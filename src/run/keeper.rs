@@ -58,7 +58,9 @@ impl RunSource {
     /// be written.
     pub fn open(self, who: &str) -> Result<KeptRun, SaveError> {
         let (folder, progress) = RunFolder::open(&self.folder, &self.plan, self.earlier, who)?;
-        let experiment = Experiment::resumed(self.plan, &progress);
+        let run_file = self.folder.join("run.ron");
+        let experiment = Experiment::resumed(self.plan, &progress)
+            .map_err(|source| SaveError::Invalid { path: run_file, source })?;
         let trial = &experiment.settings().trial;
         let pairs = progress.records.iter().zip(progress.champions);
         let reports: Vec<GenerationReport> = pairs
@@ -107,7 +109,7 @@ impl Keeper {
         let path = self.folder.finish_generation(
             &report.record(),
             champion.zip(recording.as_ref()),
-            &experiment.state(),
+            &experiment.knowledge(),
             experiment.run_hash(),
         )?;
         if let Some(path) = path {
@@ -143,7 +145,8 @@ impl Keeper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Settings;
+    use crate::evolve::{Settings, StrategyKind};
+    use crate::genome::ControllerKind;
     use crate::run::{Control, pool};
     use std::fs;
 
@@ -174,8 +177,8 @@ mod tests {
         }
     }
 
-    fn undisturbed() -> Experiment {
-        let mut experiment = Experiment::new(plan());
+    fn undisturbed(plan: &RunPlan) -> Experiment {
+        let mut experiment = Experiment::new(plan.clone());
         while !experiment.is_over() {
             let pool = pool(1).expect("a pool");
             experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
@@ -194,17 +197,33 @@ mod tests {
 
     #[test]
     fn a_run_that_is_stopped_after_any_generation_goes_on_bit_for_bit() {
-        let expected = undisturbed();
-        for stop in 1..=6 {
+        for strategy in StrategyKind::ALL {
+            for controller in [ControllerKind::Signal, ControllerKind::Gait] {
+                let mut plan = plan();
+                plan.settings.evolution.strategy = strategy;
+                plan.settings.genome.controller = controller;
+                stops_and_goes_on(&plan);
+            }
+        }
+    }
+
+    fn stops_and_goes_on(plan: &RunPlan) {
+        let expected = undisturbed(plan);
+        let source = |saves: &Path| {
+            RunSource::in_saves(&SavesFolder::find(Some(saves)), plan.clone(), Earlier::Keep)
+        };
+        for stop in 1..=expected.finished() {
             let saves = tempfile::tempdir().expect("a folder");
-            let mut first = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+            let mut first = source(saves.path()).open("a test").expect("opened");
             evolve(&mut first, stop);
             drop(first);
-            let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+            let mut again = source(saves.path()).open("a test").expect("opened");
             assert_eq!(again.reports.len() as u32, stop);
             evolve(&mut again, 6);
-            assert_eq!(again.experiment.run_hash(), expected.run_hash(), "stopped after {stop}");
-            assert_eq!(again.experiment.best(), expected.best());
+            let what = format!("{}, stopped after {stop}", plan.settings.evolution.strategy);
+            assert_eq!(again.experiment.run_hash(), expected.run_hash(), "{what}");
+            assert_eq!(again.experiment.best(), expected.best(), "{what}");
+            assert_eq!(again.experiment.knowledge(), expected.knowledge(), "{what}");
         }
     }
 
@@ -235,7 +254,7 @@ mod tests {
         let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         assert_eq!(again.reports.len(), 2);
         evolve(&mut again, 6);
-        assert_eq!(again.experiment.run_hash(), undisturbed().run_hash());
+        assert_eq!(again.experiment.run_hash(), undisturbed(&plan()).run_hash());
     }
 
     #[test]
@@ -296,7 +315,7 @@ mod tests {
         }
         let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         evolve(&mut again, 6);
-        assert_eq!(again.experiment.run_hash(), undisturbed().run_hash());
+        assert_eq!(again.experiment.run_hash(), undisturbed(&plan()).run_hash());
     }
 
     #[test]

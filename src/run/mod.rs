@@ -3,6 +3,7 @@
 mod background;
 pub mod bench;
 pub mod calibrate;
+pub mod compare;
 mod control;
 mod experiment;
 pub mod headless;

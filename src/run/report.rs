@@ -19,6 +19,10 @@ pub struct GenerationReport {
     pub crashed: u32,
     /// The first few of these.
     pub crashes: Vec<Crash>,
+    /// How many ended on the landing, in good health.
+    pub on_landing: u32,
+    /// The index of the first of them.
+    pub first_on_landing: Option<u32>,
     /// Fitness statistics over the others; none if all were disqualified.
     pub statistics: Option<Statistics>,
     /// What the mean means, in the words of the report's Table 1.
@@ -48,6 +52,8 @@ impl GenerationReport {
             evaluations: self.evaluations,
             disqualified: self.disqualified,
             crashed: self.crashed,
+            on_landing: self.on_landing,
+            first_on_landing: self.first_on_landing,
             statistics: self.statistics.map(|statistics| {
                 let Statistics { mean, best, median, std, worst, mean_centre_y_m } = statistics;
                 StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m }
@@ -69,6 +75,8 @@ impl GenerationReport {
             disqualified: record.disqualified,
             crashed: record.crashed,
             crashes: Vec::new(),
+            on_landing: record.on_landing,
+            first_on_landing: record.first_on_landing,
             statistics,
             meaning: meaning(statistics.as_ref(), trial),
             // Reading the log has checked it.
@@ -147,6 +155,7 @@ mod tests {
             trace_hash: 0,
             steps: 1,
             effort: None,
+            behaviour: None,
         }
     }
 

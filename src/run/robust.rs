@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::{Cancelled, Control, caught};
 use crate::evolve::Champion;
 use crate::rng::{Purpose, stream};
-use crate::score::{PerturbationRange, Rollout};
+use crate::score::{Evaluation, Fitness, PerturbationRange, Rollout, Trial};
 
 /// What became of the trials.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,7 +42,12 @@ pub fn robustness(
     pool: &ThreadPool,
     control: &Control,
 ) -> Result<Robustness, Cancelled> {
-    let Champion { genome, trial, .. } = champion;
+    let Champion { genome, .. } = champion;
+    let trial = &Trial {
+        fitness: Fitness::StepsClimbed,
+        energy_cost_per_kj: 0.0,
+        ..champion.trial.clone()
+    };
     control.start_generation();
     let one = |number: u32| {
         control.pass()?;
@@ -51,8 +56,8 @@ pub fn robustness(
         let steps = caught(|| {
             let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
             while rollout.advance() {}
-            let is_healthy = rollout.evaluation().disqualified.is_none();
-            is_healthy.then(|| rollout.steps_under())
+            let Evaluation { fitness: steps, disqualified, .. } = rollout.evaluation();
+            disqualified.is_none().then_some(steps as u32)
         });
         control.count_one();
         // A world on which the program fails is none that the agent climbed.

@@ -13,7 +13,7 @@ use super::{Cancelled, Control, Experiment};
 use crate::ENGINE_VERSION;
 use crate::check::Invalid;
 use crate::evolve::{RunPlan, Settings, with_fields};
-use crate::save::{SaveError, shipped_presets};
+use crate::save::{SaveError, load_preset, shipped_presets};
 use crate::score::Fitness;
 
 /// Something that has bits, and their hash.
@@ -305,6 +305,129 @@ const CASES: &[Case] = &[
         5,
         &[("parents", "1"), ("mutation_range_nm", "300"), ("mutation_decay", "0.8")],
     ),
+    (
+        "waves, halving",
+        3,
+        6,
+        3,
+        &[("controller", "wave"), ("harmonics", "2"), ("frequency_max_hz", "2")],
+    ),
+    ("gaits, halving", 3, 6, 3, &[("controller", "gait"), ("angle_range_rad", "1.2")]),
+    (
+        "gaits, genetic algorithm",
+        3,
+        12,
+        4,
+        &[("controller", "gait"), ("strategy", "ga"), ("frequency_min_hz", "0.5")],
+    ),
+    (
+        "signals, genetic algorithm by rank",
+        3,
+        12,
+        4,
+        &[
+            ("strategy", "ga"),
+            ("selection", "rank"),
+            ("tournament", "2"),
+            ("crossover", "one_point"),
+            ("crossover_share", "0.9"),
+            ("mutation", "uniform"),
+            ("ga.step", "0.2"),
+            ("elites", "1"),
+        ],
+    ),
+    (
+        "gaits, CMA-ES",
+        3,
+        8,
+        5,
+        &[
+            ("controller", "gait"),
+            ("strategy", "cma_es"),
+            ("cma_es.step", "0.2"),
+            ("newborns", "5"),
+            ("stiffness_min_nm_per_rad", "100"),
+            ("stiffness_max_nm_per_rad", "600"),
+            ("servo_damping_nms_per_rad", "10"),
+        ],
+    ),
+    (
+        "short signals, CMA-ES without bad examples",
+        3,
+        8,
+        5,
+        &[
+            ("strategy", "cma_es"),
+            ("genome.points_per_s", "1"),
+            ("active", "false"),
+            ("restarts", "ipop"),
+        ],
+    ),
+    ("long signals, CMA-ES", 3, 8, 5, &[("strategy", "cma_es"), ("restarts", "none")]),
+    (
+        "waves, MAP-Elites",
+        3,
+        20,
+        5,
+        &[("controller", "wave"), ("strategy", "map_elites"), ("map_elites.step", "0.1")],
+    ),
+    (
+        "gaits, MAP-Elites with another archive",
+        3,
+        20,
+        5,
+        &[
+            ("controller", "gait"),
+            ("strategy", "map_elites"),
+            ("map_elites.x", "contact_duty"),
+            ("map_elites.y", "frequency"),
+            ("map_elites.cells", "5"),
+            ("map_elites.line", "0.5"),
+            ("cma_share", "0.3"),
+            ("cma_step", "0.3"),
+        ],
+    ),
+    ("gaits, novelty", 3, 12, 4, &[("controller", "gait"), ("strategy", "novelty")]),
+    (
+        "waves, pure novelty",
+        3,
+        12,
+        4,
+        &[
+            ("controller", "wave"),
+            ("strategy", "novelty"),
+            ("novelty.weight", "1"),
+            ("neighbours", "3"),
+            ("remembered", "2"),
+            ("archive_limit", "5"),
+            ("novelty.first", "sideways"),
+            ("novelty.second", "energy_per_metre"),
+        ],
+    ),
+    ("gaits, random", 3, 12, 2, &[("controller", "gait"), ("strategy", "random")]),
+    (
+        "the mean of three trials, less what energy costs",
+        3,
+        6,
+        2,
+        &[("controller", "gait"), ("repeats.trials", "3"), ("energy_cost_per_kj", "0.1")],
+    ),
+    (
+        "the worst of three trials",
+        3,
+        6,
+        2,
+        &[
+            ("controller", "gait"),
+            ("repeats.trials", "3"),
+            ("counts", "worst"),
+            ("repeats.off.friction", "0.5"),
+            ("repeats.off.rise", "0.3"),
+            ("repeats.off.density", "0.3"),
+            ("repeats.off.start_m", "1"),
+            ("repeats.off.turn_deg", "20"),
+        ],
+    ),
 ];
 
 /// All runs, with what they are: the cases, each kind of fitness, each shipped preset.
@@ -314,7 +437,7 @@ fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
         settings.evolution.population = population;
         settings.evolution.generations = generations;
     };
-    let report = presets.first().map(|preset| preset.settings.clone()).unwrap_or_default();
+    let report = load_preset("report")?.settings;
     let mut plans = Vec::new();
     for (what, seed, population, generations, changes) in CASES {
         let mut settings = with_fields(&report, changes.iter().copied())?;
@@ -329,7 +452,10 @@ fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
         sized(&mut settings, 6, 2);
         plans.push((format!("fitness {fitness}"), RunPlan::new("verify", seed, settings)));
     }
-    for (preset, seed) in presets.into_iter().zip(200..) {
+    // In the order in which they came to be: a seed, once given, stays.
+    let (newest, older): (Vec<_>, Vec<_>) =
+        presets.into_iter().partition(|preset| preset.name == "climb");
+    for (preset, seed) in older.into_iter().chain(newest).zip(200..) {
         let mut settings = preset.settings;
         sized(&mut settings, 6, 2);
         plans.push((format!("preset {}", preset.name), RunPlan::new("verify", seed, settings)));
@@ -344,7 +470,7 @@ mod tests {
 
     #[test]
     fn every_setting_is_changed_by_some_case() {
-        let mut report = shipped_presets().expect("well formed")[0].settings.clone();
+        let mut report = load_preset("report").expect("well formed").settings;
         report.trial.ground = Some(report.trial.surface.clone());
         let unchanged = fields(&report);
         let cases = cases().expect("allowed");

@@ -6,7 +6,8 @@ use super::SaveError;
 use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, write_whole};
 use super::v1::ChampionV1;
 use super::v2::ChampionV2;
-use super::v3::{ChampionV3, FORMAT, KIND};
+use super::v3::{ChampionV3, KIND};
+use super::v4::{ChampionV4, FORMAT};
 use crate::ENGINE_VERSION;
 use crate::evolve::Champion;
 use crate::score::Recording;
@@ -43,7 +44,7 @@ pub fn store_champion(
     champion: &Champion,
     recording: Option<&Recording>,
 ) -> Result<(), SaveError> {
-    let text_with = |recording| pretty(path, &ChampionV3::new(champion.clone(), recording));
+    let text_with = |recording| pretty(path, &ChampionV4::new(champion.clone(), recording));
     let is_readable = |text: &String| text.len() as u64 <= LARGEST_FILE_MIB * 1024 * 1024 - HEADER;
     let mut text = text_with(recording)?;
     if !is_readable(&text) {
@@ -80,9 +81,10 @@ pub fn shipped_champion() -> Result<LoadedChampion, SaveError> {
 /// # Errors
 /// As [`load_champion`], apart from reading.
 pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
-    let file: ChampionV3 = match Header::read(path, text, KIND, FORMAT)? {
-        1 => ChampionV2::from(parse::<ChampionV1>(path, text)?).into(),
-        2 => parse::<ChampionV2>(path, text)?.into(),
+    let file: ChampionV4 = match Header::read(path, text, KIND, FORMAT)? {
+        1 => ChampionV3::from(ChampionV2::from(parse::<ChampionV1>(path, text)?)).into(),
+        2 => ChampionV3::from(parse::<ChampionV2>(path, text)?).into(),
+        3 => parse::<ChampionV3>(path, text)?.into(),
         _ => parse(path, text)?,
     };
     let engine = file.engine;
@@ -136,7 +138,7 @@ mod tests {
     fn the_shipped_champion_does_what_it_did_when_it_was_found() {
         let LoadedChampion { champion, engine, .. } = shipped_champion().expect("well formed");
         assert_eq!(engine, ENGINE_VERSION);
-        assert_eq!(evaluate(&champion.genome, &champion.trial), champion.evaluation);
+        assert!(evaluate(&champion.genome, &champion.trial).agrees_with(&champion.evaluation));
         let climbed = champion.trial.stairs.steps_climbed(champion.evaluation.centre_y_m.into());
         assert!(climbed >= 3, "a champion to open with climbs; this one climbed {climbed}");
         let mut rollout = Rollout::new(&champion.genome, &champion.trial);
@@ -154,7 +156,7 @@ mod tests {
         assert_eq!(champion.trial.ground, None);
         assert_eq!(champion.trial.agent, crate::score::AgentSettings::default());
         assert!((champion.evaluation.fitness - 10.89).abs() < 0.01);
-        assert_eq!(champion.genome.signals.joints.len(), 4);
+        assert_eq!(champion.genome.controller.joints(), 4);
     }
 
     #[test]
@@ -164,6 +166,18 @@ mod tests {
         assert_eq!((loaded.engine, loaded.recording), (2, None));
         let Champion { genome, trial, evaluation, .. } = loaded.champion;
         assert_eq!(evaluation.effort, None, "not measured then");
+        assert!(evaluate(&genome, &trial).agrees_with(&evaluation));
+    }
+
+    #[test]
+    fn a_file_of_format_3_loads_for_ever_and_does_what_it_did() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/saves/format-3.ron");
+        let loaded = load_champion(&path).expect("it loads");
+        assert_eq!(loaded.engine, 2);
+        assert!(loaded.recording.is_some());
+        let Champion { genome, trial, evaluation, .. } = loaded.champion;
+        assert_eq!(evaluation.behaviour, None, "not observed then");
+        assert!(evaluation.effort.is_some());
         assert!(evaluate(&genome, &trial).agrees_with(&evaluation));
     }
 
@@ -188,8 +202,8 @@ mod tests {
         };
         says(refusal(|text| text[..text.len() / 2].to_owned()), &["damaged or incomplete at line"]);
         says(
-            refusal(|text| text.replace("format: 3", "format: 9")),
-            &["format is 9", "allowed: 1 to 3", "newer version"],
+            refusal(|text| text.replace("format: 4", "format: 9")),
+            &["format is 9", "allowed: 1 to 4", "newer version"],
         );
         says(
             refusal(|text| text.replace("snakes-and-stairs champion", "chess opening")),
@@ -201,7 +215,7 @@ mod tests {
         );
         says(
             refusal(|text| text.replace("limbs: 5", "limbs: 6")),
-            &["genome.signals.joints is 4 joints", "allowed: 5"],
+            &["genome.controller joints is 4 joints", "allowed: 5"],
         );
         says(
             refusal(|text| text.replace("friction: 1.0", "friction: NaN")),

@@ -9,21 +9,20 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::files::{Header, hash_of, numbered, parse, read_bytes, refuse_link, store_ron, text_of};
 use super::folder::fingerprint;
 use super::plan::check_engine;
-use super::v2::GenomeV2;
+use super::v4::{GenomeV4, RecordedV4};
 use super::{GenerationRecord, SaveError};
 use crate::ENGINE_VERSION;
 use crate::check::{Invalid, within};
-use crate::evolve::{RunPlan, StrategyState};
-use crate::genome::Genome;
+use crate::evolve::{Front, FrontMember, PointState, RunPlan, StrategyState, resume};
 
 const KIND: &str = "snakes-and-stairs checkpoint";
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// The parents' torque points are bounded so that a checkpoint stays below.
 const LARGEST_MIB: u64 = 64;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct CheckpointV1 {
+struct CheckpointV2 {
     kind: String,
     format: u32,
     engine: u32,
@@ -33,13 +32,36 @@ struct CheckpointV1 {
     generation: u32,
     /// Hash over them: it ties the checkpoint to its log.
     run_hash: String,
-    strategy: StrategyV1,
+    strategy: StrategyV2,
+    front: Vec<FrontMemberV2>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-enum StrategyV1 {
-    Halving { parents: Vec<GenomeV2> },
+enum StrategyV2 {
+    Halving {
+        parents: Vec<GenomeV4>,
+    },
+    /// Checkpoints are of one engine alone, so what a strategy knows stands in them as it is.
+    Points(PointState),
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FrontMemberV2 {
+    generation: u32,
+    individual: u32,
+    recorded: RecordedV4,
+    genome: GenomeV4,
+}
+
+/// What a run has learned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Knowledge {
+    /// The strategy.
+    pub strategy: StrategyState,
+    /// Who is beaten by nobody in distance and energy.
+    pub front: Front,
 }
 
 /// Writes down what a strategy knows after a generation.
@@ -48,18 +70,29 @@ pub fn store_checkpoint(
     plan: &str,
     generation: u32,
     run_hash: u64,
-    state: &StrategyState,
+    knowledge: &Knowledge,
 ) -> Result<(), SaveError> {
-    let StrategyState::Halving { parents } = state.clone();
-    let parents = parents.into_iter().map(Into::into).collect();
-    let checkpoint = CheckpointV1 {
+    let strategy = match knowledge.strategy.clone() {
+        StrategyState::Halving(parents) => {
+            StrategyV2::Halving { parents: parents.into_iter().map(Into::into).collect() }
+        }
+        StrategyState::Points(state) => StrategyV2::Points(state),
+    };
+    let member = |member: &FrontMember| FrontMemberV2 {
+        generation: member.generation,
+        individual: member.individual,
+        recorded: member.evaluation.into(),
+        genome: member.genome.clone().into(),
+    };
+    let checkpoint = CheckpointV2 {
         kind: KIND.to_owned(),
         format: FORMAT,
         engine: ENGINE_VERSION,
         plan: plan.to_owned(),
         generation,
         run_hash: format!("{run_hash:016x}"),
-        strategy: StrategyV1::Halving { parents },
+        strategy,
+        front: knowledge.front.members().map(member).collect(),
     };
     store_ron(&checkpoint_path(folder, generation), &checkpoint)
 }
@@ -96,7 +129,7 @@ pub fn load_checkpoint(
     generation: u32,
     records: &[GenerationRecord],
     plan: &RunPlan,
-) -> Result<StrategyState, SaveError> {
+) -> Result<Knowledge, SaveError> {
     let path = checkpoint_path(folder, generation);
     let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
     refuse_link(&path).map_err(unreadable)?;
@@ -122,12 +155,12 @@ pub fn parse_checkpoint(
     path: &Path,
     text: &str,
     plan: &RunPlan,
-) -> Result<(u32, u64, StrategyState), SaveError> {
-    Header::read(path, text, KIND, FORMAT)?;
-    let file: CheckpointV1 = parse(path, text)?;
-    let CheckpointV1 { engine, plan: of, generation, run_hash, strategy, .. } = file;
-    let StrategyV1::Halving { parents } = strategy;
-    let settings = &plan.settings;
+) -> Result<(u32, u64, Knowledge), SaveError> {
+    let format = Header::read(path, text, KIND, FORMAT)?;
+    within("format", format, FORMAT..=FORMAT)
+        .map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    let file: CheckpointV2 = parse(path, text)?;
+    let CheckpointV2 { engine, plan: of, generation, run_hash, strategy, front, .. } = file;
     let read = || {
         check_engine(engine)?;
         let expected = fingerprint(plan);
@@ -138,15 +171,32 @@ pub fn parse_checkpoint(
             return Err(Invalid::new("plan", format!("{of:?}"), allowed));
         }
         let run_hash = hash_of("run_hash", &run_hash)?;
-        within("parents", parents.len(), 0..=settings.evolution.parents as usize)?;
-        let parents: Vec<Genome> = parents.into_iter().map(Into::into).collect();
-        for (index, parent) in parents.iter().enumerate() {
-            let place = format!("parents[{index}]");
-            settings.trial.check_genome(parent).map_err(|error| error.inside(&place))?;
-        }
-        Ok((generation, run_hash, StrategyState::Halving { parents }))
+        let strategy = match strategy {
+            StrategyV2::Halving { parents } => {
+                StrategyState::Halving(parents.into_iter().map(Into::into).collect())
+            }
+            StrategyV2::Points(state) => StrategyState::Points(state),
+        };
+        // Whatever passes here can go on.
+        resume(plan, generation, strategy.clone()).map_err(|error| error.inside("strategy"))?;
+        let front = read_front(front, plan)?;
+        Ok((generation, run_hash, Knowledge { strategy, front }))
     };
     read().map_err(|source| SaveError::Invalid { path: path.to_owned(), source })
+}
+
+fn read_front(members: Vec<FrontMemberV2>, plan: &RunPlan) -> Result<Front, Invalid> {
+    let mut front = Front::default();
+    let trial = &plan.settings.trial;
+    for (index, member) in members.into_iter().enumerate() {
+        let place = format!("front[{index}]");
+        let FrontMemberV2 { generation, individual, recorded, genome } = member;
+        let evaluation = recorded.evaluation().map_err(|error| error.inside(&place))?;
+        let genome = genome.into();
+        trial.check_genome(&genome).map_err(|error| error.inside(&place))?;
+        front.add(FrontMember { genome, evaluation, generation, individual }, trial.start_y_m);
+    }
+    Ok(front)
 }
 
 /// Hash over the finished generations.

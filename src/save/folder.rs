@@ -8,10 +8,10 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::files::{numbered, prepare_folder, refuse_link};
 use super::plan::load_plan;
-use super::record::count_records;
+use super::record::{count_records, read_records};
 use super::{LoadedChampion, SaveError, load_champion};
 use crate::ENGINE_VERSION;
-use crate::evolve::RunPlan;
+use crate::evolve::{RunPlan, StrategyKind};
 
 /// The folder champions are written to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -66,7 +66,16 @@ impl SavesFolder {
         let summary = |folder: PathBuf| {
             let plan = load_plan(&folder).ok()?;
             let finished = count_records(&folder).ok()?;
-            Some(RunSummary { folder, plan, finished })
+            let evolution = &plan.settings.evolution;
+            let mut is_stopped = finished < evolution.generations;
+            // Restarts make larger generations, which may use the budget up before.
+            if is_stopped && finished > 0 && evolution.strategy == StrategyKind::CmaEs {
+                let records = read_records(&folder, &plan.settings).ok()?;
+                let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
+                let next = records.last().map_or(0, |last| u64::from(last.evaluations));
+                is_stopped = spent + next <= evolution.budget();
+            }
+            Some(RunSummary { folder, plan, finished, is_stopped })
         };
         folders.into_iter().filter_map(summary).collect()
     }
@@ -86,12 +95,14 @@ pub struct RunSummary {
     pub plan: RunPlan,
     /// How many generations are finished.
     pub finished: u32,
+    /// Whether there are evaluations left for another generation.
+    is_stopped: bool,
 }
 
 impl RunSummary {
     /// Whether there are generations left to evolve.
     pub fn is_stopped(&self) -> bool {
-        self.finished < self.plan.settings.evolution.generations
+        self.is_stopped
     }
 }
 
@@ -104,7 +115,7 @@ pub fn run_name(plan: &RunPlan) -> String {
 }
 
 /// Eight hexadecimal digits that stand for a plan's settings and the engine.
-fn settings_fingerprint(plan: &RunPlan) -> String {
+pub fn settings_fingerprint(plan: &RunPlan) -> String {
     let settings = ron::to_string(&plan.settings).unwrap_or_default();
     let hash = xxh3_64(format!("{ENGINE_VERSION} {settings}").as_bytes()) as u32;
     format!("{hash:08x}")

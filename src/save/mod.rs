@@ -1,12 +1,13 @@
 //! The only place that touches files: runs, champions and presets as text, plots and tables, written so that
 //! a kill at any instant loses nothing that was finished.
 //!
-//! The save format is a set of types of its own, one module per version (`v1`, `v2`, `v3`), apart from the core's
+//! The save format is a set of types of its own, one module per version (`v1` to `v4`), apart from the core's
 //! types, so that the core may change without breaking a file. What is read is checked before it is
 //! used; what is wrong with it is said with the file, the field, the value and what is allowed.
 
 mod champion;
 mod checkpoint;
+mod comparison;
 mod files;
 mod folder;
 mod lock;
@@ -22,13 +23,18 @@ mod settings;
 mod v1;
 mod v2;
 mod v3;
+mod v4;
 
 pub use champion::{
     LoadedChampion, load_champion, parse_champion, shipped_champion, store_champion,
 };
-pub use checkpoint::parse_checkpoint;
+pub use checkpoint::{Knowledge, parse_checkpoint};
+pub use comparison::{
+    CURVE_POINTS, ComparedBest, ComparedRun, Comparison, MOST_RUNS, load_comparison,
+    store_comparison,
+};
 pub use files::SaveError;
-pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name};
+pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name, settings_fingerprint};
 pub use picture::{Picture, store_csv, store_picture};
 pub use plan::{load_plan, parse_plan};
 pub use preset::{

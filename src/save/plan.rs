@@ -6,25 +6,25 @@ use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::files::{Header, parse, read_text, refuse_link, store_ron};
-use super::settings::SettingsV1;
+use super::settings::SettingsV2;
 use crate::ENGINE_VERSION;
 use crate::check::{Invalid, name};
 use crate::evolve::{RunPlan, Settings};
 
 const KIND: &str = "snakes-and-stairs run";
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 pub const RUN_FILE: &str = "run.ron";
 
 /// The file that says what run it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RunV1 {
+struct RunV2 {
     kind: String,
     format: u32,
     engine: u32,
     preset: String,
     seed: u64,
-    settings: SettingsV1,
+    settings: SettingsV2,
 }
 
 /// Reads what run a folder holds.
@@ -47,8 +47,13 @@ pub fn load_plan(folder: &Path) -> Result<RunPlan, SaveError> {
 /// # Errors
 /// As [`load_plan`], apart from reading.
 pub fn parse_plan(path: &Path, text: &str) -> Result<RunPlan, SaveError> {
-    Header::read(path, text, KIND, FORMAT)?;
-    let RunV1 { engine, preset, seed, settings, .. } = parse(path, text)?;
+    if Header::read(path, text, KIND, FORMAT)? != FORMAT {
+        let allowed =
+            format!("{FORMAT}; an earlier version began this run, its champions can be replayed");
+        let source = Invalid::new("format", 1, allowed);
+        return Err(SaveError::Invalid { path: path.to_owned(), source });
+    }
+    let RunV2 { engine, preset, seed, settings, .. } = parse(path, text)?;
     let settings = Settings::from(settings);
     let checked = check_engine(engine)
         .and_then(|()| name("preset", &preset))
@@ -69,7 +74,7 @@ pub fn check_engine(engine: u32) -> Result<(), Invalid> {
 pub fn store_plan(path: &Path, plan: &RunPlan) -> Result<(), SaveError> {
     store_ron(
         path,
-        &RunV1 {
+        &RunV2 {
             kind: KIND.to_owned(),
             format: FORMAT,
             engine: ENGINE_VERSION,

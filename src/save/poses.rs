@@ -168,7 +168,7 @@ mod tests {
     fn recording() -> Recording {
         let trial = Trial::default();
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = GenomeSpace::default().birth(4, trial.duration_s, &mut rng);
+        let genome = GenomeSpace::default().birth(trial.descent(), &mut rng);
         Recording::of(&genome, &trial)
     }
 

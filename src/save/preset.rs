@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::SaveError;
 use super::files::{parse, read_text, store_ron};
-use super::settings::SettingsV1;
+use super::settings::{SettingsV1, SettingsV2};
 use crate::check::{self, Invalid, within};
 use crate::evolve::Settings;
 
@@ -20,26 +20,26 @@ pub struct Preset {
     pub settings: Settings,
 }
 
-/// Format 1 of a preset's file. Never changed once released.
+/// A preset's file: of format 1 or 2, which differ in their settings. Never changed once released.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PresetV1 {
+struct PresetFile<S> {
     /// People write presets by hand: one that does not say its format has the first.
     #[serde(default = "first_format")]
     format: u32,
     name: String,
     about: String,
-    settings: SettingsV1,
+    settings: S,
 }
 
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 fn first_format() -> u32 {
     1
 }
 
 /// The preset used when none is named.
-pub const DEFAULT_PRESET: &str = "report";
+pub const DEFAULT_PRESET: &str = "climb";
 
 /// Lists the shipped presets by their file names.
 macro_rules! shipped {
@@ -52,6 +52,7 @@ macro_rules! shipped {
 }
 
 const SHIPPED: &[(&str, &str)] = shipped![
+    "climb",
     "report",
     "steady",
     "quick",
@@ -95,8 +96,8 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
 /// The file cannot be written.
 pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
     let Preset { name, about, settings } = preset.clone();
-    let file = PresetV1 { format: FORMAT, name, about, settings: settings.into() };
-    store_ron(path, &file)
+    let settings = SettingsV2::from(settings);
+    store_ron(path, &PresetFile { format: FORMAT, name, about, settings })
 }
 
 /// Reads a preset from a text; `path` is what errors call it.
@@ -117,14 +118,18 @@ pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
         let start: String = kind.chars().take(60).collect();
         return Err(invalid(Invalid::new("kind", format!("{start:?}"), "none: it is no preset")));
     }
-    match format {
-        FORMAT => {}
+    let PresetFile { name, about, settings, .. } = match format {
+        1 => {
+            let PresetFile { format, name, about, settings }: PresetFile<SettingsV1> =
+                parse(path, text)?;
+            PresetFile { format, name, about, settings: SettingsV2::from(settings) }
+        }
+        FORMAT => parse(path, text)?,
         0 => return Err(invalid(Invalid::new("format", 0, format!("1 to {FORMAT}")))),
         found => {
             return Err(SaveError::Newer { path: path.to_owned(), found, newest: FORMAT });
         }
-    }
-    let PresetV1 { name, about, settings, .. } = parse(path, text)?;
+    };
     let preset = Preset { name, about, settings: settings.into() };
     check::name("name", &preset.name).map_err(invalid)?;
     within("about", preset.about.len(), 0..=LONGEST_ABOUT).map_err(invalid)?;
@@ -166,9 +171,9 @@ mod tests {
     #[test]
     fn every_preset_lets_one_genome_go_another_way() {
         let presets = shipped_presets().expect("well formed");
-        let report = &presets[0].settings;
+        let report = &load_preset("report").expect("shipped").settings;
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = report.genome.birth(4, report.trial.duration_s, &mut rng);
+        let genome = report.genome.birth(report.trial.descent(), &mut rng);
         // `quick` has the world of the report, and only evolves for a shorter time.
         let worlds = presets.iter().filter(|preset| preset.name != "quick");
         let mut traces: Vec<u64> =
@@ -193,7 +198,7 @@ mod tests {
     fn an_unknown_preset_lists_the_known_ones() {
         let error = load_preset("repotr").unwrap_err().to_string();
         assert!(
-            error.starts_with("preset is \"repotr\"; allowed: report, steady, quick,"),
+            error.starts_with("preset is \"repotr\"; allowed: climb, report, steady, quick,"),
             "{error}"
         );
     }

@@ -8,10 +8,10 @@ use super::SaveError;
 use super::files::{hash_of, refuse_link};
 use super::folder::fingerprint;
 use super::log::{parse_log, read_log_bytes};
-use super::v3::EffortV3;
+use super::v4::RecordedV4;
 use crate::check::{Invalid, within};
-use crate::evolve::{HalvingSettings, RunPlan, Settings};
-use crate::score::Evaluation;
+use crate::evolve::{RunPlan, Settings};
+use crate::score::{Evaluation, FITNESS_RANGE};
 use crate::world::Disqualification;
 
 pub const LOG_FILE: &str = "log.jsonl";
@@ -29,6 +29,10 @@ pub struct GenerationRecord {
     pub disqualified: u32,
     /// On how many of them the program failed.
     pub crashed: u32,
+    /// How many ended on the landing.
+    pub on_landing: u32,
+    /// The first of these; none if there are none.
+    pub first_on_landing: Option<u32>,
     /// Fitness statistics over the healthy ones; none if there were none.
     pub statistics: Option<StatisticsRecord>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
@@ -58,12 +62,8 @@ pub struct EvaluationRecord {
     pub plan: String,
     pub generation: u32,
     pub individual: u32,
-    pub fitness: f32,
-    pub centre_y_m: f32,
     pub disqualified: Option<Disqualification>,
-    pub trace_hash: String,
-    pub steps: u32,
-    pub effort: Option<EffortV3>,
+    pub recorded: RecordedV4,
 }
 
 impl GenerationRecord {
@@ -101,18 +101,25 @@ pub fn parse_records(
     settings: &Settings,
 ) -> Result<Vec<GenerationRecord>, SaveError> {
     let records: Vec<GenerationRecord> = parse_log(path, bytes)?;
-    let HalvingSettings { generations, population, .. } = settings.evolution;
+    let generations = settings.evolution.generations;
+    let most = u32::try_from(settings.evolution.budget()).unwrap_or(u32::MAX);
     let check = |(record, generation): (&GenerationRecord, u32)| {
         within("generation", record.generation, generation..=generation)?;
         within("generation", generation, 1..=generations)?;
-        within("evaluations", record.evaluations, 0..=population)?;
+        within("evaluations", record.evaluations, 0..=most)?;
         within("disqualified", record.disqualified, 0..=record.evaluations)?;
         within("crashed", record.crashed, 0..=record.disqualified)?;
+        within("on_landing", record.on_landing, 0..=record.evaluations)?;
+        if let Some(first) = record.first_on_landing {
+            within("first_on_landing", first, 0..=record.evaluations.saturating_sub(1))?;
+        }
         within("elapsed_s", record.elapsed_s, 0.0..=1.0e9)?;
         if let Some(statistics) = record.statistics {
             let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m } = statistics;
             let values = [mean, best, median, std, worst, mean_centre_y_m];
-            values.into_iter().try_for_each(|value| within("statistics", value, -1.0e6..=1.0e6))?;
+            let (least, most) =
+                (f64::from(*FITNESS_RANGE.start()), f64::from(*FITNESS_RANGE.end()));
+            values.into_iter().try_for_each(|value| within("statistics", value, least..=most))?;
         }
         hash_of("hash", &record.hash).map(drop)
     };
@@ -152,19 +159,10 @@ pub fn parse_evaluations(
         return Ok(Vec::new());
     }
     let read = |record: EvaluationRecord| {
-        let last = plan.settings.evolution.population.saturating_sub(1);
-        within("individual", record.individual, 0..=last)?;
-        within("fitness", record.fitness, -1.0e6..=1.0e6)?;
-        within("centre_y_m", record.centre_y_m, -1.0e6..=1.0e6)?;
-        let trace_hash = hash_of("trace_hash", &record.trace_hash)?;
-        if let Some(effort) = &record.effort {
-            effort.check()?;
-        }
-        let EvaluationRecord { fitness, centre_y_m, disqualified, steps, effort, .. } = record;
-        let effort = effort.map(Into::into);
-        let evaluation =
-            Evaluation { fitness, centre_y_m, disqualified, trace_hash, steps, effort };
-        Ok((record.individual, evaluation))
+        let last = plan.settings.evolution.budget().saturating_sub(1);
+        within("individual", u64::from(record.individual), 0..=last)?;
+        let EvaluationRecord { individual, disqualified, recorded, .. } = record;
+        Ok((individual, Evaluation { disqualified, ..recorded.evaluation()? }))
     };
     let read = records.into_iter().map(read).collect::<Result<_, Invalid>>();
     read.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })

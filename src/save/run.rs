@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::champion::{load_champion, store_champion};
-use super::checkpoint::{checkpoints, load_checkpoint, store_checkpoint, thin};
+use super::checkpoint::{Knowledge, checkpoints, load_checkpoint, store_checkpoint, thin};
 use super::files::{prepare_folder, refuse_link, remove_unfinished};
 use super::folder::{champion_file_name, fingerprint};
 use super::lock::Lock;
@@ -27,7 +27,7 @@ use super::log::Log;
 use super::plan::{RUN_FILE, load_plan, store_plan};
 use super::record::{EVALUATIONS_FILE, EvaluationRecord, LOG_FILE, read_evaluations, read_records};
 use super::{GenerationRecord, SaveError};
-use crate::evolve::{Champion, RunPlan, StrategyState};
+use crate::evolve::{Champion, RunPlan};
 use crate::score::{Evaluation, Recording};
 
 /// A run keeps so many genomes on which the program failed.
@@ -39,8 +39,8 @@ pub struct Progress {
     pub records: Vec<GenerationRecord>,
     /// The champion of each of them; none, if it had none or its file is gone.
     pub champions: Vec<Option<Champion>>,
-    /// What the strategy had learned; none before the first generation is finished.
-    pub state: Option<StrategyState>,
+    /// What had been learned; none before the first generation is finished.
+    pub knowledge: Option<Knowledge>,
     /// What is known of the generation under way: individuals and their evaluations.
     pub evaluations: Vec<(u32, Evaluation)>,
 }
@@ -142,12 +142,8 @@ impl RunFolder {
                 plan: self.plan.clone(),
                 generation,
                 individual,
-                fitness: evaluation.fitness,
-                centre_y_m: evaluation.centre_y_m,
                 disqualified: evaluation.disqualified,
-                trace_hash: format!("{:016x}", evaluation.trace_hash),
-                steps: evaluation.steps,
-                effort: evaluation.effort.map(Into::into),
+                recorded: (*evaluation).into(),
             });
         }
     }
@@ -161,14 +157,14 @@ impl RunFolder {
         &mut self,
         record: &GenerationRecord,
         champion: Option<(&Champion, &Recording)>,
-        state: &StrategyState,
+        knowledge: &Knowledge,
         run_hash: u64,
     ) -> Result<Option<PathBuf>, SaveError> {
         let champion_path = self.champion_path(record.generation);
         if let Some((champion, recording)) = champion {
             store_champion(&champion_path, champion, Some(recording))?;
         }
-        store_checkpoint(&self.path, &self.plan, record.generation, run_hash, state)?;
+        store_checkpoint(&self.path, &self.plan, record.generation, run_hash, knowledge)?;
         self.log.append(record)?;
         // They are in the champion, the checkpoint and the log now.
         self.evaluations_log().take();
@@ -203,7 +199,12 @@ impl RunFolder {
 
 impl Progress {
     fn none() -> Self {
-        Self { records: Vec::new(), champions: Vec::new(), state: None, evaluations: Vec::new() }
+        Self {
+            records: Vec::new(),
+            champions: Vec::new(),
+            knowledge: None,
+            evaluations: Vec::new(),
+        }
     }
 
     /// Reads what a folder has of a run.
@@ -212,7 +213,7 @@ impl Progress {
         let known = checkpoints(folder)?;
         let latest = known.into_iter().filter(|&of| of as usize <= records.len()).max();
         records.truncate(latest.unwrap_or(0) as usize);
-        let state = latest.map(|of| load_checkpoint(folder, of, &records, plan));
+        let knowledge = latest.map(|of| load_checkpoint(folder, of, &records, plan));
         let champion = |record: &GenerationRecord| {
             let path = folder.join(champion_file_name(record.generation));
             let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
@@ -223,7 +224,7 @@ impl Progress {
             Ok(Some(load_champion(&path)?.champion))
         };
         Ok(Self {
-            state: state.transpose()?,
+            knowledge: knowledge.transpose()?,
             champions: records.iter().map(champion).collect::<Result<_, _>>()?,
             evaluations: read_evaluations(folder, records.len() as u32 + 1, plan)?,
             records,

@@ -5,22 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::mirror::mirrors;
 use crate::evolve::Origin;
-use crate::genome::{Genome, JointSignals, Signals};
-use crate::score::{AgentSettings, Fitness, PerPart, Trial};
+use crate::score::{AgentSettings, Fitness, PerPart};
 use crate::world::{HealthLimits, PhysicsSettings, Skin, Stairs, Surface};
 
 mirrors! {
-    TrialV2 = Trial {
-        duration_s: f32,
-        start_y_m: f32,
-        physics: PhysicsV2,
-        stairs: StairsV2,
-        surface: SurfaceV2,
-        ground: GroundV2,
-        agent: AgentV2,
-        fitness: Fitness,
-        health: HealthV2,
-    }
     PhysicsV2 = PhysicsSettings { steps_per_s: u32, substeps: u32, gravity_m_s2: f32 }
     StairsV2 = Stairs {
         steps: u32,
@@ -62,6 +50,21 @@ mirrors! {
         arena_back_m: f32,
     }
     OriginV2 = Origin { preset: String, seed: u64, generation: u32, individual: u32 }
+}
+
+/// The conditions of format 2.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrialV2 {
+    pub duration_s: f32,
+    pub start_y_m: f32,
+    pub physics: PhysicsV2,
+    pub stairs: StairsV2,
+    pub surface: SurfaceV2,
+    pub ground: GroundV2,
+    pub agent: AgentV2,
+    pub fitness: Fitness,
+    pub health: HealthV2,
 }
 
 /// The ground's own surface, if it has one.
@@ -119,36 +122,4 @@ pub struct GenomeV2 {
 pub struct JointTorquesV2 {
     pub bend: Vec<f32>,
     pub twist: Vec<f32>,
-}
-
-impl From<Genome> for GenomeV2 {
-    fn from(genome: Genome) -> Self {
-        let torques = genome.signals.joints.into_iter();
-        Self {
-            bend_limit_rad: genome.bend_limit_rad,
-            twist_limit_rad: genome.twist_limit_rad,
-            density_kg_m3: genome.density_kg_m3,
-            points_per_s: genome.signals.points_per_s,
-            torques_nm: torques
-                .map(|joint| JointTorquesV2 { bend: joint.bend_nm, twist: joint.twist_nm })
-                .collect(),
-        }
-    }
-}
-
-impl From<GenomeV2> for Genome {
-    fn from(file: GenomeV2) -> Self {
-        let joints = file.torques_nm.into_iter();
-        Self {
-            bend_limit_rad: file.bend_limit_rad,
-            twist_limit_rad: file.twist_limit_rad,
-            density_kg_m3: file.density_kg_m3,
-            signals: Signals {
-                points_per_s: file.points_per_s,
-                joints: joints
-                    .map(|joint| JointSignals { bend_nm: joint.bend, twist_nm: joint.twist })
-                    .collect(),
-            },
-        }
-    }
 }

@@ -7,6 +7,9 @@ use std::str::FromStr;
 use crate::check::Invalid;
 use crate::world::{Pose, Stairs};
 
+/// The range of every fitness in a file: that of a trial in which energy costs most is within it.
+pub const FITNESS_RANGE: std::ops::RangeInclusive<f32> = -1.0e15..=1.0e15;
+
 /// What a rollout is scored by. The report chose the first and considered the next three.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -30,23 +33,30 @@ pub enum Fitness {
     /// and within the width. Rewards wrongly: nothing in between, so that all who have not reached
     /// the first step are equal and evolution searches blindly at first.
     StepsClimbed,
+    /// y of the middle limb's centre at the end, in m, as far as it is on the stairs: beside them, inside
+    /// them, or behind them it counts as having come to the first riser and no further, and who stands in the
+    /// middle of the landing has arrived. Rewards wrongly: a leap that the end of the time catches over the
+    /// stairs.
+    Climb,
 }
 
 impl Fitness {
     /// All of them, the default first.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Centre,
         Self::Head,
         Self::CentreOfMass,
         Self::Height,
         Self::FurthestY,
         Self::StepsClimbed,
+        Self::Climb,
     ];
 
     /// The name in flags and files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Centre => "centre",
+            Self::Climb => "climb",
             Self::Head => "head",
             Self::CentreOfMass => "centre_of_mass",
             Self::Height => "height",
@@ -59,6 +69,7 @@ impl Fitness {
     pub fn words(self) -> &'static str {
         match self {
             Self::Centre => "y of the middle block at the end",
+            Self::Climb => "y of the middle block at the end, as far as it is on the stairs",
             Self::Head => "y of the head at the end",
             Self::CentreOfMass => "y of the centre of mass at the end",
             Self::Height => "height of the middle block at the end",
@@ -71,12 +82,18 @@ impl Fitness {
     pub fn rewards_wrongly(self) -> &'static str {
         match self {
             Self::Centre => "Passing the stairs at their side, and being in mid-leap at the end.",
+            Self::Climb => "Being in mid-leap over the stairs at the end.",
             Self::Head => "Stretching or throwing the head forward instead of going anywhere.",
             Self::CentreOfMass => "What the centre does; and a curled snake counts for less.",
             Self::Height => "Jumping and rearing on the spot.",
             Self::FurthestY => "A leap that falls back.",
             Self::StepsClimbed => "Nothing before the first step, so the search begins blindly.",
         }
+    }
+
+    /// Whether it is a place on the y axis.
+    pub fn is_along_y(self) -> bool {
+        !matches!(self, Self::Height | Self::StepsClimbed)
     }
 
     /// The unit, with a space before it, or nothing for a count.
@@ -124,6 +141,12 @@ impl Ending<'_> {
         let middle = self.poses[self.middle_limb].translation;
         match fitness {
             Fitness::Centre => middle.y,
+            Fitness::Climb => {
+                let is_up = self.stairs.steps_under(middle.to_array()) > 0;
+                let arrived_y_m = self.stairs.end_y_m() - self.stairs.landing_m / 2.0;
+                let most = if is_up { arrived_y_m } else { self.stairs.first_riser_y_m };
+                middle.y.min(most)
+            }
             Fitness::Head => self.poses[0].translation.y,
             Fitness::CentreOfMass => {
                 let pairs = self.poses.iter().zip(self.masses_kg);
@@ -167,6 +190,8 @@ mod tests {
         ] {
             assert_eq!(score(fitness, 0.0, 1.5), expected, "{fitness}");
         }
+        assert_eq!(score(Fitness::Climb, 0.0, 1.5), 6.0);
+        assert_eq!(score(Fitness::Climb, 3.0, 0.5), 3.0, "beside the stairs");
         assert_eq!(score(Fitness::StepsClimbed, 3.0, 0.5), 0.0, "beside the stairs");
         assert_eq!(score(Fitness::StepsClimbed, 0.0, 0.5), 0.0, "inside the stairs");
     }

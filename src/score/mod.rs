@@ -5,17 +5,21 @@
 //! advance the same [`Rollout`]; they differ in who watches.
 
 mod agent;
+mod behaviour;
 mod fitness;
 mod per_part;
 mod perturbation;
 mod recording;
+mod repeats;
 mod rollout;
 mod trial;
 
 pub use agent::AgentSettings;
-pub use fitness::Fitness;
+pub use behaviour::Behaviour;
+pub use fitness::{FITNESS_RANGE, Fitness};
 pub use per_part::PerPart;
 pub use perturbation::{Perturbation, PerturbationRange};
 pub use recording::Recording;
+pub use repeats::{Counts, Repeats};
 pub use rollout::{Evaluation, Rollout, evaluate};
 pub use trial::Trial;

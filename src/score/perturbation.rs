@@ -2,12 +2,14 @@
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
 use crate::world::WorldPlan;
 
 /// How far trials may be off. Each value is drawn evenly from both sides.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PerturbationRange {
     /// Share by which the friction of stairs and ground is larger or smaller.
     pub friction: f32,
@@ -34,8 +36,8 @@ impl PerturbationRange {
         within("friction", self.friction, 0.0..=0.9)?;
         within("rise", self.rise, 0.0..=0.9)?;
         within("density", self.density, 0.0..=0.9)?;
-        within("start", self.start_m, 0.0..=5.0)?;
-        within("turn", self.turn_deg, 0.0..=180.0)
+        within("start_m", self.start_m, 0.0..=5.0)?;
+        within("turn_deg", self.turn_deg, 0.0..=180.0)
     }
 
     /// Draws one.

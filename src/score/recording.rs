@@ -87,7 +87,7 @@ mod tests {
 
     fn newborn(trial: &Trial) -> Genome {
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        GenomeSpace::default().birth(trial.agent.joints(), trial.duration_s, &mut rng)
+        GenomeSpace::default().birth(trial.descent(), &mut rng)
     }
 
     #[test]

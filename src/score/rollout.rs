@@ -2,12 +2,15 @@
 
 use xxhash_rust::xxh3::Xxh3Default;
 
+use super::behaviour::Observer;
 use super::fitness::Ending;
-use super::{Fitness, Perturbation, Trial};
-use crate::control::SignalPlayer;
+use super::{Behaviour, Fitness, Perturbation, Trial};
+use crate::control::Driver;
 use crate::genome::Genome;
+use crate::rng::{Purpose, stream};
 use crate::world::{
-    Disqualification, Effort, JointTorque, LimbPlan, Pose, Simulation, Stairs, WorldPlan,
+    Disqualification, Effort, JointState, JointTorque, LimbPlan, Pose, Simulation, Stairs,
+    WorldPlan,
 };
 
 /// What a rollout ended with.
@@ -27,24 +30,40 @@ pub struct Evaluation {
     pub steps: u32,
     /// What these steps demanded of the snake. None in what was recorded before it was measured.
     pub effort: Option<Effort>,
+    /// How it went about it. None in what was recorded before it was observed.
+    pub behaviour: Option<Behaviour>,
 }
 
 impl Evaluation {
     /// Whether both are of the same bits. What one of them did not measure does not count.
     pub fn agrees_with(&self, other: &Self) -> bool {
-        let is_unknown = self.effort.is_none() || other.effort.is_none();
-        Self { effort: None, ..*self } == Self { effort: None, ..*other }
-            && (is_unknown || self.effort == other.effort)
+        fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
+            a.is_none() || b.is_none() || a == b
+        }
+        let bare = |evaluation: &Self| Self { effort: None, behaviour: None, ..*evaluation };
+        bare(self) == bare(other)
+            && agree(self.effort, other.effort)
+            && agree(self.behaviour, other.behaviour)
+    }
+
+    /// Whether the agent ended in good health with all steps of the stairs under its middle limb.
+    pub fn is_on_landing(&self, stairs: &Stairs) -> bool {
+        let climbed = self.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
+        self.disqualified.is_none() && stairs.steps > 0 && climbed == stairs.steps
     }
 }
 
 /// A rollout on its way.
 pub struct Rollout {
     simulation: Simulation,
-    player: SignalPlayer,
+    driver: Driver,
+    felt: Vec<JointState>,
     torques: Vec<JointTorque>,
     poses: Vec<Pose>,
     fitness: Fitness,
+    energy_cost_per_kj: f32,
+    frequency_hz: f32,
+    observer: Observer,
     stairs: Stairs,
     masses_kg: Vec<f32>,
     middle_limb: usize,
@@ -71,11 +90,15 @@ impl Rollout {
     fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
         let simulation = Simulation::new(&plan);
         let mut rollout = Self {
-            player: SignalPlayer::new(genome.signals.clone(), trial.physics.steps_per_s),
+            driver: Driver::new(genome, trial.physics.steps_per_s),
+            felt: Vec::new(),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
             simulation,
             fitness: trial.fitness,
+            energy_cost_per_kj: trial.energy_cost_per_kj,
+            frequency_hz: genome.controller.frequency_hz(),
+            observer: Observer::default(),
             stairs: plan.stairs,
             masses_kg: plan.body.limbs.iter().map(LimbPlan::mass_kg).collect(),
             middle_limb: plan.body.middle_limb(),
@@ -94,7 +117,11 @@ impl Rollout {
         if self.is_over() {
             return false;
         }
-        self.player.torques(self.step, &mut self.torques);
+        if self.driver.feels() {
+            self.felt.clear();
+            self.felt.extend(self.simulation.joint_states());
+        }
+        self.driver.torques(self.step, &self.felt, &mut self.torques);
         if let Err(reason) = self.simulation.step(&self.torques) {
             self.disqualified = Some(reason);
             return false;
@@ -111,6 +138,7 @@ impl Rollout {
             self.trace.update(&bytes);
         }
         self.furthest_y_m = self.furthest_y_m.max(self.poses[self.middle_limb].translation.y);
+        self.observer.see(&self.simulation, &self.stairs, self.middle_limb);
         true
     }
 
@@ -138,19 +166,19 @@ impl Rollout {
             furthest_y_m: self.furthest_y_m,
             stairs: &self.stairs,
         };
+        let effort = self.simulation.effort();
+        let middle = self.poses[self.middle_limb].translation;
+        let cost = self.energy_cost_per_kj * effort.energy_j / 1000.0;
+        let behaviour = self.observer.behaviour(&self.stairs, middle.to_array(), self.frequency_hz);
         Evaluation {
-            fitness: ending.score(self.fitness),
-            centre_y_m: self.poses[self.middle_limb].translation.y,
+            fitness: ending.score(self.fitness) - cost,
+            centre_y_m: middle.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
             steps: self.step,
-            effort: Some(self.simulation.effort()),
+            effort: Some(effort),
+            behaviour: Some(behaviour),
         }
-    }
-
-    /// How many steps are under the middle limb now: see [`Stairs::steps_under`].
-    pub fn steps_under(&self) -> u32 {
-        self.stairs.steps_under(self.poses[self.middle_limb].translation.to_array())
     }
 
     /// The world, to look at.
@@ -164,9 +192,36 @@ impl Rollout {
     }
 }
 
-/// Scores a genome: runs its rollout to the end.
+/// Scores a genome: runs its rollout to the end, and those of the trials that are off, if there are any.
+/// Of these only the fitness counts: see [`super::Repeats`].
+///
+/// How they are off is derived from the genome's own bits, so that a champion's file is enough to score it
+/// again, and no two genomes have learned the same few exceptions by heart.
 pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
-    let mut rollout = Rollout::new(genome, trial);
+    let nominal = finished(Rollout::new(genome, trial));
+    let repeats = &trial.repeats;
+    if repeats.trials <= 1 || nominal.disqualified.is_some() {
+        return nominal;
+    }
+    let mut fitnesses = vec![nominal.fitness];
+    let seed = genome.hash();
+    fitnesses.extend((1..repeats.trials).map(|number| {
+        let perturbation = repeats.off.draw(&mut stream(seed, 0, number, Purpose::Repeat));
+        let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
+        let at_start = rollout.evaluation().fitness;
+        while rollout.advance() {}
+        let evaluation = rollout.evaluation();
+        // Who is disqualified there has got nowhere; nor does it pay where energy costs.
+        if evaluation.disqualified.is_some() {
+            at_start.min(evaluation.fitness)
+        } else {
+            evaluation.fitness
+        }
+    }));
+    Evaluation { fitness: repeats.counts.of(&fitnesses), ..nominal }
+}
+
+fn finished(mut rollout: Rollout) -> Evaluation {
     while rollout.advance() {}
     rollout.evaluation()
 }
@@ -174,12 +229,12 @@ pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
+    use crate::genome::{Controller, GenomeSpace};
     use crate::rng::{Purpose, stream};
 
     fn newborn(individual: u32, trial: &Trial) -> Genome {
         let mut rng = stream(1, 1, individual, Purpose::Birth);
-        GenomeSpace::default().birth(trial.agent.joints(), trial.duration_s, &mut rng)
+        GenomeSpace::default().birth(trial.descent(), &mut rng)
     }
 
     #[test]
@@ -203,7 +258,8 @@ mod tests {
     fn without_torque_the_snake_stays_where_it_starts() {
         let trial = Trial::default();
         let mut genome = newborn(0, &trial);
-        genome.signals.all_mut().for_each(|signal| signal.fill(0.0));
+        let Controller::Signal(signals) = &mut genome.controller else { panic!("no signals") };
+        signals.all_mut().for_each(|signal| signal.fill(0.0));
         let evaluation = evaluate(&genome, &trial);
         assert_eq!(evaluation.disqualified, None);
         assert_eq!(evaluation.steps, 300);

@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{AgentSettings, Fitness};
+use super::{AgentSettings, Fitness, Repeats};
 use crate::check::{Invalid, within};
 use crate::genome::{
-    DENSITY_RANGE_KG_M3, Genome, JointSignals, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD,
-    POINTS_PER_S_RANGE,
+    Controller, DENSITY_RANGE_KG_M3, Descent, Genome, LARGEST_LIMIT_RAD, LARGEST_TORQUE_NM,
 };
 use crate::world::{HealthLimits, PhysicsSettings, Stairs, Surface, WorldPlan};
 
@@ -31,6 +30,10 @@ pub struct Trial {
     pub agent: AgentSettings,
     /// What is rewarded.
     pub fitness: Fitness,
+    /// What energy costs, in units of the fitness per kJ: it is taken off. Without it all effort is free.
+    pub energy_cost_per_kj: f32,
+    /// How many trials make an evaluation.
+    pub repeats: Repeats,
     /// When the snake is disqualified.
     pub health: HealthLimits,
 }
@@ -46,6 +49,8 @@ impl Default for Trial {
             ground: None,
             agent: AgentSettings::default(),
             fitness: Fitness::default(),
+            energy_cost_per_kj: 0.0,
+            repeats: Repeats::default(),
             health: HealthLimits::default(),
         }
     }
@@ -64,6 +69,9 @@ impl Trial {
             ground.check().map_err(|error| error.inside("ground"))?;
         }
         self.agent.check().map_err(|error| error.inside("agent"))?;
+        // At 1000 a joule costs a metre.
+        within("energy_cost_per_kj", self.energy_cost_per_kj, 0.0..=1000.0)?;
+        self.repeats.check().map_err(|error| error.inside("repeats"))?;
         self.health.check().map_err(|error| error.inside("health"))
     }
 
@@ -78,25 +86,18 @@ impl Trial {
         within("bend_limit_rad", genome.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
         within("twist_limit_rad", genome.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
         within("density_kg_m3", genome.density_kg_m3, DENSITY_RANGE_KG_M3)?;
-        within("signals.points_per_s", genome.signals.points_per_s, POINTS_PER_S_RANGE)?;
-        let (joints, expected) = (genome.signals.joints.len(), self.agent.joints());
+        let (joints, expected) = (genome.controller.joints(), self.agent.joints());
         if joints != expected {
             let allowed = format!("{expected}, one per joint of {} limbs", self.agent.limbs);
-            return Err(Invalid::new("signals.joints", format!("{joints} joints"), allowed));
+            return Err(Invalid::new("controller joints", format!("{joints} joints"), allowed));
         }
-        let points = |joint: &JointSignals| joint.bend_nm.len() + joint.twist_nm.len();
-        let torques: usize = genome.signals.joints.iter().map(points).sum();
-        within("signals torque points", torques, 1..=LARGEST_GENOME_TORQUES)?;
-        for (index, joint) in genome.signals.joints.iter().enumerate() {
-            for (axis, signal) in [("bend_nm", &joint.bend_nm), ("twist_nm", &joint.twist_nm)] {
-                let field = format!("signals.joints[{index}].{axis}");
-                if signal.is_empty() {
-                    return Err(Invalid::new(field, "empty", "at least one point"));
-                }
-                signal.iter().try_for_each(|&torque| within(&field, torque, -1.0e6..=1.0e6))?;
+        match &genome.controller {
+            Controller::Signal(signals) => signals.check().map_err(|e| e.inside("signals")),
+            Controller::Wave(waves) => {
+                waves.check(LARGEST_TORQUE_NM).map_err(|e| e.inside("waves"))
             }
+            Controller::Gait(gait) => gait.check().map_err(|e| e.inside("gait")),
         }
-        Ok(())
     }
 
     /// The world in which this trial puts a genome.
@@ -115,6 +116,11 @@ impl Trial {
         }
     }
 
+    /// For whom this trial's genomes are.
+    pub fn descent(&self) -> Descent {
+        Descent { joints: self.agent.joints(), duration_s: self.duration_s }
+    }
+
     /// The material of the ground.
     pub fn ground(&self) -> &Surface {
         self.ground.as_ref().unwrap_or(&self.surface)
@@ -130,7 +136,7 @@ impl Trial {
 #[cfg(test)]
 mod tests {
     use crate::evolve::{Settings, with_fields};
-    use crate::genome::GenomeSpace;
+    use crate::genome::{Descent, GenomeSpace};
     use crate::rng::{Purpose, stream};
     use crate::score::evaluate;
 
@@ -164,7 +170,11 @@ mod tests {
     fn trace(settings: &Settings) -> u64 {
         let joints = settings.trial.agent.joints();
         let mut rng = stream(1, 1, A_TRAVELLER, Purpose::Birth);
-        evaluate(&GenomeSpace::default().birth(joints, 5.0, &mut rng), &settings.trial).trace_hash
+        evaluate(
+            &GenomeSpace::default().birth(Descent { joints, duration_s: 5.0 }, &mut rng),
+            &settings.trial,
+        )
+        .trace_hash
     }
 
     #[test]
@@ -231,7 +241,7 @@ mod tests {
         ];
         let settings = with_fields(&Settings::default(), changes).expect("allowed");
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = GenomeSpace::default().birth(2, 1.0, &mut rng);
+        let genome = GenomeSpace::default().birth(Descent { joints: 2, duration_s: 1.0 }, &mut rng);
         let body = settings.trial.world_plan(&genome).body;
         let limbs: Vec<_> =
             body.limbs.iter().map(|limb| (limb.width_m, limb.density_kg_m3)).collect();

@@ -20,7 +20,7 @@ pub use health::{Disqualification, HealthLimits};
 pub use physics::PhysicsSettings;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
-pub use simulation::{JointTorque, Simulation, WorldPlan};
+pub use simulation::{JointState, JointTorque, Simulation, WorldPlan};
 pub use stairs::{StairBox, Stairs};
 pub use surface::{BOUNCE_RANGE, BOUNCE_VELOCITY_RANGE, DAMPEN_RANGE, FRICTION_RANGE};
 pub use surface::{SLIP_RANGE, SOFT_CFM_RANGE, SOFT_ERP_RANGE};

@@ -49,6 +49,19 @@ pub struct JointTorque {
     pub twist_nm: f32,
 }
 
+/// How a joint stands, as the snake feels it: the rear limb as seen from the front limb.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct JointState {
+    /// Bend about the front limb's x axis, in radians.
+    pub bend_rad: f32,
+    /// Twist about the front limb's y axis, in radians.
+    pub twist_rad: f32,
+    /// Rate of turn about the front limb's x axis, in rad/s.
+    pub bend_rad_s: f32,
+    /// Rate of turn about the front limb's y axis, in rad/s.
+    pub twist_rad_s: f32,
+}
+
 /// A running world.
 pub struct Simulation {
     physics: PhysicsWorld,
@@ -235,6 +248,40 @@ impl Simulation {
     /// The pose of each limb's centre, head first.
     pub fn poses(&self) -> impl ExactSizeIterator<Item = Pose> + '_ {
         self.limbs.iter().map(|&limb| *self.physics.bodies[limb].position())
+    }
+
+    /// How each joint stands, from the head: see [`universal_joint`] for what its angles are.
+    pub fn joint_states(&self) -> impl ExactSizeIterator<Item = JointState> + '_ {
+        self.limbs.windows(2).map(|pair| {
+            let [front, rear] = [pair[0], pair[1]].map(|limb| &self.physics.bodies[limb]);
+            let into_front = front.rotation().inverse();
+            let turn = into_front * *rear.rotation();
+            let rate = into_front * (rear.angvel() - front.angvel());
+            // A rotation and its negative are the same; the one with w ≥ 0 is the short way round.
+            let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
+            let angle_rad = |part: f32| 2.0 * libm::atan2f(sign * part, sign * turn.w);
+            JointState {
+                bend_rad: angle_rad(turn.x),
+                twist_rad: angle_rad(turn.y),
+                bend_rad_s: rate.x,
+                twist_rad_s: rate.y,
+            }
+        })
+    }
+
+    /// How many limbs touch the ground or the stairs.
+    pub fn limbs_in_contact(&self) -> usize {
+        let touches = |&&limb: &&RigidBodyHandle| {
+            let collider = self.physics.bodies[limb].colliders()[0];
+            self.physics.narrow_phase.contact_pairs_with(collider).any(|pair| {
+                let other =
+                    if pair.collider1 == collider { pair.collider2 } else { pair.collider1 };
+                let is_world = other == self.contacts.ground
+                    || self.physics.colliders[other].parent().is_none();
+                is_world && pair.has_any_active_contact()
+            })
+        };
+        self.limbs.iter().filter(touches).count()
     }
 
     /// Handles of the limbs in the physics world's body set, head first.

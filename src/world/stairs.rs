@@ -106,6 +106,15 @@ impl Stairs {
         if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
     }
 
+    /// Height of what is below a point of the floor plan, in metres: a tread, the landing, or the ground.
+    pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
+        if x_m.abs() <= self.width_m / 2.0 && y_m <= self.end_y_m() {
+            self.rise_m * self.steps_climbed(f64::from(y_m)) as f32
+        } else {
+            0.0
+        }
+    }
+
     /// What it means, in words, that the centre of a snake `snake_length_m` long that started at
     /// `start_y_m` now stands at `y_m`. These are the words of the report's Table 1.
     pub fn meaning(&self, y_m: f64, start_y_m: f64, snake_length_m: f64) -> String {

@@ -22,7 +22,7 @@ fn an_unknown_preset() {
     let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
     assert_eq!(
         message,
-        "error: preset is \"nosuch\"; allowed: report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file"
+        "error: preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file"
     );
 }
 
@@ -50,7 +50,7 @@ fn a_setting_that_does_not_exist_or_is_out_of_range() {
     let message = refusal(folder.path(), "--no-render --set surface.slip_m_s_per_n=-1", 2);
     assert_eq!(message, "error: trial.surface.slip_m_s_per_n is -1; allowed: 0 to 10");
     let message = refusal(folder.path(), "--no-render --fitness speed", 2);
-    let allowed = "centre, head, centre_of_mass, height, furthest_y, steps_climbed";
+    let allowed = "centre, head, centre_of_mass, height, furthest_y, steps_climbed, climb";
     assert_eq!(message, format!("error: fitness is \"speed\"; allowed: {allowed}"));
     let message = refusal(folder.path(), "table1 --seeds 0", 2);
     assert_eq!(message, "error: seeds is 0; allowed: 1 to 10000");
@@ -124,9 +124,9 @@ fn a_foreign_save() {
 
 #[test]
 fn a_newer_save() {
-    let message = refusal_of_save(|text| text.replace("format: 3,", "format: 4,"));
+    let message = refusal_of_save(|text| text.replace("format: 3,", "format: 5,"));
     let reason = "(a newer version of Snakes & Stairs wrote this file)";
-    assert_eq!(message, format!("error: save.ron: format is 4; allowed: 1 to 3 {reason}"));
+    assert_eq!(message, format!("error: save.ron: format is 5; allowed: 1 to 4 {reason}"));
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn an_output_folder_that_cannot_be_written() {
     };
     let last = message.lines().last().expect("a line");
     assert!(
-        last.starts_with("error: taken/report-seed1-") && last.contains(": cannot be written: "),
+        last.starts_with("error: taken/climb-seed1-") && last.contains(": cannot be written: "),
         "{message}"
     );
     let kept = fs::read_to_string(folder.path().join("taken")).expect("read");

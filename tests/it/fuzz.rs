@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::FileFailurePersistence;
-use snakes_and_stairs::evolve::{RunPlan, Settings, with_field};
+use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
+use snakes_and_stairs::genome::ControllerKind;
 use snakes_and_stairs::save::{
     fingerprint, parse_champion, parse_checkpoint, parse_evaluations, parse_plan, parse_preset,
     parse_records,
@@ -148,13 +149,31 @@ fn plan() -> (RunPlan, String) {
 
 #[test]
 fn no_checkpoint_stops_the_program() {
-    let (plan, fingerprint) = plan();
-    let read = |path: &Path, text: &str| {
-        parse_checkpoint(path, &text.replace("PLAN", &fingerprint), &plan).map(drop)
-    };
-    let untouched = include_str!("../../fuzz/corpus/checkpoint/two-parents");
-    read(Path::new("x"), untouched).expect("the corpus begins with what is allowed");
-    read_all("checkpoint", read);
+    for (strategy, controller, untouched) in [
+        (StrategyKind::Halving, ControllerKind::Signal, "two-parents"),
+        (StrategyKind::Ga, ControllerKind::Gait, "ga"),
+        (StrategyKind::CmaEs, ControllerKind::Gait, "cma-es"),
+        (StrategyKind::MapElites, ControllerKind::Gait, "map-elites"),
+        (StrategyKind::Novelty, ControllerKind::Gait, "novelty"),
+        (StrategyKind::Random, ControllerKind::Gait, "random"),
+    ] {
+        let (mut plan, _) = plan();
+        plan.settings.evolution.strategy = strategy;
+        plan.settings.genome.controller = controller;
+        let fingerprint = fingerprint(&plan);
+        let read = |path: &Path, text: &str| {
+            parse_checkpoint(path, &text.replace("PLAN", &fingerprint), &plan).map(|read| {
+                // What is accepted can be gone on with.
+                let (generation, _, knowledge) = read;
+                let strategy = resume(&plan, generation, knowledge.strategy);
+                drop(strategy.expect("it passed the same check").ask());
+            })
+        };
+        let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/checkpoint");
+        let untouched = fs::read_to_string(corpus.join(untouched)).expect("a file");
+        read(Path::new("x"), &untouched).expect("the corpus begins with what is allowed");
+        read_all("checkpoint", read);
+    }
 }
 
 /// The lines with true checksums, without which hardly any would get past them.

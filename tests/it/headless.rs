@@ -37,11 +37,13 @@ fn json_lines_have_the_documented_fields() {
                 "disqualified",
                 "elapsed_s",
                 "evaluations",
+                "first_on_landing",
                 "generation",
                 "hash",
                 "mean",
                 "meaning",
                 "median",
+                "on_landing",
                 "std",
                 "worst"
             ]
@@ -66,7 +68,7 @@ fn a_replay_that_differs_from_its_record_fails() {
     let lines = json_lines(folder.path(), &format!("{SMALL} --json --out out"));
     let path = folder.path().join(lines[3]["champion"].as_str().expect("a path"));
     let text = std::fs::read_to_string(&path).expect("read");
-    let other_density = text.replace("density_kg_m3: 0.", "density_kg_m3: 1.");
+    let other_density = text.replace("density_kg_m3: 2.", "density_kg_m3: 4.");
     assert_ne!(text, other_density);
     std::fs::write(&path, other_density).expect("written");
     let output = run(folder.path(), &format!("replay {} --no-render --json", path.display()));
@@ -224,7 +226,7 @@ fn the_interrupt_key_ends_a_run_in_good_order_and_keeps_its_best() {
     assert_eq!(child.wait().expect("ended").code(), Some(1), "{stderr}");
     assert!(
         stderr.contains("cancelled after generation ")
-            && stderr.contains("it goes on with --resume out/report-seed1-"),
+            && stderr.contains("it goes on with --resume out/climb-seed1-"),
         "{stderr}"
     );
     assert!(std::fs::read_dir(folder.path().join("out")).expect("a folder").count() >= 1);

@@ -243,7 +243,8 @@ fn runs(all: &mut Collection, good: &Path) {
     let read = |file: &str| fs::read_to_string(good.join(file)).expect("a file of the good run");
     let (plan, log, checkpoint) = (read("run.ron"), read("log.jsonl"), read("checkpoint-2.ron"));
     for (from, to) in [
-        ("format: 1", "format: 2"),
+        ("format: 2", "format: 1"),
+        ("format: 2", "format: 3"),
         ("engine: 2", "engine: 1"),
         ("engine: 2", "engine: 3"),
         ("kind: \"snakes-and-stairs run\"", "kind: \"snakes-and-stairs champion\""),
@@ -263,12 +264,13 @@ fn runs(all: &mut Collection, good: &Path) {
         all.add_to_run(format!("run.ron cut off at {place}"), "run.ron", &plan.as_bytes()[..place]);
     }
     for (from, to) in [
-        ("format: 1", "format: 2"),
+        ("format: 2", "format: 1"),
+        ("format: 2", "format: 3"),
         ("engine: 2", "engine: 1"),
         ("generation: 2", "generation: 1"),
         ("run_hash: \"", "run_hash: \"0"),
         ("run_hash: \"", "run_hash: \"x"),
-        ("Halving(", "Genetic("),
+        ("Halving(", "Points("),
         ("parents: [", "parents: [1, "),
         ("parents: [", "parents: [], was: ["),
         ("bend: [", "bend: [NaN, "),
@@ -360,9 +362,10 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// A run that was stopped after two of its three generations.
-fn good_run(folder: &Path) -> PathBuf {
+fn good_run(folder: &Path, settings: &str) -> PathBuf {
     let arguments = "--no-render --population 4 --generations 3 --duration 0.2 --out good";
-    assert!(run(folder, arguments).status.success());
+    let arguments = format!("{arguments} --preset report {settings}");
+    assert!(run(folder, &arguments).status.success());
     let good = fs::read_dir(folder.join("good")).expect("a folder").next().expect("a run");
     let good = good.expect("a run").path();
     let log = fs::read_to_string(good.join("log.jsonl")).expect("read");
@@ -400,7 +403,7 @@ fn fault(folder: &Path, opened: As, path: &Path) -> Option<String> {
 #[test]
 fn every_hostile_file_gets_one_line_of_error_within_200_mib() {
     let folder = folder();
-    let good = good_run(folder.path());
+    let good = good_run(folder.path(), "");
     let mut all = Collection::default();
     champions(&mut all);
     presets(&mut all);
@@ -428,6 +431,56 @@ fn every_hostile_file_gets_one_line_of_error_within_200_mib() {
     assert!(!folder.path().join("out").exists(), "nothing was begun");
 }
 
+#[test]
+fn damage_to_what_any_strategy_knows_is_refused() {
+    let nonsense = [
+        ("point: [", "point: [1.0, "),
+        ("point: [", "point: [NaN, "),
+        ("point: [", "point: [1.0e300, "),
+        ("step: 0", "step: 7000000"),
+        ("step: 0", "step: -0"),
+        ("population: 4", "population: 4000000000"),
+        ("population: 4", "population: 5"),
+        ("population: 4", "population: 0"),
+        ("mean: [", "mean: [0.5, "),
+        ("mean: [", "mean: [inf, "),
+        ("covariance: [", "covariance: [-"),
+        ("covariance: [", "covariance: [1.0, "),
+        (
+            "elites: [(",
+            "elites: [(99999, (fitness: 1.0, generation: 1, individual: 0, point: [])), (",
+        ),
+        ("fitness: ", "fitness: 1.0e30, x: "),
+        ("archive: [(", "archive: [(2.0, 0.0, 0.0), ("),
+        ("front: [", "front: [1, "),
+        ("terms: [(", "terms: [(1.0e9, 0.0), ("),
+        ("contact_duty: ", "contact_duty: NaN, x: "),
+    ];
+    let mut tried = 0;
+    for strategy in ["ga", "cma_es", "map_elites", "novelty", "random"] {
+        let folder = folder();
+        // A smaller budget than CMA-ES with restarts could ask for.
+        let settings = format!(
+            "--set controller=gait --set strategy={strategy} --set cma_share=1 --set health.joint_drift_m=1"
+        );
+        let good = good_run(folder.path(), &settings);
+        let checkpoint = fs::read_to_string(good.join("checkpoint-2.ron")).expect("read");
+        for (number, (from, to)) in nonsense.iter().enumerate() {
+            if !checkpoint.contains(from) {
+                continue;
+            }
+            let path = PathBuf::from(format!("run-{number}")).join("checkpoint-2.ron");
+            let place = folder.path().join(&path);
+            copy(&good, place.parent().expect("a run"));
+            fs::write(&place, checkpoint.replacen(from, to, 1)).expect("written");
+            let fault = fault(folder.path(), As::Run, &path);
+            assert_eq!(fault, None, "{strategy}: {to}");
+            tried += 1;
+        }
+    }
+    assert!(tried >= 30, "only {tried} of the replacements met anything");
+}
+
 /// What is no file, or leads elsewhere.
 #[cfg(unix)]
 #[test]
@@ -435,7 +488,7 @@ fn links_folders_and_pipes_in_the_place_of_files_are_refused_and_not_followed() 
     use std::os::unix::fs::symlink;
 
     let folder = folder();
-    let good = good_run(folder.path());
+    let good = good_run(folder.path(), "");
     let secret = folder.path().join("secret");
     fs::write(&secret, "do not touch").expect("written");
     let files = [

@@ -215,6 +215,7 @@ fn short_name(fitness: Fitness) -> &'static str {
         Fitness::Height => "Height",
         Fitness::FurthestY => "Furthest y ever",
         Fitness::StepsClimbed => "Steps climbed",
+        Fitness::Climb => "Climb: y on the stairs",
     }
 }
 

@@ -1,0 +1,251 @@
+//! MAP-Elites (Mouret and Clune, arXiv:1504.04909): an archive of the best of every kind, and emitters that fill
+//! it: one that varies elites by normally distributed steps along the line to another (Vassiliades and
+//! Mouret, GECCO 2018), and one that searches for improvements by CMA-ES (Fontaine and others, GECCO 2020).
+
+use rand::RngExt;
+use serde::{Deserialize, Serialize};
+
+use super::archive::Addition;
+use super::cma::{Cma, Ranked};
+use super::cma_es::shape;
+use super::search::{Search, normal};
+use super::{Archive, Descriptor, Elite, PointState, RunPlan, Strategy, StrategyState};
+use crate::check::{Invalid, within};
+use crate::genome::Genome;
+use crate::rng::Purpose;
+use crate::score::Evaluation;
+
+/// Settings of MAP-Elites.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapElitesSettings {
+    /// What the columns of the archive tell apart.
+    pub x: Descriptor,
+    /// What its rows tell apart.
+    pub y: Descriptor,
+    /// Columns, and rows.
+    pub cells: u32,
+    /// Standard deviation of the steps of the Gaussian emitter, as a share of each gene's range.
+    pub step: f32,
+    /// Standard deviation of its steps along the line to another elite, in lengths of that line.
+    pub line: f32,
+    /// Share of each generation that the CMA-ES emitter makes.
+    pub cma_share: f32,
+    /// Step at which the CMA-ES emitter begins around an elite.
+    pub cma_step: f32,
+}
+
+impl Default for MapElitesSettings {
+    fn default() -> Self {
+        Self {
+            x: Descriptor::BodyHeight,
+            y: Descriptor::EnergyPerMetre,
+            cells: 16,
+            step: 0.03,
+            line: 0.2,
+            cma_share: 0.5,
+            cma_step: 0.1,
+        }
+    }
+}
+
+impl MapElitesSettings {
+    /// Checks every field against its range.
+    pub fn check(&self) -> Result<(), Invalid> {
+        if self.x == self.y {
+            let allowed = "another descriptor than that of x";
+            return Err(Invalid::new("y", self.y.name(), allowed));
+        }
+        within("cells", self.cells, 2..=100)?;
+        within("step", self.step, 0.0..=1.0)?;
+        within("line", self.line, 0.0..=2.0)?;
+        within("cma_share", self.cma_share, 0.0..=1.0)?;
+        within("cma_step", self.cma_step, 1.0e-6..=1.0)
+    }
+}
+
+/// What MAP-Elites knows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapElitesState {
+    /// The elites, each with the number of its cell.
+    elites: Vec<(u32, Elite)>,
+    /// The CMA-ES emitter, if it is at work.
+    emitter: Option<Cma>,
+}
+
+/// MAP-Elites at work.
+#[derive(Debug, Clone)]
+pub struct MapElites {
+    settings: MapElitesSettings,
+    search: Search,
+    archive: Archive,
+    emitter: Option<Cma>,
+    start_y_m: f32,
+}
+
+impl MapElites {
+    /// A fresh search.
+    pub fn new(plan: &RunPlan) -> Self {
+        let settings = plan.settings.evolution.map_elites.clone();
+        let trial = &plan.settings.trial;
+        // Who stays has the fitness of its start; for a kind of fitness that counts no metres, nothing.
+        let floor = if trial.fitness.is_along_y() { trial.start_y_m } else { 0.0 };
+        Self {
+            archive: Archive::new(settings.x, settings.y, settings.cells, floor),
+            settings,
+            search: Search::new(plan, 0),
+            emitter: None,
+            start_y_m: trial.start_y_m,
+        }
+    }
+
+    /// A search that goes on.
+    pub fn resumed(plan: &RunPlan, finished: u32, state: MapElitesState) -> Result<Self, Invalid> {
+        let mut search = Self::new(plan);
+        search.search = Search::new(plan, finished);
+        for (_, elite) in &state.elites {
+            search.search.check(&elite.point)?;
+        }
+        search.archive.restore(state.elites)?;
+        if let Some(emitter) = &state.emitter {
+            emitter.check().map_err(|error| error.inside("emitter"))?;
+            search.search.check(emitter.mean())?;
+            for (field, step) in
+                [("emitter.step", emitter.step()), ("emitter.initial_step", emitter.initial_step)]
+            {
+                within(field, step, 0.0..=1.0e6)?;
+            }
+            let expected = search.emitter_population();
+            within("emitter.population", emitter.population() as usize, expected..=expected)?;
+        }
+        search.emitter = state.emitter;
+        Ok(search)
+    }
+
+    /// How many of a generation the CMA-ES emitter makes; it cannot work with fewer than four.
+    fn emitter_population(&self) -> usize {
+        let wanted = self.search.population as f64 * f64::from(self.settings.cma_share);
+        if wanted < 4.0 { 0 } else { wanted as usize }
+    }
+
+    fn points(&self) -> Vec<Vec<f64>> {
+        let mut points = match &self.emitter {
+            Some(cma) => {
+                cma.candidates(|index| self.search.stream(index as usize, Purpose::Sample))
+            }
+            None => Vec::new(),
+        };
+        let elites: Vec<&Elite> = self.archive.elites().map(|(_, elite)| elite).collect();
+        while points.len() < self.search.population {
+            let individual = points.len();
+            points.push(if elites.is_empty() {
+                self.search.newborn_point(individual)
+            } else {
+                self.varied(individual, &elites)
+            });
+        }
+        points
+    }
+
+    /// An elite, moved by a normally distributed step in every gene and along the line to another elite.
+    fn varied(&self, individual: usize, elites: &[&Elite]) -> Vec<f64> {
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let parent = elites[rng.random_range(0..elites.len())];
+        let other = elites[rng.random_range(0..elites.len())];
+        let along = f64::from(self.settings.line) * normal(&mut rng);
+        let step = f64::from(self.settings.step);
+        let pairs = parent.point.iter().zip(&other.point);
+        pairs.map(|(x, to)| x + step * normal(&mut rng) + along * (to - x)).collect()
+    }
+
+    /// Lets the emitter learn: who opened a cell comes first, then who improved one, then the others, each by
+    /// how much. If nobody did either, or the search has come to its end, it begins again at another elite.
+    fn teach(&mut self, points: &[Vec<f64>], evaluations: &[Evaluation], additions: &[Addition]) {
+        let share = self.emitter_population();
+        let mut has_ended = true;
+        if let Some(cma) = &mut self.emitter {
+            let worth = |index: usize| match additions[index] {
+                Addition::New => (2, f64::from(evaluations[index].fitness)),
+                Addition::Better(by) => (1, f64::from(by)),
+                Addition::None if evaluations[index].disqualified.is_some() => {
+                    (-1, f64::from(evaluations[index].steps))
+                }
+                Addition::None => (0, f64::from(evaluations[index].fitness)),
+            };
+            let mut order: Vec<usize> = (0..share).collect();
+            order.sort_by(|&a, &b| {
+                let ((class_a, worth_a), (class_b, worth_b)) = (worth(a), worth(b));
+                class_b.cmp(&class_a).then(worth_b.total_cmp(&worth_a))
+            });
+            // What the end of a search is judged by is not known here: values that all differ never end it.
+            let ranked: Vec<Ranked> = order
+                .iter()
+                .enumerate()
+                .map(|(rank, &index)| {
+                    let place = (share - rank) as f64 + f64::from(cma.iteration());
+                    Ranked { point: &points[index], value: place }
+                })
+                .collect();
+            let is_fruitless = additions[..share].iter().all(|a| *a == Addition::None);
+            has_ended = cma.update(&ranked).is_err() || cma.stop().is_some() || is_fruitless;
+        }
+        if has_ended {
+            self.emitter = self.fresh_emitter();
+        }
+    }
+
+    fn fresh_emitter(&self) -> Option<Cma> {
+        let population = self.emitter_population();
+        let elites: Vec<&Elite> = self.archive.elites().map(|(_, elite)| elite).collect();
+        if population == 0 || elites.is_empty() {
+            return None;
+        }
+        let mut rng = self.search.stream(0, Purpose::Restart);
+        let start = elites[rng.random_range(0..elites.len())].point.clone();
+        let shape = shape(self.search.dimension);
+        // The settings' check has ruled errors out; without it the other emitter makes all.
+        Cma::new(start, self.settings.cma_step.into(), population as u32, shape, true).ok()
+    }
+}
+
+impl Strategy for MapElites {
+    fn ask(&self) -> Vec<Genome> {
+        self.search.genomes(&self.points())
+    }
+
+    fn population(&self) -> usize {
+        self.search.population
+    }
+
+    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+        let points = self.points();
+        let add = |(index, (point, evaluation)): (usize, (&Vec<f64>, &Evaluation))| {
+            let Some(cell) = self.archive.cell(evaluation, self.start_y_m) else {
+                return Addition::None;
+            };
+            let elite = Elite {
+                fitness: evaluation.fitness,
+                generation: self.search.generation,
+                individual: index as u32,
+                // So that a line between two elites is no longer than it has to be.
+                point: self.search.folded(point),
+            };
+            self.archive.add(cell, elite)
+        };
+        let additions: Vec<Addition> =
+            points.iter().zip(evaluations).enumerate().map(add).collect();
+        self.teach(&points, evaluations, &additions);
+        self.search.generation += 1;
+    }
+
+    fn state(&self) -> StrategyState {
+        let elites = self.archive.elites().map(|(cell, elite)| (cell, elite.clone())).collect();
+        let emitter = self.emitter.clone();
+        StrategyState::Points(PointState::MapElites(MapElitesState { elites, emitter }))
+    }
+
+    fn archive(&self) -> Option<&Archive> {
+        Some(&self.archive)
+    }
+}
