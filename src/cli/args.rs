@@ -90,6 +90,9 @@ pub struct Args {
     /// Folder of saved champions [default: ./saves if there is one, else the platform's data folder]
     #[arg(long, global = true, value_name = "DIR")]
     saves: Option<PathBuf>,
+    /// Open the studio with the result of `snakes compare`
+    #[arg(long, global = true, value_name = "FILE")]
+    pub comparison: Option<PathBuf>,
     /// Size of the window in pixels
     #[arg(long, global = true, value_name = "WIDTHxHEIGHT")]
     window_size: Option<String>,

@@ -100,11 +100,13 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         }
         _ => None,
     };
+    let comparison = args.comparison.as_deref().map(crate::save::load_comparison).transpose();
     let options = studio::Options {
         run: args.run_source()?,
         threads: args.studio_threads()?,
         saves: args.saves_folder(),
         champion,
+        comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         exit_after_frames: args.exit_after_frames()?,
     };

@@ -167,6 +167,6 @@ impl Strategy for CmaEs {
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::Points(PointState::CmaEs(self.state.clone()))
+        StrategyState::points(PointState::CmaEs(self.state.clone()))
     }
 }

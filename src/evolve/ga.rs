@@ -31,6 +31,9 @@ pub struct GaSettings {
     /// Step of mutation of the first generation's children, as a share of each gene's range. Later it is
     /// inherited and mutates itself.
     pub step: f32,
+    /// What the steps are multiplied by with each generation, beside what they evolve to. Below 1 the search
+    /// settles: what was found becomes the habit of all, as in the report's method.
+    pub cooling: f32,
     /// How many of the best go on unchanged. They are evaluated again and count.
     pub elites: u32,
 }
@@ -74,6 +77,7 @@ impl Default for GaSettings {
             crossover_share: 0.5,
             mutation: Mutation::Gaussian,
             step: 0.1,
+            cooling: 1.0,
             elites: 2,
         }
     }
@@ -90,6 +94,7 @@ impl GaSettings {
         within("tournament", self.tournament, 1..=1000)?;
         within("crossover_share", self.crossover_share, 0.0..=1.0)?;
         within("step", self.step, 1.0e-4..=0.5)?;
+        within("cooling", self.cooling, 0.5..=1.0)?;
         within("elites", self.elites, 0..=super::LARGEST_POPULATION)
     }
 }
@@ -219,7 +224,8 @@ impl Breeder {
     }
 
     fn mutate(&self, child: &mut Member, rng: &mut ChaCha8Rng) {
-        let step = child.step * libm::exp(LEARNING_RATE * normal(rng));
+        let cooling = f64::from(self.settings.cooling);
+        let step = child.step * cooling * libm::exp(LEARNING_RATE * normal(rng));
         child.step = step.clamp(*STEPS.start(), *STEPS.end());
         // A uniform distribution in ±√3 has variance 1.
         let half = 3.0_f64.sqrt();
@@ -265,7 +271,7 @@ impl Strategy for Ga {
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::Points(PointState::Ga(self.breeder.state()))
+        StrategyState::points(PointState::Ga(self.breeder.state()))
     }
 }
 

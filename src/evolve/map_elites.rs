@@ -242,7 +242,7 @@ impl Strategy for MapElites {
     fn state(&self) -> StrategyState {
         let elites = self.archive.elites().map(|(cell, elite)| (cell, elite.clone())).collect();
         let emitter = self.emitter.clone();
-        StrategyState::Points(PointState::MapElites(MapElitesState { elites, emitter }))
+        StrategyState::points(PointState::MapElites(MapElitesState { elites, emitter }))
     }
 
     fn archive(&self) -> Option<&Archive> {

@@ -66,7 +66,14 @@ pub enum StrategyState {
     /// Of the report's method: the parents of the next generation, best first.
     Halving(Vec<Genome>),
     /// Of a method that searches among points of the unit cube.
-    Points(PointState),
+    Points(Box<PointState>),
+}
+
+impl StrategyState {
+    /// Of a method that searches among points.
+    fn points(state: PointState) -> Self {
+        Self::Points(Box::new(state))
+    }
 }
 
 /// What a strategy that searches among points has learned.
@@ -107,23 +114,30 @@ pub fn resume(
 ) -> Result<Box<dyn Strategy>, Invalid> {
     use {PointState as P, StrategyKind as K, StrategyState as S};
     let kind = plan.settings.evolution.strategy;
-    Ok(match (kind, state) {
+    let points = match (kind, state) {
         (K::Halving, S::Halving(parents)) => {
-            Box::new(halving::Halving::resumed(plan, finished, parents)?)
+            return Ok(Box::new(halving::Halving::resumed(plan, finished, parents)?));
         }
-        (K::Ga, S::Points(P::Ga(state))) => Box::new(ga::Ga::resumed(plan, finished, state)?),
-        (K::CmaEs, S::Points(P::CmaEs(state))) => {
-            Box::new(cma_es::CmaEs::resumed(plan, finished, state)?)
-        }
-        (K::MapElites, S::Points(P::MapElites(state))) => {
+        (_, S::Points(points)) => points,
+        (_, S::Halving(_)) => return Err(foreign(kind)),
+    };
+    Ok(match (kind, *points) {
+        (K::Ga, P::Ga(state)) => Box::new(ga::Ga::resumed(plan, finished, state)?),
+        (K::CmaEs, P::CmaEs(state)) => Box::new(cma_es::CmaEs::resumed(plan, finished, state)?),
+        (K::MapElites, P::MapElites(state)) => {
             Box::new(map_elites::MapElites::resumed(plan, finished, state)?)
         }
-        (K::Novelty, S::Points(P::Novelty(state))) => {
+        (K::Novelty, P::Novelty(state)) => {
             Box::new(novelty::Novelty::resumed(plan, finished, state)?)
         }
-        (K::Random, S::Points(P::Random)) => Box::new(random::Random::resumed(plan, finished)),
-        _ => return Err(Invalid::new("strategy", "another strategy's", format!("that of {kind}"))),
+        (K::Random, P::Random) => Box::new(random::Random::resumed(plan, finished)),
+        _ => return Err(foreign(kind)),
     })
+}
+
+/// A state of another strategy than the plan's.
+fn foreign(kind: StrategyKind) -> Invalid {
+    Invalid::new("strategy", "another strategy's", format!("that of {kind}"))
 }
 
 /// The indices of the agents that may become parents, best first. Disqualified ones may not; of equals

@@ -201,7 +201,7 @@ impl Strategy for Novelty {
 
     fn state(&self) -> StrategyState {
         let members = self.breeder.state();
-        StrategyState::Points(PointState::Novelty(NoveltyState {
+        StrategyState::points(PointState::Novelty(NoveltyState {
             members,
             archive: self.archive.clone(),
         }))
@@ -258,9 +258,8 @@ mod tests {
             settings
         }));
         search.tell(&genomes, &evaluations);
-        let StrategyState::Points(PointState::Novelty(state)) = search.state() else {
-            panic!("another state")
-        };
+        let StrategyState::Points(points) = search.state() else { panic!("another state") };
+        let PointState::Novelty(state) = *points else { panic!("another state") };
         let text = serde_json::to_value(state.members).expect("plain data");
         let best = &text[0]["point"];
         let is_best = |member: &crate::evolve::ga::Member| serde_json::json!(member.point) == *best;

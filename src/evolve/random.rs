@@ -37,6 +37,6 @@ impl Strategy for Random {
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::Points(PointState::Random)
+        StrategyState::points(PointState::Random)
     }
 }

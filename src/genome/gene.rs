@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f32::consts::TAU;
 
 use super::signal::shifted;
-use super::wave::Waves;
+use super::wave::{Wave, Waves};
 use super::{Controller, ControllerKind, Gait, Genome, GenomeSpace, JointSignals, Signals};
 
 /// What values a gene may have.
@@ -83,21 +83,31 @@ impl Range<'_> {
 impl GenomeSpace {
     /// Shows every gene of a genome and its range to `visit`, in a fixed order.
     fn visit(&self, genome: &mut Genome, mut visit: impl FnMut(&mut f32, Range<'_>)) {
-        let waves_in =
-            |waves: &mut Waves, amplitude: f32, visit: &mut dyn FnMut(&mut f32, Range<'_>)| {
-                let wave = &self.wave;
-                let frequencies = Range::Between(wave.frequency_min_hz, wave.frequency_max_hz);
-                visit(&mut waves.frequency_hz, frequencies);
-                for wave in waves.all_mut() {
-                    visit(&mut wave.offset, Range::Between(-amplitude, amplitude));
-                    for (index, harmonic) in wave.harmonics.iter_mut().enumerate() {
-                        // A term of k times the frequency has k times the rates.
-                        let most = amplitude / (index + 1) as f32;
-                        visit(&mut harmonic.amplitude, Range::Between(0.0, most));
-                        visit(&mut harmonic.phase_rad, Range::Turn);
-                    }
+        let waves_in = |waves: &mut Waves,
+                        amplitude: f32,
+                        visit: &mut dyn FnMut(&mut f32, Range<'_>)| {
+            let wave = &self.wave;
+            let frequencies = Range::Between(wave.frequency_min_hz, wave.frequency_max_hz);
+            visit(&mut waves.frequency_hz, frequencies);
+            let mut wave_in = |wave: &mut Wave, amplitude: f32| {
+                visit(&mut wave.offset, Range::Between(-amplitude, amplitude));
+                for (index, harmonic) in wave.harmonics.iter_mut().enumerate() {
+                    // A term of k times the frequency has k times the rates.
+                    let most = amplitude / (index + 1) as f32;
+                    visit(&mut harmonic.amplitude, Range::Between(0.0, most));
+                    let phases = if most > 0.0 { Range::Turn } else { Range::Between(0.0, 0.0) };
+                    visit(&mut harmonic.phase_rad, phases);
                 }
             };
+            // What turns no joint is nothing to search for.
+            let moves = |limits: &[f32]| limits.iter().any(|limit| *limit > 0.0);
+            let bend = if moves(&self.bend_limits_rad) { amplitude } else { 0.0 };
+            let twist = if moves(&self.twist_limits_rad) { amplitude } else { 0.0 };
+            for joint in &mut waves.joints {
+                wave_in(&mut joint.bend, bend);
+                wave_in(&mut joint.twist, twist);
+            }
+        };
         visit(&mut genome.bend_limit_rad, Range::OneOf(&self.bend_limits_rad));
         visit(&mut genome.twist_limit_rad, Range::OneOf(&self.twist_limits_rad));
         let densities = Range::Between(self.density_min_kg_m3, self.density_max_kg_m3);
@@ -247,6 +257,9 @@ mod tests {
         narrow.bend_limits_rad = vec![1.0];
         narrow.twist_limits_rad = vec![1.0, 1.0];
         assert_eq!(narrow.dimension(DESCENT), 2 + 8 * 3);
+        narrow.twist_limits_rad = vec![0.0];
+        assert_eq!(narrow.dimension(DESCENT), 2 + 4 * 3, "no twist, no genes of twist");
+        narrow.twist_limits_rad = vec![1.0];
         let genome = narrow.genome_at(&[0.5; 26], DESCENT);
         assert_eq!((genome.bend_limit_rad, genome.density_kg_m3), (1.0, 2.0));
     }

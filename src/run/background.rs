@@ -1,6 +1,6 @@
 //! An experiment on a thread of its own, for a window that must not wait.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
-use super::{Control, GenerationReport, KeptRun, RunSource};
+use super::{Control, Experiment, GenerationReport, KeptRun, RunSource};
+use crate::evolve::{Archive, Front};
 
 /// What an experiment in the background has to tell.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,8 @@ pub enum Event {
     Opened(Vec<GenerationReport>),
     /// The run's folder cannot be opened: nothing is evolved.
     Refused(String),
+    /// What has been found besides champions: after the generations behind the run, and before each further one.
+    Explored(Box<Exploration>),
     /// A generation is finished.
     Generation(Box<GenerationReport>),
     /// All generations are finished.
@@ -32,6 +35,21 @@ pub enum Event {
     BrokeOff,
 }
 
+/// What a run has found besides its champions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exploration {
+    /// Who is beaten by nobody in distance and energy.
+    pub front: Front,
+    /// The best of every kind, if the strategy keeps such an archive.
+    pub archive: Option<Archive>,
+}
+
+impl Exploration {
+    fn of(experiment: &Experiment) -> Self {
+        Self { front: experiment.front().clone(), archive: experiment.archive().cloned() }
+    }
+}
+
 /// An experiment that goes on in the background. Dropping it cancels it, and waits a moment for what is
 /// being written.
 #[derive(Debug)]
@@ -40,7 +58,8 @@ pub struct Background {
     pause_after_generation: Arc<AtomicBool>,
     /// Behind a lock so that a window may keep this where several threads can see it.
     events: Mutex<Receiver<Event>>,
-    population: u32,
+    /// Size of the generation under way. Some strategies change it.
+    population: Arc<AtomicU32>,
     has_ended: AtomicBool,
 }
 
@@ -61,25 +80,28 @@ impl Background {
         let control = Arc::new(Control::default());
         control.pause();
         let pause_after_generation = Arc::new(AtomicBool::new(false));
-        let population = source.plan.settings.evolution.population;
+        let population = Arc::new(AtomicU32::new(source.plan.settings.evolution.population));
         let (sender, events) = channel();
         if let Some(before) = &before {
             before.control.cancel();
         }
         thread::Builder::new().name("experiment".to_owned()).spawn({
-            let (control, pause_after) =
-                (Arc::clone(&control), Arc::clone(&pause_after_generation));
+            let worker = Worker {
+                control: Arc::clone(&control),
+                pause_after_generation: Arc::clone(&pause_after_generation),
+                population: Arc::clone(&population),
+                events: sender,
+            };
             move || {
                 if let Some(before) = before {
-                    before.end();
+                    before.wait_for_end();
                 }
-                if control.is_cancelled() {
+                if worker.control.is_cancelled() {
                     return;
                 }
                 match source.open("the studio") {
-                    Ok(run) => work(run, &pool, &control, &pause_after, &sender),
-                    // A send fails only when nobody listens any more.
-                    Err(error) => drop(sender.send(Event::Refused(error.to_string()))),
+                    Ok(run) => worker.work(run, &pool),
+                    Err(error) => worker.tell(Event::Refused(error.to_string())),
                 }
             }
         })?;
@@ -117,7 +139,9 @@ impl Background {
 
     /// Finished evaluations of the current generation, and how many there will be.
     pub fn progress(&self) -> (u32, u32) {
-        (self.control.done(), self.population)
+        let population = self.population.load(Ordering::Relaxed);
+        // Between two generations one number may be read before and the other after.
+        (self.control.done().min(population), population)
     }
 
     /// The next event, if there is one.
@@ -135,12 +159,9 @@ impl Background {
             }
         }
     }
-}
 
-impl Background {
-    /// Cancels the experiment, and waits for as long as it takes until its folder is free.
-    fn end(self) {
-        self.control.cancel();
+    /// Waits for as long as it takes until the folder of a cancelled experiment is free.
+    fn wait_for_end(self) {
         let events = self.events.lock().unwrap_or_else(PoisonError::into_inner);
         // Until its end of the channel is gone.
         events.iter().for_each(drop);
@@ -160,48 +181,63 @@ impl Drop for Background {
     }
 }
 
-fn work(
-    run: KeptRun,
-    pool: &ThreadPool,
-    control: &Control,
-    pause_after_generation: &AtomicBool,
-    events: &Sender<Event>,
-) {
-    let KeptRun { mut experiment, mut keeper, reports } = run;
-    // A send fails only when nobody listens any more; the run is cancelled then anyway.
-    let tell = |event| drop(events.send(event));
-    tell(Event::Opened(reports));
-    while !experiment.is_over() {
-        let note = |generation, individual, evaluation: &_| {
-            keeper.note(generation, individual, evaluation);
-        };
-        let Ok(report) = experiment.run_generation_noting(pool, control, note) else { return };
-        let crashes = loop {
-            match keeper.keep(&experiment, &report) {
-                Ok(crashes) => break crashes,
-                Err(error) => {
-                    control.pause();
-                    tell(Event::NotSaved(error.to_string()));
-                }
-            }
-            if control.pass().is_err() {
-                return;
-            }
-        };
-        if pause_after_generation.swap(false, Ordering::SeqCst) {
-            control.pause();
-        }
-        crashes.into_iter().for_each(|crash| tell(Event::Crashed(crash)));
-        tell(Event::Generation(Box::new(report)));
+/// What the experiment's thread shares with its [`Background`].
+struct Worker {
+    control: Arc<Control>,
+    pause_after_generation: Arc<AtomicBool>,
+    population: Arc<AtomicU32>,
+    events: Sender<Event>,
+}
+
+impl Worker {
+    /// A send fails only when nobody listens any more; the run is cancelled then anyway.
+    fn tell(&self, event: Event) {
+        drop(self.events.send(event));
     }
-    tell(Event::Finished { run_hash: experiment.run_hash() });
+
+    fn work(&self, run: KeptRun, pool: &ThreadPool) {
+        let KeptRun { mut experiment, mut keeper, reports } = run;
+        let control = &*self.control;
+        let explored =
+            |experiment: &Experiment| Event::Explored(Box::new(Exploration::of(experiment)));
+        self.tell(Event::Opened(reports));
+        if experiment.finished() > 0 {
+            self.tell(explored(&experiment));
+        }
+        while !experiment.is_over() {
+            self.population.store(experiment.population(), Ordering::Relaxed);
+            let note = |generation, individual, evaluation: &_| {
+                keeper.note(generation, individual, evaluation);
+            };
+            let Ok(report) = experiment.run_generation_noting(pool, control, note) else { return };
+            let crashes = loop {
+                match keeper.keep(&experiment, &report) {
+                    Ok(crashes) => break crashes,
+                    Err(error) => {
+                        control.pause();
+                        self.tell(Event::NotSaved(error.to_string()));
+                    }
+                }
+                if control.pass().is_err() {
+                    return;
+                }
+            };
+            if self.pause_after_generation.swap(false, Ordering::SeqCst) {
+                control.pause();
+            }
+            crashes.into_iter().for_each(|crash| self.tell(Event::Crashed(crash)));
+            self.tell(explored(&experiment));
+            self.tell(Event::Generation(Box::new(report)));
+        }
+        self.tell(Event::Finished { run_hash: experiment.run_hash() });
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, Settings};
-    use crate::run::{Experiment, pool};
+    use crate::evolve::{RunPlan, Settings, with_field};
+    use crate::run::pool;
     use crate::save::{Earlier, SavesFolder};
 
     fn plan() -> RunPlan {
@@ -225,9 +261,20 @@ mod tests {
         Background::start(source, pool, before).expect("a thread")
     }
 
-    fn next(background: &Background) -> Event {
+    /// The next event of any kind.
+    fn next_of_all(background: &Background) -> Event {
         let events = background.events.lock().expect("no panic");
         events.recv_timeout(Duration::from_secs(60)).expect("an event in time")
+    }
+
+    /// The next event that is not about what was explored.
+    fn next(background: &Background) -> Event {
+        loop {
+            match next_of_all(background) {
+                Event::Explored(_) => {}
+                event => return event,
+            }
+        }
     }
 
     #[test]
@@ -286,6 +333,46 @@ mod tests {
         background.resume();
         assert!(matches!(next(&background), Event::Generation(report) if report.generation == 1));
         assert!(in_the_way.is_file());
+    }
+
+    #[test]
+    fn before_each_generation_it_tells_what_was_explored_and_of_a_run_that_goes_on_at_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = start(&folder);
+        first.run_single_generation();
+        let Event::Explored(explored) = next_of_all(&first) else { panic!("not explored") };
+        assert_eq!(explored.archive, None, "the report's method keeps none");
+        assert!(matches!(next_of_all(&first), Event::Generation(_)));
+        let second = start_after(&folder, Some(first));
+        assert!(matches!(next_of_all(&second), Event::Opened(behind) if behind.len() == 1));
+        assert_eq!(next_of_all(&second), Event::Explored(explored));
+    }
+
+    #[test]
+    fn progress_counts_the_generation_under_way_whatever_its_size() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut plan = plan();
+        let changes = [("cma_es.newborns", "20"), ("strategy", "cma_es"), ("generations", "20")];
+        for (field, value) in changes {
+            let field = format!("evolution.{field}");
+            plan.settings = with_field(&plan.settings, &field, value).expect("allowed");
+        }
+        let pool = Arc::new(pool(2).expect("a pool"));
+        let saves = SavesFolder::find(Some(folder.path()));
+        let source = RunSource::in_saves(&saves, plan, Earlier::Keep);
+        let background = Background::start(source, pool, None).expect("a thread");
+        let mut progress = Vec::new();
+        for _ in 0..2 {
+            background.run_single_generation();
+            while !matches!(next(&background), Event::Generation(_)) {}
+            progress.push(background.progress());
+        }
+        // The newborns, then generations of the population.
+        background.resume();
+        while !matches!(next(&background), Event::Finished { .. }) {}
+        assert_eq!(background.progress(), (8, 8));
+        assert!(progress.iter().all(|(done, of)| done <= of), "{progress:?}");
+        assert!(progress.iter().any(|(_, of)| *of == 20), "{progress:?}");
     }
 
     #[test]

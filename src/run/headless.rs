@@ -114,7 +114,9 @@ pub fn evolve(
     if !json {
         writeln!(out, "{TABLE_HEAD}")?;
     }
+    let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
+        landing.see(report);
         let line = if json { json_line(report).to_string() } else { table_row(report) };
         writeln!(out, "{line}")?;
         out.flush()
@@ -147,6 +149,7 @@ pub fn evolve(
         let last = json!({
             "done": true,
             "run_hash": run_hash,
+            "first_on_landing": landing.first,
             "best": best.map(|best| best.evaluation.fitness),
             "champion": keeper.best(),
         });
@@ -154,9 +157,28 @@ pub fn evolve(
     } else if let (Some(best), Some(path)) = (best, keeper.best()) {
         writeln!(out, "\nchampion  {}", about(best))?;
         writeln!(out, "saved to  {}", path.display())?;
+        if let Some(first) = landing.first {
+            writeln!(out, "landing   first reached by evaluation {first}")?;
+        }
         writeln!(out, "run hash  {run_hash}")?;
     }
     best.map(|_| ()).ok_or(HeadlessError::NoChampion)
+}
+
+/// Counts evaluations up to the first agent on the landing.
+#[derive(Debug, Default)]
+struct Landing {
+    spent: u64,
+    /// Its number, counted from 1.
+    first: Option<u64>,
+}
+
+impl Landing {
+    fn see(&mut self, report: &GenerationReport) {
+        let number = report.first_on_landing.map(|index| self.spent + u64::from(index) + 1);
+        self.first = self.first.or(number);
+        self.spent += u64::from(report.evaluations);
+    }
 }
 
 /// Runs one generation with a progress bar on the terminal; where standard error is no terminal, none
@@ -334,8 +356,7 @@ mod tests {
     use super::*;
     use crate::run::Statistics;
 
-    #[test]
-    fn a_row_stands_under_its_head() {
+    fn report() -> GenerationReport {
         let statistics = Statistics {
             mean: -7.225,
             best: 1.5,
@@ -344,7 +365,7 @@ mod tests {
             worst: -9.0,
             mean_centre_y_m: -7.225,
         };
-        let report = GenerationReport {
+        GenerationReport {
             generation: 1,
             evaluations: 500,
             disqualified: 12,
@@ -357,7 +378,21 @@ mod tests {
             hash: 0,
             elapsed_s: 0.0,
             champion: None,
-        };
+        }
+    }
+
+    #[test]
+    fn the_first_on_the_landing_is_counted_over_generations() {
+        let mut landing = Landing::default();
+        for (evaluations, first_on_landing) in [(50, None), (50, Some(7)), (50, Some(0))] {
+            landing.see(&GenerationReport { evaluations, first_on_landing, ..report() });
+        }
+        assert_eq!(landing.first, Some(58));
+    }
+
+    #[test]
+    fn a_row_stands_under_its_head() {
+        let report = report();
         let row = table_row(&report);
         for (number, column) in [("-7.22", "mean"), ("1.50", "best"), ("12", "disqualified")] {
             let end_of = |line: &str, word: &str| line.find(word).map(|at| at + word.len());

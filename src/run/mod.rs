@@ -16,7 +16,7 @@ pub mod table1;
 mod threads;
 pub mod verify;
 
-pub use background::{Background, Event};
+pub use background::{Background, Event, Exploration};
 pub use control::{Cancelled, Control};
 pub use experiment::Experiment;
 pub use keeper::{Keeper, KeptRun, RunSource};

@@ -120,7 +120,7 @@ mod tests {
             turn_deg: 0.0,
         };
         let still = measured(&none, 1);
-        assert_eq!((still.disqualified, still.reached[0], still.reached[9]), (0, 12, 0));
+        assert_eq!((still.disqualified, still.reached[0], still.reached[9]), (0, 12, 12));
         let shaken = measured(&PerturbationRange::default(), 1);
         assert_eq!(shaken, measured(&PerturbationRange::default(), 3), "for any number of threads");
         assert_ne!(shaken, still);

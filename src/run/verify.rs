@@ -333,6 +333,7 @@ const CASES: &[Case] = &[
             ("crossover_share", "0.9"),
             ("mutation", "uniform"),
             ("ga.step", "0.2"),
+            ("cooling", "0.8"),
             ("elites", "1"),
         ],
     ),

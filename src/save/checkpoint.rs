@@ -43,7 +43,7 @@ enum StrategyV2 {
         parents: Vec<GenomeV4>,
     },
     /// Checkpoints are of one engine alone, so what a strategy knows stands in them as it is.
-    Points(PointState),
+    Points(Box<PointState>),
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

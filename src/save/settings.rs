@@ -52,6 +52,7 @@ mirrors! {
         crossover_share: f32,
         mutation: Mutation,
         step: f32,
+        cooling: f32,
         elites: u32,
     }
     CmaEsV2 = CmaEsSettings { step: f32, active: bool, restarts: RestartKind, newborns: u32 }

@@ -34,9 +34,9 @@ pub enum Fitness {
     /// the first step are equal and evolution searches blindly at first.
     StepsClimbed,
     /// y of the middle limb's centre at the end, in m, as far as it is on the stairs: beside them, inside
-    /// them, or behind them it counts as having come to the first riser and no further, and who stands in the
-    /// middle of the landing has arrived. Rewards wrongly: a leap that the end of the time catches over the
-    /// stairs.
+    /// them, or behind them it counts as having come to the first riser and no further, and who stands on the
+    /// landing with its whole length has arrived. Rewards wrongly: a leap that the end of the time catches
+    /// over the stairs.
     Climb,
 }
 
@@ -131,6 +131,8 @@ pub(super) struct Ending<'a> {
     pub middle_limb: usize,
     /// The furthest y that the middle limb's centre had, in m.
     pub furthest_y_m: f32,
+    /// Length of the straight snake, in m.
+    pub length_m: f32,
     /// The stairs.
     pub stairs: &'a Stairs,
 }
@@ -143,7 +145,8 @@ impl Ending<'_> {
             Fitness::Centre => middle.y,
             Fitness::Climb => {
                 let is_up = self.stairs.steps_under(middle.to_array()) > 0;
-                let arrived_y_m = self.stairs.end_y_m() - self.stairs.landing_m / 2.0;
+                let landing_y_m = self.stairs.riser_y_m(self.stairs.steps.saturating_sub(1));
+                let arrived_y_m = landing_y_m + self.length_m / 2.0;
                 let most = if is_up { arrived_y_m } else { self.stairs.first_riser_y_m };
                 middle.y.min(most)
             }
@@ -176,6 +179,7 @@ mod tests {
                 masses_kg: &[1.0, 1.0, 2.0],
                 middle_limb: 1,
                 furthest_y_m: 9.5,
+                length_m: 10.0,
                 stairs: &stairs,
             };
             ending.score(fitness)

@@ -66,6 +66,7 @@ pub struct Rollout {
     observer: Observer,
     stairs: Stairs,
     masses_kg: Vec<f32>,
+    length_m: f32,
     middle_limb: usize,
     furthest_y_m: f32,
     trace: Xxh3Default,
@@ -101,6 +102,7 @@ impl Rollout {
             observer: Observer::default(),
             stairs: plan.stairs,
             masses_kg: plan.body.limbs.iter().map(LimbPlan::mass_kg).collect(),
+            length_m: plan.body.length_m(),
             middle_limb: plan.body.middle_limb(),
             furthest_y_m: f32::MIN,
             trace: Xxh3Default::new(),
@@ -164,6 +166,7 @@ impl Rollout {
             masses_kg: &self.masses_kg,
             middle_limb: self.middle_limb,
             furthest_y_m: self.furthest_y_m,
+            length_m: self.length_m,
             stairs: &self.stairs,
         };
         let effort = self.simulation.effort();

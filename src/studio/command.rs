@@ -10,6 +10,7 @@ use super::exhibit::Exhibit;
 use super::notice::Notices;
 use super::stage::{ShowExhibit, Stage};
 use super::{Frame, Opening};
+use crate::evolve::Champion;
 
 /// Something a panel or a key asks for.
 #[derive(Message, Debug, Clone, PartialEq)]
@@ -47,6 +48,15 @@ pub(super) enum Command {
     ShowOpening,
     /// Put the champion of this generation on the stage; the first is 1.
     ShowGeneration(u32),
+    /// Put somebody of the front of distance and energy on the stage.
+    ShowFront {
+        /// The generation that found it; the first is 1.
+        generation: u32,
+        /// Its index in that generation.
+        individual: u32,
+    },
+    /// Put the best of a cell of the archive on the stage.
+    ShowElite(u32),
     /// Hold or resume what is on the stage.
     TogglePlayback,
     /// Play what is on the stage from its start.
@@ -108,11 +118,14 @@ fn apply(
                 Ok(())
             }
             Command::ShowGeneration(generation) => {
-                let champion = evolution.champion_of(*generation);
-                let run = evolution.number();
-                let exhibit = champion.map(|champion| Exhibit::found(champion, run));
-                show.write_batch(exhibit.map(ShowExhibit));
-                Ok(())
+                show_found(&evolution, evolution.champion_of(*generation), &mut show)
+            }
+            Command::ShowFront { generation, individual } => {
+                let member = evolution.front_member(*generation, *individual);
+                show_found(&evolution, member.as_ref(), &mut show)
+            }
+            Command::ShowElite(cell) => {
+                show_found(&evolution, evolution.elite(*cell).as_ref(), &mut show)
             }
             Command::TogglePlayback => {
                 stages.iter_mut().for_each(|mut stage| stage.toggle_playback());
@@ -144,6 +157,18 @@ fn apply(
             notices.problem(problem);
         }
     }
+}
+
+/// Shows somebody that the current run has found. Who is not found any more is not missed: somebody better has
+/// taken the place since the click.
+fn show_found(
+    evolution: &Evolution,
+    champion: Option<&Champion>,
+    show: &mut MessageWriter<ShowExhibit>,
+) -> Result<(), String> {
+    let exhibit = champion.map(|champion| Exhibit::found(champion, evolution.number()));
+    show.write_batch(exhibit.map(ShowExhibit));
+    Ok(())
 }
 
 /// Shows what is on the stage in the world of the next run, if its genome fits into that.

@@ -1,52 +1,18 @@
 //! The experiment behind the window: started, held, reset; its reports kept for the panels.
 
+mod take_in;
+
 use std::path::Path;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 use bevy::prelude::*;
-use rayon::ThreadPool;
 
-use super::exhibit::Exhibit;
-use super::notice::Notices;
-use super::stage::{ShowExhibit, Stage};
-use super::start_up::RunInProgress;
-use super::{Frame, Options, StudioError};
+use super::engine::Engine;
 use crate::check::Invalid;
-use crate::evolve::{Champion, RunPlan, Settings, with_field};
-use crate::run::headless::HeadlessError;
-use crate::run::{Background, Event, GenerationReport, Listing, RunSource, pool};
-use crate::save::{Earlier, RunSummary, SavesFolder, load_preset};
-
-/// What every run of this session shares.
-#[derive(Resource, Debug, Clone)]
-pub(super) struct Engine {
-    pool: Arc<ThreadPool>,
-    saves: SavesFolder,
-    /// The run the studio opens with.
-    first: RunSource,
-    /// The run after the current one.
-    next: RunPlan,
-    run_folder: RunInProgress,
-}
-
-impl Engine {
-    /// Starts the worker threads.
-    pub fn new(options: &Options) -> Result<Self, StudioError> {
-        let pool = pool(options.threads).map_err(HeadlessError::from)?;
-        Ok(Self {
-            pool: Arc::new(pool),
-            saves: options.saves.clone(),
-            first: options.run.clone(),
-            next: options.run.plan.clone(),
-            run_folder: RunInProgress::default(),
-        })
-    }
-
-    /// Where it is kept in which folder a run is going on.
-    pub fn run_folder(&self) -> RunInProgress {
-        Arc::clone(&self.run_folder)
-    }
-}
+use crate::evolve::{Champion, Origin, Settings, with_field};
+use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
+use crate::save::{Earlier, RunSummary, load_preset};
+use crate::score::evaluate;
 
 /// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,13 +43,13 @@ pub(super) struct Evolution {
     /// A look for them that is under way.
     listing: Option<Listing>,
     reports: Vec<GenerationReport>,
+    /// What the run has found besides, once a generation is finished.
+    exploration: Option<Box<Exploration>>,
     run_hash: Option<u64>,
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<Evolution>()
-        .add_systems(Startup, start_at_once)
-        .add_systems(Update, take_in.in_set(Frame::TakeIn));
+    app.init_resource::<Evolution>().add_plugins(take_in::plugin);
 }
 
 impl FromWorld for Evolution {
@@ -109,6 +75,7 @@ impl Evolution {
             stopped: None,
             listing: None,
             reports: Vec::new(),
+            exploration: None,
             run_hash: None,
         }
     }
@@ -178,6 +145,11 @@ impl Evolution {
         &self.reports
     }
 
+    /// What the run has found besides champions, once a generation is finished.
+    pub fn exploration(&self) -> Option<&Exploration> {
+        self.exploration.as_deref()
+    }
+
     /// Finished evaluations of the current generation, and how many it has.
     pub fn progress(&self) -> (u32, u32) {
         match &self.background {
@@ -195,6 +167,34 @@ impl Evolution {
     pub fn champion_of(&self, generation: u32) -> Option<&Champion> {
         let index = (generation as usize).checked_sub(1)?;
         self.reports.get(index)?.champion.as_ref()
+    }
+
+    /// Somebody of the front of distance and energy.
+    pub fn front_member(&self, generation: u32, individual: u32) -> Option<Champion> {
+        let mut members = self.exploration()?.front.members();
+        let member =
+            members.find(|is| (is.generation, is.individual) == (generation, individual))?;
+        Some(Champion {
+            genome: member.genome.clone(),
+            trial: self.settings().trial.clone(),
+            evaluation: member.evaluation,
+            origin: self.origin(generation, individual),
+        })
+    }
+
+    /// The best of a cell of the archive. The archive keeps its genes and its fitness; what else there is to know
+    /// of it is found out anew.
+    pub fn elite(&self, cell: u32) -> Option<Champion> {
+        let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
+        let Settings { trial, genome: space, .. } = self.settings();
+        let genome = space.genome_at(&elite.point, trial.descent());
+        let evaluation = caught(|| evaluate(&genome, trial)).ok()?;
+        let origin = self.origin(elite.generation, elite.individual);
+        Some(Champion { genome, trial: trial.clone(), evaluation, origin })
+    }
+
+    fn origin(&self, generation: u32, individual: u32) -> Origin {
+        Origin { preset: self.preset().to_owned(), seed: self.seed(), generation, individual }
     }
 
     /// Evolves until held or finished. After the end of a run it begins the next one.
@@ -318,19 +318,13 @@ impl Evolution {
         }
     }
 
-    /// No run is going on that could go on later.
-    fn forget_folder(&self) {
-        *self.engine.run_folder.lock().unwrap_or_else(PoisonError::into_inner) = None;
-    }
-
     /// The run's thread, started if it was not.
     fn background(&mut self) -> Result<&Background, String> {
         let background = match self.background.take() {
             Some(background) => background,
             None => {
                 let (source, pool) = (self.source.clone(), Arc::clone(&self.engine.pool));
-                let folder = Some(source.folder.clone());
-                *self.engine.run_folder.lock().unwrap_or_else(PoisonError::into_inner) = folder;
+                self.engine.set_run_folder(Some(source.folder.clone()));
                 Background::start(source, pool, self.before.take())
                     .map_err(|error| format!("evolution could not be started: {error}"))?
             }
@@ -339,102 +333,7 @@ impl Evolution {
     }
 }
 
-/// A fresh run evolves from the first moment.
-fn start_at_once(mut evolution: ResMut<Evolution>, mut notices: ResMut<Notices>) {
-    if let Err(problem) = evolution.start() {
-        notices.problem(problem);
-    }
-}
-
-/// Takes in what the background found. A champion that beats the one on show takes its place, unless
-/// the stage is held: then somebody is looking at something.
-fn take_in(
-    mut evolution: ResMut<Evolution>,
-    mut notices: ResMut<Notices>,
-    mut show: MessageWriter<ShowExhibit>,
-    stages: Query<&Stage>,
-) {
-    evolution.take_in_listing();
-    let Some(background) = &evolution.background else { return };
-    let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
-    // Only what was found in the world of this run can be compared with what it finds.
-    let world = &evolution.settings().trial;
-    let rivals = stages.iter().map(Stage::exhibit);
-    let rivals = rivals.filter(|exhibit| exhibit.champion().trial == *world);
-    let mut to_beat = rivals.map(Exhibit::fitness).fold(f32::MIN, f32::max);
-    // Who holds the stage, or tries out another world than the run's, is looking at something.
-    let is_tried = |stage: &Stage| stage.exhibit().is_changed() && stage.trial() != world;
-    let is_held = stages.iter().any(|stage| !stage.is_playing() || is_tried(stage));
-    let mut present = |champion: &Champion, number, notices: &mut Notices| {
-        if champion.evaluation.fitness <= to_beat {
-            return;
-        }
-        to_beat = champion.evaluation.fitness;
-        let exhibit = Exhibit::found(champion, number);
-        if is_held {
-            notices.news(format!("Better than what is on show: {}", exhibit.caption()));
-        } else {
-            notices.news(format!("New on stage: {}", exhibit.caption()));
-            show.write(ShowExhibit(exhibit));
-        }
-    };
-    let number = evolution.number;
-    for event in events {
-        match event {
-            Event::Opened(behind) => {
-                // Whatever happens from now on, it is not thrown away once more.
-                evolution.source.earlier = Earlier::Keep;
-                let generations = evolution.settings().evolution.generations;
-                let last = behind.last().filter(|last| last.generation < generations);
-                if let Some(last) = last {
-                    notices.news(format!("The run goes on after generation {}.", last.generation));
-                }
-                let champions = behind.iter().filter_map(|report| report.champion.as_ref());
-                let fitness = |champion: &&Champion| champion.evaluation.fitness;
-                let best = champions.max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
-                best.into_iter().for_each(|best| present(best, number, &mut notices));
-                evolution.reports = behind;
-            }
-            Event::Refused(problem) => {
-                notices.problem(format!("Nothing is evolved: {problem}"));
-                evolution.background = None;
-                evolution.forget_folder();
-            }
-            Event::Generation(report) => {
-                let champion = report.champion.iter();
-                champion.for_each(|champion| present(champion, number, &mut notices));
-                evolution.reports.push(*report);
-            }
-            Event::Finished { run_hash } => {
-                evolution.run_hash = Some(run_hash);
-                evolution.forget_folder();
-                notices.news("The run is finished; \"New run\" begins another.".to_owned());
-            }
-            Event::BrokeOff => {
-                notices.problem("The run broke off by an error of the program.".to_owned());
-                evolution.background = None;
-            }
-            Event::NotSaved(problem) => {
-                notices.problem(format!("Not saved, and held: {problem}. Start tries again."));
-            }
-            Event::Crashed(problem) => notices.problem(problem),
-        }
-    }
-}
-
-/// A run of the default settings that has not begun, for tests of panels.
 #[cfg(test)]
-pub(super) fn prepared_run() -> Evolution {
-    let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
-    let saves = SavesFolder::find(Some(&folder));
-    let plan = RunPlan::new("report", 1, Settings::default());
-    let options = Options {
-        run: RunSource::in_saves(&saves, plan, Earlier::Keep),
-        threads: 1,
-        saves,
-        champion: None,
-        window_size: (1280, 720),
-        exit_after_frames: None,
-    };
-    Evolution::new(Engine::new(&options).expect("threads"))
-}
+mod fixtures;
+#[cfg(test)]
+pub(super) use fixtures::{explored_run, prepared_run};

@@ -14,7 +14,7 @@ pub(super) const KEYS: [(&str, &str); 10] = [
     ("R", "play from the start"),
     ("E", "start or pause evolution"),
     ("G", "evolve a single generation"),
-    ("1 ... 9", "show the champion of a generation"),
+    ("1 ... 9", "show a generation's champion"),
     ("0", "show the saved champion again"),
     ("F", "follow the snake, or not"),
     ("Home", "put the camera back"),

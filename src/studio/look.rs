@@ -3,6 +3,9 @@
 use bevy::prelude::Color;
 use bevy_egui::egui::{self, Color32, CornerRadius, Frame, Margin, Stroke};
 
+use crate::evolve::StrategyKind;
+use crate::plot::strategy_color;
+
 /// Background of the panel.
 pub const PANEL: Color32 = Color32::from_rgb(0x1d, 0x21, 0x2b);
 /// Background of a card or a field within it.
@@ -19,6 +22,9 @@ pub const ACCENT: Color32 = Color32::from_rgb(0x4f, 0x9d, 0xf7);
 pub const SECOND: Color32 = Color32::from_rgb(0xf2, 0xb1, 0x4b);
 /// What went wrong.
 pub const PROBLEM: Color32 = Color32::from_rgb(0xf0, 0x6a, 0x5f);
+
+/// A cell of a map in which nobody is.
+pub const EMPTY_CELL: Color32 = Color32::from_rgb(0x12, 0x15, 0x1c);
 
 /// The report's red, for the first, third and fifth limb.
 pub const RED_LIMB: Color = Color::srgb(0.83, 0.12, 0.12);
@@ -59,8 +65,52 @@ pub const NOTICE_WIDTH: f32 = 340.0;
 pub const CAPTION_WIDTH: f32 = 520.0;
 /// Height of the chart, in points.
 pub const CHART_HEIGHT: f32 = 170.0;
+/// Height of the chart in the lowest window, in points.
+pub const LEAST_CHART_HEIGHT: f32 = 80.0;
+/// Height of what stands over the chart, in points; chart and champions share the rest.
+pub const WITHOUT_CHART: f32 = 420.0;
+/// Height of the chart of distance and energy, and of learning curves, in points.
+pub const PLOT_HEIGHT: f32 = 150.0;
+/// Height of a map, in points.
+pub const MAP_HEIGHT: f32 = 190.0;
+/// Least width of the numbers at the left of a chart, in points.
+pub const AXIS_WIDTH: f32 = 24.0;
+/// Size of the letters in and at charts, in points.
+pub const SMALL_SIZE: f32 = 11.0;
+/// Width of the list of controllers, in points.
+pub const CONTROLLER_WIDTH: f32 = 84.0;
 /// Corner radius of cards and buttons, in points.
 const CORNER: CornerRadius = CornerRadius::same(6);
+
+/// From the least to the most: viridis (van der Walt and Smith, 2015), whose brightness rises evenly, so that it
+/// reads in order without its hues too.
+const RAMP: [[u8; 3]; 9] = [
+    [0x44, 0x01, 0x54],
+    [0x47, 0x2d, 0x7b],
+    [0x3b, 0x52, 0x8b],
+    [0x2c, 0x72, 0x8e],
+    [0x21, 0x91, 0x8c],
+    [0x28, 0xae, 0x80],
+    [0x5e, 0xc9, 0x62],
+    [0xad, 0xdc, 0x30],
+    [0xfd, 0xe7, 0x25],
+];
+
+/// The colour of a value between the least, 0, and the most, 1.
+pub fn ramp(share: f32) -> Color32 {
+    let last = RAMP.len() - 1;
+    let place = share.clamp(0.0, 1.0) * last as f32;
+    let below = (place as usize).min(last - 1);
+    let [from, to] = [RAMP[below], RAMP[below + 1]].map(|[r, g, b]| Color32::from_rgb(r, g, b));
+    from.lerp_to_gamma(to, place - below as f32)
+}
+
+/// The colour of a strategy, in all curves.
+pub fn strategy(kind: StrategyKind) -> Color32 {
+    let [red, green, blue] = strategy_color(kind);
+    // As light as the panel is dark: on white the same colours are a shade darker.
+    Color32::from_rgb(red, green, blue).lerp_to_gamma(TEXT, 0.2)
+}
 
 /// A card with a coloured edge.
 pub fn card(edge: Color32) -> Frame {
@@ -74,8 +124,8 @@ pub fn card(edge: Color32) -> Frame {
 /// Dresses egui.
 pub fn apply(context: &egui::Context) {
     context.set_theme(egui::Theme::Dark);
-    warm_up_fonts(context);
     context.all_styles_mut(|style| {
+        style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(SMALL_SIZE));
         style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
         style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
         style.spacing.interact_size.y = GAP * 3.0;
@@ -104,6 +154,7 @@ pub fn apply(context: &egui::Context) {
         visuals.widgets.active.weak_bg_fill = ACCENT.gamma_multiply(0.6);
         visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, FIELD_HOVERED);
     });
+    warm_up_fonts(context);
 }
 
 /// Draws every letter once into egui's font texture. A letter that is new to it is missing for a frame,
@@ -119,4 +170,19 @@ fn warm_up_fonts(context: &egui::Context) {
             fonts.layout_no_wrap(letters.clone(), font, TEXT);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ramp_gets_brighter_all_the_way() {
+        let brightness = |color: Color32| {
+            let [r, g, b, _] = color.to_array().map(f32::from);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        let shades: Vec<f32> = (0..=100).map(|i| brightness(ramp(i as f32 / 100.0))).collect();
+        assert!(shades.is_sorted(), "{shades:?}");
+    }
 }

@@ -8,6 +8,7 @@
 
 mod camera;
 mod command;
+mod engine;
 mod evolution;
 mod exhibit;
 pub mod figures;
@@ -33,7 +34,7 @@ use bevy::winit::WinitSettings;
 
 use crate::run::RunSource;
 use crate::run::headless::HeadlessError;
-use crate::save::{LoadedChampion, SaveError, SavesFolder, shipped_champion};
+use crate::save::{Comparison, LoadedChampion, SaveError, SavesFolder, shipped_champion};
 
 /// With what the studio opens.
 #[derive(Debug, Clone)]
@@ -46,6 +47,8 @@ pub struct Options {
     pub saves: SavesFolder,
     /// The champion to open with; without one, the shipped one.
     pub champion: Option<LoadedChampion>,
+    /// A comparison of methods to show.
+    pub comparison: Option<Comparison>,
     /// Size of the window, in pixels.
     pub window_size: (u32, u32),
     /// After how many frames to close by itself.
@@ -102,6 +105,10 @@ enum Frame {
 #[derive(Resource, Debug, Clone)]
 struct Opening(LoadedChampion);
 
+/// The comparison of methods that the studio was opened with.
+#[derive(Resource, Debug, Clone, Default)]
+struct Opened(Option<Comparison>);
+
 /// Opens the studio and returns when its window is closed.
 ///
 /// # Errors
@@ -111,7 +118,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         Some(loaded) => loaded,
         None => shipped_champion()?,
     };
-    let engine = evolution::Engine::new(&options)?;
+    let engine = engine::Engine::new(&options)?;
     let run_folder = engine.run_folder();
     let exit_after = options.exit_after_frames;
     let exit = start_up::guarded(&run_folder, move || {
@@ -124,6 +131,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         // A champion that climbs while the presenter types elsewhere goes on climbing.
         .insert_resource(WinitSettings::continuous())
         .insert_resource(Opening(opening))
+        .insert_resource(Opened(options.comparison.clone()))
         .insert_resource(engine)
         .configure_sets(Update, (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain())
         .add_plugins((

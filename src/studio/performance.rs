@@ -1,12 +1,25 @@
 //! What happens on the stage, step by step: a simulation, or a recording where other bits are computed.
 
+use bevy::prelude::Entity;
+use bevy_rapier3d::plugin::context::{
+    RapierContextColliders, RapierContextJoints, RapierContextSimulation, RapierRigidBodySet,
+};
+use std::mem::swap;
 use std::sync::Arc;
 
 use super::exhibit::Exhibit;
 use crate::score::{Evaluation, Recording, Rollout};
+use crate::world::Pose;
 #[cfg(test)]
 use crate::world::Simulation;
-use crate::world::{PhysicsWorld, Pose};
+
+/// The parts of a physics context, as one bundle spawns them and one query finds them.
+pub(super) type Context<'a> = (
+    &'a mut RapierContextSimulation,
+    &'a mut RapierContextColliders,
+    &'a mut RapierContextJoints,
+    &'a mut RapierRigidBodySet,
+);
 
 /// A performance on its way.
 pub(super) enum Performance {
@@ -106,11 +119,29 @@ impl Performance {
         }
     }
 
-    /// The simulated world, to be lent out between steps.
-    pub fn physics_mut(&mut self) -> Option<&mut PhysicsWorld> {
-        match self {
-            Self::Simulated(rollout) => Some(rollout.simulation_mut().physics_mut()),
-            Self::Recorded(_) => None,
+    /// Notes in the simulated world, if it is one, whose it is: the engine's tools find the owner of a collider
+    /// there. It plays no part in the physics.
+    pub fn own(&mut self, owner: Entity) {
+        if let Self::Simulated(rollout) = self {
+            for (_, collider) in rollout.simulation_mut().physics_mut().colliders.iter_mut() {
+                collider.user_data = u128::from(owner.to_bits());
+            }
         }
+    }
+
+    /// Swaps the simulated world, if it is one, with the one in a context: lends it out, or gets it back.
+    pub fn exchange(&mut self, (simulation, colliders, joints, bodies): Context<'_>) {
+        let Self::Simulated(rollout) = self else { return };
+        let physics = rollout.simulation_mut().physics_mut();
+        swap(&mut physics.integration_parameters, &mut simulation.integration_parameters);
+        swap(&mut physics.physics_pipeline, &mut simulation.pipeline);
+        swap(&mut physics.islands, &mut simulation.islands);
+        swap(&mut physics.broad_phase, &mut simulation.broad_phase);
+        swap(&mut physics.narrow_phase, &mut simulation.narrow_phase);
+        swap(&mut physics.ccd_solver, &mut simulation.ccd_solver);
+        swap(&mut physics.colliders, &mut colliders.colliders);
+        swap(&mut physics.impulse_joints, &mut joints.impulse_joints);
+        swap(&mut physics.multibody_joints, &mut joints.multibody_joints);
+        swap(&mut physics.bodies, &mut bodies.bodies);
     }
 }

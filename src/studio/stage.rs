@@ -6,20 +6,16 @@
 //! last two steps.
 
 use bevy::prelude::*;
-use bevy_rapier3d::plugin::context::{
-    RapierContextColliders, RapierContextJoints, RapierContextSimulation, RapierRigidBodySet,
-};
 use bevy_rapier3d::render::RapierDebugRenderPlugin;
-use std::mem::swap;
 
 use super::exhibit::Exhibit;
 use super::notice::Notices;
-use super::performance::Performance;
+use super::performance::{Context, Performance};
 use super::{Frame, Opening};
 use crate::ENGINE_VERSION;
 use crate::run::caught;
 use crate::score::{Evaluation, Trial};
-use crate::world::{PhysicsWorld, Pose};
+use crate::world::Pose;
 
 /// Asks for an exhibit to be put on the stage, in place of what is there.
 #[derive(Message, Debug, Clone)]
@@ -52,14 +48,6 @@ const REST_S: f32 = 1.5;
 /// The most time a single frame may make up for, in seconds. After a longer pause (a moved window, a
 /// sleeping laptop) the stage goes on where it was instead of racing.
 const MOST_CATCH_UP_S: f32 = 0.5;
-
-/// The context's parts, as one bundle spawns them and one query finds them.
-type Context<'a> = (
-    &'a mut RapierContextSimulation,
-    &'a mut RapierContextColliders,
-    &'a mut RapierContextJoints,
-    &'a mut RapierRigidBodySet,
-);
 
 pub(super) fn plugin(app: &mut App) {
     app.add_message::<ShowExhibit>()
@@ -201,13 +189,8 @@ fn put_on_stage(
 fn spawn(commands: &mut Commands, mut stage: Stage) {
     let entity = commands.spawn_empty().id();
     let (mut simulation, mut colliders, mut joints, mut bodies) = Default::default();
-    if let Some(physics) = stage.performance.physics_mut() {
-        // The engine's tools find the owner of a collider here. It plays no part in the physics.
-        for (_, collider) in physics.colliders.iter_mut() {
-            collider.user_data = u128::from(entity.to_bits());
-        }
-        exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
-    }
+    stage.performance.own(entity);
+    stage.performance.exchange((&mut simulation, &mut colliders, &mut joints, &mut bodies));
     commands.entity(entity).insert((simulation, colliders, joints, bodies, stage));
 }
 
@@ -228,9 +211,8 @@ fn advance(
         }
         if stage.is_playing && !stage.is_broken {
             let mut lend = |stage: &mut Stage| {
-                if let Some(physics) = stage.performance.physics_mut() {
-                    exchange(physics, &mut simulation, &mut colliders, &mut joints, &mut bodies);
-                }
+                let context = (&mut *simulation, &mut *colliders, &mut *joints, &mut *bodies);
+                stage.performance.exchange(context);
             };
             lend(&mut stage);
             if let Err(message) = caught(|| stage.pass(time.delta_secs())) {
@@ -271,26 +253,6 @@ fn explain_other_engine(exhibit: &Exhibit, notices: &mut Notices) {
     notices.news(format!("Found by engine {engine}, this is engine {ENGINE_VERSION}: {text}"));
 }
 
-/// Swaps a physics world with the one in a context: lends it out, or gives it back.
-fn exchange(
-    physics: &mut PhysicsWorld,
-    simulation: &mut RapierContextSimulation,
-    colliders: &mut RapierContextColliders,
-    joints: &mut RapierContextJoints,
-    bodies: &mut RapierRigidBodySet,
-) {
-    swap(&mut physics.integration_parameters, &mut simulation.integration_parameters);
-    swap(&mut physics.physics_pipeline, &mut simulation.pipeline);
-    swap(&mut physics.islands, &mut simulation.islands);
-    swap(&mut physics.broad_phase, &mut simulation.broad_phase);
-    swap(&mut physics.narrow_phase, &mut simulation.narrow_phase);
-    swap(&mut physics.ccd_solver, &mut simulation.ccd_solver);
-    swap(&mut physics.colliders, &mut colliders.colliders);
-    swap(&mut physics.impulse_joints, &mut joints.impulse_joints);
-    swap(&mut physics.multibody_joints, &mut joints.multibody_joints);
-    swap(&mut physics.bodies, &mut bodies.bodies);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -298,6 +260,7 @@ mod tests {
     use crate::save::{LoadedChampion, shipped_champion};
     use crate::score::{Recording, evaluate};
     use bevy::time::TimeUpdateStrategy;
+    use bevy_rapier3d::plugin::context::RapierRigidBodySet;
     use std::time::Duration;
 
     /// A stage without a window, whose frames last as long as `frames_s` says, in turn.
@@ -385,7 +348,7 @@ mod tests {
         assert!(stage.exhibit().caption().contains("as engine 1 recorded it"));
         let simulated = stage.exhibit().simulated();
         app.world_mut().write_message(ShowExhibit(simulated));
-        for _ in 0..40 {
+        for _ in 0..200 {
             app.update();
         }
         let stage = stages.single(app.world()).expect("one stage");

@@ -160,6 +160,7 @@ fn no_checkpoint_stops_the_program() {
         let (mut plan, _) = plan();
         plan.settings.evolution.strategy = strategy;
         plan.settings.genome.controller = controller;
+        plan.settings.evolution.population = 4;
         let fingerprint = fingerprint(&plan);
         let read = |path: &Path, text: &str| {
             parse_checkpoint(path, &text.replace("PLAN", &fingerprint), &plan).map(|read| {

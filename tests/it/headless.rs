@@ -4,7 +4,8 @@ use serde_json::json;
 
 use super::program::{folder, json_lines, run, stdout_of};
 
-const SMALL: &str = "--no-render --population 8 --generations 3 --duration 1 --seed 4";
+const SMALL: &str =
+    "--no-render --set newborns=0 --population 8 --generations 3 --duration 1 --seed 4";
 
 #[test]
 fn a_run_prints_a_table_and_ends_with_a_champion_that_replay_confirms() {
@@ -120,7 +121,7 @@ fn every_preset_runs() {
     let folder = folder();
     for preset in json_lines(folder.path(), "presets --json") {
         let name = preset["name"].as_str().expect("a name");
-        let size = "--population 6 --generations 1 --duration 1";
+        let size = "--set newborns=0 --population 6 --generations 1 --duration 1";
         let arguments = format!("--no-render --json --preset {name} {size} --out out");
         let lines = json_lines(folder.path(), &arguments);
         assert_eq!(lines[0]["evaluations"], json!(6), "{name}");

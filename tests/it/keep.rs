@@ -18,7 +18,7 @@ use snakes_and_stairs::save::{Earlier, SavesFolder};
 use super::program::{folder, json_lines, run, snakes};
 
 /// So short that most of the time goes into writing.
-const TINY: &str = "--no-render --json --population 4 --generations 40 --duration 0.2 --threads 2";
+const TINY: &str = "--no-render --json --set newborns=0 --population 4 --generations 40 --duration 0.2 --threads 2";
 
 /// The only run in a folder of saves, if there is one yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
@@ -67,7 +67,7 @@ fn kill_after(generations: usize, and_then: Duration, folder: &Path, arguments: 
 fn a_run_that_is_killed_at_any_instant_goes_on_and_ends_with_the_same_hash() {
     let saves = folder();
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
-    let tiny = |strategy: &str| format!("{TINY} --set strategy={strategy} --set newborns=0");
+    let tiny = |strategy: &str| format!("{TINY} --set strategy={strategy}");
     let expected = strategies.map(|strategy| {
         let lines = json_lines(saves.path(), &format!("{} --out {strategy}", tiny(strategy)));
         lines.last().expect("lines")["run_hash"].clone()

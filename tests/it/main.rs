@@ -3,6 +3,7 @@
 
 mod architecture;
 mod bad_input;
+mod champions;
 mod determinism;
 mod fuzz;
 mod headless;

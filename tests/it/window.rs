@@ -160,7 +160,7 @@ fn the_mouse_moves_the_camera_and_home_puts_it_back() {
     let moved = studio.still_picture();
     assert!(difference(&turned, &moved) > 2000, "a drag with the right button moves it");
     studio.wheel_up((160, 400));
-    studio.drag(1, (160, 60), (500, 200));
+    studio.drag(1, (250, 60), (500, 200));
     let unmoved = studio.still_picture();
     assert_eq!(difference(&moved, &unmoved), 0, "wheel and drag on the panel are the panel's");
     studio.wheel_up((600, 300));

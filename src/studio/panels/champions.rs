@@ -2,19 +2,23 @@
 
 use bevy_egui::egui;
 
-use super::title;
+use super::{explain, row, title};
 use crate::evolve::Champion;
 use crate::run::GenerationReport;
 use crate::studio::command::Command;
-use crate::studio::look;
 
 /// What of the list is on the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shown {
     /// The champion that the studio opened with.
     Opening,
-    /// The champion of this generation of the current run.
-    Generation(u32),
+    /// This individual of the current run.
+    Found {
+        /// The generation that found it; the first is 1.
+        generation: u32,
+        /// Its index in that generation.
+        individual: u32,
+    },
 }
 
 /// The list.
@@ -41,29 +45,19 @@ impl ChampionsPanel {
             let generation = report.generation;
             let name = format!("Generation {generation}");
             let Some(champion) = &report.champion else {
-                ui.label(
-                    egui::RichText::new(format!("{name}: all disqualified")).color(look::TEXT_WEAK),
-                );
+                explain(ui, &format!("{name}: all disqualified"));
                 continue;
             };
-            let is_shown = shown == Some(Shown::Generation(generation));
+            let individual = champion.origin.individual;
+            let is_shown = shown.is_some_and(|shown| shown.is(generation, individual));
             if row(ui, is_shown, &name, &champion.reached()).on_hover_text(hint).clicked() {
                 asked.push(Command::ShowGeneration(generation));
             }
         }
         if reports.is_empty() {
-            let hint = "The best of each generation will appear here.";
-            ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK));
+            explain(ui, "The best of each generation will appear here.");
         }
     }
-}
-
-/// A clickable row over the whole width: a name at the left, what it reached at the right.
-fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, reached: &str) -> egui::Response {
-    let color = if is_shown { look::TEXT } else { look::TEXT_WEAK };
-    let reached = egui::RichText::new(reached).color(color);
-    let button = egui::Button::new(name).right_text(reached).selected(is_shown);
-    ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
 }
 
 #[cfg(test)]

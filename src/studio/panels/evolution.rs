@@ -2,8 +2,9 @@
 
 use bevy_egui::egui;
 
+use super::method::{method, preset_switch};
 use super::number_field::NumberField;
-use super::title;
+use super::{explain, row, title_and};
 use crate::evolve::{LARGEST_POPULATION, RunPlan};
 use crate::studio::command::Command;
 use crate::studio::evolution::{Evolution, Status};
@@ -19,7 +20,7 @@ pub(super) struct EvolutionPanel {
 impl EvolutionPanel {
     /// Draws the panel and adds what was asked for.
     pub fn ui(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
-        title(ui, "Evolution");
+        title_and(ui, "Evolution", |ui| preset_switch(ui, run, asked));
         // A click on a button also ends what is typed below it; the typed value comes first.
         let mut pressed = Vec::new();
         self.buttons(ui, run, &mut pressed);
@@ -80,7 +81,8 @@ impl EvolutionPanel {
         let generations = run.settings().evolution.generations;
         let finished = run.reports().len();
         let (text, share) = match run.status() {
-            Status::Finished => (format!("All {generations} generations done"), 1.0),
+            // Larger generations make for fewer of them.
+            Status::Finished => (format!("All {finished} generations done"), 1.0),
             status => {
                 let held = match status {
                     Status::Ready => ", ready to start",
@@ -88,7 +90,7 @@ impl EvolutionPanel {
                     Status::Running | Status::Finished => "",
                 };
                 let text = format!("Generation {} of {generations}{held}", finished + 1);
-                (text, done as f32 / population as f32)
+                (text, done as f32 / population.max(1) as f32)
             }
         };
         ui.label(text);
@@ -114,6 +116,7 @@ impl EvolutionPanel {
         for problem in [self.seed.problem(), self.population.problem()].into_iter().flatten() {
             ui.colored_label(look::PROBLEM, problem);
         }
+        method(ui, run, asked);
         if run.next_run_differs() {
             let hint = "Reset to begin a run with these values.";
             ui.label(egui::RichText::new(hint).color(look::SECOND));
@@ -126,24 +129,20 @@ fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
     let header = egui::CollapsingHeader::new("Continue a stopped run");
     let opened = header.show(ui, |ui| {
         let Some(stopped) = run.stopped() else {
-            ui.label(egui::RichText::new("Looking ...").color(look::TEXT_WEAK));
-            return;
+            return explain(ui, "Looking ...");
         };
         if stopped.is_empty() {
-            let hint = "No other run was stopped before its end.";
-            ui.label(egui::RichText::new(hint).color(look::TEXT_WEAK));
+            explain(ui, "No other run was stopped before its end.");
         }
         for summary in stopped {
             let RunPlan { preset, seed, settings } = &summary.plan;
             let (finished, all) = (summary.finished, settings.evolution.generations);
-            let behind = egui::RichText::new(format!("{finished} of {all}")).color(look::TEXT_WEAK);
-            let button = egui::Button::new(format!("{preset}, seed {seed}")).right_text(behind);
-            let row = ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)));
+            let (name, behind) = (format!("{preset}, seed {seed}"), format!("{finished} of {all}"));
             let hint = format!(
                 "{finished} of {all} generations are finished; the current run is kept.\n{}",
                 summary.folder.display()
             );
-            if row.on_hover_text(hint).clicked() {
+            if row(ui, false, &name, &behind).on_hover_text(hint).clicked() {
                 asked.push(Command::Continue(summary.folder.clone()));
             }
         }

@@ -190,11 +190,11 @@ impl Studio {
             "Reset" => "249",
             // Not a button: a place in the panel where there is nothing.
             "the empty panel" => return self.click("300", "60"),
-            "Continue a stopped run" => return self.click("100", "236"),
-            "the first stopped run" => return self.click("100", "267"),
+            "Continue a stopped run" => return self.click("100", "277"),
+            "the first stopped run" => return self.click("100", "308"),
             "Simulate here" => return self.click("397", "562"),
-            "World" => return self.click("275", "29"),
-            "The ground has a surface of its own" => return self.click("41", "275"),
+            "World" => return self.click("163", "59"),
+            "The ground has a surface of its own" => return self.click("41", "285"),
             "As recorded" => return self.click("397", "562"),
             other => panic!("no button {other}"),
         };
@@ -324,9 +324,9 @@ impl Studio {
 }
 
 /// Where things are in the panel, in pixels at a scale of 1.
-const BUTTONS_Y: &str = "123";
-const SEED_Y: &str = "205";
-const CHAMPIONS_Y: u32 = 484;
+const BUTTONS_Y: &str = "133";
+const SEED_Y: &str = "215";
+const CHAMPIONS_Y: u32 = 496;
 const ROW_HEIGHT: u32 = 31;
 
 impl Drop for Studio {

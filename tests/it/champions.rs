@@ -1,0 +1,51 @@
+//! The champions in `saves/`: each does what its save says, stands on the landing, and wins by no exploit.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use snakes_and_stairs::save::{LoadedChampion, load_champion};
+use snakes_and_stairs::score::evaluate;
+
+/// The report's own climber, which has come to the fourth step.
+const REPORT: &str = "first-climber.ron";
+
+fn saves() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves");
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
+    // Runs that were made here are no part of the project.
+    let mut files: Vec<PathBuf> =
+        entries.map(|entry| entry.path()).filter(|path| path.is_file()).collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn every_shipped_champion_stands_on_the_landing_and_wins_by_no_exploit() {
+    let (mut climbers, mut traces) = (0, Vec::new());
+    for path in saves() {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        let LoadedChampion { champion, recording, .. } = load_champion(&path).expect(&name);
+        assert!(recording.is_some(), "{name}");
+        let seen = evaluate(&champion.genome, &champion.trial);
+        assert!(seen.agrees_with(&champion.evaluation), "{name} does not do what it did");
+        if name == REPORT {
+            continue;
+        }
+        climbers += 1;
+        traces.push(seen.trace_hash);
+        let recorded = champion.evaluation;
+        assert!(recorded.is_on_landing(&champion.trial.stairs), "{name}");
+        // Far from every limit at which it would be disqualified.
+        let (effort, limits) = (recorded.effort.expect("measured"), &champion.trial.health);
+        assert!(effort.joint_drift_m < 0.8 * limits.joint_drift_m, "{name}: {effort:?}");
+        assert!(effort.top_speed_m_s < 0.8 * limits.speed_m_s, "{name}: {effort:?}");
+        assert!(effort.sideways_m < champion.trial.stairs.width_m / 2.0, "{name}: {effort:?}");
+        let text = fs::read_to_string(&path).expect("read");
+        let line = text.lines().next().expect("a line");
+        assert!(line.starts_with("// ") && line.contains("Found by: snakes "), "{name}: {line}");
+    }
+    assert!(climbers >= 6, "{climbers} climbers");
+    traces.sort_unstable();
+    traces.dedup();
+    assert_eq!(traces.len(), climbers, "no two are the same");
+}
