@@ -18,7 +18,8 @@ use snakes_and_stairs::save::{Earlier, SavesFolder};
 use super::program::{folder, json_lines, run, snakes};
 
 /// So short that most of the time goes into writing.
-const TINY: &str = "--no-render --json --set newborns=0 --population 4 --generations 40 --duration 0.2 --threads 2";
+const TINY: &str = "--no-render --json --preset report --population 4 --generations 40 --duration 0.2 \
+                    --threads 2";
 
 /// The only run in a folder of saves, if there is one yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
