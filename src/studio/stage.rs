@@ -348,7 +348,7 @@ mod tests {
         assert!(stage.exhibit().caption().contains("as engine 1 recorded it"));
         let simulated = stage.exhibit().simulated();
         app.world_mut().write_message(ShowExhibit(simulated));
-        for _ in 0..200 {
+        for _ in 0..155 {
             app.update();
         }
         let stage = stages.single(app.world()).expect("one stage");
