@@ -37,7 +37,7 @@ impl ChampionsPanel {
     ) {
         title(ui, "Champions");
         let hint = "Click to replay";
-        let saved = row(ui, shown == Some(Shown::Opening), "Saved champion", &opening.reached());
+        let saved = row(ui, shown == Some(Shown::Opening), "Saved", &opening.reached());
         if saved.on_hover_text(hint).clicked() {
             asked.push(Command::ShowOpening);
         }
