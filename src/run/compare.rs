@@ -98,10 +98,9 @@ pub fn run_all(
             .into_iter()
             .map(|worker| worker.join().unwrap_or(Err(HeadlessError::Cancelled { kept: None })));
         // What went wrong counts before who was cancelled because of it.
-        results.fold(Ok(()), |worst, result| match (&worst, &result) {
-            (Ok(()) | Err(HeadlessError::Cancelled { .. }), Err(_)) => result,
-            _ => worst,
-        })
+        let mut errors: Vec<HeadlessError> = results.filter_map(Result::err).collect();
+        errors.sort_by_key(|error| matches!(error, HeadlessError::Cancelled { .. }));
+        errors.into_iter().next().map_or(Ok(()), Err)
     })
 }
 
