@@ -34,40 +34,45 @@ pub const BOX_M: f32 = 0.5;
 /// Genomes of more torque points are not kept: a front of them would make too large a checkpoint.
 const LARGEST_MEMBER_TORQUES: usize = 5000;
 
-impl FrontMember {
-    fn energy_j(&self) -> f32 {
-        self.evaluation.effort.map_or(f32::INFINITY, |effort| effort.energy_j)
-    }
+/// What an agent spent, in J; infinite if it was not measured.
+fn energy_j(evaluation: &Evaluation) -> f32 {
+    evaluation.effort.map_or(f32::INFINITY, |effort| effort.energy_j)
+}
 
-    fn box_number(&self) -> i32 {
-        libm::floorf(self.evaluation.centre_y_m / BOX_M) as i32
-    }
+fn box_number(evaluation: &Evaluation) -> i32 {
+    libm::floorf(evaluation.centre_y_m / BOX_M) as i32
+}
 
-    fn is_small(&self) -> bool {
-        match &self.genome.controller {
-            Controller::Signal(signals) => {
-                signals.all().map(Vec::len).sum::<usize>() <= LARGEST_MEMBER_TORQUES
-            }
-            Controller::Wave(_) | Controller::Gait(_) => true,
+fn is_small(genome: &Genome) -> bool {
+    match &genome.controller {
+        Controller::Signal(signals) => {
+            signals.all().map(Vec::len).sum::<usize>() <= LARGEST_MEMBER_TORQUES
         }
+        Controller::Wave(_) | Controller::Gait(_) => true,
     }
 }
 
 impl Front {
-    /// Takes somebody in who is beaten by nobody, and drops who is beaten by it. Only who ended further ahead
-    /// than `start_y_m`, in good health, with its energy measured, is considered.
-    pub fn add(&mut self, member: FrontMember, start_y_m: f32) {
-        let evaluation = &member.evaluation;
-        let is_fit = evaluation.disqualified.is_none()
+    /// Whether somebody would be taken in: who ended further ahead than `start_y_m`, in good health, with its
+    /// energy measured, and is beaten by nobody.
+    pub fn takes(&self, genome: &Genome, evaluation: &Evaluation, start_y_m: f32) -> bool {
+        let mut rivals = self.members.range(box_number(evaluation)..);
+        evaluation.disqualified.is_none()
             && evaluation.effort.is_some()
-            && evaluation.centre_y_m > start_y_m;
-        let number = member.box_number();
-        let is_beaten =
-            self.members.range(number..).any(|(_, known)| known.energy_j() <= member.energy_j());
-        if !is_fit || is_beaten || !member.is_small() {
+            && evaluation.centre_y_m > start_y_m
+            && !rivals.any(|(_, known)| energy_j(&known.evaluation) <= energy_j(evaluation))
+            && is_small(genome)
+    }
+
+    /// Takes somebody in, if it [`Self::takes`] it, and drops who is beaten by it.
+    pub fn add(&mut self, member: FrontMember, start_y_m: f32) {
+        if !self.takes(&member.genome, &member.evaluation, start_y_m) {
             return;
         }
-        self.members.retain(|&other, known| other > number || known.energy_j() < member.energy_j());
+        let number = box_number(&member.evaluation);
+        let spent_j = energy_j(&member.evaluation);
+        self.members
+            .retain(|&other, known| other > number || energy_j(&known.evaluation) < spent_j);
         self.members.insert(number, member);
     }
 

@@ -219,10 +219,13 @@ impl Experiment {
         };
 
         for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
-            let (genome, evaluation) = (genome.clone(), *evaluation);
-            let individual = index as u32;
-            let member = FrontMember { genome, evaluation, generation, individual };
-            self.front.add(member, trial.start_y_m);
+            // Hardly anybody is taken in: only who is, is copied.
+            if self.front.takes(genome, evaluation, trial.start_y_m) {
+                let (genome, evaluation) = (genome.clone(), *evaluation);
+                let individual = index as u32;
+                let member = FrontMember { genome, evaluation, generation, individual };
+                self.front.add(member, trial.start_y_m);
+            }
         }
         self.strategy.tell(&genomes, &evaluations);
         self.finished = generation;
