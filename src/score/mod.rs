@@ -7,6 +7,7 @@
 mod agent;
 mod behaviour;
 mod fitness;
+mod history;
 mod per_part;
 mod perturbation;
 mod recording;
@@ -17,6 +18,7 @@ mod trial;
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
 pub use fitness::{FITNESS_RANGE, Fitness};
+pub use history::History;
 pub use per_part::PerPart;
 pub use perturbation::{Perturbation, PerturbationRange};
 pub use recording::Recording;

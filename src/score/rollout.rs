@@ -9,8 +9,8 @@ use crate::control::Driver;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
 use crate::world::{
-    Disqualification, Effort, JointState, JointTorque, LimbPlan, Pose, Simulation, Stairs,
-    WorldPlan,
+    Disqualification, Effort, JointState, JointTorque, LimbPlan, Pose, Pull, Simulation, Stairs,
+    Vector, WorldPlan,
 };
 
 /// What a rollout ended with.
@@ -53,7 +53,8 @@ impl Evaluation {
     }
 }
 
-/// A rollout on its way.
+/// A rollout on its way. A clone goes on with the bits of the original.
+#[derive(Clone)]
 pub struct Rollout {
     simulation: Simulation,
     driver: Driver,
@@ -73,6 +74,7 @@ pub struct Rollout {
     step: u32,
     last_step: u32,
     disqualified: Option<Disqualification>,
+    is_disturbed: bool,
 }
 
 impl Rollout {
@@ -109,6 +111,7 @@ impl Rollout {
             step: 0,
             last_step: trial.steps(),
             disqualified: None,
+            is_disturbed: false,
         };
         rollout.furthest_y_m = rollout.poses[rollout.middle_limb].translation.y;
         rollout
@@ -182,6 +185,34 @@ impl Rollout {
             effort: Some(effort),
             behaviour: Some(behaviour),
         }
+    }
+
+    /// Lets a hand pull a limb from the next step on, or no more. From then on the rollout is disturbed: it
+    /// says nothing of the genome any more.
+    pub fn pull(&mut self, pull: Option<Pull>) {
+        self.is_disturbed |= pull.is_some();
+        self.simulation.pull(pull);
+    }
+
+    /// Whether a hand has interfered.
+    pub fn is_disturbed(&self) -> bool {
+        self.is_disturbed
+    }
+
+    /// How many steps it lasts, unless the agent is disqualified before.
+    pub fn last_step(&self) -> u32 {
+        self.last_step
+    }
+
+    /// Where the middle limb's centre is after the last healthy step, in metres.
+    pub fn middle_m(&self) -> Vector {
+        self.poses[self.middle_limb].translation
+    }
+
+    /// Whether all steps of the stairs are under the middle limb now.
+    pub fn is_on_landing(&self) -> bool {
+        let steps = self.stairs.steps;
+        steps > 0 && self.stairs.steps_under(self.middle_m().to_array()) == steps
     }
 
     /// The world, to look at.

@@ -4,13 +4,18 @@
 
 use rapier3d::prelude::*;
 
+mod build;
+mod observe;
+
 use super::bounce::{Velocity, finish_bounce};
-use super::contact::{ContactLaws, Hooks, joint_coefficients, soften};
+use super::contact::{ContactLaws, Hooks, soften};
 use super::surface::ContactLaw;
 use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld,
-    Skin, Stairs, Surface,
+    Pull, Skin, Stairs, Surface,
 };
+use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
+pub use observe::{ContactForce, JointState};
 
 /// All that determines a world: build it twice and step it with the same torques, and the two agree
 /// in every bit.
@@ -49,20 +54,7 @@ pub struct JointTorque {
     pub twist_nm: f32,
 }
 
-/// How a joint stands, as the snake feels it: the rear limb as seen from the front limb.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct JointState {
-    /// Bend about the front limb's x axis, in radians.
-    pub bend_rad: f32,
-    /// Twist about the front limb's y axis, in radians.
-    pub twist_rad: f32,
-    /// Rate of turn about the front limb's x axis, in rad/s.
-    pub bend_rad_s: f32,
-    /// Rate of turn about the front limb's y axis, in rad/s.
-    pub twist_rad_s: f32,
-}
-
-/// A running world.
+/// A running world. A clone goes on with the bits of the original.
 pub struct Simulation {
     physics: PhysicsWorld,
     contacts: Contacts,
@@ -78,6 +70,9 @@ pub struct Simulation {
     /// axes they act.
     applied: Vec<(Rotation, JointTorque)>,
     effort: Effort,
+    /// What pulls a limb beside the joints, and whether anything did in the last step.
+    pull: Option<Pull>,
+    was_pulled: bool,
 }
 
 /// What a step needs to know of the contacts.
@@ -125,13 +120,7 @@ impl Simulation {
             physics.integration_parameters.contact_recycling = false;
         }
         let ground = insert_ground(&mut physics, plan, &laws);
-        for stair in plan.stairs.boxes() {
-            let min = Vector::from(stair.min_m);
-            let half = (Vector::from(stair.max_m) - min) / 2.0;
-            let shape = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(min + half);
-            physics.insert_collider(material(shape, &plan.surface, &laws.stairs), None);
-        }
-
+        insert_stairs(&mut physics, plan, &laws.stairs);
         let limbs = insert_limbs(&mut physics, plan, &laws.limbs);
         insert_joints(&mut physics, &limbs, plan);
 
@@ -147,6 +136,8 @@ impl Simulation {
             torques_in_world: vec![Vector::ZERO; limbs.len()],
             applied: vec![(Rotation::IDENTITY, JointTorque::default()); plan.body.joints.len()],
             effort: Effort::default(),
+            pull: None,
+            was_pulled: false,
             limbs,
             joints: plan.body.joints.clone(),
             half_lengths_m: plan.body.limbs.iter().map(|limb| limb.length_m / 2.0).collect(),
@@ -245,45 +236,6 @@ impl Simulation {
         }
     }
 
-    /// The pose of each limb's centre, head first.
-    pub fn poses(&self) -> impl ExactSizeIterator<Item = Pose> + '_ {
-        self.limbs.iter().map(|&limb| *self.physics.bodies[limb].position())
-    }
-
-    /// How each joint stands, from the head: see [`universal_joint`] for what its angles are.
-    pub fn joint_states(&self) -> impl ExactSizeIterator<Item = JointState> + '_ {
-        self.limbs.windows(2).map(|pair| {
-            let [front, rear] = [pair[0], pair[1]].map(|limb| &self.physics.bodies[limb]);
-            let into_front = front.rotation().inverse();
-            let turn = into_front * *rear.rotation();
-            let rate = into_front * (rear.angvel() - front.angvel());
-            // A rotation and its negative are the same; the one with w ≥ 0 is the short way round.
-            let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
-            let angle_rad = |part: f32| 2.0 * libm::atan2f(sign * part, sign * turn.w);
-            JointState {
-                bend_rad: angle_rad(turn.x),
-                twist_rad: angle_rad(turn.y),
-                bend_rad_s: rate.x,
-                twist_rad_s: rate.y,
-            }
-        })
-    }
-
-    /// How many limbs touch the ground or the stairs.
-    pub fn limbs_in_contact(&self) -> usize {
-        let touches = |&&limb: &&RigidBodyHandle| {
-            let collider = self.physics.bodies[limb].colliders()[0];
-            self.physics.narrow_phase.contact_pairs_with(collider).any(|pair| {
-                let other =
-                    if pair.collider1 == collider { pair.collider2 } else { pair.collider1 };
-                let is_world = other == self.contacts.ground
-                    || self.physics.colliders[other].parent().is_none();
-                is_world && pair.has_any_active_contact()
-            })
-        };
-        self.limbs.iter().filter(touches).count()
-    }
-
     /// Handles of the limbs in the physics world's body set, head first.
     pub fn limb_handles(&self) -> &[RigidBodyHandle] {
         &self.limbs
@@ -318,6 +270,27 @@ impl Simulation {
             body.reset_torques(false);
             body.add_torque(torque, false);
         }
+        if self.pull.is_some() || self.was_pulled {
+            self.apply_pull();
+        }
+    }
+
+    /// Lets a spring pull a limb from the next step on, or no more. What is pulled is no trial any more.
+    pub fn pull(&mut self, pull: Option<Pull>) {
+        self.pull = pull;
+    }
+
+    fn apply_pull(&mut self) {
+        for &limb in &self.limbs {
+            self.physics.bodies[limb].reset_forces(false);
+        }
+        self.was_pulled = false;
+        let Some(pull) = self.pull else { return };
+        let Some(&limb) = self.limbs.get(pull.limb) else { return };
+        let body = &mut self.physics.bodies[limb];
+        let (force, point) = pull.force_on(body);
+        body.add_force_at_point(force, point, false);
+        self.was_pulled = true;
     }
 
     /// Looks for what disqualifies: see [`HealthLimits`].
@@ -364,133 +337,37 @@ impl Simulation {
     }
 }
 
-/// Gives a collider of the world its material.
-fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
-    let collider = collider
-        .friction(surface.friction)
-        .friction_combine_rule(CoefficientCombineRule::Multiply)
-        .restitution(surface.bounce)
-        .restitution_combine_rule(CoefficientCombineRule::Max);
-    with_hook(collider, law)
-}
-
-/// Lets the collider's contacts pass the hooks, if they have to.
-fn with_hook(collider: ColliderBuilder, law: &ContactLaw) -> ColliderBuilder {
-    let hooks =
-        if law.needs_hook() { ActiveHooks::MODIFY_SOLVER_CONTACTS } else { ActiveHooks::empty() };
-    collider.active_hooks(hooks)
-}
-
-/// Inserts the ground, an endless plane at z = 0: see [`ContactLaws::ground_is_apart`].
-fn insert_ground(
-    physics: &mut PhysicsWorld,
-    plan: &WorldPlan,
-    laws: &ContactLaws,
-) -> ColliderHandle {
-    let plane = ColliderBuilder::new(SharedShape::halfspace(Vector::Z));
-    let plane = material(plane, &plan.ground, &laws.ground);
-    if laws.ground_is_apart() {
-        let body = RigidBodyBuilder::dynamic()
-            .lock_translations()
-            .lock_rotations()
-            .gravity_scale(0.0)
-            .can_sleep(false);
-        physics.insert(body, plane.density(0.0)).1
-    } else {
-        physics.insert_collider(plane, None)
-    }
-}
-
-/// Inserts the straight snake, head first, lying on the ground.
-fn insert_limbs(
-    physics: &mut PhysicsWorld,
-    plan: &WorldPlan,
-    law: &ContactLaw,
-) -> Vec<RigidBodyHandle> {
-    let axis_z_m = plan.body.axis_height_m();
-    let middle = Vector::new(plan.start_x_m, plan.start_y_m, 0.0);
-    let (sin, cos) = libm::sincosf(plan.start_turn_rad);
-    let (half_sin, half_cos) = libm::sincosf(plan.start_turn_rad / 2.0);
-    let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
-    let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
-    plan.body
-        .limbs
-        .iter()
-        .map(|limb| {
-            let straight_y_m = front_y_m - limb.length_m / 2.0;
-            front_y_m -= limb.length_m;
-            let centre = if plan.start_turn_rad == 0.0 {
-                // Not around the middle and back: rounding would make other bits of it.
-                Vector::new(plan.start_x_m, straight_y_m, axis_z_m)
-            } else {
-                let along_m = straight_y_m - plan.start_y_m;
-                middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
-            };
-            let body = RigidBodyBuilder::dynamic()
-                .pose(Pose::from_parts(centre, turn))
-                .angular_damping(plan.body.angular_damping_per_s)
-                .can_sleep(false);
-            let collider = ColliderBuilder::cuboid(
-                limb.width_m / 2.0,
-                limb.length_m / 2.0,
-                limb.height_m / 2.0,
-            )
-            .density(limb.density_kg_m3)
-            .friction(plan.skin.friction)
-            .friction_combine_rule(CoefficientCombineRule::Multiply)
-            .restitution(plan.skin.bounce)
-            .restitution_combine_rule(CoefficientCombineRule::Max);
-            physics.insert(body, with_hook(collider, law)).0
-        })
-        .collect()
-}
-
-/// Joins neighbours, head first. See [`universal_joint`].
-fn insert_joints(physics: &mut PhysicsWorld, limbs: &[RigidBodyHandle], plan: &WorldPlan) {
-    let body = &plan.body;
-    for (index, joint) in body.joints.iter().enumerate() {
-        let (front, rear) = (&body.limbs[index], &body.limbs[index + 1]);
-        let mut built = universal_joint(joint, front.length_m / 2.0, rear.length_m / 2.0);
-        built.softness = joint_coefficients(
-            joint.cfm_m_s_per_n,
-            plan.physics.step_s(),
-            front.mass_kg(),
-            rear.mass_kg(),
-        );
-        physics.insert_impulse_joint(limbs[index], limbs[index + 1], built);
-    }
-}
-
-/// A universal joint between the rear face of the front limb and the front face of the rear limb.
-///
-/// Rapier has no such joint among its multibodies, so it is an impulse joint with all axes locked but
-/// the rotations about x (bend) and y (twist). Its lock keeps the z part of the relative quaternion at
-/// zero, which makes it a constant-velocity universal joint. With `q` that quaternion the bend is
-/// `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`; both limits are symmetric (asymmetric ones would
-/// make rapier call the C library's sine, whose bits differ between machines).
-///
-/// The damping is a motor that wants zero joint rate, which the solver integrates implicitly. Rapier takes
-/// a motor without damping for an infinitely stiff one, so an undamped joint's motor gets no force. It
-/// stays, because joints without motors are solved four at a time, by code that calls the C library's
-/// arc tangent.
-fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> GenericJoint {
-    let locked = JointAxesMask::LIN_AXES | JointAxesMask::ANG_Z;
-    let mut joint = GenericJointBuilder::new(locked)
-        .local_anchor1(Vector::new(0.0, -front_half_m, 0.0))
-        .local_anchor2(Vector::new(0.0, rear_half_m, 0.0))
-        .limits(JointAxis::AngX, [-plan.bend_limit_rad, plan.bend_limit_rad])
-        .limits(JointAxis::AngY, [-plan.twist_limit_rad, plan.twist_limit_rad])
-        // Neighbours touch with a whole face; their contact would block the bend.
-        .contacts_enabled(false)
-        .build();
-    for axis in [JointAxis::AngX, JointAxis::AngY] {
-        joint.set_motor_model(axis, MotorModel::ForceBased);
-        joint.set_motor_velocity(axis, 0.0, plan.damping_nms_per_rad);
-        if plan.damping_nms_per_rad == 0.0 {
-            joint.set_motor_max_force(axis, 0.0);
+impl Clone for Simulation {
+    fn clone(&self) -> Self {
+        let physics = &self.physics;
+        Self {
+            physics: PhysicsWorld {
+                gravity: physics.gravity,
+                integration_parameters: physics.integration_parameters,
+                // It holds working memory only; a new one reads everything from the rest.
+                physics_pipeline: PhysicsPipeline::new(),
+                islands: physics.islands.clone(),
+                broad_phase: physics.broad_phase.clone(),
+                narrow_phase: physics.narrow_phase.clone(),
+                bodies: physics.bodies.clone(),
+                colliders: physics.colliders.clone(),
+                impulse_joints: physics.impulse_joints.clone(),
+                multibody_joints: physics.multibody_joints.clone(),
+                ccd_solver: physics.ccd_solver.clone(),
+            },
+            contacts: self.contacts.clone(),
+            limbs: self.limbs.clone(),
+            joints: self.joints.clone(),
+            half_lengths_m: self.half_lengths_m.clone(),
+            health: self.health.clone(),
+            arena_front_y_m: self.arena_front_y_m,
+            torques_in_world: self.torques_in_world.clone(),
+            applied: self.applied.clone(),
+            effort: self.effort,
+            pull: self.pull,
+            was_pulled: self.was_pulled,
         }
     }
-    joint
 }
 
 #[cfg(test)]

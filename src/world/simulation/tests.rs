@@ -1,5 +1,6 @@
 //! The world against what the report states and what closed forms say.
 
+mod observe;
 mod surface;
 
 use super::super::LimbPlan;

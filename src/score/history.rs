@@ -1,0 +1,212 @@
+//! A whole rollout, looked through beforehand: its torques and its way from the start to the end, and keyframes
+//! from which any moment of it is simulated again, bit for bit.
+
+use super::{Evaluation, Rollout, Trial};
+use crate::genome::Genome;
+use crate::world::{JointTorque, Vector};
+
+/// A rollout from its start to its end.
+pub struct History {
+    /// Rollouts held at [`Self::keyframe_steps`], 0 first.
+    keyframes: Vec<Rollout>,
+    keyframe_steps: u32,
+    sample_steps: u32,
+    joints: usize,
+    /// Sample by sample, in each the joints from the head.
+    torques: Vec<JointTorque>,
+    /// Where the middle limb was, sample by sample, the start first.
+    middles_m: Vec<Vector>,
+    landed_at_step: Option<u32>,
+    evaluation: Evaluation,
+}
+
+/// Between two keyframes there are at least so many steps. A quarter of a second at the report's 60 a second is
+/// simulated again within a millisecond.
+const FEWEST_STEPS_BETWEEN_KEYFRAMES: u32 = 15;
+/// More keyframes than this would take too much memory: each holds a whole physics world.
+const MOST_KEYFRAMES: u32 = 60;
+/// More samples than this nobody can tell apart on a screen.
+const MOST_SAMPLES: u32 = 6000;
+
+impl History {
+    /// Runs a genome's rollout to its end. Both must have passed their checks. `goes_on` is asked with the number
+    /// of every step that is done; none if it says no.
+    pub fn of(
+        genome: &Genome,
+        trial: &Trial,
+        mut goes_on: impl FnMut(u32) -> bool,
+    ) -> Option<Self> {
+        let mut rollout = Rollout::new(genome, trial);
+        let steps = trial.steps();
+        let keyframe_steps = steps.div_ceil(MOST_KEYFRAMES).max(FEWEST_STEPS_BETWEEN_KEYFRAMES);
+        let sample_steps = steps.div_ceil(MOST_SAMPLES);
+        let mut history = Self {
+            keyframes: vec![rollout.clone()],
+            keyframe_steps,
+            sample_steps,
+            joints: trial.agent.joints(),
+            torques: Vec::new(),
+            middles_m: vec![rollout.middle_m()],
+            landed_at_step: None,
+            evaluation: rollout.evaluation(),
+        };
+        while rollout.advance() {
+            let step = rollout.step();
+            if !goes_on(step) {
+                return None;
+            }
+            if (step - 1).is_multiple_of(sample_steps) {
+                let torques = rollout.simulation().applied_torques();
+                history.torques.extend(torques.map(|(_, torque)| torque));
+            }
+            if step.is_multiple_of(sample_steps) {
+                history.middles_m.push(rollout.middle_m());
+            }
+            if step.is_multiple_of(keyframe_steps) {
+                history.keyframes.push(rollout.clone());
+            }
+            if history.landed_at_step.is_none() && rollout.is_on_landing() {
+                history.landed_at_step = Some(step);
+            }
+        }
+        history.evaluation = rollout.evaluation();
+        Some(history)
+    }
+
+    /// The rollout as it is after `step` healthy steps, or at its end if that comes before.
+    pub fn rollout_at(&self, step: u32) -> Rollout {
+        let last = self.keyframes.len() - 1;
+        let index = ((step / self.keyframe_steps) as usize).min(last);
+        let mut rollout = self.keyframes[index].clone();
+        while rollout.step() < step && rollout.advance() {}
+        rollout
+    }
+
+    /// What the rollout ends with.
+    pub fn evaluation(&self) -> &Evaluation {
+        &self.evaluation
+    }
+
+    /// After which step the middle limb first stood on the landing, if it ever does.
+    pub fn landed_at_step(&self) -> Option<u32> {
+        self.landed_at_step
+    }
+
+    /// Physics steps from one sample to the next.
+    pub fn sample_steps(&self) -> u32 {
+        self.sample_steps
+    }
+
+    /// The torques on the joints, from the head, sample by sample: those of the step that begins there.
+    pub fn torques(&self) -> impl ExactSizeIterator<Item = &[JointTorque]> {
+        self.torques.chunks_exact(self.joints.max(1))
+    }
+
+    /// Where the middle limb is, sample by sample, the start first, in metres.
+    pub fn middles_m(&self) -> &[Vector] {
+        &self.middles_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::score::evaluate;
+
+    fn whole(genome: &Genome, trial: &Trial) -> History {
+        History::of(genome, trial, |_| true).expect("nobody stopped it")
+    }
+
+    /// Every bit of the limbs' motion.
+    fn state(rollout: &Rollout) -> Vec<[u32; 13]> {
+        let physics = rollout.simulation().physics();
+        let limbs = rollout.simulation().limb_handles().iter();
+        limbs
+            .map(|&limb| {
+                let body = &physics.bodies[limb];
+                let (at, turn) = (body.translation(), body.rotation());
+                let (speed, spin) = (body.linvel(), body.angvel());
+                [
+                    at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w, speed.x, speed.y, speed.z,
+                    spin.x, spin.y, spin.z,
+                ]
+                .map(f32::to_bits)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_moment_that_is_sought_has_the_bits_of_the_played_one_and_so_has_what_follows() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let history = whole(&champion.genome, &champion.trial);
+        let mut played = Rollout::new(&champion.genome, &champion.trial);
+        let steps = champion.trial.steps();
+        for target in [0, 1, 14, 15, 16, steps / 2, steps - 1, steps] {
+            while played.step() < target {
+                assert!(played.advance());
+            }
+            let mut sought = history.rollout_at(target);
+            assert_eq!(sought.step(), target);
+            assert_eq!(sought.evaluation(), played.evaluation(), "after {target} steps");
+            assert_eq!(state(&sought), state(&played), "after {target} steps");
+            while sought.advance() {}
+            assert_eq!(sought.evaluation(), *history.evaluation(), "on from {target}");
+        }
+        assert_eq!(*history.evaluation(), evaluate(&champion.genome, &champion.trial));
+        assert_eq!(history.rollout_at(u32::MAX).step(), steps, "beyond the end is the end");
+    }
+
+    #[test]
+    fn it_knows_the_torques_and_the_way() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let history = whole(&champion.genome, &champion.trial);
+        let steps = champion.trial.steps() as usize;
+        assert_eq!(history.torques().len(), steps);
+        assert_eq!(history.middles_m().len(), steps + 1);
+        let last = history.middles_m().last().expect("the end");
+        assert_eq!(last.y, history.evaluation().centre_y_m);
+        let landed = history.landed_at_step().expect("it climbs");
+        let before = history.rollout_at(landed - 1);
+        assert!(!before.is_on_landing() && history.rollout_at(landed).is_on_landing());
+        let mut at = history.rollout_at(99);
+        at.advance();
+        let torques: Vec<_> = at.simulation().applied_torques().map(|(_, torque)| torque).collect();
+        assert_eq!(history.torques().nth(99), Some(&torques[..]));
+    }
+
+    #[test]
+    fn it_can_be_stopped_and_a_long_one_takes_no_more_memory_than_a_short_one() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let stopped = History::of(&champion.genome, &champion.trial, |step| step < 7);
+        assert!(stopped.is_none());
+        let long = Trial { duration_s: 120.0, ..champion.trial };
+        let history = whole(&champion.genome, &long);
+        assert!(history.keyframes.len() as u32 <= MOST_KEYFRAMES + 1);
+        assert!(history.middles_m().len() as u32 <= MOST_SAMPLES + 1);
+    }
+
+    #[test]
+    fn a_hand_disturbs_and_only_from_when_it_pulls() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let history = whole(&champion.genome, &champion.trial);
+        let mut rollout = history.rollout_at(60);
+        rollout.pull(None);
+        assert!(!rollout.is_disturbed());
+        let limb = 2;
+        let above = rollout.poses()[limb].translation + Vector::new(0.0, 0.0, 3.0);
+        rollout.pull(Some(crate::world::Pull { limb, held_at_m: Vector::ZERO, to_m: above }));
+        for _ in 0..60 {
+            assert!(rollout.advance(), "{:?}", rollout.evaluation().disqualified);
+        }
+        let undisturbed = history.rollout_at(120);
+        assert!(rollout.is_disturbed() && !undisturbed.is_disturbed());
+        let lifted = rollout.poses()[limb].translation.z - undisturbed.poses()[limb].translation.z;
+        assert!(lifted > 0.5, "{lifted} m");
+        rollout.pull(None);
+        for _ in 0..120 {
+            assert!(rollout.advance(), "{:?}", rollout.evaluation().disqualified);
+        }
+        assert!(rollout.poses()[limb].translation.z < above.z - 1.0, "it falls again");
+    }
+}

@@ -1,0 +1,151 @@
+//! Bodies, colliders and joints of a new world, each inserted in a fixed order.
+
+use rapier3d::prelude::*;
+
+use super::WorldPlan;
+use crate::world::contact::{ContactLaws, joint_coefficients};
+use crate::world::surface::ContactLaw;
+use crate::world::{JointPlan, PhysicsWorld, Surface};
+
+/// Gives a collider of the world its material.
+fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
+    let collider = collider
+        .friction(surface.friction)
+        .friction_combine_rule(CoefficientCombineRule::Multiply)
+        .restitution(surface.bounce)
+        .restitution_combine_rule(CoefficientCombineRule::Max);
+    with_hook(collider, law)
+}
+
+/// Lets the collider's contacts pass the hooks, if they have to.
+fn with_hook(collider: ColliderBuilder, law: &ContactLaw) -> ColliderBuilder {
+    let hooks =
+        if law.needs_hook() { ActiveHooks::MODIFY_SOLVER_CONTACTS } else { ActiveHooks::empty() };
+    collider.active_hooks(hooks)
+}
+
+/// Inserts the ground, an endless plane at z = 0: see [`ContactLaws::ground_is_apart`].
+pub(super) fn insert_ground(
+    physics: &mut PhysicsWorld,
+    plan: &WorldPlan,
+    laws: &ContactLaws,
+) -> ColliderHandle {
+    let plane = ColliderBuilder::new(SharedShape::halfspace(Vector::Z));
+    let plane = material(plane, &plan.ground, &laws.ground);
+    if laws.ground_is_apart() {
+        let body = RigidBodyBuilder::dynamic()
+            .lock_translations()
+            .lock_rotations()
+            .gravity_scale(0.0)
+            .can_sleep(false);
+        physics.insert(body, plane.density(0.0)).1
+    } else {
+        physics.insert_collider(plane, None)
+    }
+}
+
+/// Inserts the steps, the lowest first.
+pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &ContactLaw) {
+    for stair in plan.stairs.boxes() {
+        let min = Vector::from(stair.min_m);
+        let half = (Vector::from(stair.max_m) - min) / 2.0;
+        let shape = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(min + half);
+        physics.insert_collider(material(shape, &plan.surface, law), None);
+    }
+}
+
+/// Inserts the straight snake, head first, lying on the ground.
+pub(super) fn insert_limbs(
+    physics: &mut PhysicsWorld,
+    plan: &WorldPlan,
+    law: &ContactLaw,
+) -> Vec<RigidBodyHandle> {
+    let axis_z_m = plan.body.axis_height_m();
+    let middle = Vector::new(plan.start_x_m, plan.start_y_m, 0.0);
+    let (sin, cos) = libm::sincosf(plan.start_turn_rad);
+    let (half_sin, half_cos) = libm::sincosf(plan.start_turn_rad / 2.0);
+    let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
+    let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
+    plan.body
+        .limbs
+        .iter()
+        .map(|limb| {
+            let straight_y_m = front_y_m - limb.length_m / 2.0;
+            front_y_m -= limb.length_m;
+            let centre = if plan.start_turn_rad == 0.0 {
+                // Not around the middle and back: rounding would make other bits of it.
+                Vector::new(plan.start_x_m, straight_y_m, axis_z_m)
+            } else {
+                let along_m = straight_y_m - plan.start_y_m;
+                middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
+            };
+            let body = RigidBodyBuilder::dynamic()
+                .pose(Pose::from_parts(centre, turn))
+                .angular_damping(plan.body.angular_damping_per_s)
+                .can_sleep(false);
+            let collider = ColliderBuilder::cuboid(
+                limb.width_m / 2.0,
+                limb.length_m / 2.0,
+                limb.height_m / 2.0,
+            )
+            .density(limb.density_kg_m3)
+            .friction(plan.skin.friction)
+            .friction_combine_rule(CoefficientCombineRule::Multiply)
+            .restitution(plan.skin.bounce)
+            .restitution_combine_rule(CoefficientCombineRule::Max);
+            physics.insert(body, with_hook(collider, law)).0
+        })
+        .collect()
+}
+
+/// Joins neighbours, head first. See [`universal_joint`].
+pub(super) fn insert_joints(
+    physics: &mut PhysicsWorld,
+    limbs: &[RigidBodyHandle],
+    plan: &WorldPlan,
+) {
+    let body = &plan.body;
+    for (index, joint) in body.joints.iter().enumerate() {
+        let (front, rear) = (&body.limbs[index], &body.limbs[index + 1]);
+        let mut built = universal_joint(joint, front.length_m / 2.0, rear.length_m / 2.0);
+        built.softness = joint_coefficients(
+            joint.cfm_m_s_per_n,
+            plan.physics.step_s(),
+            front.mass_kg(),
+            rear.mass_kg(),
+        );
+        physics.insert_impulse_joint(limbs[index], limbs[index + 1], built);
+    }
+}
+
+/// A universal joint between the rear face of the front limb and the front face of the rear limb.
+///
+/// Rapier has no such joint among its multibodies, so it is an impulse joint with all axes locked but
+/// the rotations about x (bend) and y (twist). Its lock keeps the z part of the relative quaternion at
+/// zero, which makes it a constant-velocity universal joint. With `q` that quaternion the bend is
+/// `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`; both limits are symmetric (asymmetric ones would
+/// make rapier call the C library's sine, whose bits differ between machines).
+///
+/// The damping is a motor that wants zero joint rate, which the solver integrates implicitly. Rapier takes
+/// a motor without damping for an infinitely stiff one, so an undamped joint's motor gets no force. It
+/// stays, because joints without motors are solved four at a time, by code that calls the C library's
+/// arc tangent.
+fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> GenericJoint {
+    let locked = JointAxesMask::LIN_AXES | JointAxesMask::ANG_Z;
+    let mut joint = GenericJointBuilder::new(locked)
+        .local_anchor1(Vector::new(0.0, -front_half_m, 0.0))
+        .local_anchor2(Vector::new(0.0, rear_half_m, 0.0))
+        .limits(JointAxis::AngX, [-plan.bend_limit_rad, plan.bend_limit_rad])
+        .limits(JointAxis::AngY, [-plan.twist_limit_rad, plan.twist_limit_rad])
+        // Neighbours touch with a whole face; their contact would block the bend.
+        .contacts_enabled(false)
+        .build();
+    for axis in [JointAxis::AngX, JointAxis::AngY] {
+        joint.set_motor_model(axis, MotorModel::ForceBased);
+        joint.set_motor_velocity(axis, 0.0, plan.damping_nms_per_rad);
+        if plan.damping_nms_per_rad == 0.0 {
+            joint.set_motor_max_force(axis, 0.0);
+        }
+    }
+    joint
+}

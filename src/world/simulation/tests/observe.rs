@@ -1,0 +1,52 @@
+//! What can be seen of a world against what must be there.
+
+use super::*;
+
+/// Sum of the forces of all contacts, in N.
+fn sum(simulation: &Simulation) -> Vector {
+    simulation.contact_forces().iter().map(|contact| contact.force_n).sum()
+}
+
+#[test]
+fn a_snake_at_rest_is_carried_by_its_contacts() {
+    let plan = plan(5);
+    let mut simulation = Simulation::new(&plan);
+    for _ in 0..120 {
+        simulation.step(&[]).expect("healthy");
+    }
+    let weight_n = plan.body.mass_kg() * plan.physics.gravity_m_s2;
+    let sum = sum(&simulation);
+    assert!((sum.z - weight_n).abs() < 0.01 * weight_n, "{sum} for {weight_n} N");
+    assert!(sum.x.abs() + sum.y.abs() < 0.01 * weight_n, "{sum}");
+    for contact in simulation.contact_forces() {
+        assert!(contact.limb < 5 && contact.at_m.z.abs() < 0.02, "{contact:?}");
+    }
+}
+
+#[test]
+fn friction_pushes_against_the_motion_as_hard_as_the_law_says() {
+    let mut plan = plan(2);
+    plan.surface.friction = 0.5;
+    plan.ground.friction = 0.5;
+    let mut simulation = Simulation::new(&plan);
+    for limb in simulation.limbs.clone() {
+        simulation.physics.bodies[limb].set_linvel(Vector::new(0.0, -4.0, 0.0), true);
+    }
+    for _ in 0..10 {
+        simulation.step(&[]).expect("healthy");
+    }
+    let weight_n = plan.body.mass_kg() * plan.physics.gravity_m_s2;
+    let sum = sum(&simulation);
+    assert!((sum.z - weight_n).abs() < 0.05 * weight_n, "{sum} for {weight_n} N");
+    assert!((sum.y - 0.5 * sum.z).abs() < 0.05 * weight_n, "{sum}: forwards, half the weight");
+}
+
+#[test]
+fn a_torque_is_seen_as_it_was_clamped() {
+    let mut simulation = Simulation::new(&plan(3));
+    let asked = JointTorque { bend_nm: 5000.0, twist_nm: -30.0 };
+    simulation.step(&[asked, JointTorque::default()]).expect("healthy");
+    let seen: Vec<JointTorque> = simulation.applied_torques().map(|(_, torque)| torque).collect();
+    assert_eq!(seen, [JointTorque { bend_nm: 1000.0, twist_nm: -30.0 }, JointTorque::default()]);
+    assert_eq!(simulation.torque_limits(0).map(|most| most.bend_nm), Some(1000.0));
+}
