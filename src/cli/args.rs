@@ -14,6 +14,8 @@ use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::run::{RunSource, THREADS_RANGE, available_cores};
 use crate::save::{DEFAULT_PRESET, Earlier, Preset, SavesFolder, load_preset};
 use crate::score::PerturbationRange;
+#[cfg(feature = "studio")]
+use crate::studio::Theme;
 
 /// A five-block snake evolves until it climbs a staircase.
 ///
@@ -96,6 +98,9 @@ pub struct Args {
     /// Size of the window in pixels
     #[arg(long, global = true, value_name = "WIDTHxHEIGHT")]
     window_size: Option<String>,
+    /// The colours: light or dark [default: light]
+    #[arg(long, global = true, value_name = "NAME")]
+    theme: Option<String>,
     /// Close the window after that many frames and print the time each took
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     exit_after_frames: Option<String>,
@@ -351,6 +356,12 @@ impl Args {
         Ok((width, height))
     }
 
+    /// The colours of the window.
+    #[cfg(feature = "studio")]
+    pub fn theme(&self) -> Result<Theme, CliError> {
+        Ok(self.theme.as_deref().map_or(Ok(Theme::default()), str::parse)?)
+    }
+
     /// After how many frames to close the window by itself.
     #[cfg(feature = "studio")]
     pub fn exit_after_frames(&self) -> Result<Option<u32>, CliError> {
@@ -431,6 +442,15 @@ mod tests {
         ] {
             assert_eq!(refusal(words), message, "{words}");
         }
+    }
+
+    #[cfg(feature = "studio")]
+    #[test]
+    fn a_theme_is_light_unless_named_and_nothing_else_is_one() {
+        assert_eq!(args_of("").theme().expect("allowed"), Theme::Light);
+        assert_eq!(args_of("--theme dark").theme().expect("allowed"), Theme::Dark);
+        let refusal = args_of("--theme dim").theme().expect_err("refused").to_string();
+        assert_eq!(refusal, "theme is \"dim\"; allowed: light or dark");
     }
 
     #[test]

@@ -108,6 +108,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         champion,
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
+        theme: args.theme()?,
         exit_after_frames: args.exit_after_frames()?,
     };
     Ok(studio::run(options)?)

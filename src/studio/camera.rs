@@ -14,10 +14,11 @@ use bevy::window::PrimaryWindow;
 use bevy_egui::input::EguiWantsInput;
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
 
+use super::Frame;
+use super::look::{Palette, Theme};
 use super::panels::StageArea;
 use super::quality::Quality;
 use super::stage::Stage;
-use super::{Frame, look};
 
 /// Where the camera is, relative to what it looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,13 +60,13 @@ pub(super) fn overlooking(from_y_m: f32, to_y_m: f32) -> Transform {
 
 /// What every camera that draws the world has in common: no tone mapping, fog that hides the end of the
 /// ground.
-pub(super) fn eye(msaa: Msaa) -> impl Bundle {
+pub(super) fn eye(msaa: Msaa, palette: &Palette) -> impl Bundle {
     (
         Camera3d::default(),
         Tonemapping::None,
         msaa,
         DistanceFog {
-            color: look::SKY,
+            color: palette.horizon,
             falloff: FogFalloff::Linear { start: 50.0, end: 190.0 },
             ..default()
         },
@@ -121,9 +122,10 @@ fn set_up(
     mut commands: Commands,
     mut egui_settings: ResMut<EguiGlobalSettings>,
     adapter: Res<RenderAdapterInfo>,
+    theme: Res<Theme>,
 ) {
     egui_settings.auto_create_primary_context = false;
-    commands.spawn((StageCamera, eye(Quality::suiting(&adapter).msaa)));
+    commands.spawn((StageCamera, eye(Quality::suiting(&adapter).msaa, theme.palette())));
     commands.spawn((
         PrimaryEguiContext,
         Camera2d,

@@ -7,6 +7,7 @@ use bevy::prelude::*;
 use super::camera::{CameraRig, View};
 use super::evolution::Evolution;
 use super::exhibit::Exhibit;
+use super::look::Theme;
 use super::notice::Notices;
 use super::stage::{ShowExhibit, Stage};
 use super::{Frame, Opening};
@@ -67,6 +68,8 @@ pub(super) enum Command {
     ResetCamera,
     /// Show or hide the physics engine's own drawing.
     ToggleWireframe,
+    /// From the light theme to the dark one, or back.
+    ToggleTheme,
     /// Close the window.
     Quit,
 }
@@ -86,6 +89,7 @@ fn apply(
     mut show: MessageWriter<ShowExhibit>,
     mut exit: MessageWriter<AppExit>,
     opening: Res<Opening>,
+    mut theme: ResMut<Theme>,
 ) {
     for command in asked.read() {
         let done = match command {
@@ -142,6 +146,10 @@ fn apply(
             Command::ResetCamera => {
                 rig.view = View::default();
                 rig.follows = true;
+                Ok(())
+            }
+            Command::ToggleTheme => {
+                *theme = theme.other();
                 Ok(())
             }
             Command::Quit => {

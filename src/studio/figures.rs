@@ -99,7 +99,9 @@ fn set_up(app: &mut App, width: u32, height: u32) -> Handle<Image> {
     let texture = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
     let target = app.world_mut().resource_mut::<Assets<Image>>().add(texture);
     // Pictures are few, so their edges may be smooth on every machine.
-    app.world_mut().spawn((camera::eye(Msaa::Sample4), RenderTarget::Image(target.clone().into())));
+    let palette = app.world().resource::<look::Theme>().palette();
+    let eye = camera::eye(Msaa::Sample4, palette);
+    app.world_mut().spawn((eye, RenderTarget::Image(target.clone().into())));
     app.update();
     target
 }
@@ -142,9 +144,10 @@ fn put_in_place(app: &mut App, loaded: &LoadedChampion) -> Evaluation {
 /// The cube, and the two colours of the snake as glass.
 fn faint_props(world: &mut World) -> (Handle<Mesh>, [Handle<StandardMaterial>; 2]) {
     const OPACITY: f32 = 0.22;
+    let palette = world.resource::<look::Theme>().palette();
     let cube = world.resource::<scene::Props>().cube.clone();
     let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-    let faint = [look::RED_LIMB, look::BLUE_LIMB].map(|color| {
+    let faint = [palette.red_limb, palette.blue_limb].map(|color| {
         materials.add(StandardMaterial {
             base_color: color.with_alpha(OPACITY),
             alpha_mode: AlphaMode::Blend,

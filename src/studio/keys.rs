@@ -9,7 +9,7 @@ use super::command::Command;
 use super::evolution::{Evolution, Status};
 
 /// The keys, as they are listed for a person: name, effect.
-pub(super) const KEYS: [(&str, &str); 10] = [
+pub(super) const KEYS: [(&str, &str); 11] = [
     ("Space", "hold or play the stage"),
     ("R", "play from the start"),
     ("E", "start or pause evolution"),
@@ -18,6 +18,7 @@ pub(super) const KEYS: [(&str, &str); 10] = [
     ("0", "show the saved champion again"),
     ("F", "follow the snake, or not"),
     ("Home", "put the camera back"),
+    ("T", "the light or the dark theme"),
     ("D", "the physics engine's own lines"),
     ("Ctrl Q", "quit"),
 ];
@@ -68,6 +69,7 @@ fn command(key: &Key, control_is_down: bool, is_running: bool) -> Option<Command
         "e" => Some(Command::Start),
         "g" => Some(Command::SingleGeneration),
         "f" => Some(Command::ToggleFollow),
+        "t" => Some(Command::ToggleTheme),
         "d" => Some(Command::ToggleWireframe),
         "0" => Some(Command::ShowOpening),
         digit => digit.parse().ok().map(Command::ShowGeneration),
@@ -81,7 +83,7 @@ mod tests {
     #[test]
     fn every_listed_key_does_something_and_nothing_else_does() {
         let does = |text: &str| command(&Key::Character(text.into()), false, false);
-        for key in ["r", "E", "g", "f", "D", "0", "1", "9"] {
+        for key in ["r", "E", "g", "f", "T", "D", "0", "1", "9"] {
             assert!(does(key).is_some(), "{key}");
         }
         assert_eq!(command(&Key::Space, false, false), Some(Command::TogglePlayback));

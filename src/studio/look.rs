@@ -1,47 +1,83 @@
 //! The one look of the studio: palette and spacing. Nothing else in the studio names a colour.
 
-use bevy::prelude::Color;
-use bevy_egui::egui::{self, Color32, CornerRadius, Frame, Margin, Stroke};
+mod palette;
 
-use crate::evolve::StrategyKind;
-use crate::plot::strategy_color;
+use std::str::FromStr;
 
-/// Background of the panel.
-pub const PANEL: Color32 = Color32::from_rgb(0x1d, 0x21, 0x2b);
-/// Background of a card or a field within it.
-pub const FIELD: Color32 = Color32::from_rgb(0x28, 0x2e, 0x3b);
-/// A field under the pointer.
-pub const FIELD_HOVERED: Color32 = Color32::from_rgb(0x36, 0x3e, 0x4f);
-/// Text.
-pub const TEXT: Color32 = Color32::from_rgb(0xec, 0xef, 0xf4);
-/// Text that explains.
-pub const TEXT_WEAK: Color32 = Color32::from_rgb(0xa3, 0xac, 0xbd);
-/// What can be pressed, what is new, the best.
-pub const ACCENT: Color32 = Color32::from_rgb(0x4f, 0x9d, 0xf7);
-/// The mean, beside the best.
-pub const SECOND: Color32 = Color32::from_rgb(0xf2, 0xb1, 0x4b);
-/// What went wrong.
-pub const PROBLEM: Color32 = Color32::from_rgb(0xf0, 0x6a, 0x5f);
+use bevy::prelude::Resource;
+use bevy_egui::egui::{self, Color32, CornerRadius};
 
-/// A cell of a map in which nobody is.
-pub const EMPTY_CELL: Color32 = Color32::from_rgb(0x12, 0x15, 0x1c);
+use crate::check::Invalid;
 
-/// The report's red, for the first, third and fifth limb.
-pub const RED_LIMB: Color = Color::srgb(0.83, 0.12, 0.12);
-/// The report's blue, for the second and fourth limb.
-pub const BLUE_LIMB: Color = Color::srgb(0.10, 0.26, 0.80);
-/// Sky, and what the ground fades into.
-pub const SKY: Color = Color::srgb(0.74, 0.83, 0.92);
-/// The ground.
-pub const GROUND: Color = Color::srgb(0.53, 0.59, 0.53);
-/// The lines on the ground.
-pub const GRID: Color = Color::srgba(0.0, 0.0, 0.0, 0.16);
-/// Every other step.
-pub const STAIR: Color = Color::srgb(0.80, 0.76, 0.69);
-/// The steps between them.
-pub const STAIR_OTHER: Color = Color::srgb(0.71, 0.67, 0.60);
-/// The report's two lights are white.
-pub const LIGHT: Color = Color::WHITE;
+pub use palette::Palette;
+
+/// Which palette panels and scene share.
+#[derive(Resource, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Theme {
+    /// Paper and a clear morning: what a projector in a lit room shows best.
+    #[default]
+    Light,
+    /// Slate and evening.
+    Dark,
+}
+
+impl Theme {
+    /// Its colours.
+    pub fn palette(self) -> &'static Palette {
+        match self {
+            Self::Light => &palette::LIGHT,
+            Self::Dark => &palette::DARK,
+        }
+    }
+
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Light => Self::Dark,
+            Self::Dark => Self::Light,
+        }
+    }
+}
+
+impl FromStr for Theme {
+    type Err = Invalid;
+
+    fn from_str(text: &str) -> Result<Self, Invalid> {
+        match text {
+            "light" => Ok(Self::Light),
+            "dark" => Ok(Self::Dark),
+            _ => Err(Invalid::new("theme", format!("{text:?}"), "light or dark")),
+        }
+    }
+}
+
+impl From<Theme> for egui::Theme {
+    fn from(theme: Theme) -> Self {
+        match theme {
+            Theme::Light => Self::Light,
+            Theme::Dark => Self::Dark,
+        }
+    }
+}
+
+impl From<egui::Theme> for Theme {
+    fn from(theme: egui::Theme) -> Self {
+        match theme {
+            egui::Theme::Light => Self::Light,
+            egui::Theme::Dark => Self::Dark,
+        }
+    }
+}
+
+/// The colours of what is being drawn.
+pub fn of(ui: &egui::Ui) -> &'static Palette {
+    Theme::from(egui::Theme::from_dark_mode(ui.visuals().dark_mode)).palette()
+}
+
+/// The colours of the theme that panels have now.
+pub fn of_context(context: &egui::Context) -> &'static Palette {
+    Theme::from(context.theme()).palette()
+}
 
 /// The unit of spacing, in points.
 pub const GAP: f32 = 8.0;
@@ -105,56 +141,32 @@ pub fn ramp(share: f32) -> Color32 {
     from.lerp_to_gamma(to, place - below as f32)
 }
 
-/// The colour of a strategy, in all curves.
-pub fn strategy(kind: StrategyKind) -> Color32 {
-    let [red, green, blue] = strategy_color(kind);
-    // As light as the panel is dark: on white the same colours are a shade darker.
-    Color32::from_rgb(red, green, blue).lerp_to_gamma(TEXT, 0.2)
-}
-
-/// A card with a coloured edge.
-pub fn card(edge: Color32) -> Frame {
-    Frame::new()
-        .fill(PANEL.gamma_multiply(0.94))
-        .stroke(Stroke::new(1.0, edge))
-        .corner_radius(CORNER)
-        .inner_margin(Margin::symmetric(12, 8))
-}
-
-/// Dresses egui.
+/// Dresses egui, both its themes: which of them shows is [`show`]'s to say.
 pub fn apply(context: &egui::Context) {
-    context.set_theme(egui::Theme::Dark);
     context.all_styles_mut(|style| {
         style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(SMALL_SIZE));
         style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
         style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
         style.spacing.interact_size.y = GAP * 3.0;
-        let visuals = &mut style.visuals;
-        visuals.panel_fill = PANEL;
-        visuals.window_fill = PANEL;
-        visuals.extreme_bg_color = FIELD;
-        visuals.override_text_color = Some(TEXT);
-        visuals.weak_text_color = Some(TEXT_WEAK);
-        visuals.selection.bg_fill = ACCENT.gamma_multiply(0.45);
-        visuals.selection.stroke = Stroke::new(1.0, TEXT);
         for widget in [
-            &mut visuals.widgets.noninteractive,
-            &mut visuals.widgets.inactive,
-            &mut visuals.widgets.hovered,
-            &mut visuals.widgets.active,
-            &mut visuals.widgets.open,
+            &mut style.visuals.widgets.noninteractive,
+            &mut style.visuals.widgets.inactive,
+            &mut style.visuals.widgets.hovered,
+            &mut style.visuals.widgets.active,
+            &mut style.visuals.widgets.open,
         ] {
             widget.corner_radius = CORNER;
         }
-        visuals.widgets.inactive.weak_bg_fill = FIELD;
-        visuals.widgets.inactive.bg_fill = FIELD;
-        // Else an empty check box is hardly there.
-        visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, FIELD_HOVERED);
-        visuals.widgets.hovered.weak_bg_fill = FIELD_HOVERED;
-        visuals.widgets.active.weak_bg_fill = ACCENT.gamma_multiply(0.6);
-        visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, FIELD_HOVERED);
     });
+    for theme in [Theme::Light, Theme::Dark] {
+        context.style_mut_of(theme.into(), |style| theme.palette().dress(&mut style.visuals));
+    }
     warm_up_fonts(context);
+}
+
+/// Shows the panels in this theme from now on.
+pub fn show(context: &egui::Context, theme: Theme) {
+    context.set_theme(egui::Theme::from(theme));
 }
 
 /// Draws every letter once into egui's font texture. A letter that is new to it is missing for a frame,
@@ -167,7 +179,7 @@ fn warm_up_fonts(context: &egui::Context) {
         .map(|style| style.resolve(&context.global_style()));
     context.fonts_mut(|fonts| {
         for font in sizes.into_iter().chain(others) {
-            fonts.layout_no_wrap(letters.clone(), font, TEXT);
+            fonts.layout_no_wrap(letters.clone(), font, Color32::WHITE);
         }
     });
 }
@@ -175,6 +187,27 @@ fn warm_up_fonts(context: &egui::Context) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_theme_is_one_of_two_names() {
+        assert_eq!("light".parse(), Ok(Theme::Light));
+        assert_eq!("dark".parse(), Ok(Theme::Dark));
+        let refused = "Dim".parse::<Theme>().expect_err("no such theme");
+        assert_eq!(refused.to_string(), "theme is \"Dim\"; allowed: light or dark");
+    }
+
+    #[test]
+    fn what_is_drawn_takes_the_colours_of_the_theme_on_show() {
+        let context = egui::Context::default();
+        // The fonts are there from the first frame on.
+        context.begin_pass(egui::RawInput::default());
+        apply(&context);
+        for theme in [Theme::Dark, Theme::Light] {
+            show(&context, theme);
+            assert_eq!(of_context(&context).panel, theme.palette().panel);
+            assert_eq!(context.global_style().visuals.panel_fill, theme.palette().panel);
+        }
+    }
 
     #[test]
     fn the_ramp_gets_brighter_all_the_way() {

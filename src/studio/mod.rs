@@ -36,6 +36,8 @@ use crate::run::RunSource;
 use crate::run::headless::HeadlessError;
 use crate::save::{Comparison, LoadedChampion, SaveError, SavesFolder, shipped_champion};
 
+pub use look::Theme;
+
 /// With what the studio opens.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -51,6 +53,8 @@ pub struct Options {
     pub comparison: Option<Comparison>,
     /// Size of the window, in pixels.
     pub window_size: (u32, u32),
+    /// The colours to open with.
+    pub theme: Theme,
     /// After how many frames to close by itself.
     pub exit_after_frames: Option<u32>,
 }
@@ -130,6 +134,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         )
         // A champion that climbs while the presenter types elsewhere goes on climbing.
         .insert_resource(WinitSettings::continuous())
+        .insert_resource(options.theme)
         .insert_resource(Opening(opening))
         .insert_resource(Opened(options.comparison.clone()))
         .insert_resource(engine)

@@ -65,10 +65,11 @@ fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time
             ui.spacing_mut().item_spacing.y = look::GAP;
             ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
                 for notice in notices.0.iter().rev() {
-                    let edge = if notice.is_problem { look::PROBLEM } else { look::ACCENT };
-                    look::card(edge).show(ui, |ui| {
+                    let palette = look::of(ui);
+                    let edge = if notice.is_problem { palette.problem } else { palette.accent };
+                    palette.card(edge).show(ui, |ui| {
                         ui.set_max_width(look::NOTICE_WIDTH);
-                        ui.label(egui::RichText::new(&notice.text).color(look::TEXT));
+                        ui.label(egui::RichText::new(&notice.text).color(palette.text));
                     });
                 }
             });

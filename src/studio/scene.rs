@@ -1,14 +1,16 @@
-//! What stands still: sky, lights, ground, and the stairs of the trial on show.
+//! What stands still: sky, lights, ground, and the stairs of the trial on show, all in the theme's colours.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap};
 use bevy::mesh::PrimitiveTopology;
+use bevy::pbr::DistanceFog;
 use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
 
+use super::Frame;
+use super::look::Theme;
 use super::quality::Quality;
 use super::stage::Stage;
-use super::{Frame, look};
 use crate::world::StairBox;
 
 /// The meshes and materials that everything is built of.
@@ -22,24 +24,18 @@ pub(super) struct Props {
     pub blue: Handle<StandardMaterial>,
     stair: Handle<StandardMaterial>,
     stair_other: Handle<StandardMaterial>,
+    ground: Handle<StandardMaterial>,
+    grid: Handle<StandardMaterial>,
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.insert_resource(ClearColor(look::SKY))
-        .insert_resource(GlobalAmbientLight {
-            color: look::LIGHT,
-            brightness: AMBIENT_CD_M2,
-            ..default()
-        })
+    app.init_resource::<Theme>()
         .init_resource::<Props>()
         .add_systems(Startup, set_up)
-        .add_systems(Update, build_stairs.in_set(Frame::Draw));
+        .add_systems(Update, build_stairs.in_set(Frame::Draw))
+        .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
 }
 
-/// Ambient light, in cd/m²: enough to see the shadowed sides.
-const AMBIENT_CD_M2: f32 = 320.0;
-/// The directional light, in lux.
-const SUN_LUX: f32 = 3_600.0;
 /// Shadows end this far from the camera, in metres: the length of the whole staircase.
 const SHADOW_DISTANCE_M: f32 = 60.0;
 /// Half the side of the drawn ground, in metres. The physical ground has no end; the fog hides this one.
@@ -55,16 +51,24 @@ impl FromWorld for Props {
     fn from_world(world: &mut World) -> Self {
         let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(1.0));
         let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        let mut material = |base_color, perceptual_roughness| {
-            materials.add(StandardMaterial { base_color, perceptual_roughness, ..default() })
+        // They get their colours with the theme.
+        let mut material = |perceptual_roughness| {
+            materials.add(StandardMaterial { perceptual_roughness, ..default() })
         };
-        Self {
-            cube,
-            red: material(look::RED_LIMB, 0.55),
-            blue: material(look::BLUE_LIMB, 0.55),
-            stair: material(look::STAIR, 0.9),
-            stair_other: material(look::STAIR_OTHER, 0.9),
-        }
+        let [red, blue] = [0.55; 2].map(&mut material);
+        let [stair, stair_other] = [0.9; 2].map(&mut material);
+        let ground = materials.add(StandardMaterial {
+            perceptual_roughness: 1.0,
+            reflectance: 0.1,
+            ..default()
+        });
+        let grid = materials.add(StandardMaterial {
+            unlit: true,
+            // A veil, so that a line in the shadow is darker than the shadow.
+            alpha_mode: AlphaMode::Blend,
+            ..default()
+        });
+        Self { cube, red, blue, stair, stair_other, ground, grid }
     }
 }
 
@@ -76,18 +80,13 @@ pub(super) fn box_transform(centre: Vec3, size: Vec3) -> Transform {
 fn set_up(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
+    props: Res<Props>,
     adapter: Res<RenderAdapterInfo>,
 ) {
     let size = Quality::suiting(&adapter).shadow_map_pixels;
     commands.insert_resource(DirectionalLightShadowMap { size });
     commands.spawn((
-        DirectionalLight {
-            color: look::LIGHT,
-            illuminance: SUN_LUX,
-            shadow_maps_enabled: true,
-            ..default()
-        },
+        DirectionalLight { shadow_maps_enabled: true, ..default() },
         // From behind the viewer's right shoulder, so that both treads and risers are lit and differ.
         Transform::from_xyz(9.0, -12.0, 16.0).looking_at(Vec3::ZERO, Vec3::Z),
         CascadeShadowConfigBuilder {
@@ -97,25 +96,44 @@ fn set_up(
         }
         .build(),
     ));
-    commands.spawn((
-        Mesh3d(meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)))),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: look::GROUND,
-            perceptual_roughness: 1.0,
-            reflectance: 0.1,
-            ..default()
-        })),
-    ));
-    commands.spawn((
-        Mesh3d(meshes.add(grid())),
-        MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: look::GRID,
-            unlit: true,
-            // A dark veil, so that a line in the shadow is darker than the shadow.
-            alpha_mode: AlphaMode::Blend,
-            ..default()
-        })),
-    ));
+    let ground = meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)));
+    commands.spawn((Mesh3d(ground), MeshMaterial3d(props.ground.clone())));
+    commands.spawn((Mesh3d(meshes.add(grid())), MeshMaterial3d(props.grid.clone())));
+}
+
+/// Gives everything the colours of the theme.
+fn dress(
+    theme: Res<Theme>,
+    props: Res<Props>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut suns: Query<&mut DirectionalLight>,
+    mut fogs: Query<&mut DistanceFog>,
+    mut commands: Commands,
+) {
+    let palette = theme.palette();
+    for (handle, color) in [
+        (&props.red, palette.red_limb),
+        (&props.blue, palette.blue_limb),
+        (&props.stair, palette.stair),
+        (&props.stair_other, palette.stair_other),
+        (&props.ground, palette.ground),
+        (&props.grid, palette.grid),
+    ] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+    for mut sun in &mut suns {
+        sun.color = palette.sun;
+        sun.illuminance = palette.sun_lux;
+    }
+    fogs.iter_mut().for_each(|mut fog| fog.color = palette.horizon);
+    commands.insert_resource(ClearColor(palette.horizon));
+    commands.insert_resource(GlobalAmbientLight {
+        color: palette.ambient,
+        brightness: palette.ambient_cd_m2,
+        ..default()
+    });
 }
 
 /// Lines on the ground, a tread apart in both directions: without them nothing tells how far it went.

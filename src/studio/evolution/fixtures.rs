@@ -5,7 +5,7 @@ use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Control, Experiment, pool};
 use crate::save::SavesFolder;
-use crate::studio::Options;
+use crate::studio::{Options, Theme};
 
 /// A run of the report's settings that has not begun.
 pub fn prepared_run() -> Evolution {
@@ -43,6 +43,7 @@ fn run_of(plan: RunPlan) -> Evolution {
         champion: None,
         comparison: None,
         window_size: (1280, 720),
+        theme: Theme::default(),
         exit_after_frames: None,
     };
     Evolution::new(Engine::new(&options).expect("threads"))

@@ -30,13 +30,14 @@ pub(super) fn archive_map(
     if least > most {
         return explain(ui, "Everybody so far was disqualified.");
     }
-    ui.label(axis_name(archive.y.label()));
+    ui.label(axis_name(ui, archive.y.label()));
     let size = egui::vec2(ui.available_width(), look::MAP_HEIGHT);
     let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
     let map = egui::Rect::from_min_max(egui::pos2(area.left() + GUTTER, area.top()), area.max);
     let response = ui.interact(map, ui.id().with("archive"), egui::Sense::click());
+    let palette = look::of(ui);
     let painter = ui.painter();
-    painter.rect_filled(map, 0.0, look::EMPTY_CELL);
+    painter.rect_filled(map, 0.0, palette.empty_cell);
     for (cell, elite) in archive.elites() {
         let share = (elite.fitness - least) / (most - least).max(f32::MIN_POSITIVE);
         painter.rect_filled(cell_rect(map, archive, cell), 0.0, look::ramp(share));
@@ -47,7 +48,7 @@ pub(super) fn archive_map(
     let hovered = response.hover_pos().and_then(|at| cell_at(map, archive, at));
     let hovered_elite = hovered.filter(|cell| archive.elite(*cell).is_some());
     for (cell, color) in
-        [(hovered_elite, look::TEXT_WEAK), (on_stage.map(|(cell, _)| cell), look::TEXT)]
+        [(hovered_elite, palette.text_weak), (on_stage.map(|(cell, _)| cell), palette.text)]
     {
         if let Some(cell) = cell {
             let stroke = egui::Stroke::new(2.0, color);
@@ -86,7 +87,7 @@ const GUTTER: f32 = 36.0;
 /// Writes something small.
 fn write(ui: &egui::Ui, at: egui::Pos2, anchor: egui::Align2, text: &str) {
     let small = egui::TextStyle::Small.resolve(ui.style());
-    ui.painter().text(at, anchor, text, small, look::TEXT_WEAK);
+    ui.painter().text(at, anchor, text, small, look::of(ui).text_weak);
 }
 
 /// What the colours mean.

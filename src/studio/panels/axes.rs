@@ -82,8 +82,8 @@ pub(super) fn bounds(x: &RangeInclusive<f64>, y: &RangeInclusive<f64>) -> PlotBo
 }
 
 /// What an axis measures, in weak letters.
-pub(super) fn axis_name(text: &str) -> egui::RichText {
-    egui::RichText::new(text).color(look::TEXT_WEAK).small()
+pub(super) fn axis_name(ui: &egui::Ui, text: &str) -> egui::RichText {
+    egui::RichText::new(text).color(look::of(ui).text_weak).small()
 }
 
 #[cfg(test)]

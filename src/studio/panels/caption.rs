@@ -25,7 +25,7 @@ pub(super) fn caption(
         .fixed_pos(centre)
         .pivot(egui::Align2::CENTER_BOTTOM)
         .show(context, |ui| {
-            look::card(look::FIELD_HOVERED).show(ui, |ui| {
+            look::of(ui).card(look::of(ui).field_hovered).show(ui, |ui| {
                 ui.set_width(width);
                 contents(ui, stage, run, asked);
             });
@@ -39,7 +39,7 @@ fn contents(ui: &mut egui::Ui, stage: &Stage, run: u32, asked: &mut Vec<Command>
     ui.label(egui::RichText::new(text).size(look::TITLE_SIZE));
 
     let share = stage.time_s() / stage.duration_s();
-    ui.add(egui::ProgressBar::new(share).desired_height(4.0).fill(look::ACCENT));
+    ui.add(egui::ProgressBar::new(share).desired_height(4.0).fill(look::of(ui).accent));
 
     let evaluation = stage.evaluation();
     ui.horizontal(|ui| {
@@ -60,7 +60,7 @@ fn contents(ui: &mut egui::Ui, stage: &Stage, run: u32, asked: &mut Vec<Command>
             ),
         };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(egui::RichText::new(state).color(look::TEXT_WEAK).monospace());
+            ui.label(egui::RichText::new(state).color(look::of(ui).text_weak).monospace());
         });
     });
     let exhibit = stage.exhibit();

@@ -20,11 +20,12 @@ impl ChartPanel {
     /// Draws best and mean of the finished generations.
     pub fn ui(&mut self, ui: &mut egui::Ui, settings: &Settings, reports: &[GenerationReport]) {
         title(ui, "Fitness");
+        let palette = look::of(ui);
         ui.horizontal(|ui| {
             let text = |text: &str, color| egui::RichText::new(text).color(color);
-            ui.label(text(&what(settings.trial.fitness), look::TEXT_WEAK));
-            ui.label(text("best", look::ACCENT).strong());
-            ui.label(text("mean", look::SECOND).strong());
+            ui.label(text(&what(settings.trial.fitness), palette.text_weak));
+            ui.label(text("best", palette.accent).strong());
+            ui.label(text("mean", palette.second).strong());
         });
         let series = |value: fn(&Statistics) -> f64| -> Vec<[f64; 2]> {
             let known = reports.iter().filter_map(|report| {
@@ -34,8 +35,8 @@ impl ChartPanel {
             known.collect()
         };
         let lines = [
-            ("best", series(|statistics| statistics.best), look::ACCENT),
-            ("mean", series(|statistics| statistics.mean), look::SECOND),
+            ("best", series(|statistics| statistics.best), palette.accent),
+            ("mean", series(|statistics| statistics.mean), palette.second),
         ];
         let values = lines.iter().flat_map(|(_, points, _)| points).map(|point| point[1]);
         let frame = Frame::new(settings, reports.len(), values);
@@ -50,7 +51,7 @@ impl ChartPanel {
             |plot| {
                 plot.set_plot_bounds(bounds(&frame.x, &frame.y));
                 for (name, y_m) in frame.marks {
-                    let line = HLine::new(name, y_m).color(look::TEXT_WEAK).allow_hover(false);
+                    let line = HLine::new(name, y_m).color(palette.text_weak).allow_hover(false);
                     plot.hline(line.style(LineStyle::dashed_dense()));
                 }
                 for (name, points, color) in lines {

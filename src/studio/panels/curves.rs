@@ -81,7 +81,7 @@ impl CurvesPanel {
     /// Draws the panel.
     pub fn ui(&mut self, ui: &mut egui::Ui) {
         title(ui, "Comparison");
-        ui.label(egui::RichText::new(&self.about).color(look::TEXT_WEAK));
+        ui.label(egui::RichText::new(&self.about).color(look::of(ui).text_weak));
         if self.methods.is_empty() {
             return super::explain(ui, "It has no finished runs.");
         }
@@ -102,7 +102,7 @@ impl CurvesPanel {
 
     fn plot(&self, ui: &mut egui::Ui) {
         let y_unit = if self.unit.is_empty() { "" } else { " (m)" };
-        ui.label(axis_name(&format!("Best fitness so far{y_unit}, over evaluations")))
+        ui.label(axis_name(ui, &format!("Best fitness so far{y_unit}, over evaluations")))
             .on_hover_text("Line: median of the seeds; band: the half of them in the middle");
         let ends = self.on_show().flat_map(|of| of.curve.iter());
         let ends = ends.flat_map(|(_, quartiles)| [quartiles.low, quartiles.high]);
@@ -118,10 +118,11 @@ impl CurvesPanel {
             )),
             HoverPosition::Elsewhere { .. } => None,
         };
+        let palette = look::of(ui);
         still("curves", look::PLOT_HEIGHT).label_formatter(label).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&(0.0..=self.evaluations), &y_range));
             for method in self.on_show().filter(|of| !of.curve.is_empty()) {
-                let color = look::strategy(method.strategy);
+                let color = palette.strategy(method.strategy);
                 let along = |value: fn(&Quartiles) -> f64| -> Vec<f64> {
                     method.curve.iter().map(|(_, quartiles)| value(quartiles)).collect()
                 };
@@ -138,12 +139,13 @@ impl CurvesPanel {
             for method in self.on_show() {
                 let median = method.curve.iter().map(|(point, of)| [x_of(*point), of.median]);
                 let line = Line::new(method.name(), median.collect::<PlotPoints<'_>>());
-                plot.line(line.color(look::strategy(method.strategy)).width(2.0));
+                plot.line(line.color(palette.strategy(method.strategy)).width(2.0));
             }
         });
     }
 
     fn table(&self, ui: &mut egui::Ui) {
+        let palette = look::of(ui);
         let spacing = [look::GAP * 1.5, look::GAP / 4.0];
         egui::Grid::new("methods").num_columns(4).spacing(spacing).show(ui, |ui| {
             for (text, hint) in [
@@ -152,11 +154,11 @@ impl CurvesPanel {
                 ("To landing", "Evaluations until then, median over the seeds"),
                 ("Best", "Fitness of the best of a run, median over the seeds"),
             ] {
-                ui.label(axis_name(text)).on_hover_text(hint);
+                ui.label(axis_name(ui, text)).on_hover_text(hint);
             }
             ui.end_row();
             for method in self.on_show() {
-                let color = look::strategy(method.strategy);
+                let color = palette.strategy(method.strategy);
                 ui.label(egui::RichText::new(method.name()).color(color).strong())
                     .on_hover_text(method.strategy.words());
                 ui.label(format!("{} of {}", method.landed, method.runs));

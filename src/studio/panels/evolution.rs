@@ -39,8 +39,9 @@ impl EvolutionPanel {
             Status::Finished => ("New run", Command::Start),
             Status::Ready | Status::Paused => ("Start", Command::Start),
         };
-        let first = egui::Button::new(egui::RichText::new(label).strong())
-            .fill(look::ACCENT.gamma_multiply(0.55))
+        let palette = look::of(ui);
+        let first = egui::Button::new(egui::RichText::new(label).strong().color(palette.on_accent))
+            .fill(palette.accent)
             .min_size(egui::vec2(look::GAP * 10.0, 0.0));
         let single = if is_finished {
             "The run is finished; \"New run\" begins another"
@@ -98,7 +99,7 @@ impl EvolutionPanel {
             Some(hash) => format!("run hash {hash:016x}"),
             None => format!("{done} of {population} snakes"),
         };
-        ui.add(egui::ProgressBar::new(share).text(inside).fill(look::ACCENT.gamma_multiply(0.6)))
+        ui.add(egui::ProgressBar::new(share).text(inside).fill(look::of(ui).accent_soft))
             .on_hover_text("Evaluated snakes of the current generation");
     }
 
@@ -114,12 +115,12 @@ impl EvolutionPanel {
             asked.extend(population.map(Command::SetPopulation));
         });
         for problem in [self.seed.problem(), self.population.problem()].into_iter().flatten() {
-            ui.colored_label(look::PROBLEM, problem);
+            ui.colored_label(look::of(ui).problem, problem);
         }
         method(ui, run, asked);
         if run.next_run_differs() {
             let hint = "Reset to begin a run with these values.";
-            ui.label(egui::RichText::new(hint).color(look::SECOND));
+            ui.label(egui::RichText::new(hint).color(look::of(ui).second));
         }
     }
 }

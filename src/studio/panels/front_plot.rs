@@ -21,7 +21,7 @@ pub(super) fn front_plot(
     let members: Vec<&FrontMember> = front.members().collect();
     let points: Vec<[f64; 2]> = members.iter().map(|member| place(member)).collect();
     let Some((x_range, y_range)) = ranges(&points) else { return };
-    ui.label(axis_name("Energy (kJ), over the place at the end (y in m)"));
+    ui.label(axis_name(ui, "Energy (kJ), over the place at the end (y in m)"));
     let shown_point = members
         .iter()
         .position(|of| shown.is_some_and(|shown| shown.is(of.generation, of.individual)));
@@ -29,13 +29,14 @@ pub(super) fn front_plot(
         HoverPosition::NearDataPoint { index, .. } => members.get(*index).map(|of| words(of)),
         HoverPosition::Elsewhere { .. } => None,
     };
+    let palette = look::of(ui);
     let plot = still("front", look::PLOT_HEIGHT).label_formatter(label).show(ui, |plot| {
         plot.set_plot_bounds(bounds(&x_range, &y_range));
         let line = Line::new("line", PlotPoints::from(points.clone()));
-        plot.line(line.color(look::TEXT_WEAK.gamma_multiply(0.6)).allow_hover(false));
-        plot.points(Points::new("front", points.clone()).color(look::ACCENT).radius(4.0));
+        plot.line(line.color(palette.text_weak.gamma_multiply(0.6)).allow_hover(false));
+        plot.points(Points::new("front", points.clone()).color(palette.accent).radius(4.0));
         if let Some(index) = shown_point {
-            let ring = Points::new("shown", vec![points[index]]).color(look::SECOND);
+            let ring = Points::new("shown", vec![points[index]]).color(palette.second);
             plot.points(ring.radius(6.5).allow_hover(false));
         }
     });

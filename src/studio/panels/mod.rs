@@ -103,6 +103,7 @@ fn draw(
     evolution: Res<Evolution>,
     opening: Res<Opening>,
     stages: Query<&Stage>,
+    theme: Res<look::Theme>,
     mut send: MessageWriter<Command>,
 ) -> Result {
     let context = contexts.ctx_mut()?.clone();
@@ -110,6 +111,7 @@ fn draw(
         look::apply(&context);
         panels.is_dressed = true;
     }
+    look::show(&context, *theme);
     let stage = stages.iter().next();
     let shown = stage.and_then(|stage| match stage.exhibit().source() {
         Source::Opening => Some(Shown::Opening),
@@ -126,7 +128,8 @@ fn draw(
         "root".into(),
         egui::UiBuilder::new().layer_id(egui::LayerId::background()).max_rect(window),
     );
-    let frame = egui::Frame::new().fill(look::PANEL).inner_margin(look::GAP as i8 * 2);
+    let frame =
+        egui::Frame::new().fill(look::of_context(&context).panel).inner_margin(look::GAP as i8 * 2);
     let panel = egui::Panel::left("panel")
         .exact_size(look::PANEL_WIDTH)
         .resizable(false)
@@ -172,7 +175,8 @@ fn heading(ui: &mut egui::Ui, evolution: &Evolution, tab: &mut Tab) {
             let (preset, seed) = (evolution.preset(), evolution.seed());
             let origin = egui::RichText::new(format!("{preset}, seed {seed}"));
             let hint = format!("Preset {preset}, seed {seed}");
-            ui.add(egui::Label::new(origin.color(look::TEXT_WEAK)).truncate()).on_hover_text(hint);
+            ui.add(egui::Label::new(origin.color(look::of(ui).text_weak)).truncate())
+                .on_hover_text(hint);
         });
     });
     ui.horizontal(|ui| {
@@ -207,12 +211,12 @@ fn title_and(ui: &mut egui::Ui, text: &str, right: impl FnOnce(&mut egui::Ui)) {
 
 /// A line that explains.
 fn explain(ui: &mut egui::Ui, text: &str) {
-    ui.label(egui::RichText::new(text).color(look::TEXT_WEAK));
+    ui.label(egui::RichText::new(text).color(look::of(ui).text_weak));
 }
 
 /// A clickable row over the whole width: a name at the left, what there is to say of it at the right.
 fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, about: &str) -> egui::Response {
-    let color = if is_shown { look::TEXT } else { look::TEXT_WEAK };
+    let color = if is_shown { look::of(ui).text } else { look::of(ui).text_weak };
     let about = egui::RichText::new(about).color(color);
     let button = egui::Button::new(name).right_text(about).selected(is_shown);
     ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
@@ -227,7 +231,7 @@ fn keys(ui: &mut egui::Ui, is_open_at_first: bool) {
             let mouse =
                 [("Drag", "turn the camera"), ("Right drag", "move the camera"), ("Wheel", "zoom")];
             for (key, effect) in KEYS.into_iter().chain(mouse) {
-                ui.label(egui::RichText::new(key).color(look::ACCENT));
+                ui.label(egui::RichText::new(key).color(look::of(ui).accent));
                 ui.label(effect);
                 ui.end_row();
             }

@@ -48,9 +48,9 @@ impl WorldPanel {
         // Always there, so that nothing moves under the pointer when a slider is let go.
         let differs = run.next_run_differs();
         let (text, color) = if differs {
-            ("The run under way keeps its own world.", look::SECOND)
+            ("The run under way keeps its own world.", look::of(ui).second)
         } else {
-            ("The run under way is in this world.", look::TEXT_WEAK)
+            ("The run under way is in this world.", look::of(ui).text_weak)
         };
         ui.label(egui::RichText::new(text).color(color));
         if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
@@ -127,13 +127,13 @@ impl WorldPanel {
             });
         }
         if trial.ground.is_some() {
-            ui.label(egui::RichText::new("Stairs").color(look::TEXT_WEAK));
+            ui.label(egui::RichText::new("Stairs").color(look::of(ui).text_weak));
         }
         for (knob, value) in &SURFACE {
             self.slider(ui, "trial.surface.", knob, value(&trial.surface), asked);
         }
         if let Some(ground) = &trial.ground {
-            ui.label(egui::RichText::new("Ground").color(look::TEXT_WEAK));
+            ui.label(egui::RichText::new("Ground").color(look::of(ui).text_weak));
             for (knob, value) in &SURFACE {
                 self.slider(ui, "trial.ground.", knob, value(ground), asked);
             }

@@ -1,0 +1,216 @@
+//! The colours of the light and of the dark theme, for panels and scene alike.
+//!
+//! Whatever is text keeps the contrast that WCAG asks for, 4.5 to 1, on whatever it is written on; the tests see
+//! to it.
+
+use bevy::prelude::Color;
+use bevy_egui::egui::{self, Color32, Frame, Margin, Stroke};
+
+use super::CORNER;
+use crate::evolve::StrategyKind;
+use crate::plot::strategy_color;
+
+/// Every colour of a theme, and how strong its lights are.
+#[derive(Debug)]
+pub struct Palette {
+    /// Background of the panel.
+    pub panel: Color32,
+    /// Background of a card or a field within it.
+    pub field: Color32,
+    /// A field under the pointer.
+    pub field_hovered: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Text that explains.
+    pub text_weak: Color32,
+    /// What can be pressed, what is new, the best.
+    pub accent: Color32,
+    /// Text on the accent.
+    pub on_accent: Color32,
+    /// A softer accent, for what is chosen or done so far; text stays readable on it.
+    pub accent_soft: Color32,
+    /// The mean, beside the best.
+    pub second: Color32,
+    /// What went wrong.
+    pub problem: Color32,
+    /// A cell of a map in which nobody is.
+    pub empty_cell: Color32,
+    /// The report's red, for the first, third and fifth limb.
+    pub red_limb: Color,
+    /// The report's blue, for the second and fourth limb.
+    pub blue_limb: Color,
+    /// The sky at the horizon, and what the ground fades into.
+    pub horizon: Color,
+    /// The ground.
+    pub ground: Color,
+    /// The lines on the ground.
+    pub grid: Color,
+    /// Every other step.
+    pub stair: Color,
+    /// The steps between them.
+    pub stair_other: Color,
+    /// The sun.
+    pub sun: Color,
+    /// How strong the sun is, in lux.
+    pub sun_lux: f32,
+    /// The light that comes from everywhere.
+    pub ambient: Color,
+    /// How strong that light is, in cd/m²: enough to see the shadowed sides.
+    pub ambient_cd_m2: f32,
+}
+
+/// Paper and a clear morning.
+pub const LIGHT: Palette = Palette {
+    panel: Color32::from_rgb(0xf6, 0xf7, 0xfa),
+    field: Color32::from_rgb(0xe5, 0xe9, 0xf0),
+    field_hovered: Color32::from_rgb(0xd3, 0xda, 0xe6),
+    text: Color32::from_rgb(0x1b, 0x22, 0x30),
+    text_weak: Color32::from_rgb(0x52, 0x5c, 0x6e),
+    accent: Color32::from_rgb(0x1a, 0x66, 0xd9),
+    on_accent: Color32::from_rgb(0xff, 0xff, 0xff),
+    accent_soft: Color32::from_rgb(0xb8, 0xd3, 0xfa),
+    second: Color32::from_rgb(0x96, 0x58, 0x00),
+    problem: Color32::from_rgb(0xbd, 0x26, 0x1d),
+    empty_cell: Color32::from_rgb(0xda, 0xdf, 0xe8),
+    red_limb: Color::srgb(0.86, 0.13, 0.12),
+    blue_limb: Color::srgb(0.10, 0.27, 0.84),
+    horizon: Color::srgb(0.87, 0.92, 0.96),
+    ground: Color::srgb(0.66, 0.72, 0.67),
+    grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
+    stair: Color::srgb(0.84, 0.81, 0.76),
+    stair_other: Color::srgb(0.76, 0.73, 0.68),
+    sun: Color::srgb(1.0, 0.97, 0.92),
+    sun_lux: 3_600.0,
+    ambient: Color::srgb(0.90, 0.95, 1.0),
+    ambient_cd_m2: 320.0,
+};
+
+/// Slate and the light of a clear evening.
+pub const DARK: Palette = Palette {
+    panel: Color32::from_rgb(0x1d, 0x21, 0x2b),
+    field: Color32::from_rgb(0x28, 0x2e, 0x3b),
+    field_hovered: Color32::from_rgb(0x36, 0x3e, 0x4f),
+    text: Color32::from_rgb(0xec, 0xef, 0xf4),
+    text_weak: Color32::from_rgb(0xa3, 0xac, 0xbd),
+    accent: Color32::from_rgb(0x4f, 0x9d, 0xf7),
+    on_accent: Color32::from_rgb(0x0d, 0x13, 0x1e),
+    accent_soft: Color32::from_rgb(0x31, 0x5d, 0x94),
+    second: Color32::from_rgb(0xf2, 0xb1, 0x4b),
+    problem: Color32::from_rgb(0xf0, 0x6a, 0x5f),
+    empty_cell: Color32::from_rgb(0x12, 0x15, 0x1c),
+    red_limb: Color::srgb(0.88, 0.14, 0.14),
+    blue_limb: Color::srgb(0.14, 0.32, 0.95),
+    horizon: Color::srgb(0.20, 0.25, 0.34),
+    ground: Color::srgb(0.22, 0.26, 0.31),
+    grid: Color::srgba(0.75, 0.85, 1.0, 0.08),
+    stair: Color::srgb(0.47, 0.50, 0.56),
+    stair_other: Color::srgb(0.40, 0.43, 0.49),
+    sun: Color::srgb(1.0, 0.96, 0.90),
+    sun_lux: 2_900.0,
+    ambient: Color::srgb(0.72, 0.82, 1.0),
+    ambient_cd_m2: 260.0,
+};
+
+/// The contrast that text needs to be read by everyone (WCAG 2, level AA).
+const READABLE: f32 = 4.5;
+
+impl Palette {
+    /// The colour of a strategy, in all curves: its own, moved towards the text's as far as it takes to be read on
+    /// the panel.
+    pub fn strategy(&self, kind: StrategyKind) -> Color32 {
+        let [red, green, blue] = strategy_color(kind);
+        let own = Color32::from_rgb(red, green, blue);
+        let mixed = (0..=20).map(|step| own.lerp_to_gamma(self.text, step as f32 / 20.0));
+        let mut readable = mixed.filter(|color| contrast(*color, self.panel) >= READABLE);
+        readable.next().unwrap_or(self.text)
+    }
+
+    /// A card with a coloured edge.
+    pub fn card(&self, edge: Color32) -> Frame {
+        Frame::new()
+            .fill(self.panel.gamma_multiply(0.94))
+            .stroke(Stroke::new(1.0, edge))
+            .corner_radius(CORNER)
+            .inner_margin(Margin::symmetric(12, 8))
+    }
+
+    /// Colours egui's style.
+    pub(super) fn dress(&self, visuals: &mut egui::Visuals) {
+        visuals.panel_fill = self.panel;
+        visuals.window_fill = self.panel;
+        visuals.window_stroke = Stroke::new(1.0, self.field_hovered);
+        visuals.extreme_bg_color = self.field;
+        visuals.override_text_color = Some(self.text);
+        visuals.weak_text_color = Some(self.text_weak);
+        visuals.selection.bg_fill = self.accent_soft;
+        visuals.selection.stroke = Stroke::new(1.0, self.text);
+        visuals.widgets.inactive.weak_bg_fill = self.field;
+        visuals.widgets.inactive.bg_fill = self.field;
+        // Else an empty check box is hardly there.
+        visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, self.field_hovered);
+        visuals.widgets.hovered.weak_bg_fill = self.field_hovered;
+        visuals.widgets.active.weak_bg_fill = self.accent_soft;
+        visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, self.field_hovered);
+    }
+}
+
+/// How much lighter one colour is than the other: from 1, not at all, to 21, white and black.
+fn contrast(one: Color32, other: Color32) -> f32 {
+    let luminance = |color: Color32| {
+        let linear = egui::Rgba::from(color);
+        0.2126 * linear.r() + 0.7152 * linear.g() + 0.0722 * linear.b() + 0.05
+    };
+    let (one, other) = (luminance(one), luminance(other));
+    one.max(other) / one.min(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contrast_is_what_wcag_says() {
+        assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 0.01);
+        assert!((contrast(Color32::from_gray(0x77), Color32::WHITE) - 4.48).abs() < 0.01);
+        assert_eq!(contrast(Color32::RED, Color32::RED), 1.0);
+    }
+
+    #[test]
+    fn whatever_is_text_can_be_read_in_both_themes() {
+        for (theme, of) in [("light", &LIGHT), ("dark", &DARK)] {
+            for (what, text, ground) in [
+                ("text on the panel", of.text, of.panel),
+                ("text in a field", of.text, of.field),
+                ("text in a field under the pointer", of.text, of.field_hovered),
+                ("text on what is chosen", of.text, of.accent_soft),
+                ("text on the accent", of.on_accent, of.accent),
+                ("weak text on the panel", of.text_weak, of.panel),
+                ("weak text in a field", of.text_weak, of.field),
+                ("the accent as text", of.accent, of.panel),
+                ("the second colour as text", of.second, of.panel),
+                ("a problem", of.problem, of.panel),
+            ] {
+                let found = contrast(text, ground);
+                assert!(found >= READABLE, "{theme}: {what} has {found:.2}");
+            }
+            for kind in StrategyKind::ALL {
+                let found = contrast(of.strategy(kind), of.panel);
+                assert!(found >= READABLE, "{theme}: {kind:?} has {found:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn strategies_differ_in_both_themes() {
+        for of in [&LIGHT, &DARK] {
+            for (index, one) in StrategyKind::ALL.into_iter().enumerate() {
+                for other in StrategyKind::ALL.into_iter().take(index) {
+                    let pairs =
+                        of.strategy(one).to_array().into_iter().zip(of.strategy(other).to_array());
+                    let apart: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(b))).sum();
+                    assert!(apart > 60, "{one:?} and {other:?} are {apart} apart");
+                }
+            }
+        }
+    }
+}
