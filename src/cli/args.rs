@@ -112,10 +112,11 @@ pub struct Args {
 /// The subcommands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Replay a saved champion exactly; with --no-render, check it against its record
+    /// Replay a saved champion exactly, or race several; with --no-render, check them against their records
     Replay {
-        /// The saved champion
-        file: PathBuf,
+        /// The saved champions
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
     },
     /// Measure how fast the simulation is on this machine
     Bench,

@@ -65,8 +65,9 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         Some(Command::Figures { run }) => figures::draw(&args, run),
         #[cfg(not(feature = "studio"))]
         Some(Command::Figures { .. }) => Err(CliError::NoStudio),
-        Some(Command::Replay { file }) if args.no_render => {
-            Ok(headless::replay(file, args.json, &mut io::stdout().lock())?)
+        Some(Command::Replay { files }) if args.no_render => {
+            let replay = |file| headless::replay(file, args.json, &mut io::stdout().lock());
+            Ok(files.iter().try_for_each(|file| replay(file))?)
         }
         None if args.no_render => evolve(&args),
         None | Some(Command::Replay { .. }) => open_studio(&args),
@@ -94,18 +95,23 @@ fn cancel_on_interrupt() -> Arc<Control> {
 #[cfg(feature = "studio")]
 fn open_studio(args: &Args) -> Result<(), CliError> {
     use crate::studio;
-    let champion = match &args.command {
-        Some(Command::Replay { file }) => {
-            Some(crate::save::load_champion(file).map_err(headless::HeadlessError::from)?)
-        }
-        _ => None,
+    let files = match &args.command {
+        Some(Command::Replay { files }) => &files[..],
+        _ => &[],
     };
+    let champions: Result<_, _> = files
+        .iter()
+        .map(|file| {
+            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            crate::save::load_champion(file).map(|champion| (name, champion))
+        })
+        .collect();
     let comparison = args.comparison.as_deref().map(crate::save::load_comparison).transpose();
     let options = studio::Options {
         run: args.run_source()?,
         threads: args.studio_threads()?,
         saves: args.saves_folder(),
-        champion,
+        champions: champions.map_err(headless::HeadlessError::from)?,
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         theme: args.theme()?,

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 
 use super::{Control, Experiment, GenerationReport, KeptRun, RunSource};
-use crate::evolve::{Archive, Front};
+use crate::evolve::{Archive, Champion, Front};
 
 /// What an experiment in the background has to tell.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,11 +42,17 @@ pub struct Exploration {
     pub front: Front,
     /// The best of every kind, if the strategy keeps such an archive.
     pub archive: Option<Archive>,
+    /// The best of the latest generation, the best first; nobody of a generation that an earlier session finished.
+    pub leaders: Vec<Champion>,
 }
 
 impl Exploration {
     fn of(experiment: &Experiment) -> Self {
-        Self { front: experiment.front().clone(), archive: experiment.archive().cloned() }
+        Self {
+            front: experiment.front().clone(),
+            archive: experiment.archive().cloned(),
+            leaders: experiment.leaders().to_vec(),
+        }
     }
 }
 

@@ -28,6 +28,8 @@ pub struct Experiment {
     evaluated: u64,
     hash: Xxh3Default,
     best: Option<Champion>,
+    /// The best of the last generation, the best first.
+    leaders: Vec<Champion>,
     /// Evaluations of the next generation that were made before a kill.
     known: BTreeMap<u32, Evaluation>,
     /// Only a test puts another in its place.
@@ -36,6 +38,8 @@ pub struct Experiment {
 
 /// So many of a generation's crashed genomes are reported; more would tell nothing new.
 const MOST_CRASHES: usize = 3;
+/// So many of the best of a generation can be seen side by side.
+const MOST_LEADERS: usize = 10;
 
 impl Experiment {
     /// A fresh run.
@@ -48,6 +52,7 @@ impl Experiment {
             evaluated: 0,
             hash: Xxh3Default::new(),
             best: None,
+            leaders: Vec::new(),
             known: BTreeMap::new(),
             evaluate,
         }
@@ -109,6 +114,11 @@ impl Experiment {
     /// The best of every kind so far, if the strategy keeps such an archive.
     pub fn archive(&self) -> Option<&Archive> {
         self.strategy.archive()
+    }
+
+    /// The best of the last generation that this session has finished, the best first.
+    pub fn leaders(&self) -> &[Champion] {
+        &self.leaders
     }
 
     /// Who is beaten by nobody in distance and energy so far.
@@ -200,6 +210,7 @@ impl Experiment {
             let reasons = evaluations.iter().filter_map(|e| e.disqualified.as_ref());
             reasons.filter(|reason| is(reason)).count() as u32
         };
+        let ranking = ranking(&evaluations);
         let statistics = Statistics::of(&evaluations);
         let landed = |evaluation: &&Evaluation| evaluation.is_on_landing(&trial.stairs);
         let first_on_landing = evaluations.iter().position(|e| landed(&e));
@@ -215,8 +226,9 @@ impl Experiment {
             meaning: meaning(statistics.as_ref(), trial),
             hash: generation_hash(&evaluations),
             elapsed_s: started.elapsed().as_secs_f64(),
-            champion: ranking(&evaluations).first().map(|&index| individual(index)),
+            champion: ranking.first().map(|&index| individual(index)),
         };
+        self.leaders = ranking.iter().take(MOST_LEADERS).map(|&index| individual(index)).collect();
 
         for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
             // Hardly anybody is taken in: only who is, is copied.

@@ -46,6 +46,19 @@ impl SavesFolder {
         Ok(Self(path))
     }
 
+    /// The folder in it for pictures of the stage.
+    #[must_use]
+    pub fn pictures(&self) -> Self {
+        Self(self.0.join("pictures"))
+    }
+
+    /// A path in it that is not taken yet: the name and the next number.
+    pub fn free_name(&self, name: &str, extension: &str) -> PathBuf {
+        let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
+        let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
+        free.next().unwrap_or_else(|| path(0))
+    }
+
     /// The folder's path.
     pub fn path(&self) -> &Path {
         &self.0

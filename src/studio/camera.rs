@@ -5,6 +5,7 @@
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraOutputMode, Viewport};
 use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::input::gestures::PinchGesture;
 use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::pbr::{DistanceFog, FogFalloff};
 use bevy::prelude::*;
@@ -15,46 +16,19 @@ use bevy_egui::input::EguiWantsInput;
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
 
 use super::Frame;
+use super::hands::Hands;
+use super::lane::Lane;
 use super::look::{Palette, Theme};
 use super::panels::StageArea;
 use super::quality::Quality;
-use super::stage::Stage;
-
-/// Where the camera is, relative to what it looks at.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct View {
-    /// Turn about z, in radians: 0 looks from +x, so that the stairs rise to the right.
-    yaw_rad: f32,
-    /// Height above the horizon, in radians.
-    pitch_rad: f32,
-    /// Distance from the target, in metres.
-    distance_m: f32,
-    /// What is looked at, beside the snake if the camera follows it, in metres.
-    offset: Vec3,
-}
-
-impl Default for View {
-    /// From the right side, a little behind and above: stairs and snake at a glance.
-    fn default() -> Self {
-        Self { yaw_rad: -0.55, pitch_rad: 0.36, distance_m: 24.0, offset: Vec3::new(0.0, 3.0, 0.5) }
-    }
-}
-
-impl View {
-    /// Where the camera stands to look at a target like this.
-    fn looking_at(&self, target: Vec3) -> Transform {
-        let turn = Quat::from_rotation_z(self.yaw_rad) * Quat::from_rotation_y(-self.pitch_rad);
-        let eye = target + turn * Vec3::X * self.distance_m;
-        Transform::from_translation(eye).looking_at(target, Vec3::Z)
-    }
-}
+use super::view::{Shot, View};
 
 /// A fixed camera's place, from the usual side, that has a stretch of the y axis in view, in metres.
 pub(super) fn overlooking(from_y_m: f32, to_y_m: f32) -> Transform {
     // At this distance the stretch, seen at an angle, fills the width of a 16:9 picture.
     const DISTANCE_PER_LENGTH: f32 = 0.95;
-    let distance_m = ((to_y_m - from_y_m) * DISTANCE_PER_LENGTH).max(*DISTANCE_M.start());
-    let view = View { distance_m, ..View::default() };
+    let distance_m = ((to_y_m - from_y_m) * DISTANCE_PER_LENGTH).max(*View::DISTANCE_M.start());
+    let view = View { distance_m, ..View::of(Shot::Follow, 1) };
     view.looking_at(Vec3::new(0.0, (from_y_m + to_y_m) / 2.0, 1.5))
 }
 
@@ -76,19 +50,81 @@ pub(super) fn eye(msaa: Msaa, palette: &Palette) -> impl Bundle {
 /// How the camera moves.
 #[derive(Resource, Debug)]
 pub(super) struct CameraRig {
+    shot: Shot,
     /// The view that was asked for.
-    pub view: View,
-    /// Whether the snake is kept in view.
-    pub follows: bool,
+    view: View,
+    /// The view that is shown, on its way there.
+    shown: View,
+    /// Whether the snake is kept in view, or all of them.
+    follows: bool,
+    /// The one lane that is followed, if not all are.
+    lane: Option<usize>,
     /// What is followed, smoothed, in metres.
     anchor: Option<Vec3>,
+    lanes: usize,
 }
 
 impl Default for CameraRig {
     fn default() -> Self {
-        Self { view: View::default(), follows: true, anchor: None }
+        let view = View::of(Shot::Follow, 1);
+        Self {
+            shot: Shot::Follow,
+            view,
+            shown: view,
+            follows: true,
+            lane: None,
+            anchor: None,
+            lanes: 1,
+        }
     }
 }
+
+impl CameraRig {
+    /// How the stage is looked at.
+    pub fn shot(&self) -> Shot {
+        self.shot
+    }
+
+    /// Looks at the stage in another way.
+    pub fn take(&mut self, shot: Shot) {
+        self.shot = shot;
+        self.follows = shot != Shot::Free;
+        if self.follows {
+            // It goes the short way round.
+            let turn = std::f32::consts::TAU;
+            self.shown.yaw_rad -= libm::roundf(self.shown.yaw_rad / turn) * turn;
+            self.view = View::of(shot, self.lanes);
+            self.lane = None;
+        }
+    }
+
+    /// Looks at a lane's snake or, without one, at a point that stays where it is, in metres.
+    pub fn focus_on(&mut self, lane: Option<usize>, point: Vec3) {
+        self.view.distance_m = self.view.distance_m.min(FOCUS_M);
+        self.lane = lane;
+        if lane.is_some() {
+            self.view.offset = Vec3::ZERO;
+            (self.shot, self.follows) = (Shot::Follow, true);
+        } else {
+            (self.shot, self.follows) = (Shot::Free, false);
+            // From where the camera looks now it glides to the point.
+            self.view.offset = point - self.anchor.unwrap_or_default();
+        }
+    }
+
+    /// Whether all lanes are kept in view.
+    fn frames_all(&self) -> bool {
+        self.follows && self.lane.is_none() && self.lanes > 1
+    }
+
+    /// Where the camera stands now.
+    pub fn place(&self) -> Transform {
+        self.shown.looking_at(self.anchor.unwrap_or_default() + self.shown.offset)
+    }
+}
+
+/// Distance to what was double-clicked, in metres.
+const FOCUS_M: f32 = 12.0;
 
 /// The camera that draws the stage.
 #[derive(Component)]
@@ -102,19 +138,19 @@ const PAN_PER_PIXEL: f32 = 0.0012;
 const ZOOM_PER_LINE: f32 = 0.12;
 /// Pixels of a trackpad's scroll that count as a wheel line.
 const PIXELS_PER_LINE: f32 = 40.0;
-/// Nearest and farthest distance, in metres.
-const DISTANCE_M: std::ops::RangeInclusive<f32> = 3.0..=90.0;
-/// Highest and lowest pitch, in radians: never quite overhead, never below the ground.
-const PITCH_RAD: std::ops::RangeInclusive<f32> = 0.02..=1.55;
 /// How eagerly the camera follows, in 1/s: in a short time t it covers the share `this * t` of the way.
 const FOLLOW_PER_S: f32 = 4.0;
 /// Nearer than this the camera is where it wants to be, in metres.
 const FOLLOWED_M: f32 = 0.005;
+/// How eagerly the camera goes to where it was asked to, in 1/s.
+const GLIDE_PER_S: f32 = 14.0;
+/// A pinch of a trackpad's whole scale zooms by this factor.
+const ZOOM_PER_PINCH: f32 = 1.0;
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<CameraRig>()
         .add_systems(Startup, set_up)
-        .add_systems(Update, (steer, follow, place, fit_to_area).chain().in_set(Frame::Draw));
+        .add_systems(Update, (steer, follow, glide, fit_to_area).chain().in_set(Frame::Draw));
 }
 
 /// One camera for the stage, beside the panel, and one for egui, over the whole window.
@@ -152,15 +188,16 @@ pub(super) struct Grip {
     began_on_stage: bool,
 }
 
-/// Turns drags and the wheel into a new view, unless they belong to a panel.
+/// Turns drags, the wheel and a trackpad's gestures into a new view, unless they belong to a panel or to a limb.
 fn steer(
     mut rig: ResMut<CameraRig>,
-    buttons: Res<ButtonInput<MouseButton>>,
-    keys: Res<ButtonInput<KeyCode>>,
+    (buttons, keys): (Res<ButtonInput<MouseButton>>, Res<ButtonInput<KeyCode>>),
     window: Single<&Window, With<PrimaryWindow>>,
     area: Res<StageArea>,
+    hands: Res<Hands>,
     mut grip: Local<Grip>,
     scroll: Res<AccumulatedMouseScroll>,
+    mut pinches: MessageReader<PinchGesture>,
     egui: Res<EguiWantsInput>,
 ) {
     // The cursor, not the device: a tablet or a remote desktop reports no relative motion.
@@ -170,21 +207,25 @@ fn steer(
         _ => Vec2::ZERO,
     };
     grip.last_cursor = cursor;
-    let is_over_stage = cursor.is_some_and(|cursor| cursor.x >= area.left_points)
-        && !egui.wants_any_pointer_input();
+    let is_over_stage =
+        cursor.is_some_and(|cursor| area.contains(cursor)) && !egui.wants_any_pointer_input();
     let drag_buttons = [MouseButton::Left, MouseButton::Right, MouseButton::Middle];
     if buttons.any_just_pressed(drag_buttons) {
-        grip.began_on_stage = is_over_stage;
+        grip.began_on_stage = is_over_stage && !hands.are_full();
     }
+    let pinched: f32 = pinches.read().map(|pinch| pinch.0).sum();
     let view = &mut rig.view;
     if is_over_stage {
-        let lines = match scroll.unit {
-            MouseScrollUnit::Line => scroll.delta.y,
-            MouseScrollUnit::Pixel => scroll.delta.y / PIXELS_PER_LINE,
+        // Two fingers sideways turn; a wheel, or two fingers up and down, zooms; so does a pinch.
+        let (lines, sideways) = match scroll.unit {
+            MouseScrollUnit::Line => (scroll.delta.y, 0.0),
+            MouseScrollUnit::Pixel => (scroll.delta.y / PIXELS_PER_LINE, scroll.delta.x),
         };
+        view.yaw_rad -= sideways * TURN_RAD_PER_PIXEL;
         let factor = 1.0 - lines.clamp(-4.0, 4.0) * ZOOM_PER_LINE;
+        let factor = factor * (1.0 - pinched.clamp(-0.5, 0.5) * ZOOM_PER_PINCH);
         let distance_m = view.distance_m * factor;
-        view.distance_m = distance_m.clamp(*DISTANCE_M.start(), *DISTANCE_M.end());
+        view.distance_m = distance_m.clamp(*View::DISTANCE_M.start(), *View::DISTANCE_M.end());
     }
     if !grip.began_on_stage {
         return;
@@ -199,17 +240,37 @@ fn steer(
     } else if buttons.pressed(MouseButton::Left) {
         view.yaw_rad -= drag.x * TURN_RAD_PER_PIXEL;
         let pitch_rad = view.pitch_rad + drag.y * TURN_RAD_PER_PIXEL;
-        view.pitch_rad = pitch_rad.clamp(*PITCH_RAD.start(), *PITCH_RAD.end());
+        view.pitch_rad = pitch_rad.clamp(*View::PITCH_RAD.start(), *View::PITCH_RAD.end());
     }
 }
 
-/// Keeps the middle of the snake in view.
-fn follow(mut rig: ResMut<CameraRig>, stages: Query<&Stage>, time: Res<Time<Real>>) {
-    let Some(stage) = stages.iter().next() else { return };
-    let poses: Vec<_> = stage.drawn_poses().collect();
-    let Some(middle) = poses.get(poses.len() / 2) else { return };
-    // Sideways wobble is the snake's own; following it would make the viewer seasick.
-    let goal = Vec3::new(0.0, middle.translation.y, middle.translation.z.max(0.0));
+/// Keeps the middle of the snake in view, or of all snakes.
+fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Real>>) {
+    let count = lanes.iter().len();
+    if count == 0 {
+        return;
+    }
+    let is_new = lanes.iter().any(|lane| lane.is_added());
+    if is_new && (count > 1) != (rig.lanes > 1) {
+        // What suits one lane does not suit many.
+        rig.lanes = count;
+        let shot = rig.shot;
+        rig.take(if shot == Shot::Free { Shot::Follow } else { shot });
+    }
+    rig.lanes = count;
+    rig.lane = rig.lane.filter(|lane| *lane < count && !is_new);
+    let of_one = |lane: &Lane| {
+        // Sideways wobble is the snake's own; following it would make the viewer seasick.
+        let middle = lane.drawn_middle();
+        Vec3::new(lane.offset().x, middle.y, middle.z.max(0.0))
+    };
+    let chosen = lanes.iter().filter(|lane| rig.lane.is_none_or(|number| number == lane.number()));
+    let (mut least, mut most) = (Vec3::MAX, Vec3::MIN);
+    chosen.map(|lane| of_one(&lane)).for_each(|middle| {
+        least = least.min(middle);
+        most = most.max(middle);
+    });
+    let goal = (least + most) / 2.0;
     match rig.anchor {
         None => rig.anchor = Some(goal),
         Some(anchor) if rig.follows => {
@@ -222,8 +283,32 @@ fn follow(mut rig: ResMut<CameraRig>, stages: Query<&Stage>, time: Res<Time<Real
     }
 }
 
-fn place(rig: Res<CameraRig>, mut camera: Single<&mut Transform, With<StageCamera>>) {
-    **camera = rig.view.looking_at(rig.anchor.unwrap_or_default() + rig.view.offset);
+/// Glides to the view that was asked for; with all lanes in view, as far away as that takes.
+fn glide(
+    mut rig: ResMut<CameraRig>,
+    lanes: Query<&Lane>,
+    area: Res<StageArea>,
+    time: Res<Time<Real>>,
+    mut camera: Single<&mut Transform, With<StageCamera>>,
+) {
+    let mut goal = rig.view;
+    if rig.frames_all() {
+        let target = rig.anchor.unwrap_or_default() + goal.offset;
+        let points = lanes.iter().flat_map(|lane| {
+            let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
+            let middle = lane.drawn_middle() + lane.offset();
+            let ends = lane.last_poses().iter().map(move |pose| pose.translation + lane.offset());
+            ends.chain([middle - half_width, middle + half_width])
+        });
+        let zoom = goal.distance_m / View::USUAL_M;
+        goal.distance_m = goal.distance_to_see(target, points, area.aspect()) * zoom;
+    }
+    let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
+    rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };
+    let place = rig.place();
+    if **camera != place {
+        **camera = place;
+    }
 }
 
 /// Draws the stage beside the panel, not under it.
@@ -233,12 +318,20 @@ fn fit_to_area(
     mut camera: Single<&mut Camera, With<StageCamera>>,
 ) {
     let physical = window.physical_size();
-    let left =
-        ((area.left_points * window.scale_factor()) as u32).min(physical.x.saturating_sub(1));
-    let size = UVec2::new(physical.x.saturating_sub(left), physical.y);
+    let scale = window.scale_factor();
+    let left = ((area.left_points * scale) as u32).min(physical.x.saturating_sub(1));
+    let bottom = (area.bottom_points * scale) as u32;
+    let size = UVec2::new(physical.x.saturating_sub(left), physical.y.saturating_sub(bottom));
     if size.x == 0 || size.y == 0 {
         return;
     }
-    camera.viewport =
-        Some(Viewport { physical_position: UVec2::new(left, 0), physical_size: size, ..default() });
+    let viewport =
+        Viewport { physical_position: UVec2::new(left, 0), physical_size: size, ..default() };
+    let is_new = camera.viewport.as_ref().is_none_or(|now| {
+        (now.physical_position, now.physical_size)
+            != (viewport.physical_position, viewport.physical_size)
+    });
+    if is_new {
+        camera.viewport = Some(viewport);
+    }
 }

@@ -2,16 +2,24 @@
 
 use std::path::PathBuf;
 
+use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use super::camera::{CameraRig, View};
+use super::camera::CameraRig;
+use super::casting::{Change, what_if};
+use super::casting::{Pick, all_generations, dropped, exhibit_of, kept, leaders, with_one_more};
 use super::evolution::Evolution;
 use super::exhibit::Exhibit;
+use super::hands::Hands;
+use super::lane::Lane;
 use super::look::Theme;
 use super::notice::Notices;
-use super::stage::{ShowExhibit, Stage};
+use super::overlay::{Overlay, Overlays};
+use super::playback::Playback;
+use super::screenshot::Photograph;
+use super::stage::{Programme, Show, end_s};
+use super::view::Shot;
 use super::{Frame, Opening};
-use crate::evolve::Champion;
 
 /// Something a panel or a key asks for.
 #[derive(Message, Debug, Clone, PartialEq)]
@@ -37,6 +45,10 @@ pub(super) enum Command {
     },
     /// Take this shipped preset for the next run, and show what it does to what is on the stage.
     SetPreset(String),
+    /// Go on with what was changed: it stays alone on the stage.
+    KeepChange,
+    /// Forget what was changed.
+    DropChange,
     /// Show what is on the stage as it was found.
     ShowAsFound,
     /// Let this engine simulate what is on the stage, which another engine found.
@@ -45,31 +57,54 @@ pub(super) enum Command {
     ListStoppedRuns,
     /// Go on with the run in this folder.
     Continue(PathBuf),
-    /// Put the champion that the studio opened with on the stage.
-    ShowOpening,
-    /// Put the champion of this generation on the stage; the first is 1.
-    ShowGeneration(u32),
-    /// Put somebody of the front of distance and energy on the stage.
-    ShowFront {
-        /// The generation that found it; the first is 1.
-        generation: u32,
-        /// Its index in that generation.
-        individual: u32,
-    },
-    /// Put the best of a cell of the archive on the stage.
-    ShowElite(u32),
+    /// Put somebody on the stage.
+    Show(Pick),
+    /// Put somebody beside those who are on the stage, or take them off again.
+    Join(Pick),
+    /// Let the champions of the run's generations race.
+    RaceGenerations,
+    /// Let the best of the latest generation race.
+    RaceLeaders,
+    /// Show the numbers and signals of this lane; the first is 0.
+    Focus(usize),
+    /// Keep only the lane whose numbers are shown.
+    Single,
     /// Hold or resume what is on the stage.
     TogglePlayback,
     /// Play what is on the stage from its start.
     Restart,
+    /// Show the stage at this moment, in simulated seconds.
+    Seek(f64),
+    /// Hold, and go to the end.
+    SeekEnd,
+    /// Hold, and go one physics step forward or back.
+    Step {
+        /// Or else back.
+        forward: bool,
+    },
+    /// Play so many simulated seconds in a second.
+    SetSpeed(f32),
+    /// Play at the next higher or lower speed.
+    ChangeSpeed {
+        /// Or else slower.
+        faster: bool,
+    },
+    /// Begin again after the end, or stay there.
+    ToggleLoop,
+    /// Look at the stage like this.
+    Look(Shot),
+    /// Look at the stage in the next way.
+    NextShot,
     /// Let the camera follow the snake, or stop it.
     ToggleFollow,
     /// Put the camera where it was at the start.
     ResetCamera,
-    /// Show or hide the physics engine's own drawing.
-    ToggleWireframe,
+    /// Show or hide something over the scene.
+    Toggle(Overlay),
     /// From the light theme to the dark one, or back.
     ToggleTheme,
+    /// Take a picture of the stage alone, or of the window.
+    TakePicture(Photograph),
     /// Close the window.
     Quit,
 }
@@ -78,18 +113,54 @@ pub(super) fn plugin(app: &mut App) {
     app.add_message::<Command>().add_systems(Update, apply.in_set(Frame::Apply));
 }
 
+/// What is on the stage, and how it is looked at.
+#[derive(SystemParam)]
+struct StageParams<'w, 's> {
+    lanes: Query<'w, 's, &'static Lane>,
+    programme: Res<'w, Programme>,
+    show: MessageWriter<'w, Show>,
+    playback: ResMut<'w, Playback>,
+    rig: ResMut<'w, CameraRig>,
+    overlays: ResMut<'w, Overlays>,
+    hands: ResMut<'w, Hands>,
+    theme: ResMut<'w, Theme>,
+    photographs: MessageWriter<'w, Photograph>,
+}
+
+impl StageParams<'_, '_> {
+    /// What is on the stage, the first lane first.
+    fn exhibits(&self) -> Vec<Exhibit> {
+        let mut lanes: Vec<&Lane> = self.lanes.iter().collect();
+        lanes.sort_by_key(|lane| lane.number());
+        lanes.into_iter().map(|lane| lane.exhibit().clone()).collect()
+    }
+
+    fn end_s(&self) -> f64 {
+        end_s(&self.lanes)
+    }
+
+    /// Length of a step of the lane in focus, in seconds.
+    fn step_s(&self) -> f64 {
+        let focused = self.lanes.iter().find(|lane| lane.number() == self.hands.lane);
+        focused.map_or(1.0, Lane::step_s)
+    }
+
+    /// Shows what a change does, beside what it was before.
+    fn try_out(&mut self, evolution: &mut Evolution, change: &Change) -> Result<(), String> {
+        let show = what_if(evolution, &self.exhibits(), &self.programme, change)?;
+        self.show.write_batch(show);
+        Ok(())
+    }
+}
+
 /// Does what was asked for, in the order in which it was asked.
 fn apply(
     mut asked: MessageReader<Command>,
     mut evolution: ResMut<Evolution>,
     mut notices: ResMut<Notices>,
-    mut rig: ResMut<CameraRig>,
-    mut wireframe: ResMut<bevy_rapier3d::render::DebugRenderContext>,
-    mut stages: Query<&mut Stage>,
-    mut show: MessageWriter<ShowExhibit>,
     mut exit: MessageWriter<AppExit>,
     opening: Res<Opening>,
-    mut theme: ResMut<Theme>,
+    mut stage: StageParams,
 ) {
     for command in asked.read() {
         let done = match command {
@@ -99,103 +170,76 @@ fn apply(
             Command::Reset => evolution.reset(),
             Command::SetSeed(seed) => evolution.set_seed(*seed),
             Command::SetPopulation(population) => evolution.set_population(*population),
-            Command::SetField { field, text } => evolution
-                .set_field(field, text)
-                .map(|()| show_changed(&evolution, &stages, &mut show, &mut notices)),
-            Command::SetPreset(name) => evolution
-                .set_preset(name)
-                .map(|()| show_changed(&evolution, &stages, &mut show, &mut notices)),
-            Command::ShowAsFound => {
-                let found = stages.iter().map(|stage| stage.exhibit().as_found());
-                show.write_batch(found.map(ShowExhibit));
-                Ok(())
-            }
-            Command::Simulate => {
-                let simulated = stages.iter().map(|stage| stage.exhibit().simulated());
-                show.write_batch(simulated.map(ShowExhibit));
-                Ok(())
-            }
             Command::ListStoppedRuns => evolution.list_stopped(),
             Command::Continue(folder) => evolution.go_on_with(folder),
-            Command::ShowOpening => {
-                show.write(ShowExhibit(Exhibit::saved(&opening.0)));
-                Ok(())
+            Command::SetField { field, text } => {
+                stage.try_out(&mut evolution, &Change::Field { field, text })
             }
-            Command::ShowGeneration(generation) => {
-                show_found(&evolution, evolution.champion_of(*generation), &mut show)
-            }
-            Command::ShowFront { generation, individual } => {
-                let member = evolution.front_member(*generation, *individual);
-                show_found(&evolution, member.as_ref(), &mut show)
-            }
-            Command::ShowElite(cell) => {
-                show_found(&evolution, evolution.elite(*cell).as_ref(), &mut show)
-            }
-            Command::TogglePlayback => {
-                stages.iter_mut().for_each(|mut stage| stage.toggle_playback());
-                Ok(())
-            }
-            Command::Restart => {
-                stages.iter_mut().for_each(|mut stage| stage.ask_for_restart());
-                Ok(())
-            }
-            Command::ToggleFollow => {
-                rig.follows = !rig.follows;
-                Ok(())
-            }
-            Command::ResetCamera => {
-                rig.view = View::default();
-                rig.follows = true;
-                Ok(())
-            }
-            Command::ToggleTheme => {
-                *theme = theme.other();
-                Ok(())
-            }
+            Command::SetPreset(name) => stage.try_out(&mut evolution, &Change::Preset(name)),
+            Command::DropChange => dropped(&mut evolution, &stage.exhibits(), &stage.programme)
+                .map(|show| stage.show.write_batch(show))
+                .map(drop),
             Command::Quit => {
                 exit.write(AppExit::Success);
                 Ok(())
             }
-            Command::ToggleWireframe => {
-                wireframe.enabled = !wireframe.enabled;
-                Ok(())
-            }
+            command => on_stage(command, &mut stage, &evolution, &opening),
         };
-        if let Err(problem) = done {
-            notices.problem(problem);
-        }
+        notices.problems(done.err());
     }
 }
 
-/// Shows somebody that the current run has found. Who is not found any more is not missed: somebody better has
-/// taken the place since the click.
-fn show_found(
+/// Does what concerns the stage alone.
+fn on_stage(
+    command: &Command,
+    stage: &mut StageParams,
     evolution: &Evolution,
-    champion: Option<&Champion>,
-    show: &mut MessageWriter<ShowExhibit>,
+    opening: &Opening,
 ) -> Result<(), String> {
-    let exhibit = champion.map(|champion| Exhibit::found(champion, evolution.number()));
-    show.write_batch(exhibit.map(ShowExhibit));
-    Ok(())
-}
-
-/// Shows what is on the stage in the world of the next run, if its genome fits into that.
-fn show_changed(
-    evolution: &Evolution,
-    stages: &Query<&mut Stage>,
-    show: &mut MessageWriter<ShowExhibit>,
-    notices: &mut Notices,
-) {
-    let trial = &evolution.next_settings().trial;
-    for stage in stages {
-        match stage.exhibit().in_world(trial) {
-            Some(changed) => {
-                show.write(ShowExhibit(changed));
-            }
-            None => notices.news(format!(
-                "What is on show has {} limbs and stays in its own world; a new run will show this one.",
-                stage.trial().agent.limbs
-            )),
+    let (end_s, step_s) = (stage.end_s(), stage.step_s());
+    let on_show = || stage.exhibits();
+    let show = match command {
+        // Who is not found any more is not missed: somebody better has taken the place since the click.
+        Command::Show(pick) => exhibit_of(pick, evolution, opening).map(Show::solo),
+        Command::Join(pick) => {
+            let exhibit = exhibit_of(pick, evolution, opening);
+            exhibit.map(|exhibit| with_one_more(on_show(), exhibit)).transpose()?.flatten()
         }
+        Command::RaceGenerations => Some(Show::race(all_generations(evolution)?)),
+        Command::RaceLeaders => Some(Show::race(leaders(evolution)?)),
+        Command::KeepChange => kept(&on_show(), &stage.programme),
+        Command::Single => on_show().into_iter().nth(stage.hands.lane).map(Show::solo),
+        Command::ShowAsFound => on_show().first().map(|first| Show::solo(first.as_found())),
+        Command::Simulate => Some(Show::race(on_show().iter().map(Exhibit::simulated).collect())),
+        _ => None,
+    };
+    stage.show.write_batch(show);
+    match command {
+        Command::Focus(lane) => (stage.hands.lane, stage.hands.limb) = (*lane, None),
+        Command::TogglePlayback => stage.playback.toggle(end_s),
+        Command::Restart => stage.playback.restart(),
+        Command::Seek(time_s) => stage.playback.seek(*time_s, end_s),
+        Command::SeekEnd => stage.playback.hold_at(end_s),
+        Command::Step { forward } => stage.playback.step(*forward, step_s, end_s),
+        Command::SetSpeed(speed) => stage.playback.set_speed(*speed),
+        Command::ChangeSpeed { faster } => stage.playback.change_speed(*faster),
+        Command::ToggleLoop => stage.playback.toggle_loop(),
+        Command::Look(shot) => stage.rig.take(*shot),
+        Command::NextShot => {
+            let next = stage.rig.shot().next();
+            stage.rig.take(next);
+        }
+        Command::ToggleFollow => {
+            let is_free = stage.rig.shot() == Shot::Free;
+            stage.rig.take(if is_free { Shot::Follow } else { Shot::Free });
+        }
+        Command::ResetCamera => stage.rig.take(Shot::Follow),
+        Command::Toggle(overlay) => stage.overlays.toggle(*overlay),
+        Command::ToggleTheme => *stage.theme = stage.theme.other(),
+        Command::TakePicture(of) => {
+            stage.photographs.write(*of);
+        }
+        _ => {}
     }
+    Ok(())
 }

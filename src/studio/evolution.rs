@@ -9,7 +9,7 @@ use bevy::prelude::*;
 
 use super::engine::Engine;
 use crate::check::Invalid;
-use crate::evolve::{Champion, Origin, Settings, with_field};
+use crate::evolve::{Champion, Origin, RunPlan, Settings, with_field};
 use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
 use crate::save::{Earlier, RunSummary, load_preset};
 use crate::score::evaluate;
@@ -118,6 +118,11 @@ impl Evolution {
     /// Settings of the next run.
     pub fn next_settings(&self) -> &Settings {
         &self.engine.next.settings
+    }
+
+    /// The plan of the next run.
+    pub fn next_plan(&self) -> &RunPlan {
+        &self.engine.next
     }
 
     /// Name of the preset that the next run starts from.
@@ -298,6 +303,12 @@ impl Evolution {
         let preset = load_preset(name).map_err(|error| error.to_string())?;
         self.engine.next.preset = preset.name;
         self.engine.next.settings = preset.settings;
+        self.take_over_if_ready()
+    }
+
+    /// Takes another plan for the next run; a run that has not begun takes it at once.
+    pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
+        self.engine.next = plan;
         self.take_over_if_ready()
     }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::check::Invalid;
 use crate::evolve::Champion;
 use crate::save::LoadedChampion;
 use crate::score::{Recording, Trial};
@@ -10,6 +11,7 @@ use crate::score::{Recording, Trial};
 #[derive(Debug, Clone)]
 pub(super) struct Exhibit {
     champion: Champion,
+    name: String,
     source: Source,
     /// The engine that found it and what it looked like there, if that was another engine than this.
     elsewhere: Option<(u32, Option<Arc<Recording>>)>,
@@ -19,8 +21,8 @@ pub(super) struct Exhibit {
 /// Where an exhibit is from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The save the studio opened with.
-    Opening,
+    /// A save the studio opened with; the first is 0.
+    Opening(usize),
     /// A run of this session; the first is 0. The generation is the champion's origin's.
     Run(u32),
 }
@@ -32,39 +34,52 @@ enum Manner {
     Found,
     /// Simulated by this engine, in the world in which it was found.
     Simulated,
-    /// Simulated by this engine in another world.
-    Changed(Box<Trial>),
+    /// Simulated by this engine in another world, and what is other there.
+    Changed(Box<Trial>, String),
 }
 
 impl Exhibit {
-    /// A champion from a file.
-    pub fn saved(loaded: &LoadedChampion) -> Self {
+    /// A champion from a file: which of those that the studio opened with, and its name.
+    pub fn saved(loaded: &LoadedChampion, index: usize, name: &str) -> Self {
         let recording = loaded.recording.clone().map(Arc::new);
         Self {
             champion: loaded.champion.clone(),
-            source: Source::Opening,
+            name: name.to_owned(),
+            source: Source::Opening(index),
             elsewhere: (!loaded.is_of_this_engine()).then_some((loaded.engine, recording)),
             manner: Manner::Found,
         }
     }
 
-    /// A champion that a run of this session found.
+    /// Somebody that a run of this session found.
     pub fn found(champion: &Champion, run: u32) -> Self {
         Self {
             champion: champion.clone(),
+            name: format!("Generation {}", champion.origin.generation),
             source: Source::Run(run),
             elsewhere: None,
             manner: Manner::Found,
         }
     }
 
-    /// The same in another world; none if its genome does not fit into that.
-    pub fn in_world(&self, trial: &Trial) -> Option<Self> {
-        trial.check_genome(&self.champion.genome).ok()?;
+    /// The same under another name.
+    pub fn named(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+
+    /// The same in another world, in which this is other. It may not fit there: see [`Self::check`].
+    pub fn in_world(&self, trial: &Trial, what_is_other: String) -> Self {
         if *trial == self.champion.trial {
-            return Some(self.as_found());
+            return self.as_found();
         }
-        Some(Self { manner: Manner::Changed(Box::new(trial.clone())), ..self.clone() })
+        let manner = Manner::Changed(Box::new(trial.clone()), what_is_other);
+        Self { manner, ..self.clone() }
+    }
+
+    /// Checks that its genome can be built in the world in which it is to be shown.
+    pub fn check(&self) -> Result<(), Invalid> {
+        self.trial().check().map_err(|error| error.inside("trial"))?;
+        self.trial().check_genome(&self.champion.genome).map_err(|error| error.inside("genome"))
     }
 
     /// The same as it was found.
@@ -79,7 +94,7 @@ impl Exhibit {
 
     /// Whether it is shown in another world than the one in which it was found.
     pub fn is_changed(&self) -> bool {
-        matches!(self.manner, Manner::Changed(_))
+        matches!(self.manner, Manner::Changed(..))
     }
 
     /// The recording that is played in place of a simulation, if one is.
@@ -118,7 +133,7 @@ impl Exhibit {
     /// The world in which it is shown.
     pub fn trial(&self) -> &Trial {
         match &self.manner {
-            Manner::Changed(trial) => trial,
+            Manner::Changed(trial, _) => trial,
             Manner::Found | Manner::Simulated => &self.champion.trial,
         }
     }
@@ -138,14 +153,24 @@ impl Exhibit {
         self.champion.evaluation.fitness
     }
 
+    /// What it is called, in a word or two.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What tells it from its neighbours: its name, or what is other in its world.
+    pub fn label(&self) -> &str {
+        match &self.manner {
+            Manner::Changed(_, what_is_other) => what_is_other,
+            Manner::Found | Manner::Simulated => &self.name,
+        }
+    }
+
     /// What it is and what it reached, in a line.
     pub fn caption(&self) -> String {
-        let name = match self.source {
-            Source::Run(_) => format!("Generation {}", self.generation()),
-            Source::Opening => "Saved champion".to_owned(),
-        };
+        let name = &self.name;
         let manner = match (&self.manner, self.other_engine()) {
-            (Manner::Changed(_), _) => " in another world; on record ".to_owned(),
+            (Manner::Changed(_, what), _) => format!(" with {what}; on record "),
             (_, None) => ": ".to_owned(),
             (_, Some(engine)) if self.recording().is_some() => {
                 format!(" as engine {engine} recorded it: ")

@@ -15,7 +15,8 @@ use bevy::winit::WinitPlugin;
 use std::sync::{Mutex, PoisonError};
 
 use super::exhibit::Exhibit;
-use super::stage::Stage;
+use super::lane::Lane;
+use super::screenshot::picture_of;
 use super::{Frame, StudioError, camera, look, scene, snake, start_up};
 use crate::save::{LoadedChampion, Picture};
 use crate::score::Evaluation;
@@ -110,10 +111,10 @@ fn set_up(app: &mut App, width: u32, height: u32) -> Handle<Image> {
 fn put_in_place(app: &mut App, loaded: &LoadedChampion) -> Evaluation {
     let champion = &loaded.champion;
     let world = app.world_mut();
-    let earlier: Vec<Entity> = world.query_filtered::<Entity, With<Stage>>().iter(world).collect();
+    let earlier: Vec<Entity> = world.query_filtered::<Entity, With<Lane>>().iter(world).collect();
     earlier.into_iter().for_each(|stage| world.entity_mut(stage).despawn());
 
-    let mut stage = Stage::new(Exhibit::saved(loaded));
+    let mut stage = Lane::new(Exhibit::saved(loaded, 0, "champion"), 0);
     let moments = stage.skip_to_end(MOMENTS);
     let evaluation = stage.evaluation();
     let ends_at_m = stage.drawn_poses().map(|pose| pose.translation.y).fold(f32::MIN, f32::max);
@@ -125,7 +126,7 @@ fn put_in_place(app: &mut App, loaded: &LoadedChampion) -> Evaluation {
     cameras.iter_mut(world).for_each(|mut camera| *camera = place);
 
     let (cube, faint) = faint_props(world);
-    world.spawn(stage).with_children(|parent| {
+    world.spawn((stage, Transform::default(), Visibility::default())).with_children(|parent| {
         for poses in moments {
             for (limb, pose) in poses.into_iter().enumerate() {
                 let size = Vec3::from(agent.limb_size_m(limb));
@@ -162,7 +163,8 @@ fn take_picture(app: &mut App, target: &Handle<Image>) -> Option<Picture> {
     (0..FRAMES).for_each(|_| app.update());
     app.world_mut().spawn(Screenshot::image(target.clone())).observe(
         |captured: On<ScreenshotCaptured>, developed: Res<Developed>| {
-            *developed.0.lock().unwrap_or_else(PoisonError::into_inner) = picture(&captured.image);
+            *developed.0.lock().unwrap_or_else(PoisonError::into_inner) =
+                picture_of(&captured.image);
         },
     );
     (0..MOST_FRAMES).find_map(|_| {
@@ -170,11 +172,4 @@ fn take_picture(app: &mut App, target: &Handle<Image>) -> Option<Picture> {
         let developed = app.world().resource::<Developed>();
         developed.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     })
-}
-
-/// The colours of an image without its opacity.
-fn picture(image: &Image) -> Option<Picture> {
-    let pixels = image.data.as_ref()?.as_chunks::<4>().0;
-    let rgb = pixels.iter().flat_map(|[red, green, blue, _]| [*red, *green, *blue]).collect();
-    Some(Picture { width: image.width(), height: image.height(), rgb })
 }

@@ -5,21 +5,38 @@ use bevy::prelude::*;
 use bevy_egui::input::EguiWantsInput;
 
 use super::Frame;
+use super::casting::Pick;
 use super::command::Command;
 use super::evolution::{Evolution, Status};
+use super::overlay::Overlay;
+use super::screenshot::Photograph;
+use super::stage::Programme;
 
 /// The keys, as they are listed for a person: name, effect.
-pub(super) const KEYS: [(&str, &str); 11] = [
+pub(super) const KEYS: [(&str, &str); 24] = [
     ("Space", "hold or play the stage"),
-    ("R", "play from the start"),
+    ("Left, Right", "a physics step back, on"),
+    ("R, End", "to the start, to the end"),
+    ("+, -", "faster, slower"),
+    ("O", "begin again after the end, or not"),
     ("E", "start or pause evolution"),
     ("G", "evolve a single generation"),
     ("1 ... 9", "show a generation's champion"),
     ("0", "show the saved champion again"),
+    ("N", "race the generations' champions"),
+    ("M", "race the latest generation's best"),
+    ("Esc", "leave the race; drop the change"),
     ("F", "follow the snake, or not"),
+    ("C", "the next camera"),
     ("Home", "put the camera back"),
-    ("T", "the light or the dark theme"),
+    ("V", "contacts and their forces"),
+    ("J", "the joints' torques"),
+    ("B", "the trail"),
+    ("L", "the fitness line"),
     ("D", "the physics engine's own lines"),
+    ("T", "the light or the dark theme"),
+    ("P", "a picture of the stage"),
+    ("Shift P", "a picture of the window"),
     ("Ctrl Q", "quit"),
 ];
 
@@ -32,47 +49,84 @@ pub(super) fn plugin(app: &mut App) {
 /// It reads what is printed on the key, not where the key is: on a French keyboard Q is elsewhere.
 fn read(
     mut presses: MessageReader<KeyboardInput>,
-    mut control_is_down: Local<bool>,
+    mut held: Local<Held>,
+    programme: Res<Programme>,
     egui: Res<EguiWantsInput>,
     evolution: Res<Evolution>,
     mut send: MessageWriter<Command>,
 ) {
     for press in presses.read() {
-        if matches!(press.logical_key, Key::Control | Key::Super) {
-            *control_is_down = press.state.is_pressed();
+        match press.logical_key {
+            Key::Control | Key::Super => held.control = press.state.is_pressed(),
+            Key::Shift => held.shift = press.state.is_pressed(),
+            _ => {}
         }
-        if !press.state.is_pressed() || press.repeat || egui.wants_any_keyboard_input() {
+        let repeats = matches!(press.logical_key, Key::ArrowLeft | Key::ArrowRight);
+        let is_echo = press.repeat && !repeats;
+        if !press.state.is_pressed() || is_echo || egui.wants_any_keyboard_input() {
             continue;
         }
-        let is_running = evolution.status() == Status::Running;
-        if let Some(command) = command(&press.logical_key, *control_is_down, is_running) {
-            send.write(command);
-        }
+        let situation = Situation {
+            is_running: evolution.status() == Status::Running,
+            is_what_if: matches!(*programme, Programme::WhatIf { .. }),
+        };
+        send.write_batch(command(&press.logical_key, *held, situation));
     }
 }
 
+/// The keys that are held down beside others.
+#[derive(Debug, Clone, Copy, Default)]
+struct Held {
+    control: bool,
+    shift: bool,
+}
+
+/// What a key's meaning depends on.
+#[derive(Debug, Clone, Copy, Default)]
+struct Situation {
+    is_running: bool,
+    is_what_if: bool,
+}
+
 /// What a key asks for.
-fn command(key: &Key, control_is_down: bool, is_running: bool) -> Option<Command> {
+fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
     let text = match key {
         Key::Space => " ".to_owned(),
         Key::Home => return Some(Command::ResetCamera),
+        Key::End => return Some(Command::SeekEnd),
+        Key::ArrowLeft => return Some(Command::Step { forward: false }),
+        Key::ArrowRight => return Some(Command::Step { forward: true }),
+        Key::Escape if situation.is_what_if => return Some(Command::DropChange),
+        Key::Escape => return Some(Command::Single),
         Key::Character(text) => text.to_lowercase(),
         _ => return None,
     };
-    if control_is_down {
+    if held.control {
         return (text == "q").then_some(Command::Quit);
     }
     match text.as_str() {
         " " => Some(Command::TogglePlayback),
         "r" => Some(Command::Restart),
-        "e" if is_running => Some(Command::Pause),
+        "e" if situation.is_running => Some(Command::Pause),
         "e" => Some(Command::Start),
         "g" => Some(Command::SingleGeneration),
+        "n" => Some(Command::RaceGenerations),
+        "m" => Some(Command::RaceLeaders),
+        "o" => Some(Command::ToggleLoop),
+        "+" | "=" => Some(Command::ChangeSpeed { faster: true }),
+        "-" => Some(Command::ChangeSpeed { faster: false }),
         "f" => Some(Command::ToggleFollow),
+        "c" => Some(Command::NextShot),
+        "v" => Some(Command::Toggle(Overlay::Contacts)),
+        "j" => Some(Command::Toggle(Overlay::Torques)),
+        "b" => Some(Command::Toggle(Overlay::Trail)),
+        "l" => Some(Command::Toggle(Overlay::FitnessLine)),
+        "d" => Some(Command::Toggle(Overlay::Wireframe)),
         "t" => Some(Command::ToggleTheme),
-        "d" => Some(Command::ToggleWireframe),
-        "0" => Some(Command::ShowOpening),
-        digit => digit.parse().ok().map(Command::ShowGeneration),
+        "p" if held.shift => Some(Command::TakePicture(Photograph::Window)),
+        "p" => Some(Command::TakePicture(Photograph::Stage)),
+        "0" => Some(Command::Show(Pick::Opening(0))),
+        digit => digit.parse().ok().map(|generation| Command::Show(Pick::Generation(generation))),
     }
 }
 
@@ -82,16 +136,26 @@ mod tests {
 
     #[test]
     fn every_listed_key_does_something_and_nothing_else_does() {
-        let does = |text: &str| command(&Key::Character(text.into()), false, false);
-        for key in ["r", "E", "g", "f", "T", "D", "0", "1", "9"] {
-            assert!(does(key).is_some(), "{key}");
+        let (none, control) = (Held::default(), Held { control: true, shift: false });
+        let calm = Situation::default();
+        let does = |text: &str| command(&Key::Character(text.into()), none, calm);
+        for (names, _) in KEYS.into_iter().filter(|(names, _)| *names != "Ctrl Q") {
+            for name in names.split([',', ' ']).filter(|name| name.chars().count() == 1) {
+                assert!(does(name).is_some(), "{name}");
+            }
         }
-        assert_eq!(command(&Key::Space, false, false), Some(Command::TogglePlayback));
-        assert_eq!(command(&Key::Character("e".into()), false, true), Some(Command::Pause));
-        assert_eq!(command(&Key::Character("Q".into()), true, false), Some(Command::Quit));
-        for key in ["q", "x", "-1", "+"] {
-            assert_eq!(does(key), None, "{key}");
+        for key in [Key::Space, Key::Home, Key::End, Key::ArrowLeft, Key::ArrowRight, Key::Escape] {
+            assert!(command(&key, none, calm).is_some(), "{key:?}");
         }
-        assert_eq!(command(&Key::Character("r".into()), true, false), None, "control and R");
+        let key = |text: &str| Key::Character(text.into());
+        let is_running = Situation { is_running: true, ..calm };
+        assert_eq!(command(&key("e"), none, is_running), Some(Command::Pause));
+        assert_eq!(command(&key("Q"), control, calm), Some(Command::Quit));
+        let is_what_if = Situation { is_what_if: true, ..calm };
+        assert_eq!(command(&Key::Escape, none, is_what_if), Some(Command::DropChange));
+        for text in ["q", "x", "-1", "*"] {
+            assert_eq!(does(text), None, "{text}");
+        }
+        assert_eq!(command(&key("r"), control, calm), None, "control and R");
     }
 }

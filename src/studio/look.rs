@@ -97,8 +97,10 @@ pub const SLIDER_WIDTH: f32 = 190.0;
 pub const PANEL_WIDTH: f32 = 320.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
-/// Largest width of the caption under the stage, in points.
-pub const CAPTION_WIDTH: f32 = 520.0;
+/// Height of the torques under the stage, in points.
+pub const SIGNALS_HEIGHT: f32 = 64.0;
+/// Size of the letters on a name tag, in points.
+pub const TAG_SIZE: f32 = 13.0;
 /// Height of the chart, in points.
 pub const CHART_HEIGHT: f32 = 170.0;
 /// Height of the chart in the lowest window, in points.

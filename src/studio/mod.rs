@@ -7,23 +7,33 @@
 //! What happens in a frame, in this order, is [`Frame`].
 
 mod camera;
+mod casting;
 mod command;
 mod engine;
 mod evolution;
 mod exhibit;
 pub mod figures;
 mod frame_times;
+mod hands;
 mod keys;
+mod lane;
 mod look;
+mod lookahead;
+mod name_tags;
 mod notice;
+mod overlay;
 mod panels;
 mod performance;
+mod playback;
 mod quality;
 mod scene;
+mod screenshot;
 mod snake;
 mod stage;
 mod start_up;
 mod title;
+mod view;
+mod wireframe;
 
 use std::path::PathBuf;
 
@@ -36,6 +46,7 @@ use crate::run::RunSource;
 use crate::run::headless::HeadlessError;
 use crate::save::{Comparison, LoadedChampion, SaveError, SavesFolder, shipped_champion};
 
+use casting::{Opening, Saved};
 pub use look::Theme;
 
 /// With what the studio opens.
@@ -47,8 +58,8 @@ pub struct Options {
     pub threads: usize,
     /// Where the next runs are saved.
     pub saves: SavesFolder,
-    /// The champion to open with; without one, the shipped one.
-    pub champion: Option<LoadedChampion>,
+    /// The champions to open with, and what they are called; several race. Without one, the shipped one.
+    pub champions: Vec<(String, LoadedChampion)>,
     /// A comparison of methods to show.
     pub comparison: Option<Comparison>,
     /// Size of the window, in pixels.
@@ -105,23 +116,22 @@ enum Frame {
     Draw,
 }
 
-/// The champion on show when the studio opens.
-#[derive(Resource, Debug, Clone)]
-struct Opening(LoadedChampion);
-
 /// The comparison of methods that the studio was opened with.
 #[derive(Resource, Debug, Clone, Default)]
 struct Opened(Option<Comparison>);
+
+/// What the champion is called that is part of the program.
+const SHIPPED: &str = "Saved champion";
 
 /// Opens the studio and returns when its window is closed.
 ///
 /// # Errors
 /// See [`StudioError`].
 pub fn run(options: Options) -> Result<(), StudioError> {
-    let opening = match options.champion.clone() {
-        Some(loaded) => loaded,
-        None => shipped_champion()?,
-    };
+    let mut saved: Vec<Saved> = options.champions.clone().into_iter().map(Saved::from).collect();
+    if saved.is_empty() {
+        saved.push(Saved::from((SHIPPED.to_owned(), shipped_champion()?)));
+    }
     let engine = engine::Engine::new(&options)?;
     let run_folder = engine.run_folder();
     let exit_after = options.exit_after_frames;
@@ -135,7 +145,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         // A champion that climbs while the presenter types elsewhere goes on climbing.
         .insert_resource(WinitSettings::continuous())
         .insert_resource(options.theme)
-        .insert_resource(Opening(opening))
+        .insert_resource(Opening(saved))
         .insert_resource(Opened(options.comparison.clone()))
         .insert_resource(engine)
         .configure_sets(Update, (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain())
@@ -146,9 +156,10 @@ pub fn run(options: Options) -> Result<(), StudioError> {
             scene::plugin,
             snake::plugin,
             camera::plugin,
+            hands::plugin,
+            (overlay::plugin, wireframe::plugin, screenshot::plugin),
             keys::plugin,
-            notice::plugin,
-            panels::plugin,
+            (panels::plugin, name_tags::plugin, notice::plugin),
             title::plugin,
             start_up::plugin,
         ));

@@ -35,6 +35,11 @@ impl Notices {
         self.push(text, true);
     }
 
+    /// What went wrong, if anything did.
+    pub fn problems(&mut self, text: Option<String>) {
+        text.into_iter().for_each(|text| self.problem(text));
+    }
+
     /// How many are on show.
     #[cfg(test)]
     pub fn len(&self) -> usize {

@@ -8,10 +8,8 @@ use std::mem::swap;
 use std::sync::Arc;
 
 use super::exhibit::Exhibit;
-use crate::score::{Evaluation, Recording, Rollout};
-use crate::world::Pose;
-#[cfg(test)]
-use crate::world::Simulation;
+use crate::score::{Evaluation, History, Recording, Rollout};
+use crate::world::{Pose, Pull, Simulation};
 
 /// The parts of a physics context, as one bundle spawns them and one query finds them.
 pub(super) type Context<'a> = (
@@ -75,6 +73,44 @@ impl Performance {
         }
     }
 
+    /// Goes to where it is after `step` steps, or to its end: from the nearest keyframe of its history or, without
+    /// one, from its start. What a hand did is gone. The world must not have been lent out.
+    pub fn go_to(&mut self, step: u32, exhibit: &Exhibit, history: Option<&History>) {
+        match self {
+            Self::Simulated(rollout) => {
+                **rollout = match history {
+                    Some(history) => history.rollout_at(step),
+                    None => Rollout::new(&exhibit.champion().genome, exhibit.trial()),
+                };
+                while rollout.step() < step && rollout.advance() {}
+            }
+            Self::Recorded(recorded) => {
+                recorded.step = step.min(recorded.last_step);
+                recorded.poses = recorded.recording.at(recorded.step as f32);
+            }
+        }
+    }
+
+    /// Lets a hand pull a limb, or no more; a recording cannot be pulled.
+    pub fn pull(&mut self, pull: Option<Pull>) {
+        if let Self::Simulated(rollout) = self {
+            rollout.pull(pull);
+        }
+    }
+
+    /// Whether a hand has interfered.
+    pub fn is_disturbed(&self) -> bool {
+        matches!(self, Self::Simulated(rollout) if rollout.is_disturbed())
+    }
+
+    /// How many steps it lasts, unless the agent is disqualified before.
+    pub fn last_step(&self) -> u32 {
+        match self {
+            Self::Simulated(rollout) => rollout.last_step(),
+            Self::Recorded(recorded) => recorded.last_step,
+        }
+    }
+
     /// Whether it is over.
     pub fn is_over(&self) -> bool {
         match self {
@@ -111,7 +147,6 @@ impl Performance {
     }
 
     /// The simulated world, if it is one.
-    #[cfg(test)]
     pub fn simulation(&self) -> Option<&Simulation> {
         match self {
             Self::Simulated(rollout) => Some(rollout.simulation()),

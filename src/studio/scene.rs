@@ -8,9 +8,9 @@ use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
 
 use super::Frame;
+use super::lane::Lane;
 use super::look::Theme;
 use super::quality::Quality;
-use super::stage::Stage;
 use crate::world::StairBox;
 
 /// The meshes and materials that everything is built of.
@@ -155,25 +155,22 @@ fn grid() -> Mesh {
 
 /// Builds the stairs of a stage that is new.
 fn build_stairs(
-    stages: Query<(Entity, &Stage), Added<Stage>>,
+    stages: Query<(Entity, &Lane), Added<Lane>>,
     props: Res<Props>,
     mut commands: Commands,
 ) {
     for (entity, stage) in &stages {
-        commands
-            .entity(entity)
-            .insert((Transform::default(), Visibility::default()))
-            .with_children(|parent| {
-                let boxes = stage.trial().stairs.boxes();
-                for (index, StairBox { min_m, max_m }) in boxes.into_iter().enumerate() {
-                    let (min, max) = (Vec3::from(min_m), Vec3::from(max_m));
-                    let material = if index % 2 == 0 { &props.stair } else { &props.stair_other };
-                    parent.spawn((
-                        Mesh3d(props.cube.clone()),
-                        MeshMaterial3d(material.clone()),
-                        box_transform((min + max) / 2.0, max - min),
-                    ));
-                }
-            });
+        commands.entity(entity).with_children(|parent| {
+            let boxes = stage.trial().stairs.boxes();
+            for (index, StairBox { min_m, max_m }) in boxes.into_iter().enumerate() {
+                let (min, max) = (Vec3::from(min_m), Vec3::from(max_m));
+                let material = if index % 2 == 0 { &props.stair } else { &props.stair_other };
+                parent.spawn((
+                    Mesh3d(props.cube.clone()),
+                    MeshMaterial3d(material.clone()),
+                    box_transform((min + max) / 2.0, max - min),
+                ));
+            }
+        });
     }
 }

@@ -3,8 +3,8 @@
 use bevy::prelude::*;
 
 use super::Frame;
+use super::lane::Lane;
 use super::scene::{Props, box_transform};
-use super::stage::Stage;
 
 /// The limb of a stage's snake with this index; the head is 0.
 #[derive(Component, Debug)]
@@ -15,7 +15,7 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// Builds the limbs of a stage that is new.
-fn build(stages: Query<(Entity, &Stage), Added<Stage>>, props: Res<Props>, mut commands: Commands) {
+fn build(stages: Query<(Entity, &Lane), Added<Lane>>, props: Res<Props>, mut commands: Commands) {
     for (entity, stage) in &stages {
         let agent = &stage.trial().agent;
         commands.entity(entity).with_children(|parent| {
@@ -34,7 +34,7 @@ fn build(stages: Query<(Entity, &Stage), Added<Stage>>, props: Res<Props>, mut c
 }
 
 /// Moves the limbs to where they are now.
-fn place(stages: Query<(&Stage, &Children)>, mut limbs: Query<(&Limb, &mut Transform)>) {
+fn place(stages: Query<(&Lane, &Children)>, mut limbs: Query<(&Limb, &mut Transform)>) {
     for (stage, children) in &stages {
         let poses: Vec<_> = stage.drawn_poses().collect();
         let mut limbs = limbs.iter_many_mut(children);

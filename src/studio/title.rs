@@ -6,7 +6,9 @@ use bevy::window::PrimaryWindow;
 use super::Frame;
 use super::evolution::{Evolution, Status};
 use super::exhibit::Source;
-use super::stage::Stage;
+use super::lane::Lane;
+use super::playback::Playback;
+use super::stage::Programme;
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, update.in_set(Frame::Draw));
@@ -14,7 +16,8 @@ pub(super) fn plugin(app: &mut App) {
 
 fn update(
     evolution: Res<Evolution>,
-    stages: Query<&Stage>,
+    lanes: Query<&Lane>,
+    (programme, playback): (Res<Programme>, Res<Playback>),
     mut window: Single<&mut Window, With<PrimaryWindow>>,
 ) {
     let status = match evolution.status() {
@@ -23,26 +26,34 @@ fn update(
         Status::Paused => "paused",
         Status::Finished => "finished",
     };
-    let shown = match stages.iter().next() {
-        None => "nothing".to_owned(),
-        Some(stage) => {
-            let generation = stage.exhibit().generation();
-            let what = match stage.exhibit().source() {
-                Source::Opening => "saved champion".to_owned(),
+    let first = lanes.iter().min_by_key(|lane| lane.number());
+    let shown = match (&*programme, first) {
+        (_, None) => "nothing".to_owned(),
+        (Programme::Race, _) => format!("a race of {}", lanes.iter().len()),
+        (programme, Some(lane)) => {
+            let generation = lane.exhibit().generation();
+            let what = match lane.exhibit().source() {
+                Source::Opening(_) => "saved champion".to_owned(),
                 Source::Run(run) if run == evolution.number() => format!("generation {generation}"),
                 Source::Run(_) => format!("generation {generation} of an earlier run"),
             };
-            let manner = match (stage.exhibit().is_changed(), stage.exhibit().recording()) {
+            let is_what_if = matches!(programme, Programme::WhatIf { .. });
+            let manner = match (lane.exhibit().is_changed(), lane.exhibit().recording()) {
+                _ if is_what_if => " and what if",
                 (true, _) => " in another world",
                 (false, Some(_)) => " as recorded",
                 (false, None) => "",
             };
-            let held = if stage.is_playing() { "" } else { ", held" };
-            format!("{what}{manner}{held}")
+            let disturbed = if lane.is_disturbed() { ", disturbed" } else { "" };
+            format!("{what}{manner}{disturbed}")
         }
     };
+    let held = match playback.is_playing() {
+        true => String::new(),
+        false => format!(", held at {:.2} s", playback.time_s()),
+    };
     let title = format!(
-        "Snakes & Stairs - {}, seed {} - {} of {} generations, {status} - showing {shown}",
+        "Snakes & Stairs - {}, seed {} - {} of {} generations, {status} - showing {shown}{held}",
         evolution.preset(),
         evolution.seed(),
         evolution.reports().len(),

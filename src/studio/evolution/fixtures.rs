@@ -29,6 +29,7 @@ pub fn explored_run() -> Evolution {
     run.exploration = Some(Box::new(Exploration {
         front: experiment.front().clone(),
         archive: experiment.archive().cloned(),
+        leaders: experiment.leaders().to_vec(),
     }));
     run
 }
@@ -40,7 +41,7 @@ fn run_of(plan: RunPlan) -> Evolution {
         run: RunSource::in_saves(&saves, plan, Earlier::Keep),
         threads: 1,
         saves,
-        champion: None,
+        champions: Vec::new(),
         comparison: None,
         window_size: (1280, 720),
         theme: Theme::default(),

@@ -8,8 +8,10 @@ use crate::run::Event;
 use crate::save::Earlier;
 use crate::studio::Frame;
 use crate::studio::exhibit::Exhibit;
+use crate::studio::lane::Lane;
 use crate::studio::notice::Notices;
-use crate::studio::stage::{ShowExhibit, Stage};
+use crate::studio::playback::Playback;
+use crate::studio::stage::{Programme, Show};
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Startup, start_at_once).add_systems(Update, take_in.in_set(Frame::TakeIn));
@@ -27,22 +29,24 @@ fn start_at_once(mut evolution: ResMut<Evolution>, mut notices: ResMut<Notices>)
 fn take_in(
     mut evolution: ResMut<Evolution>,
     mut notices: ResMut<Notices>,
-    mut show: MessageWriter<ShowExhibit>,
-    stages: Query<&Stage>,
+    mut show: MessageWriter<Show>,
+    lanes: Query<&Lane>,
+    (programme, playback): (Res<Programme>, Res<Playback>),
 ) {
     evolution.take_in_listing();
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
     // Only what was found in the world of this run can be compared with what it finds.
     let world = &evolution.settings().trial;
-    let rivals = stages.iter().map(Stage::exhibit);
+    let rivals = lanes.iter().map(Lane::exhibit);
     let rivals = rivals.filter(|exhibit| exhibit.champion().trial == *world);
     let champions = evolution.reports.iter().filter_map(|report| report.champion.as_ref());
     let known = champions.map(|champion| champion.evaluation.fitness);
     let mut to_beat = rivals.map(Exhibit::fitness).chain(known).fold(f32::MIN, f32::max);
-    // Who holds the stage, or tries out another world than the run's, is looking at something.
-    let is_tried = |stage: &Stage| stage.exhibit().is_changed() && stage.trial() != world;
-    let is_held = stages.iter().any(|stage| !stage.is_playing() || is_tried(stage));
+    // Who holds the stage, has several on it, or tries out another world than the run's, is looking at something.
+    let is_tried = |lane: &Lane| lane.exhibit().is_changed() && lane.trial() != world;
+    let is_looked_at = *programme != Programme::Solo || lanes.iter().any(Lane::is_disturbed);
+    let is_held = is_looked_at || !playback.is_playing() || lanes.iter().any(is_tried);
     let mut present = |champion: &Champion, number, notices: &mut Notices| {
         if champion.evaluation.fitness <= to_beat {
             return;
@@ -53,7 +57,7 @@ fn take_in(
             notices.news(format!("Better than what is on show: {}", exhibit.caption()));
         } else {
             notices.news(format!("New on stage: {}", exhibit.caption()));
-            show.write(ShowExhibit(exhibit));
+            show.write(Show::solo(exhibit));
         }
     };
     let number = evolution.number;

@@ -39,6 +39,16 @@ pub struct Palette {
     pub red_limb: Color,
     /// The report's blue, for the second and fourth limb.
     pub blue_limb: Color,
+    /// Where and how hard something touches.
+    pub force: Color,
+    /// A joint's torque about its bend axis.
+    pub bend: Color32,
+    /// A joint's torque about its twist axis.
+    pub twist: Color32,
+    /// Where the snake has been.
+    pub trail: Color,
+    /// The spring in a person's hand.
+    pub pull: Color,
     /// The sky at the horizon, and what the ground fades into.
     pub horizon: Color,
     /// The ground.
@@ -74,6 +84,11 @@ pub const LIGHT: Palette = Palette {
     empty_cell: Color32::from_rgb(0xda, 0xdf, 0xe8),
     red_limb: Color::srgb(0.86, 0.13, 0.12),
     blue_limb: Color::srgb(0.10, 0.27, 0.84),
+    force: Color::srgb(0.02, 0.45, 0.30),
+    bend: Color32::from_rgb(0x1a, 0x66, 0xd9),
+    twist: Color32::from_rgb(0xb3, 0x5c, 0x00),
+    trail: Color::srgb(0.55, 0.20, 0.65),
+    pull: Color::srgb(0.80, 0.30, 0.05),
     horizon: Color::srgb(0.87, 0.92, 0.96),
     ground: Color::srgb(0.66, 0.72, 0.67),
     grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
@@ -100,6 +115,11 @@ pub const DARK: Palette = Palette {
     empty_cell: Color32::from_rgb(0x12, 0x15, 0x1c),
     red_limb: Color::srgb(0.88, 0.14, 0.14),
     blue_limb: Color::srgb(0.14, 0.32, 0.95),
+    force: Color::srgb(0.45, 0.95, 0.70),
+    bend: Color32::from_rgb(0x6c, 0xb0, 0xff),
+    twist: Color32::from_rgb(0xff, 0xb8, 0x5c),
+    trail: Color::srgb(0.88, 0.62, 0.98),
+    pull: Color::srgb(1.0, 0.72, 0.35),
     horizon: Color::srgb(0.20, 0.25, 0.34),
     ground: Color::srgb(0.22, 0.26, 0.31),
     grid: Color::srgba(0.75, 0.85, 1.0, 0.08),

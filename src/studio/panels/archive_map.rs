@@ -6,6 +6,7 @@ use super::axes::{axis_name, number};
 use super::champions::Shown;
 use super::explain;
 use crate::evolve::{Archive, Descriptor};
+use crate::studio::casting::Pick;
 use crate::studio::command::Command;
 use crate::studio::look;
 
@@ -74,7 +75,7 @@ pub(super) fn archive_map(
 
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "Map"));
     if response.clicked() {
-        asked.extend(hovered_elite.map(Command::ShowElite));
+        asked.extend(hovered_elite.map(|cell| Command::Show(Pick::Elite(cell))));
     }
     if let Some(cell) = hovered {
         response.on_hover_text_at_pointer(words(archive, cell, unit));
@@ -184,7 +185,7 @@ mod tests {
         let exploration = run.exploration().expect("explored");
         let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
         let (cell, _) = archive.elites().next().expect("an elite");
-        assert_eq!(clicked(archive, cell), (vec![Command::ShowElite(cell)], false));
+        assert_eq!(clicked(archive, cell), (vec![Command::Show(Pick::Elite(cell))], false));
         let cells = archive.cells * archive.cells;
         let empty = (0..cells).find(|cell| archive.elite(*cell).is_none()).expect("an empty cell");
         assert_eq!(clicked(archive, empty), (vec![], true));

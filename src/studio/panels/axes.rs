@@ -32,7 +32,7 @@ pub(super) fn still<'a>(id: &str, height: f32) -> Plot<'a> {
 const LABEL_POINTS: RangeInclusive<f32> = 4.0..=8.0;
 
 /// A round number, 1, 2 or 5 times a power of ten, that divides a range into not too many parts.
-fn step(range: f64) -> f64 {
+pub(super) fn step(range: f64) -> f64 {
     let least = (range / MOST_LABELS).max(1.0e-9);
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
     let steps = [1.0, 2.0, 5.0].map(|times| times * power);

@@ -2,16 +2,16 @@
 
 use bevy_egui::egui;
 
-use super::{explain, row, title};
-use crate::evolve::Champion;
+use super::{explain, row, title_and};
 use crate::run::GenerationReport;
+use crate::studio::casting::{Pick, Saved};
 use crate::studio::command::Command;
 
 /// What of the list is on the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shown {
-    /// The champion that the studio opened with.
-    Opening,
+    /// A champion that the studio opened with; the first is 0.
+    Opening(usize),
     /// This individual of the current run.
     Found {
         /// The generation that found it; the first is 1.
@@ -30,16 +30,38 @@ impl ChampionsPanel {
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
-        opening: &Champion,
+        opening: &[Saved],
         reports: &[GenerationReport],
-        shown: Option<Shown>,
+        shown: &[Shown],
         asked: &mut Vec<Command>,
     ) {
-        title(ui, "Champions");
-        let hint = "Click to replay";
-        let saved = row(ui, shown == Some(Shown::Opening), "Saved", &opening.reached());
-        if saved.on_hover_text(hint).clicked() {
-            asked.push(Command::ShowOpening);
+        let champions = reports.iter().filter(|report| report.champion.is_some()).count();
+        title_and(ui, "Champions", |ui| {
+            for (name, hint, is_on, command) in [
+                (
+                    "Race top ten",
+                    "The best of the latest generation, side by side (M)",
+                    champions > 0,
+                    Command::RaceLeaders,
+                ),
+                (
+                    "Race",
+                    "The generations' champions side by side (N)",
+                    champions > 1,
+                    Command::RaceGenerations,
+                ),
+            ] {
+                let button = egui::Button::new(name).small();
+                if ui.add_enabled(is_on, button).on_hover_text(hint).clicked() {
+                    asked.push(command);
+                }
+            }
+        });
+        for (index, saved) in opening.iter().enumerate() {
+            let name = if opening.len() == 1 { "Saved" } else { &saved.name };
+            let is_shown = shown.contains(&Shown::Opening(index));
+            let reached = saved.loaded.champion.reached();
+            entry(ui, is_shown, name, &reached, Pick::Opening(index), asked);
         }
         for report in reports {
             let generation = report.generation;
@@ -49,14 +71,29 @@ impl ChampionsPanel {
                 continue;
             };
             let individual = champion.origin.individual;
-            let is_shown = shown.is_some_and(|shown| shown.is(generation, individual));
-            if row(ui, is_shown, &name, &champion.reached()).on_hover_text(hint).clicked() {
-                asked.push(Command::ShowGeneration(generation));
-            }
+            let is_shown = shown.iter().any(|shown| shown.is(generation, individual));
+            let pick = Pick::Generation(generation);
+            entry(ui, is_shown, &name, &champion.reached(), pick, asked);
         }
         if reports.is_empty() {
             explain(ui, "The best of each generation will appear here.");
         }
+    }
+}
+
+/// A row for somebody: a click shows it alone, one with Shift or Control puts it beside those on the stage.
+fn entry(
+    ui: &mut egui::Ui,
+    is_shown: bool,
+    name: &str,
+    reached: &str,
+    pick: Pick,
+    asked: &mut Vec<Command>,
+) {
+    let hint = "Click to replay; with Shift, beside what is on the stage";
+    if row(ui, is_shown, name, reached).on_hover_text(hint).clicked() {
+        let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+        asked.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
     }
 }
 
@@ -65,6 +102,7 @@ mod tests {
     use super::*;
     use crate::evolve::{RunPlan, Settings};
     use crate::run::{Control, Experiment, pool};
+    use crate::save::shipped_champion;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -77,13 +115,21 @@ mod tests {
         let pool = pool(1).expect("a pool");
         let mut report = || experiment.run_generation(&pool, &Control::default()).expect("done");
         let reports = [report(), report()];
-        let opening = reports[0].champion.as_ref().expect("somebody was healthy");
+        let loaded = shipped_champion().expect("well formed");
+        let opening = [Saved { name: "climber".to_owned(), loaded }];
         let mut harness = Harness::new_ui_state(
-            |ui, asked| ChampionsPanel.ui(ui, opening, &reports, Some(Shown::Opening), asked),
+            |ui, asked| ChampionsPanel.ui(ui, &opening, &reports, &[Shown::Opening(0)], asked),
             Vec::new(),
         );
         harness.get_by_label_contains("Generation 2").click();
         harness.run();
-        assert_eq!(*harness.state(), [Command::ShowGeneration(2)]);
+        assert_eq!(*harness.state(), [Command::Show(Pick::Generation(2))]);
+        harness.state_mut().clear();
+        harness.get_by_label_contains("Generation 1").click_modifiers(egui::Modifiers::SHIFT);
+        harness.run();
+        harness.get_by_label("Race").click();
+        harness.run();
+        let asked = [Command::Join(Pick::Generation(1)), Command::RaceGenerations];
+        assert_eq!(*harness.state(), asked);
     }
 }

@@ -8,6 +8,7 @@ use egui_plot::{HoverPosition, Line, PlotPoint, PlotPoints, Points};
 use super::axes::{around, axis_name, bounds, number, still};
 use super::champions::Shown;
 use crate::evolve::{Front, FrontMember};
+use crate::studio::casting::Pick;
 use crate::studio::command::Command;
 use crate::studio::look;
 
@@ -55,7 +56,7 @@ pub(super) fn front_plot(
         && distance <= REACH
     {
         let FrontMember { generation, individual, .. } = **member;
-        asked.push(Command::ShowFront { generation, individual });
+        asked.push(Command::Show(Pick::Front { generation, individual }));
     }
 }
 
@@ -123,7 +124,10 @@ mod tests {
         let best = front.members().last().expect("somebody got ahead");
         let FrontMember { generation, individual, .. } = *best;
         let off = egui::vec2(3.0, 3.0);
-        assert_eq!(sent(front, place(best), off), [Command::ShowFront { generation, individual }]);
+        assert_eq!(
+            sent(front, place(best), off),
+            [Command::Show(Pick::Front { generation, individual })]
+        );
         // So far, but for less than anybody spends.
         assert_eq!(sent(front, place(best), egui::vec2(0.0, 60.0)), []);
     }

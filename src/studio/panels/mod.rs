@@ -1,45 +1,94 @@
-//! The left panel and the caption under the stage.
+//! The left panel, and what stands around the stage: the player and the torques below it, the camera's buttons
+//! above it, the board beside it.
 //!
 //! A panel is a struct with a `ui` method. It sees what is, and sends commands; it changes nothing.
 
 mod archive_map;
 mod axes;
-mod caption;
+mod board;
 mod champions;
 mod chart;
 mod curves;
 mod evolution;
 mod explore;
 mod front_plot;
+mod icons;
 mod knobs;
+mod limb_card;
 mod method;
 mod number_field;
+mod signals;
+mod timeline;
+mod view_bar;
 mod world;
 
+use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
+use super::camera::CameraRig;
+use super::casting::Opening;
 use super::command::Command;
 use super::evolution::Evolution;
-use super::exhibit::Source;
+use super::exhibit::{Exhibit, Source};
+use super::hands::Hands;
 use super::keys::KEYS;
-use super::look;
-use super::stage::Stage;
-use super::{Opened, Opening};
+use super::lane::Lane;
+use super::overlay::Overlays;
+use super::playback::Playback;
+use super::stage::{Programme, end_s};
+use super::{Opened, look};
 use crate::evolve::Origin;
 
-use caption::caption;
+use board::board;
 use champions::{ChampionsPanel, Shown};
 use chart::ChartPanel;
 use evolution::EvolutionPanel;
 use explore::ExplorePanel;
+use limb_card::limb_card;
+use timeline::TimelinePanel;
+use view_bar::view_bar;
 use world::WorldPanel;
 
-/// The part of the window that is left for the stage.
+/// The part of the window that is left for the stage, in points.
 #[derive(Resource, Debug, Default)]
 pub(super) struct StageArea {
-    /// Where it begins, in points from the window's left edge.
+    /// Where it begins, from the window's left edge.
     pub left_points: f32,
+    /// Where it ends, from the window's bottom edge.
+    pub bottom_points: f32,
+    /// Size of the window.
+    window: Vec2,
+}
+
+impl StageArea {
+    /// Whether a point of the window lies on the stage.
+    pub fn contains(&self, point: Vec2) -> bool {
+        point.x >= self.left_points && point.y <= self.window.y - self.bottom_points
+    }
+
+    /// Width over height.
+    pub fn aspect(&self) -> f32 {
+        let size = self.rect().size();
+        if size.x > 0.0 && size.y > 0.0 { size.x / size.y } else { 1.0 }
+    }
+
+    /// The stage in the window.
+    pub fn rect(&self) -> egui::Rect {
+        let end = egui::pos2(self.window.x, self.window.y - self.bottom_points);
+        egui::Rect::from_min_max(egui::pos2(self.left_points, 0.0), end)
+    }
+}
+
+/// What is on the stage, as the panels see it.
+#[derive(SystemParam)]
+struct OnStage<'w, 's> {
+    lanes: Query<'w, 's, &'static Lane>,
+    programme: Res<'w, Programme>,
+    playback: Res<'w, Playback>,
+    hands: Res<'w, Hands>,
+    rig: Res<'w, CameraRig>,
+    overlays: Res<'w, Overlays>,
 }
 
 /// The panels, with what they remember between frames.
@@ -50,6 +99,7 @@ struct Panels {
     champions: ChampionsPanel,
     explore: ExplorePanel,
     world: WorldPanel,
+    timeline: TimelinePanel,
     tab: Tab,
     is_dressed: bool,
 }
@@ -75,6 +125,7 @@ impl FromWorld for Panels {
             champions: ChampionsPanel,
             explore: ExplorePanel::new(comparison),
             world: WorldPanel::default(),
+            timeline: TimelinePanel::default(),
             // Who opens a comparison wants to see it.
             tab: if comparison.is_some() { Tab::Explore } else { Tab::Run },
             is_dressed: false,
@@ -83,6 +134,18 @@ impl FromWorld for Panels {
 }
 
 impl Shown {
+    /// How an exhibit is listed, if it is; `run` is the number of the current run.
+    fn of(exhibit: &Exhibit, run: u32) -> Option<Self> {
+        match exhibit.source() {
+            Source::Opening(index) => Some(Self::Opening(index)),
+            Source::Run(of) if of == run => {
+                let Origin { generation, individual, .. } = exhibit.champion().origin;
+                Some(Self::Found { generation, individual })
+            }
+            Source::Run(_) => None,
+        }
+    }
+
     /// Whether it is this individual of the current run.
     fn is(self, generation: u32, individual: u32) -> bool {
         self == Self::Found { generation, individual }
@@ -102,7 +165,7 @@ fn draw(
     mut area: ResMut<StageArea>,
     evolution: Res<Evolution>,
     opening: Res<Opening>,
-    stages: Query<&Stage>,
+    on_stage: OnStage,
     theme: Res<look::Theme>,
     mut send: MessageWriter<Command>,
 ) -> Result {
@@ -112,15 +175,10 @@ fn draw(
         panels.is_dressed = true;
     }
     look::show(&context, *theme);
-    let stage = stages.iter().next();
-    let shown = stage.and_then(|stage| match stage.exhibit().source() {
-        Source::Opening => Some(Shown::Opening),
-        Source::Run(run) if run == evolution.number() => {
-            let Origin { generation, individual, .. } = stage.exhibit().champion().origin;
-            Some(Shown::Found { generation, individual })
-        }
-        Source::Run(_) => None,
-    });
+    let mut lanes: Vec<&Lane> = on_stage.lanes.iter().collect();
+    lanes.sort_by_key(|lane| lane.number());
+    let shown: Vec<Shown> =
+        lanes.iter().filter_map(|lane| Shown::of(lane.exhibit(), evolution.number())).collect();
     let mut asked = Vec::new();
     let window = context.viewport_rect();
     let mut root = egui::Ui::new(
@@ -153,19 +211,72 @@ fn draw(
                         panels.evolution.ui(ui, &evolution, &mut asked);
                         panels.chart.ui(ui, evolution.settings(), evolution.reports());
                         let reports = evolution.reports();
-                        panels.champions.ui(ui, &opening.0.champion, reports, shown, &mut asked);
+                        panels.champions.ui(ui, &opening.0, reports, &shown, &mut asked);
                     }
-                    Tab::Explore => panels.explore.ui(ui, &evolution, shown, &mut asked),
+                    Tab::Explore => {
+                        panels.explore.ui(ui, &evolution, shown.first().copied(), &mut asked)
+                    }
                     Tab::World => panels.world.ui(ui, &evolution, &mut asked),
                 }
             });
         });
     area.left_points = panel.response.rect.right();
-    if let Some(stage) = stage {
-        caption(&context, stage, evolution.number(), area.left_points, &mut asked);
+    area.window = Vec2::new(window.width(), window.height());
+    let focused = lanes.iter().find(|lane| lane.number() == on_stage.hands.lane);
+    if let Some(lane) = focused.or(lanes.first()) {
+        let below = egui::Panel::bottom("timeline")
+            .resizable(false)
+            .frame(
+                frame.inner_margin(egui::Margin::symmetric(look::GAP as i8 * 2, look::GAP as i8)),
+            )
+            .show(&mut root, |ui| {
+                let ends_s = end_s(lanes.iter().copied());
+                let (playback, run) = (&on_stage.playback, evolution.number());
+                panels.timeline.ui(ui, lane, playback, ends_s, run, &mut asked);
+            });
+        area.bottom_points = below.response.rect.height();
+        around_stage(&context, &area, &on_stage, &lanes, lane, *theme, &mut asked);
     }
     send.write_batch(asked);
     Ok(())
+}
+
+/// The cards over the stage's edges.
+fn around_stage(
+    context: &egui::Context,
+    area: &StageArea,
+    on_stage: &OnStage,
+    lanes: &[&Lane],
+    focused: &Lane,
+    theme: look::Theme,
+    asked: &mut Vec<Command>,
+) {
+    let stage = area.rect().shrink(look::GAP * 1.5);
+    let palette = look::of_context(context);
+    let card = |name: &str, pivot: egui::Align2, at: egui::Pos2| {
+        egui::Area::new(egui::Id::new(name)).pivot(pivot).fixed_pos(at).constrain_to(stage)
+    };
+    let frame = palette.card(palette.field_hovered);
+    let bar = card("view", egui::Align2::LEFT_TOP, stage.left_top()).show(context, |ui| {
+        let small = egui::Margin::symmetric(look::GAP as i8 / 2, look::GAP as i8 / 2);
+        frame.inner_margin(small).show(ui, |ui| {
+            view_bar(ui, on_stage.rig.shot(), &on_stage.overlays, theme, asked);
+        });
+    });
+    if *on_stage.programme != Programme::Solo {
+        let at = bar.response.rect.left_bottom() + egui::vec2(0.0, look::GAP);
+        card("board", egui::Align2::LEFT_TOP, at).show(context, |ui| {
+            frame.show(ui, |ui| {
+                let time_s = on_stage.playback.time_s();
+                board(ui, lanes, &on_stage.programme, focused.number(), time_s, asked);
+            });
+        });
+    }
+    if let Some(limb) = on_stage.hands.limb {
+        card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom()).show(context, |ui| {
+            frame.show(ui, |ui| limb_card(ui, focused, limb));
+        });
+    }
 }
 
 fn heading(ui: &mut egui::Ui, evolution: &Evolution, tab: &mut Tab) {
@@ -228,8 +339,12 @@ fn keys(ui: &mut egui::Ui, is_open_at_first: bool) {
     header.show(ui, |ui| {
         let spacing = [look::GAP * 2.0, look::GAP / 4.0];
         egui::Grid::new("keys").num_columns(2).spacing(spacing).show(ui, |ui| {
-            let mouse =
-                [("Drag", "turn the camera"), ("Right drag", "move the camera"), ("Wheel", "zoom")];
+            let mouse = [
+                ("Drag", "turn the camera; on a limb, pull it"),
+                ("Right drag", "move the camera"),
+                ("Wheel", "zoom"),
+                ("Double click", "look at what is there"),
+            ];
             for (key, effect) in KEYS.into_iter().chain(mouse) {
                 ui.label(egui::RichText::new(key).color(look::of(ui).accent));
                 ui.label(effect);

@@ -34,6 +34,11 @@ impl Simulation {
         self.limbs.iter().map(|&limb| *self.physics.bodies[limb].position())
     }
 
+    /// How fast each limb's centre is, head first, in m/s.
+    pub fn speeds_m_s(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
+        self.limbs.iter().map(|&limb| self.physics.bodies[limb].linvel().length())
+    }
+
     /// How each joint stands, from the head: see [`universal_joint`] for what its angles are.
     pub fn joint_states(&self) -> impl ExactSizeIterator<Item = JointState> + '_ {
         self.limbs.windows(2).map(|pair| {

@@ -1,0 +1,203 @@
+//! Hands on the snake: click a limb to see its numbers, drag it to pull it by a spring, double click to look at it.
+//!
+//! A ray through the pointer is cast into each lane's physics context, so that what is hit is what is simulated.
+
+use bevy::prelude::*;
+use bevy::window::PrimaryWindow;
+use bevy_egui::input::EguiWantsInput;
+use bevy_rapier3d::plugin::context::{
+    RapierContextColliders, RapierContextSimulation, RapierRigidBodySet,
+};
+use rapier3d::prelude::{QueryFilter, Ray};
+
+use super::Frame;
+use super::camera::{CameraRig, StageCamera};
+use super::lane::Lane;
+use super::notice::Notices;
+use super::panels::StageArea;
+use super::playback::Playback;
+use crate::world::{Pull, Vector};
+
+/// What is selected, and what is held.
+#[derive(Resource, Debug, Default)]
+pub(super) struct Hands {
+    /// The lane whose numbers and signals are shown; the first is 0.
+    pub lane: usize,
+    /// The selected limb of that lane; the head is 0.
+    pub limb: Option<usize>,
+    held: Option<Held>,
+    /// When and where the button went down last, in seconds and pixels.
+    last_press: Option<(f32, Vec2)>,
+}
+
+/// A limb in the hand.
+#[derive(Debug, Clone, Copy)]
+struct Held {
+    lane: Entity,
+    /// Where the pull begins and ends, in the lane's own coordinates.
+    pull: Pull,
+    /// Where the button went down, in pixels.
+    pressed_at: Vec2,
+    /// Whether the pointer has moved far enough for a pull; before, it is a click.
+    is_pulling: bool,
+}
+
+/// What a ray hits first.
+struct Hit {
+    entity: Entity,
+    lane: usize,
+    /// The limb, if it is one; else it is the stairs or the ground.
+    limb: Option<usize>,
+    /// Along the ray, in metres.
+    distance_m: f32,
+}
+
+/// A pointer that moves less than this has clicked, in pixels.
+const CLICK_PIXELS: f32 = 5.0;
+/// Two presses within this time, in seconds, at one place are a double click.
+const DOUBLE_CLICK_S: f32 = 0.4;
+
+type Contexts<'a> = (
+    Entity,
+    &'a Lane,
+    &'a RapierContextSimulation,
+    &'a RapierContextColliders,
+    &'a RapierRigidBodySet,
+);
+
+impl Hands {
+    /// What pulls at a lane, in its own coordinates.
+    pub fn pull_on(&self, lane: Entity) -> Option<Pull> {
+        self.held.filter(|held| held.is_pulling && held.lane == lane).map(|held| held.pull)
+    }
+
+    /// Takes a limb into the hand and pulls.
+    #[cfg(test)]
+    pub fn hold(&mut self, lane: Entity, pull: Pull) {
+        self.held = Some(Held { lane, pull, pressed_at: Vec2::ZERO, is_pulling: true });
+    }
+
+    /// Holds nothing any more.
+    #[cfg(test)]
+    pub fn open(&mut self) {
+        self.held = None;
+    }
+
+    /// Whether a limb is in the hand: a drag then is no turn of the camera.
+    pub fn are_full(&self) -> bool {
+        self.held.is_some()
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Hands>()
+        .add_systems(Update, (grasp, drag, let_go).chain().in_set(Frame::Apply))
+        .add_systems(Update, forget.in_set(Frame::Draw));
+}
+
+/// The ray through the pointer.
+fn ray_at(cursor: Vec2, (camera, place): (&Camera, &GlobalTransform)) -> Option<Ray3d> {
+    camera.viewport_to_world(place, cursor).ok()
+}
+
+/// What a ray hits first in any lane.
+fn first_hit(ray: Ray3d, lanes: &Query<Contexts>) -> Option<Hit> {
+    let hits = lanes.iter().filter_map(|(entity, lane, simulation, colliders, bodies)| {
+        let dispatcher = simulation.narrow_phase.query_dispatcher();
+        let (bodies, colliders) = (&bodies.bodies, &colliders.colliders);
+        let filter = QueryFilter::default();
+        let query = simulation.broad_phase.as_query_pipeline(dispatcher, bodies, colliders, filter);
+        let ray = Ray::new(ray.origin - lane.offset(), *ray.direction);
+        let (collider, distance_m) = query.cast_ray(&ray, f32::MAX, true)?;
+        let limb = colliders.get(collider)?.parent().and_then(|body| lane.limb_of(body));
+        Some(Hit { entity, lane: lane.number(), limb, distance_m })
+    });
+    hits.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
+}
+
+/// A press on a limb selects it and takes it into the hand; a double click looks at what is under the pointer.
+fn grasp(
+    mut hands: ResMut<Hands>,
+    mut rig: ResMut<CameraRig>,
+    buttons: Res<ButtonInput<MouseButton>>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
+    area: Res<StageArea>,
+    egui: Res<EguiWantsInput>,
+    lanes: Query<Contexts>,
+    time: Res<Time<Real>>,
+) {
+    if !buttons.just_pressed(MouseButton::Left) || egui.wants_any_pointer_input() {
+        return;
+    }
+    let Some(cursor) = window.cursor_position().filter(|cursor| area.contains(*cursor)) else {
+        return;
+    };
+    let Some(ray) = ray_at(cursor, *camera) else { return };
+    let hit = first_hit(ray, &lanes);
+    let now_s = time.elapsed_secs();
+    let is_double = hands.last_press.is_some_and(|(then_s, at)| {
+        now_s - then_s < DOUBLE_CLICK_S && at.distance(cursor) < CLICK_PIXELS
+    });
+    hands.last_press = (!is_double).then_some((now_s, cursor));
+    if is_double && let Some(hit) = &hit {
+        let lane = hit.limb.map(|_| hit.lane);
+        rig.focus_on(lane, ray.get_point(hit.distance_m));
+    }
+    let Some(Hit { entity, lane, limb: Some(limb), distance_m }) = hit else {
+        hands.limb = None;
+        return;
+    };
+    (hands.lane, hands.limb) = (lane, Some(limb));
+    let Ok((_, lane, ..)) = lanes.get(entity) else { return };
+    let Some(pose) = lane.last_poses().get(limb) else { return };
+    let point = ray.get_point(distance_m) - lane.offset();
+    let pull = Pull { limb, held_at_m: pose.inverse() * point, to_m: point };
+    hands.held = Some(Held { lane: entity, pull, pressed_at: cursor, is_pulling: false });
+}
+
+/// The pointer moves what is held in the plane that faces the camera.
+fn drag(
+    mut hands: ResMut<Hands>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
+    lanes: Query<&Lane>,
+    playback: Res<Playback>,
+    mut notices: ResMut<Notices>,
+) {
+    let Some(held) = &mut hands.held else { return };
+    let Some(cursor) = window.cursor_position() else { return };
+    if !held.is_pulling && held.pressed_at.distance(cursor) < CLICK_PIXELS {
+        return;
+    }
+    let Ok(lane) = lanes.get(held.lane) else { return };
+    if !held.is_pulling && !playback.is_playing() {
+        notices.news("The stage is held: play it (Space), then pull.".to_owned());
+    }
+    if !held.is_pulling && lane.exhibit().recording().is_some() {
+        notices
+            .news("A recording cannot be pulled; \"Simulate here\" makes it a simulation.".into());
+    }
+    held.is_pulling = true;
+    let Some(ray) = ray_at(cursor, *camera) else { return };
+    let point: Vec3 = lane.point_of(held.pull.limb, held.pull.held_at_m) + lane.offset();
+    let facing = InfinitePlane3d::new(camera.1.back());
+    if let Some(distance_m) = ray.intersect_plane(point, facing) {
+        held.pull.to_m = Vector::from(ray.get_point(distance_m) - lane.offset());
+    }
+}
+
+/// A button that is up holds nothing; nor does a hand hold what is gone.
+fn let_go(mut hands: ResMut<Hands>, buttons: Res<ButtonInput<MouseButton>>, lanes: Query<&Lane>) {
+    let is_gone = hands.held.is_some_and(|held| !lanes.contains(held.lane));
+    if is_gone || (hands.held.is_some() && !buttons.pressed(MouseButton::Left)) {
+        hands.held = None;
+    }
+}
+
+/// When other lanes take the stage, nothing of the earlier ones stays selected.
+fn forget(mut hands: ResMut<Hands>, added: Query<(), Added<Lane>>) {
+    if !added.is_empty() {
+        (hands.lane, hands.limb) = (0, None);
+    }
+}

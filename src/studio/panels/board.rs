@@ -1,0 +1,131 @@
+//! Beside several lanes: who is where, who has landed, and what to do with a change that was tried.
+
+use bevy_egui::egui;
+
+use crate::studio::command::Command;
+use crate::studio::lane::Lane;
+use crate::studio::look;
+use crate::studio::stage::Programme;
+
+/// How a lane stands.
+#[derive(Debug, Clone, PartialEq)]
+struct Standing {
+    lane: usize,
+    name: String,
+    /// When it landed, in simulated seconds.
+    landed_s: Option<f64>,
+    is_out: bool,
+    y_m: f32,
+}
+
+/// The lanes in the order of finishing: who has landed by when they did, the others by where they are, who is
+/// disqualified last.
+fn standings<'a>(lanes: impl IntoIterator<Item = &'a Lane>, time_s: f64) -> Vec<Standing> {
+    let mut standings: Vec<Standing> = lanes
+        .into_iter()
+        .map(|lane| {
+            let evaluation = lane.evaluation();
+            Standing {
+                lane: lane.number(),
+                name: lane.exhibit().label().to_owned(),
+                landed_s: lane.landed_s(time_s),
+                is_out: evaluation.disqualified.is_some(),
+                y_m: evaluation.centre_y_m,
+            }
+        })
+        .collect();
+    order(&mut standings);
+    standings
+}
+
+fn order(standings: &mut [Standing]) {
+    standings.sort_by(|a, b| {
+        let landed = |standing: &Standing| standing.landed_s.unwrap_or(f64::INFINITY);
+        let by_place = b.y_m.total_cmp(&a.y_m).then(a.lane.cmp(&b.lane));
+        a.is_out.cmp(&b.is_out).then(landed(a).total_cmp(&landed(b))).then(by_place)
+    });
+}
+
+/// Draws the board and adds what was asked for. `focus` is the lane whose numbers are shown.
+pub(super) fn board(
+    ui: &mut egui::Ui,
+    lanes: &[&Lane],
+    programme: &Programme,
+    focus: usize,
+    time_s: f64,
+    asked: &mut Vec<Command>,
+) {
+    let palette = look::of(ui);
+    let title = |ui: &mut egui::Ui, text: &str| {
+        ui.label(egui::RichText::new(text).size(look::TITLE_SIZE).strong());
+    };
+    match programme {
+        Programme::Solo => return,
+        Programme::Race => title(ui, "Race"),
+        Programme::WhatIf { .. } => title(ui, "What if"),
+    }
+    egui::Grid::new("board").num_columns(3).spacing([look::GAP, look::GAP / 4.0]).show(ui, |ui| {
+        for (place, standing) in standings(lanes.iter().copied(), time_s).iter().enumerate() {
+            let rank = format!("{}", place + 1);
+            ui.label(egui::RichText::new(rank).color(palette.text_weak).monospace());
+            let hint = "Click to see its numbers and torques below";
+            let name = ui.selectable_label(standing.lane == focus, &standing.name);
+            if name.on_hover_text(hint).clicked() {
+                asked.push(Command::Focus(standing.lane));
+            }
+            let state = match (standing.is_out, standing.landed_s) {
+                (true, _) => egui::RichText::new("out").color(palette.problem),
+                (false, Some(landed_s)) => {
+                    egui::RichText::new(format!("landed {landed_s:.2} s")).color(palette.accent)
+                }
+                (false, None) => egui::RichText::new(format!("{:.2} m", standing.y_m)),
+            };
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(state.monospace());
+            });
+            ui.end_row();
+        }
+    });
+    ui.horizontal(|ui| {
+        let buttons: &[(&str, &str, Command)] = match programme {
+            Programme::WhatIf { .. } => &[
+                ("Keep", "Go on with the change; the next run has it too", Command::KeepChange),
+                ("Drop", "Forget the change, for the next run too (Esc)", Command::DropChange),
+            ],
+            Programme::Solo | Programme::Race => {
+                &[("Only this", "Leave the race with the chosen one (Esc)", Command::Single)]
+            }
+        };
+        for (name, hint, command) in buttons {
+            if ui.button(*name).on_hover_text(*hint).clicked() {
+                asked.push(command.clone());
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_lands_first_is_first_and_who_is_out_is_last() {
+        let standing = |lane, landed_s, is_out, y_m| Standing {
+            lane,
+            name: lane.to_string(),
+            landed_s,
+            is_out,
+            y_m,
+        };
+        let mut standings = [
+            standing(0, None, false, 12.0),
+            standing(1, Some(9.0), false, 24.0),
+            standing(2, None, true, 30.0),
+            standing(3, Some(7.5), false, 22.0),
+            standing(4, None, false, 14.0),
+        ];
+        order(&mut standings);
+        let lanes = standings.map(|standing| standing.lane);
+        assert_eq!(lanes, [3, 1, 4, 0, 2]);
+    }
+}

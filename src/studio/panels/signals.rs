@@ -1,0 +1,191 @@
+//! The torques of a whole rollout over its time, joint by joint, with a cursor that a person can move.
+
+use std::sync::Arc;
+
+use bevy_egui::egui::{self, Color32, Pos2, Rect, Shape, Stroke};
+
+use crate::score::History;
+use crate::studio::lane::Lane;
+use crate::studio::look;
+use crate::world::JointTorque;
+
+/// The strip, with what it has drawn.
+#[derive(Default)]
+pub(super) struct Signals {
+    drawn: Option<Drawn>,
+}
+
+/// Lines that stay as they are while nothing they show changes.
+struct Drawn {
+    history: Arc<History>,
+    rect: Rect,
+    is_dark: bool,
+    shapes: Vec<Shape>,
+}
+
+/// Points across for each point of a line.
+const COLUMN_WIDTH: f32 = 2.0;
+/// Between a row's line and the row's edge, in points.
+const ROW_MARGIN: f32 = 1.5;
+
+impl Signals {
+    /// Draws the strip over the width there is. Returns the moment that was pointed at, in simulated seconds.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        lane: &Lane,
+        now_s: f64,
+        end_s: f64,
+        height: f32,
+    ) -> Option<f64> {
+        let size = egui::vec2(ui.available_width(), height);
+        let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click_and_drag());
+        response.widget_info(|| {
+            egui::WidgetInfo::slider(ui.is_enabled(), now_s, "Moment, in simulated seconds")
+        });
+        let palette = look::of(ui);
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 4.0, palette.field);
+        let plot = rect.shrink2(egui::vec2(0.0, 3.0));
+        let x_of = |time_s: f64| {
+            let share = if end_s > 0.0 { time_s / end_s } else { 0.0 };
+            plot.left() + plot.width() * share.clamp(0.0, 1.0) as f32
+        };
+        // Up to where it has played, the strip is a progress bar.
+        let played = Rect::from_min_max(rect.min, egui::pos2(x_of(now_s), rect.bottom()));
+        painter.rect_filled(played, 4.0, palette.accent_soft);
+        seconds(&painter, rect, end_s, &x_of, palette);
+        match lane.history() {
+            Some(history) => {
+                painter.extend(self.lines(history, lane, plot, end_s, ui.visuals().dark_mode));
+            }
+            None => {
+                let text = match lane.lookahead_share() {
+                    Some(share) => format!("Looking ahead: {:.0} %", share * 100.0),
+                    None => "A recording has poses, but no torques".to_owned(),
+                };
+                let font = egui::FontId::proportional(look::SMALL_SIZE);
+                let align = egui::Align2::CENTER_CENTER;
+                painter.text(rect.center(), align, text, font, palette.text_weak);
+            }
+        }
+        let x = x_of(now_s);
+        let cursor = Stroke::new(2.0, palette.accent);
+        painter.line_segment([egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())], cursor);
+
+        let pointed =
+            response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
+        let at = |pointer: Pos2| {
+            f64::from((pointer.x - plot.left()) / plot.width().max(1.0)).clamp(0.0, 1.0) * end_s
+        };
+        let asked = pointed.map(at);
+        if let Some(hovered) = response.hover_pos().filter(|_| !response.dragged()) {
+            let time_s = at(hovered);
+            response.on_hover_text_at_pointer(about(lane, time_s));
+        }
+        asked
+    }
+
+    fn lines(
+        &mut self,
+        history: &Arc<History>,
+        lane: &Lane,
+        plot: Rect,
+        end_s: f64,
+        is_dark: bool,
+    ) -> Vec<Shape> {
+        let is_drawn = self.drawn.as_ref().is_some_and(|drawn| {
+            Arc::ptr_eq(&drawn.history, history) && (drawn.rect, drawn.is_dark) == (plot, is_dark)
+        });
+        if !is_drawn {
+            let palette = if is_dark { look::Theme::Dark } else { look::Theme::Light }.palette();
+            let shapes = shapes(history, lane, plot, end_s, palette);
+            self.drawn = Some(Drawn { history: Arc::clone(history), rect: plot, is_dark, shapes });
+        }
+        self.drawn.as_ref().map(|drawn| drawn.shapes.clone()).unwrap_or_default()
+    }
+}
+
+/// A mark at every round second.
+fn seconds(
+    painter: &egui::Painter,
+    rect: Rect,
+    end_s: f64,
+    x_of: &dyn Fn(f64) -> f32,
+    palette: &look::Palette,
+) {
+    let step_s = super::axes::step(end_s.max(0.1));
+    let font = egui::FontId::proportional(look::SMALL_SIZE - 1.0);
+    let mut mark_s = step_s;
+    while mark_s < end_s * 0.985 {
+        let x = x_of(mark_s);
+        let stroke = Stroke::new(1.0, palette.field_hovered);
+        painter.line_segment([egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())], stroke);
+        let text = format!("{} s", super::axes::number(mark_s));
+        let at = egui::pos2(x + 3.0, rect.bottom() - 1.0);
+        painter.text(at, egui::Align2::LEFT_BOTTOM, text, font.clone(), palette.text_weak);
+        mark_s += step_s;
+    }
+}
+
+/// For each joint a row with a line for each axis.
+fn shapes(
+    history: &History,
+    lane: &Lane,
+    plot: Rect,
+    end_s: f64,
+    palette: &look::Palette,
+) -> Vec<Shape> {
+    let samples: Vec<&[JointTorque]> = history.torques().collect();
+    let joints = lane.trial().agent.joints();
+    let sample_s = lane.step_s() * f64::from(history.sample_steps());
+    let row_height = plot.height() / joints.max(1) as f32;
+    let columns = (plot.width() / COLUMN_WIDTH).max(1.0) as usize;
+    let agent = &lane.trial().agent;
+    let mut shapes = Vec::new();
+    for joint in 0..joints {
+        let middle = plot.top() + row_height * (joint as f32 + 0.5);
+        let zero = [egui::pos2(plot.left(), middle), egui::pos2(plot.right(), middle)];
+        shapes.push(Shape::line_segment(zero, Stroke::new(1.0, palette.field_hovered)));
+        let axes: [(fn(&JointTorque) -> f32, f32, Color32); 2] = [
+            (|torque| torque.twist_nm, agent.max_twist_torque_nm.at(joint), palette.twist),
+            (|torque| torque.bend_nm, agent.max_bend_torque_nm.at(joint), palette.bend),
+        ];
+        for (axis, most_nm, color) in axes {
+            let column = |index: usize| {
+                let sample = |at: usize| {
+                    let time_s = end_s * at as f64 / columns as f64;
+                    (time_s / sample_s) as usize
+                };
+                let (from, to) = (sample(index), sample(index + 1));
+                let seen = samples.get(from..to.max(from + 1).min(samples.len()))?;
+                // Of all that falls on a column the largest is drawn: no peak gets lost.
+                let torques = seen.iter().filter_map(|torques| torques.get(joint).map(axis));
+                let largest = torques.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+                let share = (largest / most_nm.max(1.0e-6)).clamp(-1.0, 1.0);
+                let x = plot.left() + plot.width() * index as f32 / columns as f32;
+                Some(egui::pos2(x, middle - share * (row_height / 2.0 - ROW_MARGIN)))
+            };
+            let line: Vec<Pos2> = (0..columns).map_while(column).collect();
+            let is_flat = line.iter().all(|point| (point.y - middle).abs() < 0.1);
+            if !is_flat {
+                shapes.push(Shape::line(line, Stroke::new(1.0, color)));
+            }
+        }
+    }
+    shapes
+}
+
+/// The torques at a moment, in words.
+fn about(lane: &Lane, time_s: f64) -> String {
+    let mut text = format!("{time_s:.2} s: click or drag to go there");
+    let Some(history) = lane.history() else { return text };
+    let sample = (time_s / (lane.step_s() * f64::from(history.sample_steps()))) as usize;
+    if let Some(torques) = history.torques().nth(sample) {
+        text += "\nTorques in N·m, bend and twist, from the head:";
+        for torque in torques {
+            text += &format!("\n{:+.0}  {:+.0}", torque.bend_nm, torque.twist_nm);
+        }
+    }
+    text
+}

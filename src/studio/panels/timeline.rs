@@ -1,0 +1,139 @@
+//! Under the stage: what is on it, the player, the numbers of the moment, and the torques over time.
+
+use bevy_egui::egui;
+
+use super::icons::{Icon, icon_button};
+use super::signals::Signals;
+use crate::studio::command::Command;
+use crate::studio::exhibit::Source;
+use crate::studio::lane::Lane;
+use crate::studio::look;
+use crate::studio::playback::{Playback, SPEED_RANGE};
+
+/// The panel, with what it has drawn.
+#[derive(Default)]
+pub(super) struct TimelinePanel {
+    signals: Signals,
+}
+
+/// From this width on there is room for the numbers beside the player, in points.
+const ROOM_FOR_NUMBERS: f32 = 700.0;
+
+impl TimelinePanel {
+    /// Draws the panel and adds what was asked for. `run` is the number of the current run, `end_s` where the last
+    /// lane ends.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        lane: &Lane,
+        playback: &Playback,
+        end_s: f64,
+        run: u32,
+        asked: &mut Vec<Command>,
+    ) {
+        self.caption(ui, lane, run, asked);
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = look::GAP / 2.0;
+            player(ui, playback, end_s, asked);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                numbers(ui, lane);
+            });
+        });
+        let height = look::SIGNALS_HEIGHT;
+        let moment = self.signals.ui(ui, lane, playback.time_s(), end_s, height);
+        asked.extend(moment.map(Command::Seek));
+    }
+
+    /// What is on the stage.
+    fn caption(&self, ui: &mut egui::Ui, lane: &Lane, run: u32, asked: &mut Vec<Command>) {
+        let exhibit = lane.exhibit();
+        ui.horizontal(|ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if exhibit.other_engine().is_some() && exhibit.could_be_as_found() {
+                    if ui.button("As recorded").on_hover_text("Play what was recorded").clicked() {
+                        asked.push(Command::ShowAsFound);
+                    }
+                } else if exhibit.recording().is_some() {
+                    let hint = "Simulate it with this engine, which computes other bits than the one \
+                                that found it";
+                    if ui.button("Simulate here").on_hover_text(hint).clicked() {
+                        asked.push(Command::Simulate);
+                    }
+                }
+                if lane.is_disturbed() {
+                    let hint = "A hand has pulled it. From the start (R), or at any moment before, it is \
+                                itself again";
+                    let text = egui::RichText::new("disturbed by hand").color(look::of(ui).problem);
+                    ui.label(text).on_hover_text(hint);
+                }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    let is_earlier = matches!(exhibit.source(), Source::Run(of) if of != run);
+                    let prefix = if is_earlier { "Earlier run. " } else { "" };
+                    let text = format!("{prefix}{}", exhibit.caption());
+                    let text = egui::RichText::new(text).size(look::TITLE_SIZE).strong();
+                    ui.add(egui::Label::new(text).truncate());
+                });
+            });
+        });
+    }
+}
+
+/// The player's buttons, and the time.
+fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, asked: &mut Vec<Command>) {
+    let (play, play_hint) = if playback.is_playing() {
+        (Icon::Hold, "Hold (Space)")
+    } else {
+        (Icon::Play, "Play (Space)")
+    };
+    for (icon, is_on, hint, command) in [
+        (Icon::ToStart, false, "Play from the start (R)", Command::Restart),
+        (Icon::StepBack, false, "One physics step back (Left)", Command::Step { forward: false }),
+        (play, false, play_hint, Command::TogglePlayback),
+        (Icon::StepForward, false, "One physics step on (Right)", Command::Step { forward: true }),
+        (Icon::Loop, playback.loops(), "Begin again after the end (O)", Command::ToggleLoop),
+    ] {
+        if icon_button(ui, icon, is_on, hint).clicked() {
+            asked.push(command);
+        }
+    }
+    ui.add_space(look::GAP / 2.0);
+    let mut speed = playback.speed();
+    let field = egui::DragValue::new(&mut speed)
+        .range(SPEED_RANGE)
+        .speed(0.02 * f64::from(playback.speed()))
+        .max_decimals(2)
+        .prefix("× ");
+    let hint = "Simulated seconds in a second: drag, click to type, or press + and −";
+    if ui.add(field).on_hover_text(hint).changed() {
+        asked.push(Command::SetSpeed(speed));
+    }
+    let time = format!("{:5.2} of {end_s:.2} s", playback.time_s());
+    ui.label(egui::RichText::new(time).monospace());
+}
+
+/// What there is to say of the moment.
+fn numbers(ui: &mut egui::Ui, lane: &Lane) {
+    let evaluation = lane.evaluation();
+    let trial = lane.trial();
+    let palette = look::of(ui);
+    if let Some(reason) = evaluation.disqualified {
+        let text = format!("disqualified: {}", reason.words());
+        ui.label(egui::RichText::new(text).color(palette.problem));
+        return;
+    }
+    let unit = trial.fitness.unit();
+    let steps = evaluation.behaviour.map(|behaviour| behaviour.steps_climbed);
+    let mut parts = vec![(format!("{:.2}{unit}", evaluation.fitness), "fitness")];
+    parts.extend(steps.map(|steps| (format!("{steps} of {}", trial.stairs.steps), "steps")));
+    if ui.available_width() > ROOM_FOR_NUMBERS - 300.0 {
+        parts.push((format!("{:.2} m/s", lane.speed_m_s()), "speed"));
+        let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
+        parts.extend(energy_kj.map(|energy_kj| (format!("{energy_kj:.2} kJ"), "energy")));
+    }
+    // From right to left.
+    for (value, name) in parts.into_iter().rev() {
+        ui.label(egui::RichText::new(value).monospace());
+        ui.label(egui::RichText::new(name).color(palette.text_weak));
+        ui.add_space(look::GAP / 2.0);
+    }
+}

@@ -1,0 +1,294 @@
+//! The stage without a window, frame by frame.
+
+use super::*;
+use crate::evolve::Champion;
+use crate::save::{LoadedChampion, shipped_champion};
+use crate::score::{Recording, evaluate};
+use crate::studio::casting::Saved;
+use crate::world::{Pose, Pull, Vector};
+use bevy::time::TimeUpdateStrategy;
+use bevy_rapier3d::plugin::context::RapierRigidBodySet;
+use std::time::Duration;
+
+fn shipped() -> LoadedChampion {
+    shipped_champion().expect("well formed")
+}
+
+/// A stage without a window on which these champions race.
+fn stage_of(opening: Vec<LoadedChampion>) -> App {
+    let saved = |loaded| Saved { name: "a champion".to_owned(), loaded };
+    let mut app = App::new();
+    app.add_plugins(MinimalPlugins)
+        .add_message::<Show>()
+        .init_resource::<Notices>()
+        .init_resource::<Playback>()
+        .init_resource::<Programme>()
+        .init_resource::<Hands>()
+        .insert_resource(Opening(opening.into_iter().map(saved).collect()))
+        .add_systems(Startup, show_opening)
+        .add_systems(Update, (put_on_stage, advance).chain());
+    frame(&mut app, 0.0);
+    app
+}
+
+/// A frame of this length.
+fn frame(app: &mut App, length_s: f32) {
+    let length = Duration::from_secs_f32(length_s);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(length));
+    app.update();
+}
+
+/// Frames of these lengths in turn, until the first lane is as asked for.
+fn play(app: &mut App, frames_s: &[f32], until: impl Fn(&Lane) -> bool) {
+    for frame_s in frames_s.iter().cycle().take(10_000) {
+        frame(app, *frame_s);
+        if until(lane(app)) {
+            return;
+        }
+    }
+    panic!("the stage never got there");
+}
+
+fn lane(app: &mut App) -> &Lane {
+    let mut lanes = app.world_mut().query::<&Lane>();
+    lanes.iter(app.world()).min_by_key(|lane| lane.number()).expect("a lane")
+}
+
+fn clock(app: &mut App) -> Mut<'_, Playback> {
+    app.world_mut().resource_mut::<Playback>()
+}
+
+/// Waits until what will happen is known in all lanes.
+fn know_what_comes(app: &mut App) {
+    for _ in 0..3000 {
+        frame(app, 0.0);
+        let mut lanes = app.world_mut().query::<&Lane>();
+        if lanes.iter(app.world()).all(|lane| lane.history().is_some()) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    panic!("nobody looked ahead");
+}
+
+fn is_over(lane: &Lane) -> bool {
+    lane.performance().is_over()
+}
+
+#[test]
+fn a_replay_on_the_stage_has_the_bits_of_the_headless_run_at_any_frame_rate_and_speed() {
+    let opening = shipped().champion;
+    let headless = evaluate(&opening.genome, &opening.trial);
+    for (frames_s, speed) in [
+        (&[1.0 / 60.0][..], 1.0),
+        (&[0.25], 1.0),
+        (&[0.004, 0.1, 0.031], 1.0),
+        (&[0.1], 16.0),
+        (&[0.4], 0.1),
+    ] {
+        let mut app = stage_of(vec![shipped()]);
+        clock(&mut app).set_speed(speed);
+        play(&mut app, frames_s, is_over);
+        assert_eq!(
+            lane(&mut app).evaluation(),
+            headless,
+            "frames of {frames_s:?} s, times {speed}"
+        );
+    }
+}
+
+#[test]
+fn wherever_one_seeks_the_state_is_the_played_one_bit_for_bit() {
+    let champion = shipped().champion;
+    let mut app = stage_of(vec![shipped()]);
+    know_what_comes(&mut app);
+    clock(&mut app).toggle(1.0e9);
+    let steps = champion.trial.steps();
+    let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
+    let mut rollouts = vec![crate::score::Rollout::new(&champion.genome, &champion.trial)];
+    for target in [steps / 2, steps, 3, steps - 1, 0, steps / 2 + 1] {
+        clock(&mut app).seek(f64::from(target) * step_s, 1.0e9);
+        frame(&mut app, 0.016);
+        let mut played = rollouts[0].clone();
+        while played.step() < target {
+            assert!(played.advance());
+        }
+        let shown = lane(&mut app);
+        assert_eq!(shown.performance().step(), target);
+        assert_eq!(shown.last_poses(), played.poses(), "step {target}");
+        assert_eq!(shown.evaluation(), played.evaluation(), "step {target}");
+        let drawn: Vec<Pose> = shown.drawn_poses().collect();
+        assert_eq!(drawn, played.poses(), "held on a step, that step is drawn");
+    }
+    rollouts.clear();
+}
+
+#[test]
+fn steps_go_back_and_on_over_the_same_states() {
+    let mut app = stage_of(vec![shipped()]);
+    play(&mut app, &[0.05], |lane| lane.performance().step() > 200);
+    let step_s = lane(&mut app).step_s();
+    let mut seen = Vec::new();
+    for forward in [true, true, false, false, true, true] {
+        clock(&mut app).step(forward, step_s, 1.0e9);
+        frame(&mut app, 0.1);
+        seen.push((lane(&mut app).performance().step(), lane(&mut app).last_poses().to_vec()));
+    }
+    assert_eq!(seen[1], seen[5]);
+    assert_eq!(seen[0], seen[2]);
+    assert_ne!(seen[0], seen[1]);
+}
+
+#[test]
+fn after_its_rest_it_begins_again_unless_it_is_held() {
+    let mut app = stage_of(vec![shipped()]);
+    clock(&mut app).set_speed(16.0);
+    play(&mut app, &[0.1], is_over);
+    play(&mut app, &[0.1], |lane| !is_over(lane));
+    assert!(lane(&mut app).performance().step() < 100, "from the start");
+    clock(&mut app).hold_at(1.0e9);
+    (0..50).for_each(|_| frame(&mut app, 0.1));
+    assert!(is_over(lane(&mut app)), "held at the end");
+}
+
+#[test]
+fn a_replay_that_differs_from_its_record_says_so_once() {
+    let honest = shipped();
+    let mut edited = honest.clone();
+    edited.champion.genome.density_kg_m3 *= 1.2;
+    for (loaded, notices) in [(honest, 0), (edited, 1)] {
+        let mut app = stage_of(vec![loaded]);
+        play(&mut app, &[0.1], is_over);
+        (0..40).for_each(|_| frame(&mut app, 0.1));
+        assert_eq!(app.world().resource::<Notices>().len(), notices);
+    }
+}
+
+#[test]
+fn what_another_engine_found_is_played_from_its_recording_and_can_be_simulated() {
+    let mut loaded = shipped();
+    let Champion { genome, trial, .. } = &loaded.champion;
+    let recording = Recording::of(genome, trial);
+    // It went elsewhere then: a metre to the side.
+    let aside = |pose: &Pose| Pose { translation: pose.translation + Vec3::X, ..*pose };
+    let poses = recording.frames().flatten().map(aside).collect();
+    loaded.recording = Recording::new(recording.every_steps(), recording.limbs(), poses);
+    loaded.engine = 1;
+    let last = loaded.recording.as_ref().expect("whole frames").at(1.0e9);
+    let mut app = stage_of(vec![loaded.clone()]);
+    play(&mut app, &[0.1], is_over);
+    assert_eq!(app.world().resource::<Notices>().len(), 1, "it says so, and finds no fault");
+    let shown = lane(&mut app);
+    for (drawn, recorded) in shown.drawn_poses().zip(last) {
+        assert!((drawn.translation - recorded.translation).length() < 1e-5);
+    }
+    assert!(shown.exhibit().caption().contains("as engine 1 recorded it"));
+    let simulated = shown.exhibit().simulated();
+    app.world_mut().write_message(Show::solo(simulated));
+    frame(&mut app, 0.0);
+    play(&mut app, &[0.1], is_over);
+    let shown = lane(&mut app);
+    assert_eq!(shown.evaluation().trace_hash, loaded.champion.evaluation.trace_hash);
+    assert!(shown.exhibit().could_be_as_found());
+}
+
+#[test]
+fn between_frames_the_world_is_in_the_rapier_context() {
+    let mut app = stage_of(vec![shipped()]);
+    play(&mut app, &[0.1], |lane| lane.performance().step() > 20);
+    let mut contexts = app.world_mut().query::<(&Lane, &RapierRigidBodySet)>();
+    let (lane, bodies) = contexts.single(app.world()).expect("one lane");
+    let simulation = lane.performance().simulation().expect("simulated");
+    assert_eq!(simulation.physics().bodies.len(), 0);
+    let in_context = simulation.limb_handles().iter();
+    let poses: Vec<Pose> = in_context.map(|&limb| *bodies.bodies[limb].position()).collect();
+    assert_eq!(poses, lane.last_poses());
+}
+
+#[test]
+fn it_draws_between_the_last_two_steps() {
+    let mut app = stage_of(vec![shipped()]);
+    play(&mut app, &[0.0251], |lane| lane.performance().step() > 60);
+    let time_s = clock(&mut app).time_s();
+    let shown = lane(&mut app);
+    let place = time_s / shown.step_s();
+    let share = (place - place.floor()) as f32;
+    assert!((0.1..0.9).contains(&share), "the frame ends {share} of the way through a step");
+    let champion = shown.exhibit().champion();
+    let mut rollout = crate::score::Rollout::new(&champion.genome, &champion.trial);
+    let mut head = || {
+        rollout.advance();
+        rollout.poses()[0].translation.y
+    };
+    let (before, after) = (0..place.ceil() as u32).fold((0.0, 0.0), |(_, last), _| (last, head()));
+    let drawn = shown.drawn_poses().next().expect("a head").translation.y;
+    let expected = before + (after - before) * share;
+    assert!((after - before).abs() > 1e-4, "the head moves: {before} to {after}");
+    assert!((drawn - expected).abs() < 1e-4, "{drawn} for {expected}");
+}
+
+#[test]
+fn ten_lanes_stand_side_by_side_and_each_has_its_own_bits() {
+    let champion = shipped().champion;
+    let mut app = stage_of(vec![shipped(); 12]);
+    assert_eq!(*app.world().resource::<Programme>(), Programme::Race);
+    play(&mut app, &[0.05], |lane| lane.performance().step() > 60);
+    let mut lanes = app.world_mut().query::<&Lane>();
+    let mut lanes: Vec<&Lane> = lanes.iter(app.world()).collect();
+    lanes.sort_by_key(|lane| lane.number());
+    assert_eq!(lanes.len(), MOST_LANES, "and no more");
+    let xs: Vec<f32> = lanes.iter().map(|lane| lane.offset().x).collect();
+    let spacing_m = champion.trial.stairs.width_m + GAP_M;
+    for pair in xs.windows(2) {
+        assert!((pair[0] - pair[1] - spacing_m).abs() < 1e-4, "{xs:?}");
+    }
+    assert!((xs[0] + xs[9]).abs() < 1e-4, "around the middle");
+    for lane in &lanes {
+        assert_eq!(lane.evaluation(), lanes[0].evaluation());
+    }
+}
+
+#[test]
+fn a_genome_that_does_not_fit_is_named_with_the_reason_and_the_others_are_shown() {
+    let mut unfit = shipped();
+    unfit.champion.trial.agent.limbs = 7;
+    let mut app = stage_of(vec![shipped(), unfit.clone()]);
+    assert_eq!(app.world().resource::<Notices>().len(), 1);
+    assert_eq!(*app.world().resource::<Programme>(), Programme::Solo);
+    let (lanes, problems) = lanes(vec![Exhibit::saved(&unfit, 0, "unfit")]);
+    assert!(lanes.is_empty());
+    let problem = &problems[0];
+    for part in ["unfit cannot be shown", "joints is 4 joints", "allowed: 6"] {
+        assert!(problem.contains(part), "{part:?} in {problem}");
+    }
+    // What was on show stays, if nothing else can be shown.
+    app.world_mut().write_message(Show::solo(Exhibit::saved(&unfit, 0, "unfit")));
+    frame(&mut app, 0.1);
+    assert_eq!(lane(&mut app).exhibit().name(), "a champion");
+}
+
+#[test]
+fn who_was_pulled_is_disturbed_until_it_goes_back_and_is_not_compared_with_its_record() {
+    let mut app = stage_of(vec![shipped()]);
+    know_what_comes(&mut app);
+    play(&mut app, &[0.05], |lane| lane.performance().step() > 60);
+    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
+    let entity = lanes.single(app.world()).expect("one lane");
+    let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, -2.0, 2.0);
+    let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
+    app.world_mut().resource_mut::<Hands>().hold(entity, pull);
+    (0..20).for_each(|_| frame(&mut app, 0.05));
+    assert!(lane(&mut app).is_disturbed());
+    app.world_mut().resource_mut::<Hands>().open();
+    play(&mut app, &[0.1], is_over);
+    (0..10).for_each(|_| frame(&mut app, 0.05));
+    assert_eq!(app.world().resource::<Notices>().len(), 0, "no complaint about its record");
+    let recorded = lane(&mut app).exhibit().champion().evaluation;
+    assert!(!lane(&mut app).evaluation().agrees_with(&recorded), "it went elsewhere");
+    clock(&mut app).seek(1.0, 1.0e9);
+    frame(&mut app, 0.0);
+    assert!(!lane(&mut app).is_disturbed(), "before the hand it is itself");
+    clock(&mut app).set_speed(16.0);
+    play(&mut app, &[0.1], is_over);
+    assert!(lane(&mut app).evaluation().agrees_with(&recorded));
+}
