@@ -1,16 +1,15 @@
-//! What stands still: sky, lights, ground, and the stairs of the trial on show, all in the theme's colours.
+//! What stands still: lights, the stairs of the trial on show, and, each in a file of its own, what is around and on
+//! them. All of it has the theme's colours.
 
-use bevy::asset::RenderAssetUsages;
 use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap};
-use bevy::mesh::PrimitiveTopology;
 use bevy::pbr::DistanceFog;
 use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
 
-use super::Frame;
 use super::lane::Lane;
 use super::look::Theme;
 use super::quality::Quality;
+use super::{Frame, ground, lettering, marks, nosing, paint, sky};
 use crate::world::StairBox;
 
 /// The meshes and materials that everything is built of.
@@ -24,13 +23,19 @@ pub(super) struct Props {
     pub blue: Handle<StandardMaterial>,
     stair: Handle<StandardMaterial>,
     stair_other: Handle<StandardMaterial>,
-    ground: Handle<StandardMaterial>,
-    grid: Handle<StandardMaterial>,
 }
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Theme>()
         .init_resource::<Props>()
+        .add_plugins((
+            sky::plugin,
+            ground::plugin,
+            lettering::plugin,
+            nosing::plugin,
+            paint::plugin,
+            marks::plugin,
+        ))
         .add_systems(Startup, set_up)
         .add_systems(Update, build_stairs.in_set(Frame::Draw))
         .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
@@ -38,15 +43,6 @@ pub(super) fn plugin(app: &mut App) {
 
 /// Shadows end this far from the camera, in metres: the length of the whole staircase.
 const SHADOW_DISTANCE_M: f32 = 60.0;
-/// Half the side of the drawn ground, in metres. The physical ground has no end; the fog hides this one.
-const GROUND_HALF_M: f32 = 250.0;
-/// Half the side of the grid, in metres: beyond it the lines would flicker.
-const GRID_HALF_M: f32 = 60.0;
-/// Distance between the grid's lines, in metres: a tread of the report's stairs.
-const GRID_CELL_M: f32 = 2.0;
-/// Just above the ground, in metres, so that neither hides the other.
-const GRID_HEIGHT_M: f32 = 0.01;
-
 impl FromWorld for Props {
     fn from_world(world: &mut World) -> Self {
         let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(1.0));
@@ -57,18 +53,7 @@ impl FromWorld for Props {
         };
         let [red, blue] = [0.55; 2].map(&mut material);
         let [stair, stair_other] = [0.9; 2].map(&mut material);
-        let ground = materials.add(StandardMaterial {
-            perceptual_roughness: 1.0,
-            reflectance: 0.1,
-            ..default()
-        });
-        let grid = materials.add(StandardMaterial {
-            unlit: true,
-            // A veil, so that a line in the shadow is darker than the shadow.
-            alpha_mode: AlphaMode::Blend,
-            ..default()
-        });
-        Self { cube, red, blue, stair, stair_other, ground, grid }
+        Self { cube, red, blue, stair, stair_other }
     }
 }
 
@@ -77,12 +62,7 @@ pub(super) fn box_transform(centre: Vec3, size: Vec3) -> Transform {
     Transform::from_translation(centre).with_scale(size)
 }
 
-fn set_up(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    props: Res<Props>,
-    adapter: Res<RenderAdapterInfo>,
-) {
+fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
     let size = Quality::suiting(&adapter).shadow_map_pixels;
     commands.insert_resource(DirectionalLightShadowMap { size });
     commands.spawn((
@@ -96,9 +76,6 @@ fn set_up(
         }
         .build(),
     ));
-    let ground = meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)));
-    commands.spawn((Mesh3d(ground), MeshMaterial3d(props.ground.clone())));
-    commands.spawn((Mesh3d(meshes.add(grid())), MeshMaterial3d(props.grid.clone())));
 }
 
 /// Gives everything the colours of the theme.
@@ -116,8 +93,6 @@ fn dress(
         (&props.blue, palette.blue_limb),
         (&props.stair, palette.stair),
         (&props.stair_other, palette.stair_other),
-        (&props.ground, palette.ground),
-        (&props.grid, palette.grid),
     ] {
         if let Some(mut material) = materials.get_mut(handle) {
             material.base_color = color;
@@ -136,32 +111,15 @@ fn dress(
     });
 }
 
-/// Lines on the ground, a tread apart in both directions: without them nothing tells how far it went.
-fn grid() -> Mesh {
-    let mut points = Vec::new();
-    let mut line = |from: [f32; 2], to: [f32; 2]| {
-        points.extend([from, to].map(|[x, y]| [x, y, GRID_HEIGHT_M]));
-    };
-    let cells = (GRID_HALF_M / GRID_CELL_M) as i32;
-    for cell in -cells..=cells {
-        let at = cell as f32 * GRID_CELL_M;
-        // Along y the lines run through the first riser, at y = 3.
-        line([at - 1.0, 1.0 - GRID_HALF_M], [at - 1.0, 1.0 + GRID_HALF_M]);
-        line([-1.0 - GRID_HALF_M, at + 1.0], [GRID_HALF_M - 1.0, at + 1.0]);
-    }
-    Mesh::new(PrimitiveTopology::LineList, RenderAssetUsages::RENDER_WORLD)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, points)
-}
-
-/// Builds the stairs of a stage that is new.
+/// Builds the stairs of a lane that is new.
 fn build_stairs(
-    stages: Query<(Entity, &Lane), Added<Lane>>,
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
     props: Res<Props>,
     mut commands: Commands,
 ) {
-    for (entity, stage) in &stages {
+    for (entity, lane) in &lanes {
         commands.entity(entity).with_children(|parent| {
-            let boxes = stage.trial().stairs.boxes();
+            let boxes = lane.trial().stairs.boxes();
             for (index, StairBox { min_m, max_m }) in boxes.into_iter().enumerate() {
                 let (min, max) = (Vec3::from(min_m), Vec3::from(max_m));
                 let material = if index % 2 == 0 { &props.stair } else { &props.stair_other };

@@ -1,47 +1,134 @@
-//! The snake as it is drawn: a red or blue box per limb, between the last two physics steps.
+//! The snake as it is drawn: red and blue blocks with joints between them, between the last two physics steps.
 
+use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::Frame;
 use super::lane::Lane;
-use super::scene::{Props, box_transform};
+use super::limb::LimbShape;
+use super::look::Theme;
+use super::scene::Props;
 
-/// The limb of a stage's snake with this index; the head is 0.
+/// The limb of a lane's snake with this index; the head is 0.
 #[derive(Component, Debug)]
 struct Limb(usize);
 
-pub(super) fn plugin(app: &mut App) {
-    app.add_systems(Update, (build, place).chain().in_set(Frame::Draw));
+/// The meshes of a limb.
+#[derive(Debug, Clone)]
+struct LimbMeshes {
+    block: Handle<Mesh>,
+    white: Handle<Mesh>,
+    dark: Handle<Mesh>,
 }
 
-/// Builds the limbs of a stage that is new.
-fn build(stages: Query<(Entity, &Lane), Added<Lane>>, props: Res<Props>, mut commands: Commands) {
-    for (entity, stage) in &stages {
-        let agent = &stage.trial().agent;
+/// Meshes by what decides how they look: the same for every snake of the same build.
+#[derive(Resource, Debug, Default)]
+struct Shapes(Vec<(LimbShape, LimbMeshes)>);
+
+/// What limbs wear besides red and blue.
+#[derive(Resource, Debug)]
+struct Trim {
+    white: Handle<StandardMaterial>,
+    dark: Handle<StandardMaterial>,
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Shapes>()
+        .init_resource::<Trim>()
+        .add_systems(Update, (build, place).chain().in_set(Frame::Draw))
+        .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
+}
+
+/// So many builds of limbs are remembered; whoever tunes a snake's size makes many.
+const MOST_SHAPES: usize = 64;
+
+impl Shapes {
+    fn of(&mut self, shape: LimbShape, meshes: &mut Assets<Mesh>) -> LimbMeshes {
+        if let Some((_, known)) = self.0.iter().find(|(of, _)| *of == shape) {
+            return known.clone();
+        }
+        if self.0.len() == MOST_SHAPES {
+            self.0.remove(0);
+        }
+        let [block, white, dark] =
+            [shape.block(), shape.white(), shape.dark()].map(|solid| meshes.add(solid.into_mesh()));
+        let new = LimbMeshes { block, white, dark };
+        self.0.push((shape, new.clone()));
+        new
+    }
+}
+
+impl FromWorld for Trim {
+    fn from_world(world: &mut World) -> Self {
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let white = StandardMaterial { perceptual_roughness: 0.4, ..default() };
+        let dark = StandardMaterial { perceptual_roughness: 0.35, metallic: 0.4, ..default() };
+        Self { white: materials.add(white), dark: materials.add(dark) }
+    }
+}
+
+fn dress(theme: Res<Theme>, trim: Res<Trim>, mut materials: ResMut<Assets<StandardMaterial>>) {
+    let palette = theme.palette();
+    for (handle, color) in [(&trim.white, palette.white), (&trim.dark, palette.metal)] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Builds the limbs of a lane that is new.
+fn build(
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
+    props: Res<Props>,
+    trim: Res<Trim>,
+    mut shapes: ResMut<Shapes>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, lane) in &lanes {
+        let agent = &lane.trial().agent;
+        let count = lane.drawn_poses().count();
         commands.entity(entity).with_children(|parent| {
-            for (index, pose) in stage.drawn_poses().enumerate() {
-                let size = Vec3::from(agent.limb_size_m(index));
-                let material = if index % 2 == 0 { &props.red } else { &props.blue };
-                parent.spawn((
-                    Limb(index),
-                    Mesh3d(props.cube.clone()),
-                    MeshMaterial3d(material.clone()),
-                    box_transform(pose.translation, size).with_rotation(pose.rotation),
-                ));
+            for (index, pose) in lane.drawn_poses().enumerate() {
+                let shape = LimbShape {
+                    size: Vec3::from(agent.limb_size_m(index)),
+                    has_front: index > 0,
+                    has_rear: index + 1 < count,
+                };
+                let LimbMeshes { block, white, dark } = shapes.of(shape, &mut meshes);
+                let color = if index % 2 == 0 { &props.red } else { &props.blue };
+                let place = Transform::from_translation(pose.translation);
+                parent
+                    .spawn((
+                        Limb(index),
+                        Mesh3d(block),
+                        MeshMaterial3d(color.clone()),
+                        place.with_rotation(pose.rotation),
+                    ))
+                    .with_children(|limb| {
+                        for (mesh, material) in [(white, &trim.white), (dark, &trim.dark)] {
+                            limb.spawn((
+                                Mesh3d(mesh),
+                                MeshMaterial3d(material.clone()),
+                                // The block's shadow is theirs.
+                                NotShadowCaster,
+                            ));
+                        }
+                    });
             }
         });
     }
 }
 
-/// Moves the limbs to where they are now.
-fn place(stages: Query<(&Lane, &Children)>, mut limbs: Query<(&Limb, &mut Transform)>) {
-    for (stage, children) in &stages {
-        let poses: Vec<_> = stage.drawn_poses().collect();
+/// Moves the limbs to where they are now. What has not moved is not touched, so that nothing below it is
+/// computed anew.
+fn place(lanes: Query<(&Lane, &Children)>, mut limbs: Query<(&Limb, &mut Transform)>) {
+    for (lane, children) in &lanes {
         let mut limbs = limbs.iter_many_mut(children);
         while let Some((limb, mut transform)) = limbs.fetch_next() {
-            if let Some(pose) = poses.get(limb.0) {
-                transform.translation = pose.translation;
-                transform.rotation = pose.rotation;
+            if let Some(pose) = lane.drawn_poses().nth(limb.0) {
+                let place = Transform::from_translation(pose.translation);
+                transform.set_if_neq(place.with_rotation(pose.rotation));
             }
         }
     }

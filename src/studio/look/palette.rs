@@ -51,6 +51,8 @@ pub struct Palette {
     pub pull: Color,
     /// The sky at the horizon, and what the ground fades into.
     pub horizon: Color,
+    /// The sky above.
+    pub zenith: Color,
     /// The ground.
     pub ground: Color,
     /// The lines on the ground.
@@ -59,6 +61,20 @@ pub struct Palette {
     pub stair: Color,
     /// The steps between them.
     pub stair_other: Color,
+    /// A strip at a step's front edge.
+    pub nosing: Color,
+    /// The same while the step is climbed: the accent's hue, but so bright that nobody takes it for a limb.
+    pub nosing_lit: Color,
+    /// Numbers on ground and risers: a veil.
+    pub paint: Color,
+    /// Stripes along limbs, eyes.
+    pub white: Color,
+    /// Joints, pupils, a flag's post.
+    pub metal: Color,
+    /// The flag where the best has come.
+    pub flag: Color,
+    /// Text on that flag.
+    pub flag_text: Color,
     /// The sun.
     pub sun: Color,
     /// How strong the sun is, in lux.
@@ -90,10 +106,18 @@ pub const LIGHT: Palette = Palette {
     trail: Color::srgb(0.55, 0.20, 0.65),
     pull: Color::srgb(0.80, 0.30, 0.05),
     horizon: Color::srgb(0.87, 0.92, 0.96),
+    zenith: Color::srgb(0.50, 0.70, 0.90),
     ground: Color::srgb(0.66, 0.72, 0.67),
     grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
     stair: Color::srgb(0.84, 0.81, 0.76),
     stair_other: Color::srgb(0.76, 0.73, 0.68),
+    nosing: Color::srgb(0.60, 0.57, 0.52),
+    nosing_lit: Color::srgb(0.05, 0.72, 1.0),
+    paint: Color::srgba(0.06, 0.12, 0.18, 0.50),
+    white: Color::srgb(0.97, 0.96, 0.93),
+    metal: Color::srgb(0.16, 0.17, 0.20),
+    flag: Color::srgb(0.96, 0.72, 0.22),
+    flag_text: Color::srgb(0.16, 0.13, 0.08),
     sun: Color::srgb(1.0, 0.97, 0.92),
     sun_lux: 3_600.0,
     ambient: Color::srgb(0.90, 0.95, 1.0),
@@ -121,10 +145,18 @@ pub const DARK: Palette = Palette {
     trail: Color::srgb(0.88, 0.62, 0.98),
     pull: Color::srgb(1.0, 0.72, 0.35),
     horizon: Color::srgb(0.20, 0.25, 0.34),
+    zenith: Color::srgb(0.05, 0.08, 0.15),
     ground: Color::srgb(0.22, 0.26, 0.31),
     grid: Color::srgba(0.75, 0.85, 1.0, 0.08),
     stair: Color::srgb(0.47, 0.50, 0.56),
     stair_other: Color::srgb(0.40, 0.43, 0.49),
+    nosing: Color::srgb(0.30, 0.33, 0.38),
+    nosing_lit: Color::srgb(0.40, 0.80, 1.0),
+    paint: Color::srgba(0.85, 0.92, 1.0, 0.45),
+    white: Color::srgb(0.93, 0.94, 0.96),
+    metal: Color::srgb(0.10, 0.11, 0.13),
+    flag: Color::srgb(0.95, 0.69, 0.24),
+    flag_text: Color::srgb(0.13, 0.11, 0.07),
     sun: Color::srgb(1.0, 0.96, 0.90),
     sun_lux: 2_900.0,
     ambient: Color::srgb(0.72, 0.82, 1.0),

@@ -1,0 +1,142 @@
+//! Letters in the scene: painted on the ground, on risers, on a flag.
+//!
+//! All letters share one picture, the atlas, in which each has a cell; a text is a mesh of one rectangle per
+//! letter. The atlas is drawn once from the panels' font, a little bolder, with smaller copies of itself for letters
+//! that are far away: without them distant numbers would shimmer.
+
+mod atlas;
+
+use bevy::asset::RenderAssetUsages;
+use bevy::mesh::{Indices, PrimitiveTopology};
+use bevy::prelude::*;
+
+use super::look::Theme;
+use atlas::{Atlas, BASELINE, CELL, MARGIN};
+
+/// The letters, and the paint for them.
+#[derive(Resource, Debug)]
+pub(super) struct Lettering {
+    atlas: Atlas,
+    /// Paint on what is lit by the sun: a veil that darkens or lightens what is below it.
+    pub paint: Handle<StandardMaterial>,
+    /// The same for a flag's cloth.
+    pub on_flag: Handle<StandardMaterial>,
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Lettering>().add_systems(Update, dress.run_if(resource_changed::<Theme>));
+}
+
+impl FromWorld for Lettering {
+    fn from_world(world: &mut World) -> Self {
+        let (atlas, picture) = Atlas::draw();
+        let picture = world.resource_mut::<Assets<Image>>().add(picture);
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let mut paint = || {
+            materials.add(StandardMaterial {
+                base_color_texture: Some(picture.clone()),
+                unlit: true,
+                alpha_mode: AlphaMode::Blend,
+                ..default()
+            })
+        };
+        Self { atlas, paint: paint(), on_flag: paint() }
+    }
+}
+
+fn dress(
+    theme: Res<Theme>,
+    lettering: Res<Lettering>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let palette = theme.palette();
+    for (handle, color) in
+        [(&lettering.paint, palette.paint), (&lettering.on_flag, palette.flag_text)]
+    {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Texts on their way to becoming one mesh.
+pub(super) struct Writing<'a> {
+    atlas: &'a Atlas,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    indices: Vec<u32>,
+}
+
+/// Where a text stands: its middle, and which way its lines and its letters go.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// The middle of the text.
+    pub middle: Vec3,
+    /// From one letter to the next.
+    pub right: Dir3,
+    /// From a letter's foot to its head.
+    pub up: Dir3,
+}
+
+impl Lettering {
+    /// An empty writing.
+    pub fn begin(&self) -> Writing<'_> {
+        let (positions, normals, uvs, indices) = default();
+        Writing { atlas: &self.atlas, positions, normals, uvs, indices }
+    }
+
+    /// How wide a text is whose digits are so high, in metres.
+    pub fn width_m(&self, text: &str, digit_height_m: f32) -> f32 {
+        let pixels: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
+        pixels * digit_height_m / self.atlas.digit_height()
+    }
+}
+
+impl Writing<'_> {
+    /// Writes a text whose digits are so high, in metres.
+    pub fn text(&mut self, text: &str, digit_height_m: f32, place: Place) {
+        let metres = digit_height_m / self.atlas.digit_height();
+        let width: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
+        let mut pen = -width / 2.0;
+        for letter in text.chars() {
+            let corner = Vec2::new(pen - MARGIN, BASELINE - self.atlas.digit_height() / 2.0 - CELL);
+            let cell = Rect::from_corners(corner * metres, (corner + CELL) * metres);
+            self.rectangle(cell, self.atlas.cell(letter), place);
+            pen += self.atlas.advance(letter);
+        }
+    }
+
+    /// Paints a bar around a place, of a width and a height in metres.
+    pub fn bar(&mut self, width_m: f32, height_m: f32, place: Place) {
+        let bar = Rect::from_center_size(Vec2::ZERO, Vec2::new(width_m, height_m));
+        self.rectangle(bar, self.atlas.solid(), place);
+    }
+
+    /// A rectangle of the plane of a place, with a part of the atlas, whose y runs downwards.
+    fn rectangle(&mut self, on_plane: Rect, part: Rect, place: Place) {
+        let first = self.positions.len() as u32;
+        let Place { middle, right, up } = place;
+        let (min, max) = (on_plane.min, on_plane.max);
+        for (x, y, u, v) in [
+            (min.x, min.y, part.min.x, part.max.y),
+            (max.x, min.y, part.max.x, part.max.y),
+            (max.x, max.y, part.max.x, part.min.y),
+            (min.x, max.y, part.min.x, part.min.y),
+        ] {
+            self.positions.push((middle + right * x + up * y).to_array());
+            self.normals.push(right.cross(*up).to_array());
+            self.uvs.push([u, v]);
+        }
+        self.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
+    }
+
+    /// The mesh of everything that was written.
+    pub fn into_mesh(self) -> Mesh {
+        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
+            .with_inserted_indices(Indices::U32(self.indices))
+    }
+}
