@@ -263,6 +263,40 @@ pub fn caption(picture: &mut Picture, text: &str) -> Result<(), PlotError> {
     area.present().map_err(PlotError::new)
 }
 
+/// Writes short texts onto a picture, each on a light ground over a point: `(text, (x, y))`, in pixels from the top
+/// left. One that would cover another goes above it.
+///
+/// # Errors
+/// The plotting library failed.
+pub fn tags(picture: &mut Picture, tags: &[(&str, (f32, f32))]) -> Result<(), PlotError> {
+    font()?;
+    let size = (picture.width, picture.height);
+    let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
+    // As large as on a screen of this height.
+    let pixels = (size.1 / 48).clamp(12, 40);
+    let style = (FONT, pixels).into_font().color(&INK);
+    let mut lowest_first: Vec<_> = tags.iter().collect();
+    lowest_first.sort_by(|a, b| b.1.1.total_cmp(&a.1.1));
+    let mut placed: Vec<[i32; 4]> = Vec::new();
+    for (text, (x, y)) in lowest_first {
+        let (width, height) = area.estimate_text_size(text, &style).map_err(PlotError::new)?;
+        let (width, height) = (width as i32 + pixels as i32, height as i32 + pixels as i32 / 2);
+        let mut at = [*x as i32 - width / 2, *y as i32 - height, width, height];
+        let covers = |a: &[i32; 4], b: &[i32; 4]| {
+            a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3]
+        };
+        while let Some(other) = placed.iter().find(|other| covers(other, &at)) {
+            at[1] = other[1] - height - 2;
+        }
+        placed.push(at);
+        let corners = [(at[0], at[1]), (at[0] + width, at[1] + height)];
+        area.draw(&Rectangle::new(corners, WHITE.mix(0.88).filled())).map_err(PlotError::new)?;
+        let inside = (at[0] + pixels as i32 / 2, at[1] + pixels as i32 / 4);
+        area.draw(&Text::new(*text, inside, style.clone())).map_err(PlotError::new)?;
+    }
+    area.present().map_err(PlotError::new)
+}
+
 /// The range of the values with a margin.
 fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (least, most) = values

@@ -9,11 +9,12 @@ use clap::{Parser, Subcommand};
 
 use super::CliError;
 use super::compare::CompareArgs;
+use super::render::RenderArgs;
+use super::robust::OffBy;
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::run::{RunSource, THREADS_RANGE, available_cores};
 use crate::save::{DEFAULT_PRESET, Earlier, Preset, SavesFolder, load_preset};
-use crate::score::PerturbationRange;
 #[cfg(feature = "studio")]
 use crate::studio::Theme;
 
@@ -149,6 +150,8 @@ pub enum Command {
         /// The run's folder, as `snakes --no-render` names it
         run: PathBuf,
     },
+    /// Draw a moment of a saved champion, or of several side by side, as PNG; no window is opened
+    Render(RenderArgs),
     /// Search for what the report left free: duration, points per second, density, damping, surface
     Calibrate {
         /// How many candidates to try
@@ -165,38 +168,6 @@ pub enum Command {
     Presets,
     /// List every setting and its value, as --set takes them
     Settings,
-}
-
-/// How far perturbed trials are off.
-#[derive(Debug, clap::Args)]
-pub struct OffBy {
-    /// Share by which friction is larger or smaller
-    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().friction)]
-    off_friction: f32,
-    /// Share by which the steps are higher or lower
-    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().rise)]
-    off_rise: f32,
-    /// Share by which the limbs are heavier or lighter
-    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().density)]
-    off_density: f32,
-    /// Distance of the start, along and across, in metres
-    #[arg(long, value_name = "M", default_value_t = PerturbationRange::default().start_m)]
-    off_start: f32,
-    /// Turn of the snake at the start, in degrees
-    #[arg(long, value_name = "DEG", default_value_t = PerturbationRange::default().turn_deg)]
-    off_turn: f32,
-}
-
-impl From<&OffBy> for PerturbationRange {
-    fn from(off: &OffBy) -> Self {
-        Self {
-            friction: off.off_friction,
-            rise: off.off_rise,
-            density: off.off_density,
-            start_m: off.off_start,
-            turn_deg: off.off_turn,
-        }
-    }
 }
 
 /// What the arguments ask for.
@@ -232,6 +203,18 @@ fn one_line(text: &str) -> String {
 /// Reads a number, or says what would have been one.
 fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
     text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), allowed))
+}
+
+/// Reads a size in pixels, such as 1280x720.
+#[cfg(feature = "studio")]
+pub fn size(flag: &str, text: &str, least: (u32, u32), most: u32) -> Result<(u32, u32), Invalid> {
+    let allowed = "WIDTHxHEIGHT, such as 1280x720";
+    let wrong = || Invalid::new(flag, format!("{text:?}"), allowed);
+    let (width, height) = text.split_once('x').ok_or_else(wrong)?;
+    let (width, height) = (number(flag, width, allowed)?, number(flag, height, allowed)?);
+    within(&format!("{flag}.width"), width, least.0..=most)?;
+    within(&format!("{flag}.height"), height, least.1..=most)?;
+    Ok((width, height))
 }
 
 const WHOLE: &str = "a whole number from 0 up";
@@ -346,18 +329,11 @@ impl Args {
     /// The window's size in pixels.
     #[cfg(feature = "studio")]
     pub fn window_size(&self) -> Result<(u32, u32), CliError> {
-        let Some(text) = &self.window_size else { return Ok((1280, 720)) };
-        let allowed = "WIDTHxHEIGHT, such as 1280x720";
-        let wrong = || Invalid::new("window-size", format!("{text:?}"), allowed);
-        let (width, height) = text.split_once('x').ok_or_else(wrong)?;
-        let (width, height) =
-            (number("window-size", width, allowed)?, number("window-size", height, allowed)?);
-        within("window-size.width", width, 320..=16_384)?;
-        within("window-size.height", height, 240..=16_384)?;
-        Ok((width, height))
+        let given = self.window_size.as_deref();
+        Ok(given.map_or(Ok((1280, 720)), |text| size("window-size", text, (320, 240), 16_384))?)
     }
 
-    /// The colours of the window.
+    /// The colours of the window, and of pictures.
     #[cfg(feature = "studio")]
     pub fn theme(&self) -> Result<Theme, CliError> {
         Ok(self.theme.as_deref().map_or(Ok(Theme::default()), str::parse)?)

@@ -7,6 +7,7 @@ mod compare;
 mod error;
 #[cfg(feature = "studio")]
 mod figures;
+mod render;
 mod robust;
 mod table1;
 mod verify;
@@ -65,6 +66,10 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         Some(Command::Figures { run }) => figures::draw(&args, run),
         #[cfg(not(feature = "studio"))]
         Some(Command::Figures { .. }) => Err(CliError::NoStudio),
+        #[cfg(feature = "studio")]
+        Some(Command::Render(what)) => render::draw(&args, what),
+        #[cfg(not(feature = "studio"))]
+        Some(Command::Render(_)) => Err(CliError::NoStudio),
         Some(Command::Replay { files }) if args.no_render => {
             let replay = |file| headless::replay(file, args.json, &mut io::stdout().lock());
             Ok(files.iter().try_for_each(|file| replay(file))?)

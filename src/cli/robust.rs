@@ -13,6 +13,38 @@ use crate::run::robust::{Robustness, Share, robustness};
 use crate::save::load_champion;
 use crate::score::PerturbationRange;
 
+/// How far perturbed trials are off.
+#[derive(Debug, clap::Args)]
+pub struct OffBy {
+    /// Share by which friction is larger or smaller
+    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().friction)]
+    off_friction: f32,
+    /// Share by which the steps are higher or lower
+    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().rise)]
+    off_rise: f32,
+    /// Share by which the limbs are heavier or lighter
+    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().density)]
+    off_density: f32,
+    /// Distance of the start, along and across, in metres
+    #[arg(long, value_name = "M", default_value_t = PerturbationRange::default().start_m)]
+    off_start: f32,
+    /// Turn of the snake at the start, in degrees
+    #[arg(long, value_name = "DEG", default_value_t = PerturbationRange::default().turn_deg)]
+    off_turn: f32,
+}
+
+impl From<&OffBy> for PerturbationRange {
+    fn from(off: &OffBy) -> Self {
+        Self {
+            friction: off.off_friction,
+            rise: off.off_rise,
+            density: off.off_density,
+            start_m: off.off_start,
+            turn_deg: off.off_turn,
+        }
+    }
+}
+
 /// Runs a champion through perturbed trials and prints the shares.
 pub fn robust(
     args: &Args,

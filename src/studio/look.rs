@@ -98,7 +98,7 @@ pub const PANEL_WIDTH: f32 = 320.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torques under the stage, in points.
-pub const SIGNALS_HEIGHT: f32 = 64.0;
+pub const SIGNALS_HEIGHT: f32 = 72.0;
 /// Size of the letters on a name tag, in points.
 pub const TAG_SIZE: f32 = 13.0;
 /// Height of the chart, in points.

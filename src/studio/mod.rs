@@ -26,12 +26,14 @@ mod marks;
 mod name_tags;
 mod nosing;
 mod notice;
+mod offscreen;
 mod overlay;
 mod paint;
 mod panels;
 mod performance;
 mod playback;
 mod quality;
+pub mod render;
 mod rounded;
 mod scene;
 mod screenshot;
@@ -57,6 +59,8 @@ use crate::save::{Comparison, LoadedChampion, SaveError, SavesFolder, shipped_ch
 
 use casting::{Opening, Saved};
 pub use look::Theme;
+pub use overlay::Overlay;
+pub use view::Shot;
 
 /// With what the studio opens.
 #[derive(Debug, Clone)]

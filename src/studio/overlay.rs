@@ -7,11 +7,12 @@ use super::Frame;
 use super::hands::Hands;
 use super::lane::Lane;
 use super::look::{Palette, Theme};
+use crate::check::Invalid;
 use crate::world::JointTorque;
 
 /// Something that can be drawn over the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Overlay {
+pub enum Overlay {
     /// Where the snake touches the world, and with what force.
     Contacts,
     /// The torques on its joints.
@@ -36,6 +37,20 @@ impl Overlay {
     /// All of them, in the order of their buttons.
     pub const ALL: [Self; 5] =
         [Self::Contacts, Self::Torques, Self::Trail, Self::FitnessLine, Self::Wireframe];
+
+    /// The one with this name, in small letters and in one word.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn named(name: &str) -> Result<Self, Invalid> {
+        match name {
+            "contacts" => Ok(Self::Contacts),
+            "torques" => Ok(Self::Torques),
+            "trail" => Ok(Self::Trail),
+            "line" => Ok(Self::FitnessLine),
+            _ => Err(Invalid::new("show", format!("{name:?}"), "contacts, torques, trail or line")),
+        }
+    }
 
     /// Its name on a button, and what it shows.
     pub fn words(self) -> (&'static str, &'static str) {

@@ -2,6 +2,8 @@
 
 use bevy::prelude::*;
 
+use crate::check::Invalid;
+
 /// Where the camera is, relative to what it looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct View {
@@ -17,7 +19,7 @@ pub(super) struct View {
 
 /// How to look at the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum Shot {
+pub enum Shot {
     /// At an angle, going along with the snake, or with all of them.
     #[default]
     Follow,
@@ -41,6 +43,16 @@ impl Shot {
             Self::Top => "Top",
             Self::Free => "Free",
         }
+    }
+
+    /// The one with this name, in small letters.
+    ///
+    /// # Errors
+    /// There is none, or it is no shot of a moment.
+    pub fn named(name: &str) -> Result<Self, Invalid> {
+        let named = Self::ALL.into_iter().find(|shot| shot.name().to_lowercase() == name);
+        let still = named.filter(|shot| *shot != Self::Free);
+        still.ok_or_else(|| Invalid::new("camera", format!("{name:?}"), "follow, side or top"))
     }
 
     /// The one after it, around.

@@ -25,6 +25,8 @@ struct Drawn {
 
 /// Points across for each point of a line.
 const COLUMN_WIDTH: f32 = 2.0;
+/// Height of the seconds under the lines, in points.
+const RULER_HEIGHT: f32 = 11.0;
 /// Between a row's line and the row's edge, in points.
 const ROW_MARGIN: f32 = 1.5;
 
@@ -46,7 +48,8 @@ impl Signals {
         let palette = look::of(ui);
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 4.0, palette.field);
-        let plot = rect.shrink2(egui::vec2(0.0, 3.0));
+        let mut plot = rect.shrink2(egui::vec2(0.0, 3.0));
+        plot.max.y -= RULER_HEIGHT;
         let x_of = |time_s: f64| {
             let share = if end_s > 0.0 { time_s / end_s } else { 0.0 };
             plot.left() + plot.width() * share.clamp(0.0, 1.0) as f32
