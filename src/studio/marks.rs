@@ -76,7 +76,7 @@ fn look_up(evolution: Option<Res<Evolution>>, mut best: ResMut<BestSoFar>) {
     best.set_if_neq(BestSoFar(reached_m.reduce(f32::max)));
 }
 
-/// Plants a flag on every lane that has none for the best so far, and takes down those of others.
+/// Plants a flag on the first lane if it has none for the best so far, and takes down that of another.
 fn plant(
     best: Res<BestSoFar>,
     lanes: Query<(Entity, Ref<Lane>)>,
@@ -90,7 +90,8 @@ fn plant(
         flags.iter().for_each(|flag| commands.entity(flag).despawn());
     }
     let Some(y_m) = best.0 else { return };
-    for (entity, lane) in &lanes {
+    // The nearest lane's flag serves all.
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| lane.number() == 0) {
         if !best.is_changed() && !lane.is_added() {
             continue;
         }

@@ -42,7 +42,10 @@ fn paint(
 ) {
     for (entity, lane) in &lanes {
         let mut writing = lettering.begin();
-        scale(&mut writing, lane.trial());
+        if lane.number() == 0 {
+            // The nearest one's serves all.
+            scale(&mut writing, lane.trial());
+        }
         numbers(&mut writing, &lane.trial().stairs);
         commands.entity(entity).with_child((
             Mesh3d(meshes.add(writing.into_mesh())),
