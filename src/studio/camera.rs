@@ -142,6 +142,9 @@ const PIXELS_PER_LINE: f32 = 40.0;
 const FOLLOW_PER_S: f32 = 4.0;
 /// Nearer than this the camera is where it wants to be, in metres.
 const FOLLOWED_M: f32 = 0.005;
+/// So much of the lanes before and behind the snakes is in view, in metres.
+const AHEAD_M: f32 = 9.0;
+const BEHIND_M: f32 = 6.0;
 /// How eagerly the camera goes to where it was asked to, in 1/s.
 const GLIDE_PER_S: f32 = 14.0;
 /// A pinch of a trackpad's whole scale zooms by this factor.
@@ -297,8 +300,9 @@ fn glide(
         let points = lanes.iter().flat_map(|lane| {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
             let middle = lane.drawn_middle() + lane.offset();
+            let around = [Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along);
             let ends = lane.last_poses().iter().map(move |pose| pose.translation + lane.offset());
-            ends.chain([middle - half_width, middle + half_width])
+            ends.chain([middle - half_width, middle + half_width]).chain(around)
         });
         let zoom = goal.distance_m / View::USUAL_M;
         goal.distance_m = goal.distance_to_see(target, points, area.aspect()) * zoom;

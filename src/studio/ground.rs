@@ -4,6 +4,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 
+use super::Frame;
 use super::look::Theme;
 
 /// Half the side of the drawn ground, in metres. The physical ground has no end; the fog hides this one.
@@ -25,7 +26,7 @@ struct Earth {
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Earth>()
         .add_systems(Startup, set_up)
-        .add_systems(Update, dress.run_if(resource_changed::<Theme>));
+        .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
 }
 
 impl FromWorld for Earth {

@@ -10,6 +10,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 
+use super::Frame;
 use super::look::Theme;
 use atlas::{Atlas, BASELINE, CELL, MARGIN};
 
@@ -24,7 +25,8 @@ pub(super) struct Lettering {
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<Lettering>().add_systems(Update, dress.run_if(resource_changed::<Theme>));
+    app.init_resource::<Lettering>()
+        .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
 }
 
 impl FromWorld for Lettering {
@@ -65,7 +67,9 @@ pub(super) struct Writing<'a> {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
     uvs: Vec<[f32; 2]>,
+    colors: Vec<[f32; 4]>,
     indices: Vec<u32>,
+    opacity: f32,
 }
 
 /// Where a text stands: its middle, and which way its lines and its letters go.
@@ -82,8 +86,8 @@ pub(super) struct Place {
 impl Lettering {
     /// An empty writing.
     pub fn begin(&self) -> Writing<'_> {
-        let (positions, normals, uvs, indices) = default();
-        Writing { atlas: &self.atlas, positions, normals, uvs, indices }
+        let (positions, normals, uvs, colors, indices) = default();
+        Writing { atlas: &self.atlas, positions, normals, uvs, colors, indices, opacity: 1.0 }
     }
 
     /// How wide a text is whose digits are so high, in metres.
@@ -94,6 +98,11 @@ impl Lettering {
 }
 
 impl Writing<'_> {
+    /// From now on paint covers as much of what is below it, as a share of what it usually does.
+    pub fn thin(&mut self, opacity: f32) {
+        self.opacity = opacity;
+    }
+
     /// Writes a text whose digits are so high, in metres.
     pub fn text(&mut self, text: &str, digit_height_m: f32, place: Place) {
         let metres = digit_height_m / self.atlas.digit_height();
@@ -127,6 +136,7 @@ impl Writing<'_> {
             self.positions.push((middle + right * x + up * y).to_array());
             self.normals.push(right.cross(*up).to_array());
             self.uvs.push([u, v]);
+            self.colors.push([1.0, 1.0, 1.0, self.opacity]);
         }
         self.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
     }
@@ -137,6 +147,7 @@ impl Writing<'_> {
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
             .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
             .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
             .with_inserted_indices(Indices::U32(self.indices))
     }
 }

@@ -59,7 +59,7 @@ impl LimbShape {
         let mut solid = Solid::default();
         let [front, rear] = self.cuts_m();
         // The head's stripe ends behind the eyes.
-        let front = if self.has_front { front + self.edge_m() } else { self.eye_m() * 3.6 };
+        let front = if self.has_front { front + self.edge_m() } else { self.eye_m() * 3.2 };
         let rear = rear + self.edge_m();
         let length = (self.size.y - front - rear).max(0.0);
         let centre = Vec3::new(0.0, (rear - front) / 2.0, self.size.z / 2.0 + PAINT_M);
@@ -86,15 +86,15 @@ impl LimbShape {
             solid.cylinder(joint - Vec3::Y * front * 1.2, joint, thickness * 0.34);
         } else {
             for eye in self.eyes() {
-                let gaze = Vec3::new(eye.x.signum() * 0.55, 0.8, 0.25).normalize();
-                solid.ball(eye + gaze * self.eye_m() * 0.5, self.eye_m() * 0.62);
+                let gaze = Vec3::new(eye.x.signum() * 0.75, 0.7, 0.3).normalize();
+                solid.ball(eye + gaze * self.eye_m() * 0.5, self.eye_m() * 0.64);
             }
         }
         solid
     }
 
     fn eye_m(&self) -> f32 {
-        self.thickness_m() * 0.16
+        self.thickness_m() * 0.19
     }
 
     /// Where the head's eyes are: on top, so that they are seen from everywhere.

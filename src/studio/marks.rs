@@ -42,7 +42,7 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<BestSoFar>()
         .init_resource::<Cloth>()
         .add_systems(Update, (look_up, plant).chain().in_set(Frame::Draw))
-        .add_systems(Update, dress.run_if(resource_changed::<Theme>));
+        .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
 }
 
 impl FromWorld for Cloth {

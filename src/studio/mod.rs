@@ -14,6 +14,7 @@ mod evolution;
 mod exhibit;
 pub mod figures;
 mod frame_times;
+mod graphics;
 mod ground;
 mod hands;
 mod keys;
@@ -47,6 +48,7 @@ mod view;
 mod wireframe;
 
 use std::path::PathBuf;
+use std::sync::PoisonError;
 
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
@@ -148,6 +150,8 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     let engine = engine::Engine::new(&options)?;
     let run_folder = engine.run_folder();
     let exit_after = options.exit_after_frames;
+    let failure = graphics::Failure::default();
+    let failed = failure.clone();
     let exit = start_up::guarded(&run_folder, move || {
         let mut app = App::new();
         app.add_plugins(
@@ -161,6 +165,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(Opening(saved))
         .insert_resource(Opened(options.comparison.clone()))
         .insert_resource(engine)
+        .insert_resource(failure)
         .configure_sets(Update, (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain())
         .add_plugins((
             command::plugin,
@@ -173,8 +178,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
             (overlay::plugin, wireframe::plugin, screenshot::plugin),
             keys::plugin,
             (panels::plugin, name_tags::plugin, notice::plugin),
-            title::plugin,
-            start_up::plugin,
+            (title::plugin, graphics::plugin, start_up::plugin),
         ));
         if let Some(frames) = exit_after {
             frame_times::plugin(&mut app, frames);
@@ -183,7 +187,13 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     })?;
     match exit {
         AppExit::Success => Ok(()),
-        AppExit::Error(code) => Err(StudioError::Ended(code.get())),
+        AppExit::Error(code) => Err(match failed.message() {
+            Some(message) => {
+                let run = run_folder.lock().unwrap_or_else(PoisonError::into_inner).take();
+                StudioError::Crashed { message, run }
+            }
+            None => StudioError::Ended(code.get()),
+        }),
     }
 }
 

@@ -37,7 +37,7 @@ const GLOW_DOWN_M: f32 = 0.3;
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Strips>()
         .add_systems(Update, (build, light).chain().in_set(Frame::Draw))
-        .add_systems(Update, dress.run_if(resource_changed::<Theme>));
+        .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
 }
 
 impl FromWorld for Strips {

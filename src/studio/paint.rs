@@ -12,7 +12,7 @@ use crate::world::Stairs;
 /// Every so many metres a number.
 const NUMBER_EVERY_M: i32 = 5;
 /// Height of the ground's digits, in metres.
-const DIGIT_M: f32 = 0.8;
+const DIGIT_M: f32 = 0.7;
 /// How far beside the stairs the scale runs, in metres.
 const ASIDE_M: f32 = 0.35;
 /// Length of the mark at each number, in metres, and at each metre between them.
@@ -20,10 +20,12 @@ const LONG_MARK_M: f32 = 0.7;
 const SHORT_MARK_M: f32 = 0.3;
 /// Width of a mark, in metres.
 const MARK_M: f32 = 0.07;
+/// How much of the numbers' paint the scale has.
+const SCALE_OPACITY: f32 = 0.62;
 /// How far paint is above what it is painted on, in metres: higher than the ground's grid.
 const PAINT_M: f32 = 0.015;
 /// A step's number is so high, as a share of its rise.
-const NUMBER_SHARE: f32 = 0.42;
+const NUMBER_SHARE: f32 = 0.5;
 /// The most height of a step's number, in metres.
 const MOST_NUMBER_M: f32 = 0.5;
 /// From the stairs' right edge to the middle of a step's number, in metres.
@@ -43,8 +45,10 @@ fn paint(
     for (entity, lane) in &lanes {
         let mut writing = lettering.begin();
         if lane.number() == 0 {
-            // The nearest one's serves all.
+            // The nearest one's serves all. What is large needs less paint to be read than what is small.
+            writing.thin(SCALE_OPACITY);
             scale(&mut writing, lane.trial());
+            writing.thin(1.0);
         }
         numbers(&mut writing, &lane.trial().stairs);
         commands.entity(entity).with_child((

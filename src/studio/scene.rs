@@ -1,7 +1,7 @@
 //! What stands still: lights, the stairs of the trial on show, and, each in a file of its own, what is around and on
 //! them. All of it has the theme's colours.
 
-use bevy::light::{CascadeShadowConfigBuilder, DirectionalLightShadowMap};
+use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder, DirectionalLightShadowMap};
 use bevy::pbr::DistanceFog;
 use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
@@ -37,12 +37,17 @@ pub(super) fn plugin(app: &mut App) {
             marks::plugin,
         ))
         .add_systems(Startup, set_up)
-        .add_systems(Update, build_stairs.in_set(Frame::Draw))
+        .add_systems(Update, (build_stairs, fit_shadows).in_set(Frame::Draw))
         .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>));
 }
 
-/// Shadows end this far from the camera, in metres: the length of the whole staircase.
-const SHADOW_DISTANCE_M: f32 = 60.0;
+/// Shadows reach beyond what is looked at by this factor: to the far end of what stands around it.
+const SHADOWS_BEYOND: f32 = 1.7;
+/// Nearest and farthest end of the shadows, in metres from the camera.
+const SHADOWS_END_M: std::ops::RangeInclusive<f32> = 14.0..=150.0;
+/// From one end of the shadows to the next larger one: in steps, so that they do not crawl while the camera moves.
+const SHADOW_STEP: f32 = 1.3;
+
 impl FromWorld for Props {
     fn from_world(world: &mut World) -> Self {
         let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(1.0));
@@ -66,16 +71,44 @@ fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
     let size = Quality::suiting(&adapter).shadow_map_pixels;
     commands.insert_resource(DirectionalLightShadowMap { size });
     commands.spawn((
-        DirectionalLight { shadow_maps_enabled: true, ..default() },
+        DirectionalLight {
+            shadow_maps_enabled: true,
+            // Below this, in metres, a tread darkens the foot of the riser behind it in teeth.
+            shadow_depth_bias: 0.09,
+            ..default()
+        },
         // From behind the viewer's right shoulder, so that both treads and risers are lit and differ.
         Transform::from_xyz(9.0, -12.0, 16.0).looking_at(Vec3::ZERO, Vec3::Z),
-        CascadeShadowConfigBuilder {
-            num_cascades: 1,
-            maximum_distance: SHADOW_DISTANCE_M,
-            ..default()
-        }
-        .build(),
+        shadows_until(*SHADOWS_END_M.end()),
     ));
+}
+
+fn shadows_until(end_m: f32) -> CascadeShadowConfig {
+    CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: end_m, ..default() }.build()
+}
+
+/// Spends the shadow map on what is in view: from near by, shadows are sharp; from far away, they are still there.
+fn fit_shadows(
+    cameras: Query<&Transform, With<Camera3d>>,
+    mut suns: Query<&mut CascadeShadowConfig, With<DirectionalLight>>,
+    mut end_m: Local<f32>,
+) {
+    let Some(camera) = cameras.iter().next() else { return };
+    let fitting_m = shadows_end_m(camera);
+    if *end_m != fitting_m {
+        *end_m = fitting_m;
+        suns.iter_mut().for_each(|mut sun| *sun = shadows_until(fitting_m));
+    }
+}
+
+/// Where shadows may end for a camera: beyond the place on the ground that it looks at.
+fn shadows_end_m(camera: &Transform) -> f32 {
+    let down = (-camera.forward().z).max(0.01);
+    let looked_at_m = camera.translation.z.max(0.0) / down;
+    let (nearest_m, farthest_m) = (*SHADOWS_END_M.start(), *SHADOWS_END_M.end());
+    let wanted_m = (looked_at_m * SHADOWS_BEYOND).clamp(nearest_m, farthest_m);
+    let steps = (libm::logf(wanted_m / nearest_m) / libm::logf(SHADOW_STEP)).ceil();
+    nearest_m * libm::powf(SHADOW_STEP, steps)
 }
 
 /// Gives everything the colours of the theme.
@@ -130,5 +163,23 @@ fn build_stairs(
                 ));
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shadows_reach_beyond_what_is_looked_at_and_change_in_steps() {
+        let from = |distance_m: f32| {
+            let eye = Vec3::new(distance_m * 0.8, 0.0, distance_m * 0.6);
+            shadows_end_m(&Transform::from_translation(eye).looking_at(Vec3::ZERO, Vec3::Z))
+        };
+        for distance_m in [3.0, 24.0, 60.0] {
+            assert!(from(distance_m) > distance_m * 1.5, "{distance_m}: {}", from(distance_m));
+        }
+        assert_eq!(from(24.0), from(24.1));
+        assert!(from(8.0) < from(24.0) && from(500.0) < 200.0);
     }
 }

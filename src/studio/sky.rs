@@ -7,13 +7,14 @@ use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 
+use super::Frame;
 use super::look::{Palette, Theme};
 use super::solid::Solid;
 
 /// Radius of the dome, in metres: beyond the ground's end, and nearer than where the camera's view ends.
 const RADIUS_M: f32 = 900.0;
 /// Up to this height above the horizon, in radians, the gradient runs: low, because that is what one sees.
-const ZENITH_RAD: f32 = 0.75;
+const ZENITH_RAD: f32 = 0.55;
 /// Rings of the gradient.
 const RINGS: usize = 20;
 /// Sides of the dome.
@@ -25,7 +26,7 @@ struct Dome;
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Startup, set_up)
-        .add_systems(Update, dress.run_if(resource_changed::<Theme>))
+        .add_systems(Update, dress.in_set(Frame::Draw).run_if(resource_changed::<Theme>))
         .add_systems(PostUpdate, follow.before(TransformSystems::Propagate));
 }
 

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::prelude::*;
 
-use super::StudioError;
+use super::{StudioError, graphics};
 
 /// The folder of the run that is going on, if one is.
 pub(super) type RunInProgress = Arc<Mutex<Option<PathBuf>>>;
@@ -30,9 +30,11 @@ pub(super) fn guarded(
     run: impl FnOnce() -> AppExit,
 ) -> Result<AppExit, StudioError> {
     let usual_hook = panic::take_hook();
+    let folder = Arc::clone(run_folder);
     panic::set_hook(Box::new(move |info| {
         let is_open = WINDOW_IS_OPEN.load(Ordering::Relaxed);
         if is_open {
+            graphics::outlive(info, &folder);
             usual_hook(info);
         }
         let mut first = FIRST_PANIC.lock().unwrap_or_else(PoisonError::into_inner);

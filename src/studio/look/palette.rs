@@ -105,18 +105,18 @@ pub const LIGHT: Palette = Palette {
     twist: Color32::from_rgb(0xb3, 0x5c, 0x00),
     trail: Color::srgb(0.55, 0.20, 0.65),
     pull: Color::srgb(0.80, 0.30, 0.05),
-    horizon: Color::srgb(0.87, 0.92, 0.96),
-    zenith: Color::srgb(0.50, 0.70, 0.90),
-    ground: Color::srgb(0.66, 0.72, 0.67),
+    horizon: Color::srgb(0.89, 0.93, 0.96),
+    zenith: Color::srgb(0.45, 0.67, 0.91),
+    ground: Color::srgb(0.73, 0.78, 0.78),
     grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
     stair: Color::srgb(0.84, 0.81, 0.76),
     stair_other: Color::srgb(0.76, 0.73, 0.68),
     nosing: Color::srgb(0.60, 0.57, 0.52),
     nosing_lit: Color::srgb(0.05, 0.72, 1.0),
-    paint: Color::srgba(0.06, 0.12, 0.18, 0.50),
+    paint: Color::srgba(0.06, 0.12, 0.18, 0.62),
     white: Color::srgb(0.97, 0.96, 0.93),
     metal: Color::srgb(0.16, 0.17, 0.20),
-    flag: Color::srgb(0.96, 0.72, 0.22),
+    flag: Color::srgb(1.0, 0.79, 0.28),
     flag_text: Color::srgb(0.16, 0.13, 0.08),
     sun: Color::srgb(1.0, 0.97, 0.92),
     sun_lux: 3_600.0,
@@ -152,10 +152,10 @@ pub const DARK: Palette = Palette {
     stair_other: Color::srgb(0.40, 0.43, 0.49),
     nosing: Color::srgb(0.30, 0.33, 0.38),
     nosing_lit: Color::srgb(0.40, 0.80, 1.0),
-    paint: Color::srgba(0.85, 0.92, 1.0, 0.45),
+    paint: Color::srgba(0.85, 0.92, 1.0, 0.60),
     white: Color::srgb(0.93, 0.94, 0.96),
     metal: Color::srgb(0.10, 0.11, 0.13),
-    flag: Color::srgb(0.95, 0.69, 0.24),
+    flag: Color::srgb(1.0, 0.75, 0.28),
     flag_text: Color::srgb(0.13, 0.11, 0.07),
     sun: Color::srgb(1.0, 0.96, 0.90),
     sun_lux: 2_900.0,
@@ -188,6 +188,9 @@ impl Palette {
 
     /// Colours egui's style.
     pub(super) fn dress(&self, visuals: &mut egui::Visuals) {
+        // Were they another theme's, all letters would be drawn anew at the change, and the panel be missing until
+        // they are on the graphics card.
+        visuals.text_options = egui::Visuals::dark().text_options;
         visuals.panel_fill = self.panel;
         visuals.window_fill = self.panel;
         visuals.window_stroke = Stroke::new(1.0, self.field_hovered);

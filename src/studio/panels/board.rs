@@ -64,28 +64,32 @@ pub(super) fn board(
         Programme::Race => title(ui, "Race"),
         Programme::WhatIf { .. } => title(ui, "What if"),
     }
-    egui::Grid::new("board").num_columns(3).spacing([look::GAP, look::GAP / 4.0]).show(ui, |ui| {
-        for (place, standing) in standings(lanes.iter().copied(), time_s).iter().enumerate() {
-            let rank = format!("{}", place + 1);
-            ui.label(egui::RichText::new(rank).color(palette.text_weak).monospace());
-            let hint = "Click to see its numbers and torques below";
-            let name = ui.selectable_label(standing.lane == focus, &standing.name);
-            if name.on_hover_text(hint).clicked() {
-                asked.push(Command::Focus(standing.lane));
-            }
-            let state = match (standing.is_out, standing.landed_s) {
-                (true, _) => egui::RichText::new("out").color(palette.problem),
-                (false, Some(landed_s)) => {
-                    egui::RichText::new(format!("landed {landed_s:.2} s")).color(palette.accent)
+    egui::Grid::new("board")
+        .num_columns(3)
+        .min_col_width(0.0)
+        .spacing([look::GAP, look::GAP / 4.0])
+        .show(ui, |ui| {
+            for (place, standing) in standings(lanes.iter().copied(), time_s).iter().enumerate() {
+                let rank = format!("{}", place + 1);
+                ui.label(egui::RichText::new(rank).color(palette.text_weak).monospace());
+                let hint = "Click to see its numbers and torques below";
+                let name = ui.selectable_label(standing.lane == focus, &standing.name);
+                if name.on_hover_text(hint).clicked() {
+                    asked.push(Command::Focus(standing.lane));
                 }
-                (false, None) => egui::RichText::new(format!("{:.2} m", standing.y_m)),
-            };
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(state.monospace());
-            });
-            ui.end_row();
-        }
-    });
+                let state = match (standing.is_out, standing.landed_s) {
+                    (true, _) => egui::RichText::new("out").color(palette.problem),
+                    (false, Some(landed_s)) => {
+                        egui::RichText::new(format!("landed {landed_s:.2} s")).color(palette.accent)
+                    }
+                    (false, None) => egui::RichText::new(format!("{:.2} m", standing.y_m)),
+                };
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    ui.label(state.monospace());
+                });
+                ui.end_row();
+            }
+        });
     ui.horizontal(|ui| {
         let buttons: &[(&str, &str, Command)] = match programme {
             Programme::WhatIf { .. } => &[
