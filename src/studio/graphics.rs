@@ -42,10 +42,9 @@ struct Losses(u32);
 const MOST_LOSSES: u32 = 5;
 
 pub(super) fn plugin(app: &mut App) {
-    app.add_systems(Update, lose)
-        .add_systems(Startup, say_if_reopened)
-        .init_resource::<Losses>()
-        .insert_resource(RenderErrorHandler(recover));
+    app.init_resource::<Losses>()
+        .insert_resource(RenderErrorHandler(recover))
+        .add_systems(Startup, say_if_reopened);
 }
 
 /// How often the program has opened itself again.

@@ -87,8 +87,8 @@ pub const HEADING_SIZE: f32 = 22.0;
 pub const TITLE_SIZE: f32 = 15.0;
 /// Width of a field for a number, in points.
 pub const FIELD_WIDTH: f32 = 64.0;
-/// From this height on a window has room for everything at once, in points.
-pub const TALL_WINDOW: f32 = 880.0;
+/// The list of keys takes at most this share of the window's height.
+pub const MOST_KEYS_SHARE: f32 = 0.35;
 /// Width of a list to choose from, in points.
 pub const COMBO_WIDTH: f32 = 190.0;
 /// Width of a slider without its number, in points.

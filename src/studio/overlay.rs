@@ -133,6 +133,12 @@ fn draw(
         if overlays.shows(Overlay::FitnessLine) {
             fitness_line(lane, palette, &mut on_top);
         }
+        if let Some(hands) = &hands
+            && hands.lane == lane.number()
+            && let Some(limb) = hands.limb
+        {
+            outline(lane, limb, palette, &mut on_top);
+        }
         let pull = hands.as_ref().and_then(|hands| hands.pull_on(entity));
         if let Some(pull) = pull {
             let from = lane.point_of(pull.limb, pull.held_at_m) + lane.offset();
@@ -141,6 +147,14 @@ fn draw(
             on_top.sphere(Isometry3d::from_translation(to), 0.12, palette.pull).resolution(12);
         }
     }
+}
+
+/// The edges of the limb whose numbers are shown.
+fn outline(lane: &Lane, limb: usize, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
+    let Some(pose) = lane.drawn_poses().nth(limb) else { return };
+    let size = Vec3::from(lane.trial().agent.limb_size_m(limb)) * 1.02;
+    let at = Transform::from_translation(pose.translation + lane.offset());
+    gizmos.cube(at.with_rotation(pose.rotation).with_scale(size), in_scene(palette.second));
 }
 
 /// A cross at every contact, and the force on the limb as an arrow from it.

@@ -198,10 +198,7 @@ fn draw(
             egui::Panel::bottom("keys").frame(egui::Frame::new()).show_separator_line(false).show(
                 ui,
                 |ui| {
-                    // What is explored takes all the room there is.
-                    let has_room =
-                        window.height() > look::TALL_WINDOW && panels.tab != Tab::Explore;
-                    ui.push_id(panels.tab == Tab::Explore, |ui| keys(ui, has_room));
+                    keys(ui, window.height() * look::MOST_KEYS_SHARE);
                 },
             );
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -333,23 +330,26 @@ fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, about: &str) -> egui::Resp
     ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
 }
 
-fn keys(ui: &mut egui::Ui, is_open_at_first: bool) {
+fn keys(ui: &mut egui::Ui, most_height: f32) {
     ui.add_space(look::GAP);
-    let header = egui::CollapsingHeader::new("Keys and mouse").default_open(is_open_at_first);
-    header.show(ui, |ui| {
+    egui::CollapsingHeader::new("Keys and mouse").show(ui, |ui| {
         let spacing = [look::GAP * 2.0, look::GAP / 4.0];
-        egui::Grid::new("keys").num_columns(2).spacing(spacing).show(ui, |ui| {
-            let mouse = [
-                ("Drag", "turn the camera; on a limb, pull it"),
-                ("Right drag", "move the camera"),
-                ("Wheel", "zoom"),
-                ("Double click", "look at what is there"),
-            ];
-            for (key, effect) in KEYS.into_iter().chain(mouse) {
-                ui.label(egui::RichText::new(key).color(look::of(ui).accent));
-                ui.label(effect);
-                ui.end_row();
-            }
+        let list =
+            egui::ScrollArea::vertical().max_height(most_height).min_scrolled_height(most_height);
+        list.id_salt("keys").show(ui, |ui| {
+            egui::Grid::new("keys").num_columns(2).spacing(spacing).show(ui, |ui| {
+                let mouse = [
+                    ("Drag", "turn the camera; pull a limb"),
+                    ("Right drag", "move the camera"),
+                    ("Wheel", "zoom"),
+                    ("Double click", "look at what is there"),
+                ];
+                for (key, effect) in KEYS.into_iter().chain(mouse) {
+                    ui.label(egui::RichText::new(key).color(look::of(ui).accent));
+                    ui.label(effect);
+                    ui.end_row();
+                }
+            });
         });
     });
 }

@@ -16,8 +16,8 @@ pub(super) struct TimelinePanel {
     signals: Signals,
 }
 
-/// From this width on there is room for the numbers beside the player, in points.
-const ROOM_FOR_NUMBERS: f32 = 700.0;
+/// About the width of a letter, in points.
+const LETTER_WIDTH: f32 = 7.4;
 
 impl TimelinePanel {
     /// Draws the panel and adds what was asked for. `run` is the number of the current run, `end_s` where the last
@@ -107,7 +107,9 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, asked: &mut Vec<Co
     if ui.add(field).on_hover_text(hint).changed() {
         asked.push(Command::SetSpeed(speed));
     }
-    let time = format!("{:5.2} of {end_s:.2} s", playback.time_s());
+    ui.add_space(look::GAP / 2.0);
+    let width = format!("{end_s:.2}").len();
+    let time = format!("{:width$.2} of {end_s:.2} s", playback.time_s());
     ui.label(egui::RichText::new(time).monospace());
 }
 
@@ -122,16 +124,27 @@ fn numbers(ui: &mut egui::Ui, lane: &Lane) {
         return;
     }
     let unit = trial.fitness.unit();
-    let steps = evaluation.behaviour.map(|behaviour| behaviour.steps_climbed);
-    let mut parts = vec![(format!("{:.2}{unit}", evaluation.fitness), "fitness")];
-    parts.extend(steps.map(|steps| (format!("{steps} of {}", trial.stairs.steps), "steps")));
-    if ui.available_width() > ROOM_FOR_NUMBERS - 300.0 {
-        parts.push((format!("{:.2} m/s", lane.speed_m_s()), "speed"));
-        let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
-        parts.extend(energy_kj.map(|energy_kj| (format!("{energy_kj:.2} kJ"), "energy")));
-    }
+    let behaviour = evaluation.behaviour;
+    let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
+    let steps = behaviour.map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));
+    // The most important first: in a narrow window only some have room.
+    let all = [
+        ("fitness", Some(format!("{:.2}{unit}", evaluation.fitness))),
+        ("steps", steps),
+        ("speed", Some(format!("{:.2} m/s", lane.speed_m_s()))),
+        ("energy", energy_kj.map(|energy_kj| format!("{energy_kj:.2} kJ"))),
+    ];
+    let room = ui.available_width();
+    let mut used = 0.0;
+    let with_room = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
+    let shown: Vec<(&str, String)> = with_room
+        .take_while(|(name, value)| {
+            used += (name.len() + value.chars().count()) as f32 * LETTER_WIDTH + look::GAP * 2.5;
+            used < room
+        })
+        .collect();
     // From right to left.
-    for (value, name) in parts.into_iter().rev() {
+    for (name, value) in shown.into_iter().rev() {
         ui.label(egui::RichText::new(value).monospace());
         ui.label(egui::RichText::new(name).color(palette.text_weak));
         ui.add_space(look::GAP / 2.0);
