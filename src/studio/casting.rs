@@ -211,13 +211,20 @@ pub(super) fn kept(on_show: &[Exhibit], programme: &Programme) -> Option<Show> {
 fn difference(original: &Trial, changed: &Trial) -> String {
     let of = |trial: &Trial| fields(&Settings { trial: trial.clone(), ..Settings::default() });
     let before = of(original);
-    let other: Vec<(String, String)> =
-        of(changed).into_iter().filter(|field| !before.contains(field)).collect();
-    let named = other.iter().take(MOST_NAMED).map(|(path, value)| {
-        let name = path.rsplit('.').next().unwrap_or(path);
-        format!("{} {value}", without_unit(name).replace('_', " "))
-    });
-    let mut text = named.collect::<Vec<_>>().join(", ");
+    let was_there = |path: &str| before.iter().any(|(known, _)| known == path);
+    let mut other: Vec<String> = of(changed)
+        .into_iter()
+        .filter(|field| !before.contains(field))
+        .map(|(path, value)| {
+            let mut names = path.rsplit('.');
+            let name = without_unit(names.next().unwrap_or(&path)).replace('_', " ");
+            // What was not there at all before is named as a whole.
+            let whole = names.next().filter(|_| !was_there(&path));
+            whole.map_or(format!("{name} {value}"), |whole| format!("own {whole}"))
+        })
+        .collect();
+    other.dedup();
+    let mut text = other.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
     if other.len() > MOST_NAMED {
         text += &format!(" and {} more", other.len() - MOST_NAMED);
     }
@@ -290,6 +297,10 @@ mod tests {
         let [original, changed] = &second.exhibits[..] else { panic!("two lanes") };
         assert!(!original.is_changed() && changed.is_changed());
         assert_eq!(changed.label(), "rise 0.7, friction 0.3");
+        let ground = field("ground.friction", "1");
+        let third = what_if(&mut run, &second.exhibits, &second.programme, &ground);
+        let third = third.expect("allowed").expect("it matters");
+        assert_eq!(third.exhibits[1].label(), "own ground, rise 0.7 and 1 more");
         assert_eq!(changed.trial().surface.friction, 0.3);
         assert_eq!(changed.trial().duration_s, original.trial().duration_s, "nothing else");
         let kept = kept(&second.exhibits, &second.programme).expect("kept");

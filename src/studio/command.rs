@@ -147,7 +147,12 @@ impl StageParams<'_, '_> {
 
     /// Shows what a change does, beside what it was before.
     fn try_out(&mut self, evolution: &mut Evolution, change: &Change) -> Result<(), String> {
-        let show = what_if(evolution, &self.exhibits(), &self.programme, change)?;
+        let mut on_show = self.exhibits();
+        if *self.programme == Programme::Race && self.hands.lane < on_show.len() {
+            // Of a race it is the one in focus that is tried.
+            on_show.swap(0, self.hands.lane);
+        }
+        let show = what_if(evolution, &on_show, &self.programme, change)?;
         self.show.write_batch(show);
         Ok(())
     }

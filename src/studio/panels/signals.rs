@@ -76,8 +76,9 @@ impl Signals {
         let cursor = Stroke::new(2.0, palette.accent);
         painter.line_segment([egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())], cursor);
 
-        let pointed =
-            response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
+        // A quick click goes down and up within a frame.
+        let is_pointed = response.is_pointer_button_down_on() || response.clicked();
+        let pointed = response.interact_pointer_pos().filter(|_| is_pointed);
         let at = |pointer: Pos2| {
             f64::from((pointer.x - plot.left()) / plot.width().max(1.0)).clamp(0.0, 1.0) * end_s
         };
@@ -191,4 +192,39 @@ fn about(lane: &Lane, time_s: f64) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::exhibit::Exhibit;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn a_click_and_a_drag_go_to_the_moment_under_the_pointer() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = Lane::new(Exhibit::saved(&loaded, 0, "climber"), 0);
+        let mut signals = Signals::default();
+        let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
+            |ui, asked: &mut Vec<f64>| asked.extend(signals.ui(ui, &lane, 1.0, 15.0, 60.0)),
+            Vec::new(),
+        );
+        let strip = harness.get_by_label("Moment, in simulated seconds").rect();
+        let at = |share: f32| strip.lerp_inside(egui::vec2(share, 0.5));
+        harness.hover_at(at(0.5));
+        harness.drag_at(at(0.5));
+        harness.drop_at(at(0.5));
+        harness.run();
+        let clicked = harness.state().last().copied().expect("a moment");
+        assert!((clicked - 7.5).abs() < 0.1, "{clicked} s");
+        harness.drag_at(at(0.2));
+        harness.run();
+        harness.hover_at(at(2.0));
+        harness.run();
+        let dragged = harness.state().last().copied().expect("a moment");
+        assert_eq!(dragged, 15.0, "beyond the end is the end");
+        harness.drop_at(at(2.0));
+    }
 }

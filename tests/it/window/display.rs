@@ -66,6 +66,11 @@ fn is_installed(tool: &str) -> bool {
 impl Studio {
     /// Opens the program at 800x600 with the keyboard on it; none where that is not possible.
     pub fn open(test: &str, arguments: &str) -> Option<Self> {
+        Self::open_sized(test, arguments, (800, 600))
+    }
+
+    /// Opens the program in a window of this size.
+    pub fn open_sized(test: &str, arguments: &str, (width, height): (u32, u32)) -> Option<Self> {
         if let Some(missing) = ["Xvfb", "xdotool"].into_iter().find(|tool| !is_installed(tool)) {
             skip(test, &format!("{missing} is not installed"));
             return None;
@@ -73,7 +78,8 @@ impl Studio {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = folder();
         let mut xvfb = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-fbdir"])
+            .args(["-displayfd", "1", "-screen", "0", &format!("{width}x{height}x24")])
+            .args(["-nolisten", "tcp", "-fbdir"])
             .arg(folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -83,7 +89,7 @@ impl Studio {
         let stdout = xvfb.stdout.as_mut().expect("piped");
         BufReader::new(stdout).read_line(&mut number).expect("Xvfb says its display");
         let display = format!(":{}", number.trim());
-        let program = snakes(folder.path(), &format!("{arguments} --window-size 800x600"))
+        let program = snakes(folder.path(), &format!("{arguments} --window-size {width}x{height}"))
             .env("DISPLAY", &display)
             .env("XDG_RUNTIME_DIR", folder.path())
             .stderr(Stdio::piped())
@@ -192,10 +198,22 @@ impl Studio {
             "the empty panel" => return self.click("300", "60"),
             "Continue a stopped run" => return self.click("100", "277"),
             "the first stopped run" => return self.click("100", "308"),
-            "Simulate here" => return self.click("397", "562"),
+            "Simulate here" => return self.click("735", "468"),
             "World" => return self.click("163", "59"),
             "The ground has a surface of its own" => return self.click("41", "285"),
-            "As recorded" => return self.click("397", "562"),
+            "As recorded" => return self.click("735", "468"),
+            "Keep" => return self.click("369", "157"),
+            "Drop" => return self.click("427", "157"),
+            "From the start" => return self.click("350", PLAYER_Y),
+            "Step back" => return self.click("382", PLAYER_Y),
+            "Hold" => return self.click("414", PLAYER_Y),
+            "Step forward" => return self.click("446", PLAYER_Y),
+            "Side" => return self.click("421", "30"),
+            "Top" => return self.click("466", "30"),
+            "Free" => return self.click("511", "30"),
+            "Follow" => return self.click("366", "30"),
+            "the middle of the torques" => return self.click("560", "545"),
+            "the start of the torques" => return self.click("338", "545"),
             other => panic!("no button {other}"),
         };
         self.click(x, BUTTONS_Y);
@@ -215,6 +233,53 @@ impl Studio {
         std::thread::sleep(A_FRAME);
         self.xdotool(&["type", "--delay", "200", text]);
         self.key("Return");
+    }
+
+    /// Clicks a row of the list of champions with Shift held down.
+    pub fn shift_click_champion(&self, row: u32) {
+        self.xdotool(&["keydown", "shift"]);
+        std::thread::sleep(A_FRAME);
+        self.click_champion(row);
+        self.xdotool(&["keyup", "shift"]);
+        std::thread::sleep(A_FRAME);
+    }
+
+    /// Clicks a point of the window.
+    pub fn click_at(&self, (x, y): (u32, u32)) {
+        self.click(&x.to_string(), &y.to_string());
+    }
+
+    /// Clicks a point of the window twice.
+    pub fn double_click_at(&self, at: (u32, u32)) {
+        self.move_to(at);
+        self.xdotool(&["click", "1"]);
+        // In frames of their own, and yet near each other.
+        std::thread::sleep(std::time::Duration::from_millis(250));
+        self.xdotool(&["click", "1"]);
+        std::thread::sleep(A_FRAME);
+    }
+
+    /// Drags with the left button and holds on at the end until `then` has happened.
+    pub fn drag_and_hold(&self, from: (u32, u32), to: (u32, u32), then: impl FnOnce()) {
+        self.move_to(from);
+        self.xdotool(&["mousedown", "1"]);
+        std::thread::sleep(A_FRAME);
+        self.move_to(to);
+        then();
+        self.xdotool(&["mouseup", "1"]);
+        std::thread::sleep(A_FRAME);
+    }
+
+    /// The moment at which the stage is held, in simulated seconds, as the title has it.
+    pub fn held_at_s(&self) -> f64 {
+        let title = self.title();
+        let text = title.rsplit_once("held at ").and_then(|(_, rest)| rest.strip_suffix(" s"));
+        text.and_then(|text| text.parse().ok()).unwrap_or_else(|| panic!("title: {title}"))
+    }
+
+    /// Where the program keeps what it saves, unless told otherwise.
+    pub fn folder(&self) -> &std::path::Path {
+        self.folder.path()
     }
 
     fn click(&self, x: &str, y: &str) {
@@ -243,7 +308,8 @@ impl Studio {
         std::thread::sleep(A_FRAME);
     }
 
-    fn move_to(&self, (x, y): (u32, u32)) {
+    /// Moves the pointer.
+    pub fn move_to(&self, (x, y): (u32, u32)) {
         self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
         std::thread::sleep(A_FRAME);
     }
@@ -269,7 +335,7 @@ impl Studio {
     /// Waits until the stage has stopped changing, with the pointer, which is part of the picture, away.
     pub fn still_picture(&self) -> Picture {
         self.move_to((5, 595));
-        let region = |picture: &Picture| picture.region(320, 130, 480, 370);
+        let region = |picture: &Picture| picture.region(320, 130, 480, 310);
         let mut before = self.picture();
         let mut equal = 0;
         let started = Instant::now();
@@ -326,6 +392,7 @@ impl Studio {
 /// Where things are in the panel, in pixels at a scale of 1.
 const BUTTONS_Y: &str = "133";
 const SEED_Y: &str = "215";
+const PLAYER_Y: &str = "500";
 const CHAMPIONS_Y: u32 = 496;
 const ROW_HEIGHT: u32 = 31;
 
@@ -359,6 +426,23 @@ impl Picture {
             .map(|pixel| [pixel[2], pixel[1], pixel[0]])
             .collect();
         Self { width, pixels }
+    }
+
+    /// The middle of a square of the stage all of whose pixels look like `is`.
+    pub fn find(&self, is: fn(&[u8; 3]) -> bool) -> Option<(u32, u32)> {
+        const SIDE: u32 = 9;
+        let corners =
+            (130..430).step_by(3).flat_map(|y| (540..780).step_by(3).map(move |x| (x, y)));
+        let mut squares = corners.filter(|&(x, y)| self.region(x, y, SIDE, SIDE).iter().all(is));
+        squares.next().map(|(x, y)| (x + SIDE / 2, y + SIDE / 2))
+    }
+
+    /// Writes it as PNG.
+    pub fn store(&self, path: &std::path::Path) {
+        let height = self.pixels.len() as u32 / self.width;
+        let rgb = self.pixels.iter().flatten().copied().collect();
+        let picture = snakes_and_stairs::save::Picture { width: self.width, height, rgb };
+        snakes_and_stairs::save::store_picture(path, &picture).expect("written");
     }
 
     /// The pixels of a rectangle, row by row, as red, green, blue.

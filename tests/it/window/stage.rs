@@ -1,0 +1,195 @@
+//! The stage with real mouse and keys: play, step, seek, race, what-if, hands, cameras, overlays, pictures.
+
+use super::display::{Picture, Studio};
+use super::{count_on_stage, difference, is_blue, is_red};
+
+/// A studio that has the saved champion on its stage, held at the start, and evolves nothing.
+fn held_at_start(test: &str) -> Option<Studio> {
+    let studio = Studio::open(test, "--preset quick --saves saves")?;
+    studio.pause_evolution();
+    studio.key("space");
+    studio.wait_for_title(", held at ");
+    studio.click_button("the start of the torques");
+    studio.wait_for_title("held at 0.0");
+    Some(studio)
+}
+
+#[test]
+fn the_player_holds_steps_back_and_on_and_seeks() {
+    let Some(studio) = Studio::open("player", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.click_button("Hold");
+    studio.wait_for_title(", held at ");
+    studio.click_button("the middle of the torques");
+    studio.wait_for_title("held at 7.5");
+    let middle = studio.held_at_s();
+    let picture = studio.still_picture();
+    studio.click_button("Step back");
+    studio.click_button("Step back");
+    let before = studio.held_at_s();
+    assert!((0.015..0.035).contains(&(middle - before)), "{middle} to {before}");
+    studio.key("Right");
+    studio.key("Left");
+    studio.click_button("Step forward");
+    studio.click_button("Step forward");
+    let again = studio.held_at_s();
+    assert!((again - middle).abs() < 0.018, "{middle} and {again}");
+    studio.click_button("the middle of the torques");
+    assert!((studio.held_at_s() - middle).abs() < 0.001);
+    studio.picture_with(|now| difference(&picture, now) < 50);
+    studio.key("End");
+    studio.wait_for_title("held at 15.00 s");
+    studio.click_button("From the start");
+    studio.wait_for_title_without("held");
+    // Four times as fast, and staying at the end.
+    studio.key("o");
+    for _ in 0..4 {
+        studio.key("plus");
+    }
+    studio.wait_for_title("held at 15.00 s");
+}
+
+#[test]
+fn a_race_is_begun_by_key_and_by_clicks_and_left_again() {
+    let Some(studio) = Studio::open("race", "--preset quick") else { return };
+    studio.wait_for_title("4 of 4 generations, finished");
+    studio.key("n");
+    studio.wait_for_title("showing a race of 4");
+    studio.picture_with(|picture| {
+        count_on_stage(picture, is_red) > 300 && count_on_stage(picture, is_blue) > 300
+    });
+    studio.key("Escape");
+    studio.wait_for_title("showing generation 1");
+    studio.click_champion(0);
+    studio.wait_for_title("showing saved champion");
+    studio.shift_click_champion(1);
+    studio.wait_for_title("showing a race of 2");
+    studio.shift_click_champion(1);
+    studio.wait_for_title("showing saved champion");
+    studio.key("m");
+    studio.wait_for_title("showing a race of 10");
+}
+
+#[test]
+fn a_change_in_the_world_tab_is_shown_beside_the_original_and_kept_or_dropped() {
+    let Some(studio) = Studio::open("what-if", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.click_button("World");
+    studio.click_button("The ground has a surface of its own");
+    studio.wait_for_title("showing saved champion and what if");
+    studio.click_button("Drop");
+    studio.wait_for_title_without("what if");
+    studio.click_button("The ground has a surface of its own");
+    studio.wait_for_title("showing saved champion and what if");
+    studio.click_button("Keep");
+    studio.wait_for_title("showing saved champion in another world");
+    studio.click_button("The ground has a surface of its own");
+    studio.wait_for_title("what if");
+    studio.key("Escape");
+    studio.wait_for_title("showing saved champion in another world");
+}
+
+#[test]
+fn a_limb_that_is_clicked_shows_its_numbers_and_one_that_is_dragged_is_disturbed() {
+    let Some(studio) = held_at_start("hands") else { return };
+    let card = |picture: &Picture| picture.region(620, 220, 160, 200);
+    let before = studio.still_picture();
+    let limb = before.find(is_red).expect("a red limb");
+    studio.click_at(limb);
+    let with_card = studio.still_picture();
+    assert!(card(&before) != card(&with_card), "its numbers are shown");
+    studio.key("space");
+    studio.drag_and_hold(limb, (limb.0 - 60, limb.1 - 90), || studio.wait_for_title(", disturbed"));
+    studio.key("r");
+    studio.wait_for_title_without(", disturbed");
+}
+
+#[test]
+fn every_camera_shows_something_else_and_follow_comes_back() {
+    let Some(studio) = held_at_start("cameras") else { return };
+    let follow = studio.still_picture();
+    let mut before = studio.still_picture();
+    for button in ["Side", "Top"] {
+        studio.click_button(button);
+        let now = studio.still_picture();
+        assert!(difference(&before, &now) > 3000, "{button}");
+        assert!(count_on_stage(&now, is_red) > 100, "{button} shows the snake");
+        before = now;
+    }
+    studio.click_button("Free");
+    studio.drag(1, (600, 400), (700, 380));
+    let free = studio.still_picture();
+    assert!(difference(&before, &free) > 2000, "a drag turns the free camera");
+    studio.key("f");
+    studio.picture_with(|now| difference(&follow, now) < 200);
+    studio.key("c");
+    studio.picture_with(|now| difference(&follow, now) > 3000);
+    studio.key("Home");
+    let now = studio.picture_with(|now| difference(&follow, now) < 200);
+    let limb = now.find(is_red).expect("a red limb");
+    studio.double_click_at(limb);
+    studio.picture_with(|now| count_on_stage(now, is_red) > 2 * count_on_stage(&follow, is_red));
+}
+
+#[test]
+fn each_overlay_is_drawn_and_taken_away_again() {
+    let Some(studio) = held_at_start("overlays") else { return };
+    studio.click_button("the middle of the torques");
+    let bare = studio.still_picture();
+    for key in ["v", "j", "b", "l", "d"] {
+        studio.key(key);
+        studio.picture_with(|now| difference(&bare, now) > 100);
+        studio.key(key);
+        studio.picture_with(|now| difference(&bare, now) < 50);
+    }
+}
+
+#[test]
+fn the_theme_changes_panels_and_scene_and_pictures_are_saved() {
+    let Some(studio) = held_at_start("theme") else { return };
+    let is_dark = |picture: &Picture, left: u32, top: u32| {
+        let pixels = picture.region(left, top, 20, 6);
+        let sum: u32 = pixels.iter().flatten().map(|part| u32::from(*part)).sum();
+        sum < 90 * 3 * pixels.len() as u32
+    };
+    let both_are = |dark: bool| {
+        studio.picture_with(|now| is_dark(now, 290, 5) == dark && is_dark(now, 740, 100) == dark);
+    };
+    both_are(false);
+    studio.key("t");
+    both_are(true);
+    let pictures = studio.folder().join("saves/pictures");
+    for (key, name) in [("p", "snakes-and-stairs-1.png"), ("shift+p", "snakes-and-stairs-2.png")] {
+        studio.key(key);
+        let path = pictures.join(name);
+        studio.picture_with(|_| path.is_file());
+        let bytes = std::fs::read(&path).expect("a picture");
+        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 15_000, "{name}");
+    }
+    studio.key("t");
+    both_are(false);
+}
+
+/// Not a window test, but it needs the same driver: a moment without a display.
+#[test]
+fn a_moment_is_drawn_without_a_display() {
+    if super::display::lacks_a_driver("render") {
+        return;
+    }
+    let folder = super::folder();
+    let saves = concat!(env!("CARGO_MANIFEST_DIR"), "/saves");
+    for (arguments, name) in [
+        (
+            format!("render {saves}/climber.ron --at 3.5 --size 640x360 --camera side -o a.png"),
+            "a.png",
+        ),
+        (
+            format!("render {saves}/fast.ron {saves}/thrifty.ron --size 640x360 --show trail"),
+            "fast.png",
+        ),
+    ] {
+        super::stdout_of(folder.path(), &arguments);
+        let bytes = std::fs::read(folder.path().join(name)).expect(name);
+        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 15_000, "{name}");
+    }
+}
