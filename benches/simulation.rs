@@ -6,7 +6,8 @@ use std::hint::black_box;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use snakes_and_stairs::genome::{Genome, GenomeSpace};
 use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::score::{Rollout, Trial, evaluate};
+use snakes_and_stairs::save::shipped_champion;
+use snakes_and_stairs::score::{History, Rollout, Trial, evaluate};
 
 fn newborn(trial: &Trial) -> Genome {
     let mut rng = stream(1, 1, 0, Purpose::Birth);
@@ -36,5 +37,21 @@ fn one_evaluation(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, one_step, one_evaluation);
+/// Going to the middle and to the end of the shipped champion's 15 s from the nearest keyframe, as the studio's
+/// timeline does; and, for comparison, looking through all of it, which it does once beside the window.
+fn seeking(criterion: &mut Criterion) {
+    let champion = shipped_champion().expect("well formed").champion;
+    let look_through =
+        || History::of(&champion.genome, &champion.trial, |_| true).expect("not stopped");
+    let history = look_through();
+    let steps = champion.trial.steps();
+    let mut group = criterion.benchmark_group("seeking");
+    for (name, step) in [("to the middle", steps / 2), ("to the end", steps - 1)] {
+        group.bench_function(name, |bencher| bencher.iter(|| history.rollout_at(black_box(step))));
+    }
+    group.sample_size(20);
+    group.bench_function("a whole history", |bencher| bencher.iter(look_through));
+}
+
+criterion_group!(benches, one_step, one_evaluation, seeking);
 criterion_main!(benches);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use super::camera::CameraRig;
+use super::camera::{CameraRig, StageCamera};
 use super::casting::{Change, what_if};
 use super::casting::{Pick, all_generations, dropped, exhibit_of, kept, leaders, with_one_more};
 use super::evolution::Evolution;
@@ -101,6 +101,8 @@ pub(super) enum Command {
     ResetCamera,
     /// Show or hide something over the scene.
     Toggle(Overlay),
+    /// Smooth the edges of what is drawn, or draw faster.
+    ToggleSmoothEdges,
     /// From the light theme to the dark one, or back.
     ToggleTheme,
     /// Take a picture of the stage alone, or of the window.
@@ -125,6 +127,7 @@ struct StageParams<'w, 's> {
     hands: ResMut<'w, Hands>,
     theme: ResMut<'w, Theme>,
     photographs: MessageWriter<'w, Photograph>,
+    smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
 }
 
 impl StageParams<'_, '_> {
@@ -240,6 +243,11 @@ fn on_stage(
         }
         Command::ResetCamera => stage.rig.take(Shot::Follow),
         Command::Toggle(overlay) => stage.overlays.toggle(*overlay),
+        Command::ToggleSmoothEdges => {
+            for mut msaa in &mut stage.smoothing {
+                *msaa = if *msaa == Msaa::Off { Msaa::Sample4 } else { Msaa::Off };
+            }
+        }
         Command::ToggleTheme => *stage.theme = stage.theme.other(),
         Command::TakePicture(of) => {
             stage.photographs.write(*of);

@@ -137,7 +137,8 @@ fn grasp(
     let hit = first_hit(ray, &lanes);
     let now_s = time.elapsed_secs();
     let is_double = hands.last_press.is_some_and(|(then_s, at)| {
-        now_s - then_s < DOUBLE_CLICK_S && at.distance(cursor) < CLICK_PIXELS
+        // Where frames are slow, presses are seen late.
+        now_s - then_s < DOUBLE_CLICK_S + time.delta_secs() && at.distance(cursor) < CLICK_PIXELS
     });
     hands.last_press = (!is_double).then_some((now_s, cursor));
     if is_double && let Some(hit) = &hit {

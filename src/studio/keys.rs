@@ -13,7 +13,7 @@ use super::screenshot::Photograph;
 use super::stage::Programme;
 
 /// The keys, as they are listed for a person: name, effect.
-pub(super) const KEYS: [(&str, &str); 24] = [
+pub(super) const KEYS: [(&str, &str); 25] = [
     ("Space", "hold or play the stage"),
     ("Left, Right", "a physics step back, on"),
     ("R, End", "to the start, to the end"),
@@ -34,6 +34,7 @@ pub(super) const KEYS: [(&str, &str); 24] = [
     ("B", "the trail"),
     ("L", "the fitness line"),
     ("D", "the engine's own lines"),
+    ("A", "smooth edges, or faster drawing"),
     ("T", "the light or the dark theme"),
     ("P", "a picture of the stage"),
     ("Shift P", "a picture of the window"),
@@ -122,6 +123,7 @@ fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
         "b" => Some(Command::Toggle(Overlay::Trail)),
         "l" => Some(Command::Toggle(Overlay::FitnessLine)),
         "d" => Some(Command::Toggle(Overlay::Wireframe)),
+        "a" => Some(Command::ToggleSmoothEdges),
         "t" => Some(Command::ToggleTheme),
         "p" if held.shift => Some(Command::TakePicture(Photograph::Window)),
         "p" => Some(Command::TakePicture(Photograph::Stage)),

@@ -1,8 +1,9 @@
-//! The window: a stage that shows one rollout, a panel that steers an experiment.
+//! The window: a stage that shows rollouts side by side, panels that steer an experiment.
 //!
-//! One concern is one file with one `plugin` function. The studio has no physics of its own: the stage
-//! advances the very [`crate::score::Rollout`] that scores, and evolution runs on threads of its own
-//! ([`crate::run::Background`]). Panels and keys send a [`command::Command`]; one system applies them.
+//! One concern is one file with one `plugin` function. The studio has no physics of its own: a lane of the stage
+//! advances the very [`crate::score::Rollout`] that scores, to the moment of the one clock of all lanes, and
+//! evolution runs on threads of its own ([`crate::run::Background`]). Panels and keys send a
+//! [`command::Command`]; one system applies them.
 //!
 //! What happens in a frame, in this order, is [`Frame`].
 

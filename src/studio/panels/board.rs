@@ -111,6 +111,11 @@ pub(super) fn board(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::save::shipped_champion;
+    use crate::studio::exhibit::Exhibit;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn who_lands_first_is_first_and_who_is_out_is_last() {
@@ -131,5 +136,29 @@ mod tests {
         order(&mut standings);
         let lanes = standings.map(|standing| standing.lane);
         assert_eq!(lanes, [3, 1, 4, 0, 2]);
+    }
+
+    #[test]
+    fn a_click_on_a_name_shows_its_numbers_and_a_change_can_be_kept_or_dropped() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane =
+            |number| Lane::new(Exhibit::saved(&loaded, number, &format!("snake {number}")), number);
+        let lanes = [lane(0), lane(1)];
+        let before = Box::new(RunPlan::new("climb", 1, Settings::default()));
+        for (programme, label, command) in [
+            (Programme::Race, "snake 1", Command::Focus(1)),
+            (Programme::Race, "Only this", Command::Single),
+            (Programme::WhatIf { before: before.clone() }, "Keep", Command::KeepChange),
+            (Programme::WhatIf { before }, "Drop", Command::DropChange),
+        ] {
+            let lanes: Vec<&Lane> = lanes.iter().collect();
+            let mut harness = Harness::new_ui_state(
+                |ui, asked| board(ui, &lanes, &programme, 0, 0.0, asked),
+                Vec::new(),
+            );
+            harness.get_by_label(label).click();
+            harness.run();
+            assert_eq!(*harness.state(), [command], "{label}");
+        }
     }
 }

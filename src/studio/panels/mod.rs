@@ -26,7 +26,7 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
-use super::camera::CameraRig;
+use super::camera::{CameraRig, StageCamera};
 use super::casting::Opening;
 use super::command::Command;
 use super::evolution::Evolution;
@@ -89,6 +89,7 @@ struct OnStage<'w, 's> {
     hands: Res<'w, Hands>,
     rig: Res<'w, CameraRig>,
     overlays: Res<'w, Overlays>,
+    smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
 }
 
 /// The panels, with what they remember between frames.
@@ -257,7 +258,8 @@ fn around_stage(
     let bar = card("view", egui::Align2::LEFT_TOP, stage.left_top()).show(context, |ui| {
         let small = egui::Margin::symmetric(look::GAP as i8 / 2, look::GAP as i8 / 2);
         frame.inner_margin(small).show(ui, |ui| {
-            view_bar(ui, on_stage.rig.shot(), &on_stage.overlays, theme, asked);
+            let is_smooth = on_stage.smoothing.iter().any(|msaa| *msaa != Msaa::Off);
+            view_bar(ui, on_stage.rig.shot(), &on_stage.overlays, is_smooth, theme, asked);
         });
     });
     if *on_stage.programme != Programme::Solo {

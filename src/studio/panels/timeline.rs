@@ -150,3 +150,50 @@ fn numbers(ui: &mut egui::Ui, lane: &Lane) {
         ui.add_space(look::GAP / 2.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::exhibit::Exhibit;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// What the panel sends when a person does `act`, in a panel of this width.
+    fn sent(width: f32, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = Lane::new(Exhibit::saved(&loaded, 0, "climber"), 0);
+        let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
+        let size = egui::vec2(width, 200.0);
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .build_ui_state(|ui, asked| panel.ui(ui, &lane, &playback, 15.0, 0, asked), Vec::new());
+        act(&mut harness);
+        harness.run();
+        harness.state().clone()
+    }
+
+    #[test]
+    fn each_button_of_the_player_sends_its_command() {
+        for (label, command) in [
+            ("From the start", Command::Restart),
+            ("Step back", Command::Step { forward: false }),
+            ("Hold", Command::TogglePlayback),
+            ("Step forward", Command::Step { forward: true }),
+            ("Loop", Command::ToggleLoop),
+        ] {
+            assert_eq!(sent(900.0, |harness| harness.get_by_label(label).click()), [command]);
+        }
+    }
+
+    #[test]
+    fn in_a_narrow_window_the_least_important_numbers_are_left_out() {
+        let is_there = |width: f32, name: &str| {
+            let mut seen = false;
+            sent(width, |harness| seen = harness.query_by_label(name).is_some());
+            seen
+        };
+        assert!(is_there(900.0, "fitness") && is_there(900.0, "energy"));
+        assert!(is_there(540.0, "fitness") && !is_there(540.0, "energy"));
+    }
+}

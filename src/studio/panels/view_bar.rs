@@ -14,6 +14,7 @@ pub(super) fn view_bar(
     ui: &mut egui::Ui,
     shot: Shot,
     overlays: &Overlays,
+    has_smooth_edges: bool,
     theme: Theme,
     asked: &mut Vec<Command>,
 ) {
@@ -39,6 +40,12 @@ pub(super) fn view_bar(
                 if ui.checkbox(&mut is_shown, name).on_hover_text(hint).changed() {
                     asked.push(Command::Toggle(overlay));
                 }
+            }
+            ui.separator();
+            let mut is_smooth = has_smooth_edges;
+            let hint = "Four samples for each pixel; slow where the processor draws (A)";
+            if ui.checkbox(&mut is_smooth, "Smooth edges").on_hover_text(hint).changed() {
+                asked.push(Command::ToggleSmoothEdges);
             }
         });
         let (name, hint) = match theme {
@@ -70,7 +77,7 @@ mod tests {
         ] {
             let overlays = Overlays::default();
             let mut harness = Harness::new_ui_state(
-                |ui, asked| view_bar(ui, Shot::Follow, &overlays, Theme::Light, asked),
+                |ui, asked| view_bar(ui, Shot::Follow, &overlays, false, Theme::Light, asked),
                 Vec::new(),
             );
             harness.get_by_label(label).click();

@@ -1,7 +1,7 @@
 //! The world and the snake that the next run gets: surface, stairs, joints, limbs, and what is rewarded.
 //!
-//! A change also goes to the stage: what is on show begins anew under it. So that a drag does not start
-//! the stage again with every pixel, a slider is taken when it is let go.
+//! A change also goes to the stage: beside what is on show the same genome begins under it. So that a drag does not
+//! start the stage again with every pixel, a slider is taken when it is let go, or rests for a moment.
 
 use bevy_egui::egui;
 
@@ -17,13 +17,16 @@ use crate::studio::look;
 /// The panel, with what is being dragged or typed.
 #[derive(Debug)]
 pub(super) struct WorldPanel {
-    /// The field being changed, and the value it has so far.
-    changing: Option<(String, f32)>,
+    /// The field being changed, the value it has so far, and since when, in seconds.
+    changing: Option<(String, f32, f64)>,
     /// The frame in which the panel was drawn last.
     drawn_in: u64,
     /// Names and descriptions of the shipped presets.
     presets: Vec<(String, String)>,
 }
+
+/// A slider that is held still for so long shows what it does, in seconds.
+const REST_S: f64 = 0.35;
 
 impl Default for WorldPanel {
     fn default() -> Self {
@@ -169,7 +172,7 @@ impl WorldPanel {
     ) {
         let field = format!("{prefix}{}", knob.field);
         let mut shown = match &self.changing {
-            Some((changing, so_far)) if *changing == field => *so_far,
+            Some((changing, so_far, _)) if *changing == field => *so_far,
             _ => value,
         };
         let mut slider = egui::Slider::new(&mut shown, knob.least..=knob.most)
@@ -184,14 +187,25 @@ impl WorldPanel {
         let name = ui.label(knob.label).on_hover_text(knob.hint);
         ui.spacing_mut().slider_width = look::SLIDER_WIDTH;
         let response = ui.add(slider).labelled_by(name.id).on_hover_text(knob.hint);
+        let now_s = ui.input(|input| input.time);
         if response.changed() {
-            self.changing = Some((field.clone(), shown));
+            self.changing = Some((field.clone(), shown, now_s));
         }
+        let since_s = match &self.changing {
+            Some((changing, _, since_s)) if *changing == field => *since_s,
+            _ => return,
+        };
         let is_let_go = !response.dragged() && !response.has_focus();
-        if is_let_go && self.changing.as_ref().is_some_and(|(changing, _)| *changing == field) {
+        let rests = response.dragged() && now_s - since_s > REST_S;
+        if is_let_go {
             self.changing = None;
-            if shown != value {
-                asked.push(set(&field, &rounded(shown)));
+        }
+        let text = rounded(shown);
+        if (is_let_go || rests) && text != rounded(value) {
+            asked.push(set(&field, &text));
+            if rests {
+                // Once, until it is moved again.
+                self.changing = Some((field, shown, f64::INFINITY));
             }
         }
     }
@@ -237,6 +251,7 @@ mod tests {
         let size = egui::vec2(look::PANEL_WIDTH, 1000.0);
         let mut harness = Harness::builder()
             .with_size(size)
+            .with_step_dt(1.0 / 60.0)
             .build_ui_state(|ui, asked| panel.ui(ui, run, asked), Vec::new());
         act(&mut harness);
         harness.run();
@@ -244,26 +259,28 @@ mod tests {
     }
 
     #[test]
-    fn a_slider_is_taken_when_it_is_let_go_and_not_before() {
+    fn a_slider_is_taken_when_it_is_let_go_or_rests_and_not_before() {
         let run = prepared_run();
-        let drag = |lets_go: bool| {
+        let drag = |rests_for_frames: usize, lets_go: bool| {
             sent(&run, |harness| {
                 let slider = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Bounce");
                 let rail = slider.rect();
                 harness.drag_at(rail.left_center() + egui::vec2(6.0, 0.0));
                 harness.run();
                 harness.hover_at(rail.center());
-                harness.run();
+                harness.run_steps(1 + rests_for_frames);
                 if lets_go {
                     harness.drop_at(rail.center());
                 }
             })
         };
-        assert_eq!(drag(false), []);
-        let [Command::SetField { field, text }] = &drag(true)[..] else { panic!("one command") };
-        assert_eq!(field, "trial.surface.bounce");
-        let value: f32 = text.parse().expect("a number");
-        assert!((0.3..0.7).contains(&value), "half way along the rail: {value}");
+        for asked in [drag(0, true), drag(30, false)] {
+            let [Command::SetField { field, text }] = &asked[..] else { panic!("one command") };
+            assert_eq!(field, "trial.surface.bounce");
+            let value: f32 = text.parse().expect("a number");
+            assert!((0.3..0.7).contains(&value), "half way along the rail: {value}");
+        }
+        assert_eq!(drag(0, false), []);
     }
 
     #[test]

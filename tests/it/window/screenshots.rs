@@ -54,6 +54,7 @@ fn screenshots() {
         studio.wait_for_title("finished");
         let album = Album { studio, folder: folder.clone(), theme, size };
         let studio = &album.studio;
+        studio.key("a");
         studio.key("0");
         studio.key("space");
         album.seek(0.42);

@@ -98,8 +98,11 @@ fn a_limb_that_is_clicked_shows_its_numbers_and_one_that_is_dragged_is_disturbed
     studio.click_at(limb);
     let with_card = studio.still_picture();
     assert!(card(&before) != card(&with_card), "its numbers are shown");
-    studio.key("space");
-    studio.drag_and_hold(limb, (limb.0 - 60, limb.1 - 90), || studio.wait_for_title(", disturbed"));
+    // It is taken while it cannot run away, and pulled once it moves.
+    studio.drag_and_hold(limb, (limb.0 - 60, limb.1 - 90), || {
+        studio.key("space");
+        studio.wait_for_title(", disturbed");
+    });
     studio.key("r");
     studio.wait_for_title_without(", disturbed");
 }
