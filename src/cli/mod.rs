@@ -72,7 +72,9 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         Some(Command::Render(_)) => Err(CliError::NoStudio),
         Some(Command::Replay { files }) if args.no_render => {
             let replay = |file| headless::replay(file, args.json, &mut io::stdout().lock());
-            Ok(files.iter().try_for_each(|file| replay(file))?)
+            // All are looked at; the first that fails is the error.
+            let done: Vec<_> = files.iter().map(|file| replay(file)).collect();
+            Ok(done.into_iter().collect::<Result<(), _>>()?)
         }
         None if args.no_render => evolve(&args),
         None | Some(Command::Replay { .. }) => open_studio(&args),

@@ -27,7 +27,7 @@ pub struct RenderArgs {
 
 #[cfg(feature = "studio")]
 mod draw {
-    use std::path::{Path, PathBuf};
+    use std::path::PathBuf;
 
     use super::RenderArgs;
     use crate::check::{Invalid, within};
@@ -51,10 +51,11 @@ mod draw {
             Ok((name, load_champion(file)?))
         };
         let champions = what.files.iter().map(load).collect::<Result<Vec<_>, _>>()?;
-        let longest_s = champions
-            .iter()
-            .map(|(_, loaded)| loaded.champion.trial.duration_s)
-            .fold(0.0, f32::max);
+        let length_s = |loaded: &LoadedChampion| {
+            let trial = &loaded.champion.trial;
+            f64::from(trial.steps()) / f64::from(trial.physics.steps_per_s)
+        };
+        let longest_s = champions.iter().map(|(_, loaded)| length_s(loaded)).fold(0.0, f64::max);
         let at_s = what.at.as_deref().map(|text| moment(text, longest_s)).transpose()?;
         let scene = Scene {
             at_s,
@@ -72,16 +73,16 @@ mod draw {
         let tags: Vec<(&str, (f32, f32))> =
             tags.iter().map(|tag| (tag.text.as_str(), tag.at)).collect();
         plot::tags(&mut picture, &tags)?;
-        let named_after_first = || Path::new(&scene.champions[0].0).with_extension("png");
+        let named_after_first = || PathBuf::from(format!("{}.png", scene.champions[0].0));
         let path = what.output.clone().unwrap_or_else(named_after_first);
         store_picture(&path, &picture)?;
         print(&format!("saved to {}\n", path.display()))
     }
 
-    fn moment(text: &str, longest_s: f32) -> Result<f64, Invalid> {
+    fn moment(text: &str, longest_s: f64) -> Result<f64, Invalid> {
         let wrong = |_| Invalid::new("at", format!("{text:?}"), "a number");
         let at_s: f64 = text.parse().map_err(wrong)?;
-        within("at", at_s, 0.0..=f64::from(longest_s))?;
+        within("at", at_s, 0.0..=longest_s)?;
         Ok(at_s)
     }
 }

@@ -82,6 +82,12 @@ impl History {
         rollout
     }
 
+    /// After how many steps the last keyframe is from which `step` can be reached.
+    pub fn keyframe_before(&self, step: u32) -> u32 {
+        let last = self.keyframes.len() as u32 - 1;
+        (step / self.keyframe_steps).min(last) * self.keyframe_steps
+    }
+
     /// What the rollout ends with.
     pub fn evaluation(&self) -> &Evaluation {
         &self.evaluation

@@ -95,6 +95,9 @@ impl CameraRig {
             self.shown.yaw_rad -= libm::roundf(self.shown.yaw_rad / turn) * turn;
             self.view = View::of(shot, self.lanes);
             self.lane = None;
+        } else {
+            // It stays where it is, however it came there.
+            self.view = self.shown;
         }
     }
 

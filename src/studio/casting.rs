@@ -129,11 +129,16 @@ fn evenly(count: usize, most: usize, few: usize) -> impl Iterator<Item = usize> 
     (0..chosen).map(move |index| index * (count - 1) / (chosen - 1).max(1))
 }
 
-/// The best of the latest generation.
-pub(super) fn leaders(evolution: &Evolution) -> Result<Vec<Exhibit>, String> {
-    let leaders = evolution.exploration().map_or(&[][..], |exploration| &exploration.leaders);
+/// The best of a generation, or of the latest one.
+pub(super) fn leaders(
+    evolution: &Evolution,
+    generation: Option<u32>,
+) -> Result<Vec<Exhibit>, String> {
+    let leaders = evolution.leaders(generation);
     if leaders.len() < 2 {
-        return Err("There is no generation with two healthy snakes yet.".to_owned());
+        return Err("The best ten are known of the generations that this session has finished, if two were \
+                    in good health."
+            .to_owned());
     }
     let number = evolution.number();
     let names = (1..).map(|rank| format!("No. {rank}"));
@@ -157,7 +162,9 @@ pub(super) fn what_if(
         Change::Field { field, text } => evolution.set_field(field, text)?,
         Change::Preset(name) => evolution.set_preset(name)?,
     }
-    let Some(original) = on_show.first() else { return Ok(None) };
+    // Only the change is to make a difference, not another engine too.
+    let Some(original) = on_show.first().map(Exhibit::simulated) else { return Ok(None) };
+    let original = &original;
     // Further changes add up.
     let so_far = match programme {
         Programme::WhatIf { .. } => on_show.last().unwrap_or(original),
@@ -197,7 +204,7 @@ pub(super) fn dropped(
     programme: &Programme,
 ) -> Result<Option<Show>, String> {
     let Programme::WhatIf { before } = programme else { return Ok(None) };
-    evolution.set_next_plan((**before).clone())?;
+    evolution.undo_world(before)?;
     Ok(on_show.first().cloned().map(Show::solo))
 }
 
@@ -309,6 +316,14 @@ mod tests {
         let shown = shown.expect("allowed").expect("the original");
         assert_eq!(shown.exhibits[0].trial(), original.trial());
         assert_eq!(*run.next_plan(), plan, "as it was before the first change");
+        // What was chosen meanwhile, and is no matter of the world, stays.
+        what_if(&mut run, &[saved(0)], &Programme::Solo, &field("surface.friction", "0.3"))
+            .expect("allowed");
+        run.set_seed(77).expect("allowed");
+        run.set_population(9).expect("allowed");
+        dropped(&mut run, &second.exhibits, &second.programme).expect("allowed");
+        assert_eq!((run.next_seed(), run.next_population()), (77, 9));
+        assert_eq!(run.next_settings().trial, plan.settings.trial);
     }
 
     #[test]
@@ -335,11 +350,11 @@ mod tests {
     #[test]
     fn the_leaders_of_a_generation_race_by_rank() {
         let run = explored_run();
-        let leaders = leaders(&run).expect("some are healthy");
+        let leaders = leaders(&run, None).expect("some are healthy");
         assert_eq!(leaders[0].name(), "No. 1");
         assert!(leaders.len() > 2 && leaders.len() <= MOST_LANES);
         let fitness: Vec<f32> = leaders.iter().map(Exhibit::fitness).collect();
         assert!(fitness.is_sorted_by(|a, b| a >= b), "{fitness:?}");
-        assert!(super::leaders(&prepared_run()).is_err());
+        assert!(super::leaders(&prepared_run(), None).is_err());
     }
 }

@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use super::camera::{CameraRig, StageCamera};
 use super::casting::{Change, what_if};
 use super::casting::{Pick, all_generations, dropped, exhibit_of, kept, leaders, with_one_more};
-use super::evolution::Evolution;
+use super::evolution::{Evolution, Status};
 use super::exhibit::Exhibit;
 use super::hands::Hands;
 use super::lane::Lane;
@@ -63,8 +63,8 @@ pub(super) enum Command {
     Join(Pick),
     /// Let the champions of the run's generations race.
     RaceGenerations,
-    /// Let the best of the latest generation race.
-    RaceLeaders,
+    /// Let the best of this generation race, or of the latest one; the first is 1.
+    RaceLeaders(Option<u32>),
     /// Show the numbers and signals of this lane; the first is 0.
     Focus(usize),
     /// Keep only the lane whose numbers are shown.
@@ -148,6 +148,28 @@ impl StageParams<'_, '_> {
         focused.map_or(1.0, Lane::step_s)
     }
 
+    /// The lane in focus in another manner, the others as they are.
+    fn in_place(&self, manner: impl Fn(&Exhibit) -> Exhibit) -> Show {
+        let mut exhibits = self.exhibits();
+        if let Some(focused) = exhibits.get_mut(self.hands.lane) {
+            *focused = manner(focused);
+        }
+        Show { exhibits, programme: self.programme.clone() }
+    }
+
+    /// Whether a change that is being tried out is left by the way, neither kept nor dropped.
+    fn leaves_change(&self, command: &Command) -> bool {
+        let stays =
+            matches!(command, Command::KeepChange | Command::ShowAsFound | Command::Simulate);
+        matches!(*self.programme, Programme::WhatIf { .. }) && !stays
+    }
+
+    /// Whoever begins a run while a change is tried out goes on with it.
+    fn settle(&mut self) {
+        let kept = kept(&self.exhibits(), &self.programme);
+        self.show.write_batch(kept);
+    }
+
     /// Shows what a change does, beside what it was before.
     fn try_out(&mut self, evolution: &mut Evolution, change: &Change) -> Result<(), String> {
         let mut on_show = self.exhibits();
@@ -172,14 +194,25 @@ fn apply(
 ) {
     for command in asked.read() {
         let done = match command {
-            Command::Start => evolution.start(),
+            Command::Start => {
+                if evolution.status() == Status::Finished {
+                    stage.settle();
+                }
+                evolution.start()
+            }
             Command::Pause => evolution.pause(),
             Command::SingleGeneration => evolution.single_generation(),
-            Command::Reset => evolution.reset(),
+            Command::Reset => {
+                stage.settle();
+                evolution.reset()
+            }
             Command::SetSeed(seed) => evolution.set_seed(*seed),
             Command::SetPopulation(population) => evolution.set_population(*population),
             Command::ListStoppedRuns => evolution.list_stopped(),
-            Command::Continue(folder) => evolution.go_on_with(folder),
+            Command::Continue(folder) => {
+                stage.settle();
+                evolution.go_on_with(folder)
+            }
             Command::SetField { field, text } => {
                 stage.try_out(&mut evolution, &Change::Field { field, text })
             }
@@ -191,36 +224,49 @@ fn apply(
                 exit.write(AppExit::Success);
                 Ok(())
             }
-            command => on_stage(command, &mut stage, &evolution, &opening),
+            command => {
+                let shown = on_stage(command, &mut stage, &evolution, &opening);
+                if shown == Ok(true) && stage.leaves_change(command) {
+                    notices.news("The next run keeps the change: see the World tab.".to_owned());
+                }
+                shown.map(drop)
+            }
         };
         notices.problems(done.err());
     }
 }
 
-/// Does what concerns the stage alone.
+/// Does what concerns the stage alone. Says whether others take the stage.
 fn on_stage(
     command: &Command,
     stage: &mut StageParams,
     evolution: &Evolution,
     opening: &Opening,
-) -> Result<(), String> {
+) -> Result<bool, String> {
     let (end_s, step_s) = (stage.end_s(), stage.step_s());
     let on_show = || stage.exhibits();
     let show = match command {
         // Who is not found any more is not missed: somebody better has taken the place since the click.
         Command::Show(pick) => exhibit_of(pick, evolution, opening).map(Show::solo),
         Command::Join(pick) => {
+            let mut on_show = on_show();
+            if matches!(*stage.programme, Programme::WhatIf { .. }) {
+                // The two are one.
+                on_show.truncate(1);
+            }
             let exhibit = exhibit_of(pick, evolution, opening);
-            exhibit.map(|exhibit| with_one_more(on_show(), exhibit)).transpose()?.flatten()
+            exhibit.map(|exhibit| with_one_more(on_show, exhibit)).transpose()?.flatten()
         }
         Command::RaceGenerations => Some(Show::race(all_generations(evolution)?)),
-        Command::RaceLeaders => Some(Show::race(leaders(evolution)?)),
+        Command::RaceLeaders(generation) => Some(Show::race(leaders(evolution, *generation)?)),
         Command::KeepChange => kept(&on_show(), &stage.programme),
+        Command::Single if *stage.programme != Programme::Race => None,
         Command::Single => on_show().into_iter().nth(stage.hands.lane).map(Show::solo),
-        Command::ShowAsFound => on_show().first().map(|first| Show::solo(first.as_found())),
-        Command::Simulate => Some(Show::race(on_show().iter().map(Exhibit::simulated).collect())),
+        Command::ShowAsFound => Some(stage.in_place(Exhibit::as_found)),
+        Command::Simulate => Some(stage.in_place(Exhibit::simulated)),
         _ => None,
     };
+    let is_new = show.is_some();
     stage.show.write_batch(show);
     match command {
         Command::Focus(lane) => (stage.hands.lane, stage.hands.limb) = (*lane, None),
@@ -254,5 +300,5 @@ fn on_stage(
         }
         _ => {}
     }
-    Ok(())
+    Ok(is_new)
 }

@@ -2,6 +2,7 @@
 
 mod take_in;
 
+use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,6 +14,9 @@ use crate::evolve::{Champion, Origin, RunPlan, Settings, with_field};
 use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
 use crate::save::{Earlier, RunSummary, load_preset};
 use crate::score::evaluate;
+
+/// Of so many generations the best ten are remembered.
+const REMEMBERED_GENERATIONS: usize = 200;
 
 /// Where a run stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +49,8 @@ pub(super) struct Evolution {
     reports: Vec<GenerationReport>,
     /// What the run has found besides, once a generation is finished.
     exploration: Option<Box<Exploration>>,
+    /// The best ten of each of the latest generations of this session, the earliest first.
+    leaders: VecDeque<Vec<Champion>>,
     run_hash: Option<u64>,
 }
 
@@ -76,6 +82,7 @@ impl Evolution {
             listing: None,
             reports: Vec::new(),
             exploration: None,
+            leaders: VecDeque::new(),
             run_hash: None,
         }
     }
@@ -153,6 +160,29 @@ impl Evolution {
     /// What the run has found besides champions, once a generation is finished.
     pub fn exploration(&self) -> Option<&Exploration> {
         self.exploration.as_deref()
+    }
+
+    /// The best ten of a generation, or of the latest one, the best first; nobody of one that an earlier session has
+    /// finished, or of long ago.
+    pub fn leaders(&self, generation: Option<u32>) -> &[Champion] {
+        let is_it = |leaders: &&Vec<Champion>| match (generation, leaders.first()) {
+            (None, _) => true,
+            (Some(generation), Some(first)) => first.origin.generation == generation,
+            (Some(_), None) => false,
+        };
+        self.leaders.iter().rev().find(is_it).map_or(&[], Vec::as_slice)
+    }
+
+    /// Takes in what was found besides champions.
+    fn explore(&mut self, mut exploration: Box<Exploration>) {
+        let leaders = std::mem::take(&mut exploration.leaders);
+        if !leaders.is_empty() {
+            self.leaders.push_back(leaders);
+        }
+        if self.leaders.len() > REMEMBERED_GENERATIONS {
+            self.leaders.pop_front();
+        }
+        self.exploration = Some(exploration);
     }
 
     /// Finished evaluations of the current generation, and how many it has.
@@ -306,9 +336,16 @@ impl Evolution {
         self.take_over_if_ready()
     }
 
-    /// Takes another plan for the next run; a run that has not begun takes it at once.
-    pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
-        self.engine.next = plan;
+    /// Gives the next run the world back that it had in a plan, and the rest if that is of another preset. Seed and
+    /// population, which are no matter of the world, stay.
+    pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
+        let next = &mut self.engine.next;
+        if next.preset == before.preset {
+            next.settings.trial = before.settings.trial.clone();
+        } else {
+            next.preset.clone_from(&before.preset);
+            next.settings = before.settings.clone();
+        }
         self.take_over_if_ready()
     }
 

@@ -87,9 +87,13 @@ impl Exhibit {
         Self { manner: Manner::Found, ..self.clone() }
     }
 
-    /// The same, simulated by this engine in the world in which it was found.
+    /// The same, simulated by this engine, if it is not already.
     pub fn simulated(&self) -> Self {
-        Self { manner: Manner::Simulated, ..self.clone() }
+        let manner = match &self.manner {
+            Manner::Found if self.recording().is_some() => Manner::Simulated,
+            other => other.clone(),
+        };
+        Self { manner, ..self.clone() }
     }
 
     /// Whether it is shown in another world than the one in which it was found.

@@ -1,14 +1,13 @@
 //! Hands on the snake: click a limb to see its numbers, drag it to pull it by a spring, double click to look at it.
 //!
-//! A ray through the pointer is cast into each lane's physics context, so that what is hit is what is simulated.
+//! A ray through the pointer is cast at what is drawn: the limbs' boxes, the steps, the ground. So it hits what a person
+//! sees, in a simulation and in a recording, at the start as at the end.
 
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
 use bevy_egui::input::EguiWantsInput;
-use bevy_rapier3d::plugin::context::{
-    RapierContextColliders, RapierContextSimulation, RapierRigidBodySet,
-};
-use rapier3d::prelude::{QueryFilter, Ray};
+use rapier3d::parry::query::{Ray, RayCast};
+use rapier3d::parry::shape::{Cuboid, HalfSpace};
 
 use super::Frame;
 use super::camera::{CameraRig, StageCamera};
@@ -16,7 +15,7 @@ use super::lane::Lane;
 use super::notice::Notices;
 use super::panels::StageArea;
 use super::playback::Playback;
-use crate::world::{Pull, Vector};
+use crate::world::{Pose, Pull, StairBox, Vector};
 
 /// What is selected, and what is held.
 #[derive(Resource, Debug, Default)]
@@ -26,6 +25,8 @@ pub(super) struct Hands {
     /// The selected limb of that lane; the head is 0.
     pub limb: Option<usize>,
     held: Option<Held>,
+    /// Where the button went down beside all limbs, in pixels: a click there lets the selected one go.
+    pressed_beside: Option<Vec2>,
     /// When and where the button went down last, in seconds and pixels.
     last_press: Option<(f32, Vec2)>,
 }
@@ -56,14 +57,6 @@ struct Hit {
 const CLICK_PIXELS: f32 = 5.0;
 /// Two presses within this time, in seconds, at one place are a double click.
 const DOUBLE_CLICK_S: f32 = 0.4;
-
-type Contexts<'a> = (
-    Entity,
-    &'a Lane,
-    &'a RapierContextSimulation,
-    &'a RapierContextColliders,
-    &'a RapierRigidBodySet,
-);
 
 impl Hands {
     /// What pulls at a lane, in its own coordinates.
@@ -101,18 +94,28 @@ fn ray_at(cursor: Vec2, (camera, place): (&Camera, &GlobalTransform)) -> Option<
 }
 
 /// What a ray hits first in any lane.
-fn first_hit(ray: Ray3d, lanes: &Query<Contexts>) -> Option<Hit> {
-    let hits = lanes.iter().filter_map(|(entity, lane, simulation, colliders, bodies)| {
-        let dispatcher = simulation.narrow_phase.query_dispatcher();
-        let (bodies, colliders) = (&bodies.bodies, &colliders.colliders);
-        let filter = QueryFilter::default();
-        let query = simulation.broad_phase.as_query_pipeline(dispatcher, bodies, colliders, filter);
+fn first_hit(ray: Ray3d, lanes: &Query<(Entity, &Lane)>) -> Option<Hit> {
+    let mut first: Option<Hit> = None;
+    for (entity, lane) in lanes {
         let ray = Ray::new(ray.origin - lane.offset(), *ray.direction);
-        let (collider, distance_m) = query.cast_ray(&ray, f32::MAX, true)?;
-        let limb = colliders.get(collider)?.parent().and_then(|body| lane.limb_of(body));
-        Some(Hit { entity, lane: lane.number(), limb, distance_m })
-    });
-    hits.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
+        let nearest_m = |first: &Option<Hit>| first.as_ref().map_or(f32::MAX, |hit| hit.distance_m);
+        let mut hit = |limb: Option<usize>, shape: &dyn RayCast, pose: &Pose| {
+            if let Some(distance_m) = shape.cast_ray(pose, &ray, nearest_m(&first), true) {
+                first = Some(Hit { entity, lane: lane.number(), limb, distance_m });
+            }
+        };
+        for (limb, pose) in lane.drawn_poses().enumerate() {
+            let size = Vector::from(lane.trial().agent.limb_size_m(limb));
+            hit(Some(limb), &Cuboid::new(size / 2.0), &pose);
+        }
+        for StairBox { min_m, max_m } in lane.trial().stairs.boxes() {
+            let (min, max) = (Vector::from(min_m), Vector::from(max_m));
+            let pose = Pose::from_translation((min + max) / 2.0);
+            hit(None, &Cuboid::new((max - min) / 2.0), &pose);
+        }
+        hit(None, &HalfSpace::new(Vector::Z), &Pose::IDENTITY);
+    }
+    first
 }
 
 /// A press on a limb selects it and takes it into the hand; a double click looks at what is under the pointer.
@@ -124,7 +127,7 @@ fn grasp(
     camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
     area: Res<StageArea>,
     egui: Res<EguiWantsInput>,
-    lanes: Query<Contexts>,
+    lanes: Query<(Entity, &Lane)>,
     time: Res<Time<Real>>,
 ) {
     if !buttons.just_pressed(MouseButton::Left) || egui.wants_any_pointer_input() {
@@ -146,12 +149,12 @@ fn grasp(
         rig.focus_on(lane, ray.get_point(hit.distance_m));
     }
     let Some(Hit { entity, lane, limb: Some(limb), distance_m }) = hit else {
-        hands.limb = None;
+        hands.pressed_beside = Some(cursor);
         return;
     };
     (hands.lane, hands.limb) = (lane, Some(limb));
-    let Ok((_, lane, ..)) = lanes.get(entity) else { return };
-    let Some(pose) = lane.last_poses().get(limb) else { return };
+    let Ok((_, lane)) = lanes.get(entity) else { return };
+    let Some(pose) = lane.drawn_poses().nth(limb) else { return };
     let point = ray.get_point(distance_m) - lane.offset();
     let pull = Pull { limb, held_at_m: pose.inverse() * point, to_m: point };
     hands.held = Some(Held { lane: entity, pull, pressed_at: cursor, is_pulling: false });
@@ -188,11 +191,24 @@ fn drag(
     }
 }
 
-/// A button that is up holds nothing; nor does a hand hold what is gone.
-fn let_go(mut hands: ResMut<Hands>, buttons: Res<ButtonInput<MouseButton>>, lanes: Query<&Lane>) {
-    let is_gone = hands.held.is_some_and(|held| !lanes.contains(held.lane));
-    if is_gone || (hands.held.is_some() && !buttons.pressed(MouseButton::Left)) {
+/// A button that is up holds nothing; nor does a hand hold what is gone. A click beside all limbs selects none; a drag
+/// there turns the camera, and leaves the selection.
+fn let_go(
+    mut hands: ResMut<Hands>,
+    buttons: Res<ButtonInput<MouseButton>>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    lanes: Query<&Lane>,
+) {
+    let is_up = !buttons.pressed(MouseButton::Left);
+    if hands.held.is_some_and(|held| is_up || !lanes.contains(held.lane)) {
         hands.held = None;
+    }
+    if is_up && let Some(pressed_at) = hands.pressed_beside.take() {
+        let is_click =
+            window.cursor_position().is_some_and(|now| now.distance(pressed_at) < CLICK_PIXELS);
+        if is_click {
+            hands.limb = None;
+        }
     }
 }
 

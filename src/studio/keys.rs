@@ -70,6 +70,7 @@ fn read(
         let situation = Situation {
             is_running: evolution.status() == Status::Running,
             is_what_if: matches!(*programme, Programme::WhatIf { .. }),
+            is_race: *programme == Programme::Race,
         };
         send.write_batch(command(&press.logical_key, *held, situation));
     }
@@ -87,6 +88,7 @@ struct Held {
 struct Situation {
     is_running: bool,
     is_what_if: bool,
+    is_race: bool,
 }
 
 /// What a key asks for.
@@ -98,7 +100,7 @@ fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
         Key::ArrowLeft => return Some(Command::Step { forward: false }),
         Key::ArrowRight => return Some(Command::Step { forward: true }),
         Key::Escape if situation.is_what_if => return Some(Command::DropChange),
-        Key::Escape => return Some(Command::Single),
+        Key::Escape => return situation.is_race.then_some(Command::Single),
         Key::Character(text) => text.to_lowercase(),
         _ => return None,
     };
@@ -112,7 +114,7 @@ fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
         "e" => Some(Command::Start),
         "g" => Some(Command::SingleGeneration),
         "n" => Some(Command::RaceGenerations),
-        "m" => Some(Command::RaceLeaders),
+        "m" => Some(Command::RaceLeaders(None)),
         "o" => Some(Command::ToggleLoop),
         "+" | "=" => Some(Command::ChangeSpeed { faster: true }),
         "-" => Some(Command::ChangeSpeed { faster: false }),
@@ -146,7 +148,10 @@ mod tests {
                 assert!(does(name).is_some(), "{name}");
             }
         }
-        for key in [Key::Space, Key::Home, Key::End, Key::ArrowLeft, Key::ArrowRight, Key::Escape] {
+        assert_eq!(command(&Key::Escape, none, calm), None, "nothing to leave");
+        let is_race = Situation { is_race: true, ..calm };
+        assert_eq!(command(&Key::Escape, none, is_race), Some(Command::Single));
+        for key in [Key::Space, Key::Home, Key::End, Key::ArrowLeft, Key::ArrowRight] {
             assert!(command(&key, none, calm).is_some(), "{key:?}");
         }
         let key = |text: &str| Key::Character(text.into());

@@ -1,19 +1,16 @@
 //! A lane of the stage: one snake on its stairs, shown at the moment of the stage's clock.
 //!
 //! Replay, race and what-if are one, many and two lanes. Between frames a lane's physics world lives in a
-//! bevy_rapier3d context on its entity, so that debug drawing and picking see the very bodies that are scored. To
-//! advance, the world is lent back to the rollout, which takes whole constant steps; the clock only decides how
+//! bevy_rapier3d context on its entity, so that debug drawing sees the very bodies that are scored. To advance, the world is lent back to the rollout, which takes whole constant steps; the clock only decides how
 //! many. What is drawn lies between the last two steps.
 
 use std::sync::Arc;
 
 use bevy::prelude::*;
-use rapier3d::prelude::RigidBodyHandle;
 
 use super::exhibit::Exhibit;
-use super::lookahead::Lookahead;
 use super::performance::{Context, Performance};
-use crate::run::caught;
+use crate::run::{Lookahead, caught};
 use crate::score::{Evaluation, History, Trial};
 use crate::world::{ContactForce, JointState, JointTorque, Pose, Pull, Vector};
 
@@ -27,6 +24,8 @@ pub(super) struct Lane {
     offset_x_m: f32,
     performance: Performance,
     lookahead: Lookahead,
+    /// Of a recording: after which step it first stood on the landing.
+    recorded_landing: Option<u32>,
     /// Poses before the last step, head first.
     before: Vec<Pose>,
     /// How much of the last step has been shown, from 0 to 1.
@@ -59,17 +58,21 @@ pub(super) struct Readings {
 pub(super) const MOST_STEPS_A_FRAME: u32 = 3000;
 /// A moment that is nearer to a step than this share of a step is meant to be on it.
 const ON_STEP: f32 = 1.0e-4;
-/// From so many steps on, a keyframe is quicker than going on.
-const KEYFRAME_PAYS_STEPS: u32 = 30;
 
 impl Lane {
     /// A lane at the start of an exhibit's performance. What will happen in it is worked out from now on.
     pub fn new(exhibit: Exhibit, number: usize) -> Self {
         let performance = Performance::of(&exhibit);
+        let lookahead = match exhibit.recording() {
+            // It is known to its end.
+            Some(_) => Lookahead::default(),
+            None => Lookahead::begin(&exhibit.champion().genome, exhibit.trial()),
+        };
         Self {
+            recorded_landing: performance.recorded_landing(&exhibit.trial().stairs),
             before: performance.poses().to_vec(),
             step_s: 1.0 / f64::from(exhibit.trial().physics.steps_per_s),
-            lookahead: Lookahead::begin(&exhibit),
+            lookahead,
             performance,
             exhibit,
             number,
@@ -142,6 +145,11 @@ impl Lane {
         Some(steps as f32 / self.performance.last_step().max(1) as f32)
     }
 
+    /// Whether it has come to its end.
+    pub fn is_over(&self) -> bool {
+        self.performance.is_over()
+    }
+
     /// Whether a hand has interfered: what is seen says nothing of the genome.
     pub fn is_disturbed(&self) -> bool {
         self.performance.is_disturbed()
@@ -153,13 +161,16 @@ impl Lane {
     }
 
     /// The middle limb's way so far, in metres, in the lane's own coordinates.
-    pub fn trail_m(&self) -> impl Iterator<Item = Vector> + '_ {
+    pub fn trail_m(&self) -> Vec<Vector> {
+        if let Some(way) = self.performance.recorded_way_m() {
+            return way;
+        }
         let undisturbed = self.history().map_or(&[][..], |history| {
-            let samples = self.performance.step() as usize - self.detour_m.len();
-            let shown = samples / history.sample_steps() as usize + 1;
+            let steps = (self.performance.step() as usize).saturating_sub(self.detour_m.len());
+            let shown = steps / history.sample_steps() as usize + 1;
             &history.middles_m()[..shown.min(history.middles_m().len())]
         });
-        undisturbed.iter().chain(&self.detour_m).copied()
+        undisturbed.iter().chain(&self.detour_m).copied().collect()
     }
 
     /// The limbs' poses between the last two steps, head first, in the lane's own coordinates: where to draw them.
@@ -191,12 +202,6 @@ impl Lane {
         self.performance.poses().get(limb).map_or(in_limb_m, |pose| *pose * in_limb_m)
     }
 
-    /// Which limb a body of the physics world is; the head is 0.
-    pub fn limb_of(&self, body: RigidBodyHandle) -> Option<usize> {
-        let simulation = self.performance.simulation()?;
-        simulation.limb_handles().iter().position(|&limb| limb == body)
-    }
-
     /// How fast the middle limb is between the last two steps, in m/s.
     pub fn speed_m_s(&self) -> f32 {
         let middle = self.before.len() / 2;
@@ -210,7 +215,8 @@ impl Lane {
 
     /// When it first stood on the landing, in simulated seconds, if that has happened by `time_s`.
     pub fn landed_s(&self, time_s: f64) -> Option<f64> {
-        let step = self.history().filter(|_| !self.is_disturbed())?.landed_at_step()?;
+        let known = self.history().filter(|_| !self.is_disturbed());
+        let step = known.and_then(|history| history.landed_at_step()).or(self.recorded_landing)?;
         let landed_s = f64::from(step) * self.step_s;
         (landed_s <= time_s).then_some(landed_s)
     }
@@ -233,9 +239,13 @@ impl Lane {
         self.lookahead.poll();
     }
 
-    /// Notes whose the physics world is, and puts it into its context.
-    pub fn move_in(&mut self, owner: Entity, context: Context<'_>) {
-        self.performance.own(owner);
+    /// Waits until it is known what will happen.
+    pub fn know_what_comes(&mut self) {
+        self.lookahead.wait();
+    }
+
+    /// Puts its physics world into its context.
+    pub fn move_in(&mut self, context: Context<'_>) {
         self.readings = readings_of(&self.performance);
         self.performance.exchange(context);
     }
@@ -246,7 +256,6 @@ impl Lane {
     /// The program failed on it; it stays as it was then.
     pub fn show(
         &mut self,
-        owner: Entity,
         time_s: f64,
         pull: Option<Pull>,
         (simulation, colliders, joints, bodies): Context<'_>,
@@ -261,27 +270,27 @@ impl Lane {
         if step == now || is_at_end {
             return Ok(());
         }
-        let is_far = step < now || step - now > KEYFRAME_PAYS_STEPS && !self.is_disturbed();
         let known = self.history().cloned();
-        let cost = if step < now { step } else { step - now };
-        if is_far
-            && known.is_none()
-            && cost > MOST_STEPS_A_FRAME
-            && self.lookahead_share().is_some()
-        {
+        // Without a keyframe on the way it is quicker to go on.
+        let pays = |history: &Arc<History>| {
+            !self.is_disturbed() && pull.is_none() && history.keyframe_before(step) > now
+        };
+        let jumps = step < now || known.as_ref().is_some_and(pays);
+        let is_on_its_way = known.is_none() && self.lookahead_share().is_some();
+        if step < now && is_on_its_way && step > MOST_STEPS_A_FRAME {
             // What is worked out already is not worked out twice: it comes with the next frames.
             return Ok(());
         }
         self.performance.exchange((&mut *simulation, &mut *colliders, &mut *joints, &mut *bodies));
         let result = caught(|| {
-            if is_far && (step < now || known.is_some()) {
+            if jumps {
                 self.jump(step, known.as_deref());
             } else {
                 self.performance.pull(pull);
-                self.go_on(step);
+                // A long way takes several frames.
+                self.go_on(step.min(now + MOST_STEPS_A_FRAME));
             }
         });
-        self.performance.own(owner);
         self.readings = readings_of(&self.performance);
         self.performance.exchange((simulation, colliders, joints, bodies));
         self.is_broken = result.is_err();
@@ -305,8 +314,8 @@ impl Lane {
     fn go_on(&mut self, step: u32) {
         while self.performance.step() < step && !self.performance.is_over() {
             self.before.copy_from_slice(self.performance.poses());
-            self.performance.advance();
-            if self.performance.is_disturbed() {
+            let goes_on = self.performance.advance();
+            if goes_on && self.performance.is_disturbed() {
                 let middle = self.performance.poses()[self.before.len() / 2].translation;
                 self.detour_m.push(middle);
             }

@@ -23,7 +23,6 @@ mod lane;
 mod lettering;
 mod limb;
 mod look;
-mod lookahead;
 mod marks;
 mod name_tags;
 mod nosing;
@@ -97,6 +96,9 @@ pub enum StudioError {
         "no picture can be drawn ({0}); drawing needs a graphics driver, a software one will do"
     )]
     NoPicture(String),
+    /// A champion cannot be built.
+    #[error("{0}")]
+    Unfit(String),
     /// The champion to open with could not be read.
     #[error(transparent)]
     Champion(#[from] SaveError),

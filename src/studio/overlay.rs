@@ -128,7 +128,8 @@ fn draw(
         }
         if overlays.shows(Overlay::Trail) {
             let color = if lane.is_disturbed() { palette.pull } else { palette.trail };
-            hidden.linestrip(lane.trail_m().map(|at| at + lane.offset()), color);
+            let way = lane.trail_m().into_iter().map(|at| at + lane.offset());
+            hidden.linestrip(way, color);
         }
         if overlays.shows(Overlay::FitnessLine) {
             fitness_line(lane, palette, &mut on_top);

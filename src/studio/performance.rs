@@ -1,6 +1,5 @@
 //! What happens on the stage, step by step: a simulation, or a recording where other bits are computed.
 
-use bevy::prelude::Entity;
 use bevy_rapier3d::plugin::context::{
     RapierContextColliders, RapierContextJoints, RapierContextSimulation, RapierRigidBodySet,
 };
@@ -9,7 +8,7 @@ use std::sync::Arc;
 
 use super::exhibit::Exhibit;
 use crate::score::{Evaluation, History, Recording, Rollout};
-use crate::world::{Pose, Pull, Simulation};
+use crate::world::{Pose, Pull, Simulation, Stairs, Vector};
 
 /// The parts of a physics context, as one bundle spawns them and one query finds them.
 pub(super) type Context<'a> = (
@@ -146,21 +145,30 @@ impl Performance {
         }
     }
 
+    /// Where the middle limb has been, if it is a recording, frame by frame, in metres.
+    pub fn recorded_way_m(&self) -> Option<Vec<Vector>> {
+        let Self::Recorded(recorded) = self else { return None };
+        let shown = recorded.step / recorded.recording.every_steps() + 1;
+        let frames = recorded.recording.frames().take(shown as usize);
+        Some(frames.map(|limbs| limbs[recorded.middle_limb].translation).collect())
+    }
+
+    /// After which step the middle limb first stood on the landing, if it is a recording and it did.
+    pub fn recorded_landing(&self, stairs: &Stairs) -> Option<u32> {
+        let Self::Recorded(recorded) = self else { return None };
+        let landed = |limbs: &[Pose]| {
+            let at_m = limbs[recorded.middle_limb].translation.to_array();
+            stairs.steps > 0 && stairs.steps_under(at_m) == stairs.steps
+        };
+        let frame = recorded.recording.frames().position(landed)?;
+        Some(frame as u32 * recorded.recording.every_steps())
+    }
+
     /// The simulated world, if it is one.
     pub fn simulation(&self) -> Option<&Simulation> {
         match self {
             Self::Simulated(rollout) => Some(rollout.simulation()),
             Self::Recorded(_) => None,
-        }
-    }
-
-    /// Notes in the simulated world, if it is one, whose it is: the engine's tools find the owner of a collider
-    /// there. It plays no part in the physics.
-    pub fn own(&mut self, owner: Entity) {
-        if let Self::Simulated(rollout) = self {
-            for (_, collider) in rollout.simulation_mut().physics_mut().colliders.iter_mut() {
-                collider.user_data = u128::from(owner.to_bits());
-            }
         }
     }
 

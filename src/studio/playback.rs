@@ -16,6 +16,8 @@ pub(super) struct Playback {
     loops: bool,
     /// How long the end has been on show, in seconds.
     rested_s: f32,
+    /// Whether somebody has just gone to a moment: it is shown as it is, for a frame.
+    is_sought: bool,
 }
 
 /// Simulated seconds in a second.
@@ -30,7 +32,14 @@ const MOST_CATCH_UP_S: f32 = 0.5;
 
 impl Default for Playback {
     fn default() -> Self {
-        Self { time_s: 0.0, speed: 1.0, is_playing: true, loops: true, rested_s: 0.0 }
+        Self {
+            time_s: 0.0,
+            speed: 1.0,
+            is_playing: true,
+            loops: true,
+            rested_s: 0.0,
+            is_sought: false,
+        }
     }
 }
 
@@ -95,6 +104,7 @@ impl Playback {
     pub fn seek(&mut self, time_s: f64, end_s: f64) {
         if time_s.is_finite() {
             (self.time_s, self.rested_s) = (time_s.clamp(0.0, end_s.max(0.0)), 0.0);
+            self.is_sought = true;
         }
     }
 
@@ -122,7 +132,9 @@ impl Playback {
     /// Lets `elapsed_s` of real time pass, of which at most `most_s` of simulated time come; `end_s` is where the
     /// last lane ends. Returns whether it has begun again.
     pub fn pass(&mut self, elapsed_s: f32, most_s: f64, end_s: f64) -> bool {
-        if !self.is_playing {
+        // An end that is found to be nearer than it was thought to be.
+        self.time_s = self.time_s.min(end_s);
+        if std::mem::take(&mut self.is_sought) || !self.is_playing {
             return false;
         }
         if self.time_s < end_s {

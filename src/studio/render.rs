@@ -50,9 +50,12 @@ pub fn render(scene: &Scene) -> Result<(Picture, Vec<Tag>), StudioError> {
     let exhibits = saved.map(|(index, (name, loaded))| Exhibit::saved(loaded, index, name));
     let (mut lanes, problems) = lanes(exhibits.collect());
     if let Some(problem) = problems.into_iter().next() {
-        return Err(StudioError::NoPicture(problem.trim_end_matches('.').to_owned()));
+        return Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned()));
     }
     for lane in &mut lanes {
+        if scene.overlays.contains(&Overlay::Trail) {
+            lane.know_what_comes();
+        }
         lane.skip_to(scene.at_s.unwrap_or(f64::MAX));
     }
     let (width, height) = scene.size;

@@ -101,9 +101,19 @@ pub(super) fn lanes(exhibits: Vec<Exhibit>) -> (Vec<Lane>, Vec<String>) {
 }
 
 /// Puts the exhibits the studio opens with on the stage.
-fn show_opening(opening: Res<Opening>, mut show: MessageWriter<Show>) {
+fn show_opening(
+    opening: Res<Opening>,
+    mut show: MessageWriter<Show>,
+    mut notices: ResMut<Notices>,
+) {
     let exhibits = (0..opening.0.len()).filter_map(|index| opening.exhibit(index));
     show.write(Show::race(exhibits.take(MOST_LANES).collect()));
+    let left_out = opening.0.len().saturating_sub(MOST_LANES);
+    if left_out > 0 {
+        notices.news(format!(
+            "The stage has room for {MOST_LANES} lanes; {left_out} more are in the list of champions."
+        ));
+    }
 }
 
 /// Replaces what is on the stage.
@@ -134,7 +144,7 @@ fn put_on_stage(
 fn spawn(commands: &mut Commands, mut lane: Lane) {
     let entity = commands.spawn_empty().id();
     let (mut simulation, mut colliders, mut joints, mut bodies) = Default::default();
-    lane.move_in(entity, (&mut simulation, &mut colliders, &mut joints, &mut bodies));
+    lane.move_in((&mut simulation, &mut colliders, &mut joints, &mut bodies));
     let place = Transform::from_translation(lane.offset());
     let drawn = (place, Visibility::default());
     commands.entity(entity).insert((simulation, colliders, joints, bodies, lane, drawn));
@@ -160,7 +170,7 @@ fn advance(
     for (entity, mut lane, (mut simulation, mut colliders, mut joints, mut bodies)) in &mut lanes {
         let context = (&mut *simulation, &mut *colliders, &mut *joints, &mut *bodies);
         let pull = hands.as_ref().and_then(|hands| hands.pull_on(entity));
-        let failed = lane.show(entity, playback.time_s(), pull, context).err();
+        let failed = lane.show(playback.time_s(), pull, context).err();
         notices.problems(failed.map(|message| format!("The program failed on it: {message}")));
         lane.look_ahead();
         if lane.has_just_ended() {

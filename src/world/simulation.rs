@@ -287,8 +287,9 @@ impl Simulation {
         self.was_pulled = false;
         let Some(pull) = self.pull else { return };
         let Some(&limb) = self.limbs.get(pull.limb) else { return };
+        let step_s = self.physics.integration_parameters.dt;
         let body = &mut self.physics.bodies[limb];
-        let (force, point) = pull.force_on(body);
+        let (force, point) = pull.force_on(body, step_s);
         body.add_force_at_point(force, point, false);
         self.was_pulled = true;
     }

@@ -26,7 +26,7 @@ pub fn explored_run() -> Evolution {
         experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
     }
     let mut run = run_of(plan);
-    run.exploration = Some(Box::new(Exploration {
+    run.explore(Box::new(Exploration {
         front: experiment.front().clone(),
         archive: experiment.archive().cloned(),
         leaders: experiment.leaders().to_vec(),

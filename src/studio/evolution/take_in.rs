@@ -82,7 +82,7 @@ fn take_in(
                 evolution.background = None;
                 evolution.engine.set_run_folder(None);
             }
-            Event::Explored(exploration) => evolution.exploration = Some(exploration),
+            Event::Explored(exploration) => evolution.explore(exploration),
             Event::Generation(report) => {
                 let champion = report.champion.iter();
                 champion.for_each(|champion| present(champion, number, &mut notices));

@@ -15,6 +15,8 @@ struct Standing {
     /// When it landed, in simulated seconds.
     landed_s: Option<f64>,
     is_out: bool,
+    /// Whether a hand has interfered: it is no finisher any more.
+    is_disturbed: bool,
     y_m: f32,
 }
 
@@ -30,6 +32,7 @@ fn standings<'a>(lanes: impl IntoIterator<Item = &'a Lane>, time_s: f64) -> Vec<
                 name: lane.exhibit().label().to_owned(),
                 landed_s: lane.landed_s(time_s),
                 is_out: evaluation.disqualified.is_some(),
+                is_disturbed: lane.is_disturbed(),
                 y_m: evaluation.centre_y_m,
             }
         })
@@ -42,7 +45,8 @@ fn order(standings: &mut [Standing]) {
     standings.sort_by(|a, b| {
         let landed = |standing: &Standing| standing.landed_s.unwrap_or(f64::INFINITY);
         let by_place = b.y_m.total_cmp(&a.y_m).then(a.lane.cmp(&b.lane));
-        a.is_out.cmp(&b.is_out).then(landed(a).total_cmp(&landed(b))).then(by_place)
+        let counts = |standing: &Standing| (standing.is_out, standing.is_disturbed);
+        counts(a).cmp(&counts(b)).then(landed(a).total_cmp(&landed(b))).then(by_place)
     });
 }
 
@@ -78,6 +82,9 @@ pub(super) fn board(
                     asked.push(Command::Focus(standing.lane));
                 }
                 let state = match (standing.is_out, standing.landed_s) {
+                    _ if standing.is_disturbed => {
+                        egui::RichText::new("by hand").color(palette.problem)
+                    }
                     (true, _) => egui::RichText::new("out").color(palette.problem),
                     (false, Some(landed_s)) => {
                         egui::RichText::new(format!("landed {landed_s:.2} s")).color(palette.accent)
@@ -118,12 +125,13 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     #[test]
-    fn who_lands_first_is_first_and_who_is_out_is_last() {
+    fn who_lands_first_is_first_and_who_was_pulled_or_is_out_is_last() {
         let standing = |lane, landed_s, is_out, y_m| Standing {
             lane,
             name: lane.to_string(),
             landed_s,
             is_out,
+            is_disturbed: lane == 5,
             y_m,
         };
         let mut standings = [
@@ -132,10 +140,11 @@ mod tests {
             standing(2, None, true, 30.0),
             standing(3, Some(7.5), false, 22.0),
             standing(4, None, false, 14.0),
+            standing(5, None, false, 40.0),
         ];
         order(&mut standings);
         let lanes = standings.map(|standing| standing.lane);
-        assert_eq!(lanes, [3, 1, 4, 0, 2]);
+        assert_eq!(lanes, [3, 1, 4, 0, 5, 2]);
     }
 
     #[test]

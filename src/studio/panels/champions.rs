@@ -33,6 +33,7 @@ impl ChampionsPanel {
         opening: &[Saved],
         reports: &[GenerationReport],
         shown: &[Shown],
+        leaders: impl Fn(Option<u32>) -> usize,
         asked: &mut Vec<Command>,
     ) {
         let champions = reports.iter().filter(|report| report.champion.is_some()).count();
@@ -41,8 +42,8 @@ impl ChampionsPanel {
                 (
                     "Race top ten",
                     "The best of the latest generation, side by side (M)",
-                    champions > 0,
-                    Command::RaceLeaders,
+                    leaders(None) > 1,
+                    Command::RaceLeaders(None),
                 ),
                 (
                     "Race",
@@ -52,7 +53,9 @@ impl ChampionsPanel {
                 ),
             ] {
                 let button = egui::Button::new(name).small();
-                if ui.add_enabled(is_on, button).on_hover_text(hint).clicked() {
+                let not_yet = "There is no such race yet";
+                let response = ui.add_enabled(is_on, button).on_hover_text(hint);
+                if response.on_disabled_hover_text(not_yet).clicked() {
                     asked.push(command);
                 }
             }
@@ -73,7 +76,15 @@ impl ChampionsPanel {
             let individual = champion.origin.individual;
             let is_shown = shown.iter().any(|shown| shown.is(generation, individual));
             let pick = Pick::Generation(generation);
-            entry(ui, is_shown, &name, &champion.reached(), pick, asked);
+            let row = entry(ui, is_shown, &name, &champion.reached(), pick, asked);
+            if leaders(Some(generation)) > 1 {
+                row.context_menu(|ui| {
+                    if ui.button("Race its best ten").clicked() {
+                        asked.push(Command::RaceLeaders(Some(generation)));
+                        ui.close();
+                    }
+                });
+            }
         }
         if reports.is_empty() {
             explain(ui, "The best of each generation will appear here.");
@@ -89,12 +100,14 @@ fn entry(
     reached: &str,
     pick: Pick,
     asked: &mut Vec<Command>,
-) {
-    let hint = "Click to replay; with Shift, beside what is on the stage";
-    if row(ui, is_shown, name, reached).on_hover_text(hint).clicked() {
+) -> egui::Response {
+    let hint = "Click to replay; with Shift, beside what is on the stage; right click for its generation's best";
+    let response = row(ui, is_shown, name, reached).on_hover_text(hint);
+    if response.clicked() {
         let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
         asked.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
     }
+    response
 }
 
 #[cfg(test)]
@@ -118,7 +131,9 @@ mod tests {
         let loaded = shipped_champion().expect("well formed");
         let opening = [Saved { name: "climber".to_owned(), loaded }];
         let mut harness = Harness::new_ui_state(
-            |ui, asked| ChampionsPanel.ui(ui, &opening, &reports, &[Shown::Opening(0)], asked),
+            |ui, asked| {
+                ChampionsPanel.ui(ui, &opening, &reports, &[Shown::Opening(0)], |_| 2, asked)
+            },
             Vec::new(),
         );
         harness.get_by_label_contains("Generation 2").click();

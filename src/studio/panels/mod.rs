@@ -209,7 +209,8 @@ fn draw(
                         panels.evolution.ui(ui, &evolution, &mut asked);
                         panels.chart.ui(ui, evolution.settings(), evolution.reports());
                         let reports = evolution.reports();
-                        panels.champions.ui(ui, &opening.0, reports, &shown, &mut asked);
+                        let leaders = |generation| evolution.leaders(generation).len();
+                        panels.champions.ui(ui, &opening.0, reports, &shown, leaders, &mut asked);
                     }
                     Tab::Explore => {
                         panels.explore.ui(ui, &evolution, shown.first().copied(), &mut asked)
@@ -272,7 +273,9 @@ fn around_stage(
         });
     }
     if let Some(limb) = on_stage.hands.limb {
-        card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom()).show(context, |ui| {
+        // The pointer goes through it, to the snake that may be behind.
+        let place = card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom());
+        place.interactable(false).show(context, |ui| {
             frame.show(ui, |ui| limb_card(ui, focused, limb));
         });
     }

@@ -19,6 +19,7 @@ pub(super) struct Signals {
 struct Drawn {
     history: Arc<History>,
     rect: Rect,
+    end_s: f64,
     is_dark: bool,
     shapes: Vec<Shape>,
 }
@@ -65,7 +66,10 @@ impl Signals {
             None => {
                 let text = match lane.lookahead_share() {
                     Some(share) => format!("Looking ahead: {:.0} %", share * 100.0),
-                    None => "A recording has poses, but no torques".to_owned(),
+                    None if lane.exhibit().recording().is_some() => {
+                        "A recording has poses, but no torques".to_owned()
+                    }
+                    None => "The torques are not known".to_owned(),
                 };
                 let font = egui::FontId::proportional(look::SMALL_SIZE);
                 let align = egui::Align2::CENTER_CENTER;
@@ -99,12 +103,14 @@ impl Signals {
         is_dark: bool,
     ) -> Vec<Shape> {
         let is_drawn = self.drawn.as_ref().is_some_and(|drawn| {
-            Arc::ptr_eq(&drawn.history, history) && (drawn.rect, drawn.is_dark) == (plot, is_dark)
+            Arc::ptr_eq(&drawn.history, history)
+                && (drawn.rect, drawn.end_s, drawn.is_dark) == (plot, end_s, is_dark)
         });
         if !is_drawn {
             let palette = if is_dark { look::Theme::Dark } else { look::Theme::Light }.palette();
             let shapes = shapes(history, lane, plot, end_s, palette);
-            self.drawn = Some(Drawn { history: Arc::clone(history), rect: plot, is_dark, shapes });
+            self.drawn =
+                Some(Drawn { history: Arc::clone(history), rect: plot, end_s, is_dark, shapes });
         }
         self.drawn.as_ref().map(|drawn| drawn.shapes.clone()).unwrap_or_default()
     }

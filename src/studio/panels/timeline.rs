@@ -124,6 +124,14 @@ fn numbers(ui: &mut egui::Ui, lane: &Lane) {
         return;
     }
     let unit = trial.fitness.unit();
+    // A recording knows only what it ended with.
+    let is_on_record = lane.exhibit().recording().is_some() && !lane.is_over();
+    if is_on_record {
+        let place = format!("{:.2} m", evaluation.centre_y_m);
+        ui.label(egui::RichText::new(place).monospace());
+        ui.label(egui::RichText::new("place").color(palette.text_weak));
+        return;
+    }
     let behaviour = evaluation.behaviour;
     let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
     let steps = behaviour.map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));

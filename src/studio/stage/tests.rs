@@ -60,10 +60,16 @@ fn clock(app: &mut App) -> Mut<'_, Playback> {
 
 /// Waits until what will happen is known in all lanes.
 fn know_what_comes(app: &mut App) {
+    know_what_comes_of_all_but(app, 0);
+}
+
+/// The same with so many recordings among them.
+fn know_what_comes_of_all_but(app: &mut App, recordings: usize) {
     for _ in 0..3000 {
         frame(app, 0.0);
         let mut lanes = app.world_mut().query::<&Lane>();
-        if lanes.iter(app.world()).all(|lane| lane.history().is_some()) {
+        let unknown = lanes.iter(app.world()).filter(|lane| lane.history().is_none()).count();
+        if unknown == recordings {
             return;
         }
         std::thread::sleep(Duration::from_millis(10));
@@ -105,11 +111,10 @@ fn wherever_one_seeks_the_state_is_the_played_one_bit_for_bit() {
     clock(&mut app).toggle(1.0e9);
     let steps = champion.trial.steps();
     let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
-    let mut rollouts = vec![crate::score::Rollout::new(&champion.genome, &champion.trial)];
     for target in [steps / 2, steps, 3, steps - 1, 0, steps / 2 + 1] {
         clock(&mut app).seek(f64::from(target) * step_s, 1.0e9);
         frame(&mut app, 0.016);
-        let mut played = rollouts[0].clone();
+        let mut played = crate::score::Rollout::new(&champion.genome, &champion.trial);
         while played.step() < target {
             assert!(played.advance());
         }
@@ -120,7 +125,6 @@ fn wherever_one_seeks_the_state_is_the_played_one_bit_for_bit() {
         let drawn: Vec<Pose> = shown.drawn_poses().collect();
         assert_eq!(drawn, played.poses(), "held on a step, that step is drawn");
     }
-    rollouts.clear();
 }
 
 #[test]
@@ -291,4 +295,60 @@ fn who_was_pulled_is_disturbed_until_it_goes_back_and_is_not_compared_with_its_r
     clock(&mut app).set_speed(16.0);
     play(&mut app, &[0.1], is_over);
     assert!(lane(&mut app).evaluation().agrees_with(&recorded));
+}
+
+#[test]
+fn with_many_steps_a_second_it_goes_on_instead_of_jumping_back_and_can_be_pulled() {
+    let mut loaded = shipped();
+    loaded.champion.trial.physics.steps_per_s = 1000;
+    let mut app = stage_of(vec![loaded]);
+    know_what_comes(&mut app);
+    play(&mut app, &[0.1], |lane| lane.performance().step() > 300);
+    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
+    let entity = lanes.single(app.world()).expect("one lane");
+    let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, 0.0, 2.0);
+    let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
+    app.world_mut().resource_mut::<Hands>().hold(entity, pull);
+    frame(&mut app, 0.1);
+    assert!(lane(&mut app).is_disturbed(), "a frame of a hundred steps is a frame in the hand");
+}
+
+#[test]
+fn a_disturbed_lane_that_has_far_to_go_takes_several_frames() {
+    let mut loaded = shipped();
+    loaded.champion.trial.duration_s = 300.0;
+    let mut app = stage_of(vec![loaded]);
+    play(&mut app, &[0.05], |lane| lane.performance().step() > 60);
+    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
+    let entity = lanes.single(app.world()).expect("one lane");
+    let to_m = lane(&mut app).last_poses()[0].translation;
+    app.world_mut()
+        .resource_mut::<Hands>()
+        .hold(entity, Pull { limb: 0, held_at_m: Vector::ZERO, to_m });
+    frame(&mut app, 0.05);
+    app.world_mut().resource_mut::<Hands>().open();
+    let before = lane(&mut app).performance().step();
+    clock(&mut app).hold_at(250.0);
+    frame(&mut app, 0.05);
+    let after = lane(&mut app).performance().step();
+    assert!(after - before <= MOST_STEPS_A_FRAME, "{before} to {after}");
+    play(&mut app, &[0.05], |lane| lane.is_over() || lane.performance().step() == 15_000);
+}
+
+#[test]
+fn a_recording_lands_in_a_race_and_has_a_trail() {
+    let mut loaded = shipped();
+    let Champion { genome, trial, .. } = &loaded.champion;
+    loaded.recording = Some(Recording::of(genome, trial));
+    loaded.engine = 1;
+    let mut app = stage_of(vec![loaded, shipped()]);
+    know_what_comes_of_all_but(&mut app, 1);
+    clock(&mut app).hold_at(1.0e9);
+    (0..10).for_each(|_| frame(&mut app, 0.1));
+    let mut lanes = app.world_mut().query::<&Lane>();
+    let landed: Vec<f64> =
+        lanes.iter(app.world()).filter_map(|lane| lane.landed_s(1.0e9)).collect();
+    let [first, second] = landed[..] else { panic!("both land: {landed:?}") };
+    assert!((first - second).abs() < 0.05, "{landed:?}");
+    assert!(lane(&mut app).trail_m().len() > 100);
 }

@@ -213,7 +213,7 @@ impl Studio {
             "Free" => return self.click("511", "30"),
             "Follow" => return self.click("366", "30"),
             "the middle of the torques" => return self.click("560", "545"),
-            "the start of the torques" => return self.click("338", "545"),
+            "the start of the torques" => return self.click("336", "545"),
             other => panic!("no button {other}"),
         };
         self.click(x, BUTTONS_Y);

@@ -10,7 +10,7 @@ fn held_at_start(test: &str) -> Option<Studio> {
     studio.key("space");
     studio.wait_for_title(", held at ");
     studio.click_button("the start of the torques");
-    studio.wait_for_title("held at 0.0");
+    studio.wait_for_title("held at 0.00 s");
     Some(studio)
 }
 
