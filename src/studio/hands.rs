@@ -3,6 +3,7 @@
 //! A ray through the pointer is cast at what is drawn: the limbs' boxes, the steps, the ground. So it hits what a person
 //! sees, in a simulation and in a recording, at the start as at the end.
 
+use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
 use bevy_egui::input::EguiWantsInput;
@@ -122,7 +123,7 @@ fn first_hit(ray: Ray3d, lanes: &Query<(Entity, &Lane)>) -> Option<Hit> {
 fn grasp(
     mut hands: ResMut<Hands>,
     mut rig: ResMut<CameraRig>,
-    buttons: Res<ButtonInput<MouseButton>>,
+    mut presses: MessageReader<MouseButtonInput>,
     window: Single<&Window, With<PrimaryWindow>>,
     camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
     area: Res<StageArea>,
@@ -130,7 +131,10 @@ fn grasp(
     lanes: Query<(Entity, &Lane)>,
     time: Res<Time<Real>>,
 ) {
-    if !buttons.just_pressed(MouseButton::Left) || egui.wants_any_pointer_input() {
+    let is_press =
+        |press: &&MouseButtonInput| press.button == MouseButton::Left && press.state.is_pressed();
+    let presses = presses.read().filter(is_press).count();
+    if presses == 0 || egui.wants_any_pointer_input() {
         return;
     }
     let Some(cursor) = window.cursor_position().filter(|cursor| area.contains(*cursor)) else {
@@ -139,10 +143,11 @@ fn grasp(
     let Some(ray) = ray_at(cursor, *camera) else { return };
     let hit = first_hit(ray, &lanes);
     let now_s = time.elapsed_secs();
-    let is_double = hands.last_press.is_some_and(|(then_s, at)| {
-        // Where frames are slow, presses are seen late.
+    // Where frames are slow, presses are seen late, or two at once.
+    let follows_another = hands.last_press.is_some_and(|(then_s, at)| {
         now_s - then_s < DOUBLE_CLICK_S + time.delta_secs() && at.distance(cursor) < CLICK_PIXELS
     });
+    let is_double = presses > 1 || follows_another;
     hands.last_press = (!is_double).then_some((now_s, cursor));
     if is_double && let Some(hit) = &hit {
         let lane = hit.limb.map(|_| hit.lane);

@@ -128,10 +128,10 @@ fn every_camera_shows_something_else_and_follow_comes_back() {
     studio.key("c");
     studio.picture_with(|now| difference(&follow, now) > 3000);
     studio.key("Home");
-    let now = studio.picture_with(|now| difference(&follow, now) < 200);
-    let limb = now.find(is_red).expect("a red limb");
-    studio.double_click_at(limb);
-    studio.picture_with(|now| count_on_stage(now, is_red) > 2 * count_on_stage(&follow, is_red));
+    studio.picture_with(|now| difference(&follow, now) < 200);
+    // A double click on the ground goes there; from near, the snake is large or out of the picture.
+    studio.double_click_at((640, 250));
+    studio.picture_with(|now| difference(&follow, now) > 20_000);
 }
 
 #[test]
