@@ -51,8 +51,10 @@ pub(super) fn limb_card(ui: &mut egui::Ui, lane: &Lane, limb: usize) {
     let joint = |index: usize| {
         let state: &JointState = readings.joints.get(index)?;
         let torque = readings.torques.get(index)?;
+        // A tenth that is rounded to nothing has no sign.
+        let tenths = |value: f32| (value * 10.0).round() / 10.0 + 0.0;
         let line = |angle_rad: f32, torque_nm: f32| {
-            format!("{:+6.1}°  {torque_nm:+7.1} N·m", angle_rad.to_degrees())
+            format!("{:+6.1}°  {:+7.1} N·m", tenths(angle_rad.to_degrees()), tenths(torque_nm))
         };
         Some([line(state.bend_rad, torque.bend_nm), line(state.twist_rad, torque.twist_nm)])
     };

@@ -61,19 +61,6 @@ fn screenshots() {
         album.step_aside();
         album.keep("single");
 
-        // From near, at the moment at which it pushes off.
-        for key in ["v", "j"] {
-            studio.key(key);
-        }
-        album.seek(0.375);
-        let limb = studio.picture().find(super::is_red).expect("a red limb");
-        studio.double_click_at(limb);
-        album.step_aside();
-        album.keep("contacts");
-        for key in ["v", "j", "Home"] {
-            studio.key(key);
-        }
-
         studio.key("n");
         studio.wait_for_title("showing a race of 6");
         studio.key("space");
@@ -91,5 +78,24 @@ fn screenshots() {
         album.seek(0.5);
         album.step_aside();
         album.keep("what-if");
+        drop(album);
+
+        // One that often touches something, from near, at a moment at which it does.
+        let robust =
+            concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/robust.ron --preset quick");
+        let arguments = format!("{robust} --saves others --theme {theme}");
+        let Some(studio) = Studio::open_sized("screenshots", &arguments, size) else { return };
+        let album = Album { studio, folder: folder.clone(), theme, size };
+        let studio = &album.studio;
+        studio.wait_for_title("finished");
+        for key in ["a", "0", "space", "v", "j", "b"] {
+            studio.key(key);
+        }
+        album.seek(0.6);
+        std::thread::sleep(Duration::from_secs(3));
+        let limb = studio.picture().find(super::is_red).expect("a red limb");
+        studio.double_click_at(limb);
+        album.step_aside();
+        album.keep("contacts");
     }
 }
