@@ -17,7 +17,8 @@
 //!    fixes both results); and `log2f`, by which parry's bounding volume tree decides how much of itself
 //!    to rebuild, rounded to a whole number that no error of a few units in the last place changes for
 //!    any tree of fewer than 100 000 leaves. `snakes verify` compares what comes of it.
-//! 4. **The viewer only looks.** The frame rate, a moved window or a slow panel cannot change a result.
+//! 4. **The viewer only looks.** The frame rate, a moved window or a slow panel cannot change a result. A hand that
+//!    pulls a limb makes a disturbed rollout, which is marked, compared with nothing and kept nowhere.
 //! 5. **Panels send messages; one system applies them.**
 //! 6. **Whatever a person can break is checked where it enters**, and the error names the field, the
 //!    value and what is allowed ([`check::Invalid`]).

@@ -138,6 +138,14 @@ impl StageParams<'_, '_> {
         lanes.into_iter().map(|lane| lane.exhibit().clone()).collect()
     }
 
+    /// Puts others on the stage, from their start. Whoever holds the stage after that, in the same frame, holds them.
+    fn present(&mut self, show: Option<Show>) {
+        if let Some(show) = show {
+            self.playback.restart();
+            self.show.write(show);
+        }
+    }
+
     fn end_s(&self) -> f64 {
         end_s(&self.lanes)
     }
@@ -167,7 +175,7 @@ impl StageParams<'_, '_> {
     /// Whoever begins a run while a change is tried out goes on with it.
     fn settle(&mut self) {
         let kept = kept(&self.exhibits(), &self.programme);
-        self.show.write_batch(kept);
+        self.present(kept);
     }
 
     /// Shows what a change does, beside what it was before.
@@ -178,7 +186,7 @@ impl StageParams<'_, '_> {
             on_show.swap(0, self.hands.lane);
         }
         let show = what_if(evolution, &on_show, &self.programme, change)?;
-        self.show.write_batch(show);
+        self.present(show);
         Ok(())
     }
 }
@@ -218,8 +226,7 @@ fn apply(
             }
             Command::SetPreset(name) => stage.try_out(&mut evolution, &Change::Preset(name)),
             Command::DropChange => dropped(&mut evolution, &stage.exhibits(), &stage.programme)
-                .map(|show| stage.show.write_batch(show))
-                .map(drop),
+                .map(|show| stage.present(show)),
             Command::Quit => {
                 exit.write(AppExit::Success);
                 Ok(())
@@ -267,7 +274,7 @@ fn on_stage(
         _ => None,
     };
     let is_new = show.is_some();
-    stage.show.write_batch(show);
+    stage.present(show);
     match command {
         Command::Focus(lane) => (stage.hands.lane, stage.hands.limb) = (*lane, None),
         Command::TogglePlayback => stage.playback.toggle(end_s),
@@ -301,4 +308,37 @@ fn on_stage(
         _ => {}
     }
     Ok(is_new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::casting::Saved;
+    use crate::studio::evolution::prepared_run;
+
+    #[test]
+    fn who_holds_the_stage_in_the_frame_in_which_others_come_holds_them() {
+        let loaded = shipped_champion().expect("well formed");
+        let mut app = App::new();
+        app.add_message::<Command>()
+            .add_message::<Show>()
+            .add_message::<Photograph>()
+            .add_message::<AppExit>()
+            .insert_resource(prepared_run())
+            .insert_resource(Opening(vec![Saved { name: "climber".to_owned(), loaded }]))
+            .init_resource::<Notices>()
+            .init_resource::<Programme>()
+            .init_resource::<Playback>()
+            .init_resource::<CameraRig>()
+            .init_resource::<Overlays>()
+            .init_resource::<Hands>()
+            .init_resource::<Theme>()
+            .add_systems(Update, apply);
+        let asked = [Command::Show(Pick::Opening(0)), Command::TogglePlayback];
+        app.world_mut().write_message_batch(asked);
+        app.update();
+        assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "somebody is shown");
+        assert!(!app.world().resource::<Playback>().is_playing(), "and held");
+    }
 }

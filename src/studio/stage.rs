@@ -13,7 +13,7 @@ use crate::ENGINE_VERSION;
 use crate::evolve::RunPlan;
 use crate::run::caught;
 
-/// Asks for exhibits to be put on the stage, in place of what is there.
+/// Asks for exhibits to be put on the stage, in place of what is there. Whoever asks sets the clock.
 #[derive(Message, Debug, Clone)]
 pub(super) struct Show {
     /// Lane by lane.
@@ -122,7 +122,6 @@ fn put_on_stage(
     earlier: Query<Entity, With<Lane>>,
     mut commands: Commands,
     mut notices: ResMut<Notices>,
-    mut playback: ResMut<Playback>,
     mut on_stage: ResMut<Programme>,
 ) {
     // Of several requests in a frame only the last is seen.
@@ -137,7 +136,6 @@ fn put_on_stage(
     earlier.iter().for_each(|lane| commands.entity(lane).despawn());
     *on_stage = if lanes.len() > 1 { programme } else { Programme::Solo };
     lanes.into_iter().for_each(|lane| spawn(&mut commands, lane));
-    playback.restart();
 }
 
 /// Spawns a lane whose physics world lives in a context of its own.

@@ -31,7 +31,7 @@ fn take_in(
     mut notices: ResMut<Notices>,
     mut show: MessageWriter<Show>,
     lanes: Query<&Lane>,
-    (programme, playback): (Res<Programme>, Res<Playback>),
+    (programme, mut playback): (Res<Programme>, ResMut<Playback>),
 ) {
     evolution.take_in_listing();
     let Some(background) = &evolution.background else { return };
@@ -57,6 +57,7 @@ fn take_in(
             notices.news(format!("Better than what is on show: {}", exhibit.caption()));
         } else {
             notices.news(format!("New on stage: {}", exhibit.caption()));
+            playback.restart();
             show.write(Show::solo(exhibit));
         }
     };

@@ -57,7 +57,7 @@ impl Signals {
         };
         // Up to where it has played, the strip is a progress bar.
         let played = Rect::from_min_max(rect.min, egui::pos2(x_of(now_s), rect.bottom()));
-        painter.rect_filled(played, 4.0, palette.accent_soft.gamma_multiply(0.45));
+        painter.rect_filled(played, 4.0, palette.field.lerp_to_gamma(palette.accent_soft, 0.5));
         seconds(&painter, rect, end_s, &x_of, palette);
         match lane.history() {
             Some(history) => {

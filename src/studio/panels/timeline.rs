@@ -61,8 +61,7 @@ impl TimelinePanel {
                     }
                 }
                 if lane.is_disturbed() {
-                    let hint = "A hand has pulled it. From the start (R), or at any moment before, it is \
-                                itself again";
+                    let hint = "A hand has pulled it. Go back in time, and it is itself again";
                     let text = egui::RichText::new("disturbed by hand").color(look::of(ui).problem);
                     ui.label(text).on_hover_text(hint);
                 }

@@ -189,6 +189,7 @@ fn what_another_engine_found_is_played_from_its_recording_and_can_be_simulated()
     assert!(shown.exhibit().caption().contains("as engine 1 recorded it"));
     let simulated = shown.exhibit().simulated();
     app.world_mut().write_message(Show::solo(simulated));
+    clock(&mut app).restart();
     frame(&mut app, 0.0);
     play(&mut app, &[0.1], is_over);
     let shown = lane(&mut app);

@@ -91,7 +91,7 @@ fn screenshots() {
         for key in ["a", "0", "space", "v", "j", "b"] {
             studio.key(key);
         }
-        album.seek(0.6);
+        album.seek(0.3);
         std::thread::sleep(Duration::from_secs(3));
         let limb = studio.picture().find(super::is_red).expect("a red limb");
         studio.double_click_at(limb);
