@@ -1,6 +1,8 @@
 //! What a step and an evaluation cost. Compare with `cargo bench -- --save-baseline before` and
 //! `cargo bench -- --baseline before`; `snakes bench` gives the ratio to bare rapier.
 
+#![expect(clippy::expect_used, reason = "a benchmark that cannot begin has nothing to say")]
+
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};

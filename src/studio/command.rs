@@ -147,7 +147,7 @@ impl StageParams<'_, '_> {
     }
 
     fn end_s(&self) -> f64 {
-        end_s(&self.lanes)
+        end_s(self.lanes.iter())
     }
 
     /// Length of a step of the lane in focus, in seconds.

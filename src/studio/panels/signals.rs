@@ -24,6 +24,9 @@ struct Drawn {
     shapes: Vec<Shape>,
 }
 
+/// How to read the torque about an axis, in N·m.
+type Axis = fn(&JointTorque) -> f32;
+
 /// Points across for each point of a line.
 const COLUMN_WIDTH: f32 = 2.0;
 /// Height of the seconds under the lines, in points.
@@ -157,7 +160,7 @@ fn shapes(
         let middle = plot.top() + row_height * (joint as f32 + 0.5);
         let zero = [egui::pos2(plot.left(), middle), egui::pos2(plot.right(), middle)];
         shapes.push(Shape::line_segment(zero, Stroke::new(1.0, palette.field_hovered)));
-        let axes: [(fn(&JointTorque) -> f32, f32, Color32); 2] = [
+        let axes: [(Axis, f32, Color32); 2] = [
             (|torque| torque.twist_nm, agent.max_twist_torque_nm.at(joint), palette.twist),
             (|torque| torque.bend_nm, agent.max_bend_torque_nm.at(joint), palette.bend),
         ];
