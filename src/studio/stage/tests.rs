@@ -60,21 +60,9 @@ fn clock(app: &mut App) -> Mut<'_, Playback> {
 
 /// Waits until what will happen is known in all lanes.
 fn know_what_comes(app: &mut App) {
-    know_what_comes_of_all_but(app, 0);
-}
-
-/// The same with so many recordings among them.
-fn know_what_comes_of_all_but(app: &mut App, recordings: usize) {
-    for _ in 0..3000 {
-        frame(app, 0.0);
-        let mut lanes = app.world_mut().query::<&Lane>();
-        let unknown = lanes.iter(app.world()).filter(|lane| lane.history().is_none()).count();
-        if unknown == recordings {
-            return;
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    panic!("nobody looked ahead");
+    frame(app, 0.0);
+    let mut lanes = app.world_mut().query::<&mut Lane>();
+    lanes.iter_mut(app.world_mut()).for_each(|mut lane| lane.know_what_comes());
 }
 
 fn is_over(lane: &Lane) -> bool {
@@ -343,7 +331,7 @@ fn a_recording_lands_in_a_race_and_has_a_trail() {
     loaded.recording = Some(Recording::of(genome, trial));
     loaded.engine = 1;
     let mut app = stage_of(vec![loaded, shipped()]);
-    know_what_comes_of_all_but(&mut app, 1);
+    know_what_comes(&mut app);
     clock(&mut app).hold_at(1.0e9);
     (0..10).for_each(|_| frame(&mut app, 0.1));
     let mut lanes = app.world_mut().query::<&Lane>();
