@@ -71,6 +71,29 @@ fn figures_of_a_folder_without_a_run() {
     assert!(message.contains("no generation-1.ron or later in it"), "{message}");
 }
 
+#[cfg(feature = "studio")]
+#[test]
+fn a_moment_a_size_or_a_camera_that_is_none() {
+    let folder = folder();
+    let climber = concat!("render ", env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
+    for (arguments, message) in [
+        ("--at 99", "at is 99; allowed: 0 to 15"),
+        ("--at -1", "at is -1; allowed: 0 to 15"),
+        ("--at soon", "at is \"soon\"; allowed: a number"),
+        ("--size 0x0", "size.width is 0; allowed: 64 to 8192"),
+        ("--size big", "size is \"big\"; allowed: WIDTHxHEIGHT, such as 1280x720"),
+        ("--camera foo", "camera is \"foo\"; allowed: follow, side or top"),
+        ("--show ghosts", "show is \"ghosts\"; allowed: contacts, torques, trail or line"),
+        ("--theme dim", "theme is \"dim\"; allowed: light or dark"),
+    ] {
+        let said = refusal(folder.path(), &format!("{climber} {arguments}"), 2);
+        assert_eq!(said, format!("error: {message}"));
+    }
+    let said = refusal(folder.path(), "render nobody.ron", 1);
+    assert!(said.contains("nobody.ron"), "{said}");
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing is drawn");
+}
+
 #[test]
 fn a_seed_that_is_no_number() {
     let message = refusal(folder().path(), "--no-render --seed twelve", 2);
