@@ -291,7 +291,7 @@ pub fn tags(picture: &mut Picture, tags: &[(&str, (f32, f32))]) -> Result<(), Pl
         placed.push(at);
         let corners = [(at[0], at[1]), (at[0] + width, at[1] + height)];
         area.draw(&Rectangle::new(corners, WHITE.mix(0.88).filled())).map_err(PlotError::new)?;
-        let inside = (at[0] + pixels as i32 / 2, at[1] + pixels as i32 / 4);
+        let inside = (at[0] + pixels as i32 / 2, at[1] + pixels as i32 * 3 / 8);
         area.draw(&Text::new(*text, inside, style.clone())).map_err(PlotError::new)?;
     }
     area.present().map_err(PlotError::new)

@@ -71,10 +71,16 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         #[cfg(not(feature = "studio"))]
         Some(Command::Render(_)) => Err(CliError::NoStudio),
         Some(Command::Replay { files }) if args.no_render => {
-            let replay = |file| headless::replay(file, args.json, &mut io::stdout().lock());
+            let replay = |file: &std::path::PathBuf| {
+                if files.len() > 1 && !args.json {
+                    // Whose numbers these are; an error below it is about the same file.
+                    print(&format!("{}\n", file.display()))?;
+                }
+                Ok(headless::replay(file, args.json, &mut io::stdout().lock())?)
+            };
             // All are looked at; the first that fails is the error.
-            let done: Vec<_> = files.iter().map(|file| replay(file)).collect();
-            Ok(done.into_iter().collect::<Result<(), _>>()?)
+            let done: Vec<Result<(), CliError>> = files.iter().map(replay).collect();
+            done.into_iter().collect()
         }
         None if args.no_render => evolve(&args),
         None | Some(Command::Replay { .. }) => open_studio(&args),

@@ -69,12 +69,21 @@ mod draw {
                 .collect::<Result<_, Invalid>>()?,
             champions,
         };
+        let named_after_first = || PathBuf::from(format!("{}.png", scene.champions[0].0));
+        let path = what.output.clone().unwrap_or_else(named_after_first);
+        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            let allowed = "a name that ends in .png";
+            return Err(Invalid::new(
+                "output",
+                format!("{:?}", path.display().to_string()),
+                allowed,
+            )
+            .into());
+        }
         let (mut picture, tags) = render(&scene)?;
         let tags: Vec<(&str, (f32, f32))> =
             tags.iter().map(|tag| (tag.text.as_str(), tag.at)).collect();
         plot::tags(&mut picture, &tags)?;
-        let named_after_first = || PathBuf::from(format!("{}.png", scene.champions[0].0));
-        let path = what.output.clone().unwrap_or_else(named_after_first);
         store_picture(&path, &picture)?;
         print(&format!("saved to {}\n", path.display()))
     }

@@ -177,7 +177,14 @@ pub(super) fn what_if(
             let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
             with_field(&settings, field, text).map_err(|error| error.to_string())?.trial
         }
-        Change::Preset(_) => next.trial.clone(),
+        // Its world; how long it lasts and what is rewarded stay, so that the two can be compared.
+        Change::Preset(_) => Trial {
+            duration_s: so_far.trial().duration_s,
+            fitness: so_far.trial().fitness,
+            energy_cost_per_kj: so_far.trial().energy_cost_per_kj,
+            repeats: so_far.trial().repeats.clone(),
+            ..next.trial.clone()
+        },
     };
     if trial == *so_far.trial() {
         return Ok(None);

@@ -204,6 +204,10 @@ impl Lane {
 
     /// How fast the middle limb is between the last two steps, in m/s.
     pub fn speed_m_s(&self) -> f32 {
+        if self.is_over() {
+            // It goes nowhere any more.
+            return 0.0;
+        }
         let middle = self.before.len() / 2;
         match (self.before.get(middle), self.performance.poses().get(middle)) {
             (Some(before), Some(after)) => {

@@ -99,6 +99,8 @@ pub const PANEL_WIDTH: f32 = 320.0;
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torques under the stage, in points.
 pub const SIGNALS_HEIGHT: f32 = 72.0;
+/// Width of a limb's numbers, in points.
+pub const LIMB_WIDTH: f32 = 284.0;
 /// Size of the letters on a name tag, in points.
 pub const TAG_SIZE: f32 = 13.0;
 /// Height of the chart, in points.
@@ -174,9 +176,10 @@ pub fn show(context: &egui::Context, theme: Theme) {
 /// Draws every letter once into egui's font texture. A letter that is new to it is missing for a frame,
 /// because the texture arrives on the graphics card one frame after the text.
 fn warm_up_fonts(context: &egui::Context) {
-    let letters: String = (' '..='~').chain(['·', '²', '³', '±']).collect();
+    let letters: String = (' '..='~').chain(['·', '²', '³', '±', '×', '°', '−', '…']).collect();
     let fonts = egui::TextStyle::Body.resolve(&context.global_style());
-    let sizes = [fonts.size, TITLE_SIZE, HEADING_SIZE].map(egui::FontId::proportional);
+    let sizes = [fonts.size, TITLE_SIZE, HEADING_SIZE, TAG_SIZE, SMALL_SIZE - 1.0]
+        .map(egui::FontId::proportional);
     let others = [egui::TextStyle::Monospace, egui::TextStyle::Small, egui::TextStyle::Button]
         .map(|style| style.resolve(&context.global_style()));
     context.fonts_mut(|fonts| {

@@ -95,7 +95,7 @@ fn plant(
         if !best.is_changed() && !lane.is_added() {
             continue;
         }
-        let text = format!("best {y_m:.1} m");
+        let text = format!("furthest {y_m:.1} m");
         let width_m = lettering.width_m(&text, DIGIT_M) + CLOTH_M - DIGIT_M;
         let middle = Vec3::new(0.0, width_m / 2.0, POST_M - CLOTH_M / 2.0);
         let mut writing = lettering.begin();

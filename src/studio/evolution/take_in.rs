@@ -54,7 +54,7 @@ fn take_in(
         to_beat = champion.evaluation.fitness;
         let exhibit = Exhibit::found(champion, number);
         if is_held {
-            notices.news(format!("Better than what is on show: {}", exhibit.caption()));
+            notices.news(format!("New best of the run: {}", exhibit.caption()));
         } else {
             notices.news(format!("New on stage: {}", exhibit.caption()));
             playback.restart();

@@ -191,6 +191,9 @@ impl Palette {
         // Were they another theme's, all letters would be drawn anew at the change, and the panel be missing until
         // they are on the graphics card.
         visuals.text_options = egui::Visuals::dark().text_options;
+        // With it a letter has four pictures, for four places within a pixel. Whichever is new is missing for a
+        // frame, and no list of letters can warm all of them up.
+        visuals.text_options.subpixel_binning = false;
         visuals.panel_fill = self.panel;
         visuals.window_fill = self.panel;
         visuals.window_stroke = Stroke::new(1.0, self.field_hovered);

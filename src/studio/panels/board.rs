@@ -81,19 +81,19 @@ pub(super) fn board(
                 if name.on_hover_text(hint).clicked() {
                     asked.push(Command::Focus(standing.lane));
                 }
-                let state = match (standing.is_out, standing.landed_s) {
-                    _ if standing.is_disturbed => {
-                        egui::RichText::new("by hand").color(palette.problem)
-                    }
-                    (true, _) => egui::RichText::new("out").color(palette.problem),
-                    (false, Some(landed_s)) => {
-                        egui::RichText::new(format!("landed {landed_s:.2} s")).color(palette.accent)
-                    }
-                    (false, None) => egui::RichText::new(format!("{:.2} m", standing.y_m)),
+                // Of one width, so that nothing moves while it runs.
+                let text = match (standing.is_out, standing.landed_s) {
+                    _ if standing.is_disturbed => "by hand".to_owned(),
+                    (true, _) => "out".to_owned(),
+                    (false, Some(landed_s)) => format!("landed {landed_s:.2} s"),
+                    (false, None) => format!("{:.2} m", standing.y_m),
                 };
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.label(state.monospace());
-                });
+                let color = match (standing.is_out || standing.is_disturbed, standing.landed_s) {
+                    (true, _) => palette.problem,
+                    (false, Some(_)) => palette.accent,
+                    (false, None) => palette.text,
+                };
+                ui.label(egui::RichText::new(format!("{text:>14}")).monospace().color(color));
                 ui.end_row();
             }
         });

@@ -9,6 +9,8 @@ use crate::world::JointState;
 /// Draws the numbers of a limb; the head is 0.
 pub(super) fn limb_card(ui: &mut egui::Ui, lane: &Lane, limb: usize) {
     let Some(pose) = lane.last_poses().get(limb) else { return };
+    // From its first frame on.
+    ui.set_min_width(look::LIMB_WIDTH);
     let agent = &lane.trial().agent;
     let palette = look::of(ui);
     let count = agent.limbs as usize;

@@ -195,9 +195,10 @@ fn about(lane: &Lane, time_s: f64) -> String {
     let Some(history) = lane.history() else { return text };
     let sample = (time_s / (lane.step_s() * f64::from(history.sample_steps()))) as usize;
     if let Some(torques) = history.torques().nth(sample) {
-        text += "\nTorques in N·m, bend and twist, from the head:";
-        for torque in torques {
-            text += &format!("\n{:+.0}  {:+.0}", torque.bend_nm, torque.twist_nm);
+        for (joint, torque) in (1..).zip(torques) {
+            // What is rounded to nothing has no sign.
+            let [bend_nm, twist_nm] = [torque.bend_nm, torque.twist_nm].map(|nm| nm.round() + 0.0);
+            text += &format!("\nJoint {joint}: bend {bend_nm:+} N·m, twist {twist_nm:+} N·m");
         }
     }
     text
