@@ -14,6 +14,7 @@ mod verify;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -29,6 +30,8 @@ use crate::run::bench::{BenchReport, bench};
 use crate::run::headless::say;
 use crate::run::{Control, headless};
 use crate::save::shipped_presets;
+#[cfg(feature = "studio")]
+use crate::save::{LoadedChampion, load_champion};
 
 /// Runs the program with the given arguments, the program's name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -71,7 +74,7 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         #[cfg(not(feature = "studio"))]
         Some(Command::Render(_)) => Err(CliError::NoStudio),
         Some(Command::Replay { files }) if args.no_render => {
-            let replay = |file: &std::path::PathBuf| {
+            let replay = |file: &PathBuf| {
                 if files.len() > 1 && !args.json {
                     // Whose numbers these are; an error below it is about the same file.
                     print(&format!("{}\n", file.display()))?;
@@ -105,6 +108,16 @@ fn cancel_on_interrupt() -> Arc<Control> {
     control
 }
 
+/// Saved champions, each with the name of its file.
+#[cfg(feature = "studio")]
+fn named_champions(files: &[PathBuf]) -> Result<Vec<(String, LoadedChampion)>, CliError> {
+    let load = |file: &PathBuf| {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Ok((name, load_champion(file)?))
+    };
+    files.iter().map(load).collect()
+}
+
 #[cfg(feature = "studio")]
 fn open_studio(args: &Args) -> Result<(), CliError> {
     use crate::studio;
@@ -112,19 +125,12 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         Some(Command::Replay { files }) => &files[..],
         _ => &[],
     };
-    let champions: Result<_, _> = files
-        .iter()
-        .map(|file| {
-            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            crate::save::load_champion(file).map(|champion| (name, champion))
-        })
-        .collect();
     let comparison = args.comparison.as_deref().map(crate::save::load_comparison).transpose();
     let options = studio::Options {
         run: args.run_source()?,
         threads: args.studio_threads()?,
         saves: args.saves_folder(),
-        champions: champions.map_err(headless::HeadlessError::from)?,
+        champions: named_champions(files)?,
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         theme: args.theme()?,

@@ -32,25 +32,19 @@ mod draw {
     use super::RenderArgs;
     use crate::check::{Invalid, within};
     use crate::cli::args::{Args, size};
-    use crate::cli::{CliError, print};
+    use crate::cli::{CliError, named_champions, print};
     use crate::plot;
-    use crate::save::{LoadedChampion, load_champion, store_picture};
+    use crate::save::{LoadedChampion, store_picture};
     use crate::studio::render::{Scene, render};
-    use crate::studio::{Overlay, Shot};
+    use crate::studio::{MOST_LANES, Overlay, Shot};
 
     /// Larger pictures are more than some graphics drivers can draw.
     const LARGEST_PIXELS: u32 = 8192;
-    /// As many as the stage has lanes.
-    const MOST_CHAMPIONS: usize = 10;
 
     /// Draws what was asked for, and says where it is.
     pub fn draw(args: &Args, what: &RenderArgs) -> Result<(), CliError> {
-        within("champions", what.files.len(), 1..=MOST_CHAMPIONS)?;
-        let load = |file: &PathBuf| -> Result<(String, LoadedChampion), CliError> {
-            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            Ok((name, load_champion(file)?))
-        };
-        let champions = what.files.iter().map(load).collect::<Result<Vec<_>, _>>()?;
+        within("champions", what.files.len(), 1..=MOST_LANES)?;
+        let champions = named_champions(&what.files)?;
         let length_s = |loaded: &LoadedChampion| {
             let trial = &loaded.champion.trial;
             f64::from(trial.steps()) / f64::from(trial.physics.steps_per_s)

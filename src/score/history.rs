@@ -56,8 +56,7 @@ impl History {
                 return None;
             }
             if (step - 1).is_multiple_of(sample_steps) {
-                let torques = rollout.simulation().applied_torques();
-                history.torques.extend(torques.map(|(_, torque)| torque));
+                history.torques.extend(rollout.simulation().applied_torques());
             }
             if step.is_multiple_of(sample_steps) {
                 history.middles_m.push(rollout.middle_m());
@@ -177,7 +176,7 @@ mod tests {
         assert!(!before.is_on_landing() && history.rollout_at(landed).is_on_landing());
         let mut at = history.rollout_at(99);
         at.advance();
-        let torques: Vec<_> = at.simulation().applied_torques().map(|(_, torque)| torque).collect();
+        let torques: Vec<_> = at.simulation().applied_torques().collect();
         assert_eq!(history.torques().nth(99), Some(&torques[..]));
     }
 

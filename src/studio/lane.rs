@@ -363,7 +363,7 @@ impl Lane {
 fn readings_of(performance: &Performance) -> Readings {
     performance.simulation().map_or_else(Readings::default, |simulation| Readings {
         contacts: simulation.contact_forces(),
-        torques: simulation.applied_torques().map(|(_, torque)| torque).collect(),
+        torques: simulation.applied_torques().collect(),
         joints: simulation.joint_states().collect(),
         speeds_m_s: simulation.speeds_m_s().collect(),
     })

@@ -62,6 +62,7 @@ use crate::save::{Comparison, LoadedChampion, SaveError, SavesFolder, shipped_ch
 use casting::{Opening, Saved};
 pub use look::Theme;
 pub use overlay::Overlay;
+pub use stage::MOST_LANES;
 pub use view::Shot;
 
 /// With what the studio opens.

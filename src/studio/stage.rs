@@ -38,7 +38,7 @@ pub(super) enum Programme {
 }
 
 /// The most lanes that can be told apart, and simulated within a frame.
-pub(super) const MOST_LANES: usize = 10;
+pub const MOST_LANES: usize = 10;
 /// Between two lanes, in metres.
 const GAP_M: f32 = 1.0;
 

@@ -71,10 +71,9 @@ impl Simulation {
         self.limbs.iter().filter(touches).count()
     }
 
-    /// The torques that acted in the last step, clamped to the joints' limits, one per joint from the head, and
-    /// the turns of the front limbs about whose axes they acted.
-    pub fn applied_torques(&self) -> impl ExactSizeIterator<Item = (Rotation, JointTorque)> + '_ {
-        self.applied.iter().copied()
+    /// The torques that acted in the last step, clamped to the joints' limits, one per joint from the head.
+    pub fn applied_torques(&self) -> impl ExactSizeIterator<Item = JointTorque> + '_ {
+        self.applied.iter().map(|(_, torque)| *torque)
     }
 
     /// Greatest torques of a joint, about its bend and its twist axis.
