@@ -14,6 +14,8 @@ use super::robust::OffBy;
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::run::{RunSource, THREADS_RANGE, available_cores};
+#[cfg(feature = "studio")]
+use crate::save::PreferencesFile;
 use crate::save::{DEFAULT_PRESET, Earlier, Preset, SavesFolder, load_preset};
 #[cfg(feature = "studio")]
 use crate::studio::Theme;
@@ -99,9 +101,12 @@ pub struct Args {
     /// Size of the window in pixels
     #[arg(long, global = true, value_name = "WIDTHxHEIGHT")]
     window_size: Option<String>,
-    /// The colours: light or dark [default: light]
+    /// The colours: light or dark [default: those chosen last; at first light]
     #[arg(long, global = true, value_name = "NAME")]
     theme: Option<String>,
+    /// Where it is kept what you choose for the window: a file, or none [default: the platform's folder for settings]
+    #[arg(long, global = true, value_name = "FILE")]
+    preferences: Option<PathBuf>,
     /// Close the window after that many frames and print the time each took
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     exit_after_frames: Option<String>,
@@ -326,17 +331,27 @@ impl Args {
         Ok(threads)
     }
 
-    /// The window's size in pixels.
+    /// The window's size in pixels, if it is given.
     #[cfg(feature = "studio")]
-    pub fn window_size(&self) -> Result<(u32, u32), CliError> {
+    pub fn window_size(&self) -> Result<Option<(u32, u32)>, CliError> {
         let given = self.window_size.as_deref();
-        Ok(given.map_or(Ok((1280, 720)), |text| size("window-size", text, (320, 240), 16_384))?)
+        Ok(given.map(|text| size("window-size", text, (320, 240), 16_384)).transpose()?)
     }
 
-    /// The colours of the window, and of pictures.
+    /// The colours of the window, and of pictures, if they are given.
     #[cfg(feature = "studio")]
-    pub fn theme(&self) -> Result<Theme, CliError> {
-        Ok(self.theme.as_deref().map_or(Ok(Theme::default()), str::parse)?)
+    pub fn theme(&self) -> Result<Option<Theme>, CliError> {
+        Ok(self.theme.as_deref().map(str::parse).transpose()?)
+    }
+
+    /// Where it is kept what a person chooses for the window.
+    #[cfg(feature = "studio")]
+    pub fn preferences(&self) -> PreferencesFile {
+        match self.preferences.as_deref() {
+            None => PreferencesFile::find(),
+            Some(path) if path.as_os_str() == "none" => PreferencesFile::nowhere(),
+            Some(path) => PreferencesFile::at(path),
+        }
     }
 
     /// After how many frames to close the window by itself.
@@ -423,9 +438,9 @@ mod tests {
 
     #[cfg(feature = "studio")]
     #[test]
-    fn a_theme_is_light_unless_named_and_nothing_else_is_one() {
-        assert_eq!(args_of("").theme().expect("allowed"), Theme::Light);
-        assert_eq!(args_of("--theme dark").theme().expect("allowed"), Theme::Dark);
+    fn a_theme_is_one_of_two_if_it_is_named() {
+        assert_eq!(args_of("").theme().expect("allowed"), None);
+        assert_eq!(args_of("--theme dark").theme().expect("allowed"), Some(Theme::Dark));
         let refusal = args_of("--theme dim").theme().expect_err("refused").to_string();
         assert_eq!(refusal, "theme is \"dim\"; allowed: light or dark");
     }

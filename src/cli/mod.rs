@@ -134,6 +134,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         theme: args.theme()?,
+        preferences: args.preferences(),
         exit_after_frames: args.exit_after_frames()?,
     };
     Ok(studio::run(options)?)

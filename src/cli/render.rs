@@ -55,7 +55,7 @@ mod draw {
             at_s,
             size: size("size", &what.size, (64, 64), LARGEST_PIXELS)?,
             camera: Shot::named(&what.camera)?,
-            theme: args.theme()?,
+            theme: args.theme()?.unwrap_or_default(),
             overlays: what
                 .show
                 .iter()

@@ -16,6 +16,7 @@ mod mirror;
 mod picture;
 mod plan;
 mod poses;
+mod preferences;
 mod preset;
 mod record;
 mod run;
@@ -37,6 +38,7 @@ pub use files::SaveError;
 pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name, settings_fingerprint};
 pub use picture::{Picture, store_csv, store_picture};
 pub use plan::{load_plan, parse_plan};
+pub use preferences::{Preferences, PreferencesFile, UI_SCALES};
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
 };

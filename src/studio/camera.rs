@@ -12,15 +12,14 @@ use bevy::prelude::*;
 use bevy::render::render_resource::BlendState;
 use bevy::render::renderer::RenderAdapterInfo;
 use bevy::window::PrimaryWindow;
-use bevy_egui::input::EguiWantsInput;
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
 
 use super::Frame;
 use super::hands::Hands;
 use super::lane::Lane;
 use super::look::{Palette, Theme};
-use super::panels::StageArea;
 use super::quality::Quality;
+use super::stage_area::StageArea;
 use super::view::{Shot, View};
 
 /// A fixed camera's place, from the usual side, that has a stretch of the y axis in view, in metres.
@@ -155,6 +154,7 @@ const ZOOM_PER_PINCH: f32 = 1.0;
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<CameraRig>()
+        .init_resource::<StageArea>()
         .add_systems(Startup, set_up)
         .add_systems(Update, (steer, follow, glide, fit_to_area).chain().in_set(Frame::Draw));
 }
@@ -204,7 +204,6 @@ fn steer(
     mut grip: Local<Grip>,
     scroll: Res<AccumulatedMouseScroll>,
     mut pinches: MessageReader<PinchGesture>,
-    egui: Res<EguiWantsInput>,
 ) {
     // The cursor, not the device: a tablet or a remote desktop reports no relative motion.
     let cursor = window.cursor_position();
@@ -213,8 +212,7 @@ fn steer(
         _ => Vec2::ZERO,
     };
     grip.last_cursor = cursor;
-    let is_over_stage =
-        cursor.is_some_and(|cursor| area.contains(cursor)) && !egui.wants_any_pointer_input();
+    let is_over_stage = cursor.is_some_and(|cursor| area.has_pointer_at(cursor));
     let drag_buttons = [MouseButton::Left, MouseButton::Right, MouseButton::Middle];
     if buttons.any_just_pressed(drag_buttons) {
         grip.began_on_stage = is_over_stage && !hands.are_full();
@@ -318,22 +316,21 @@ fn glide(
     }
 }
 
-/// Draws the stage beside the panel, not under it.
+/// Draws the stage beside the panels, not under them.
 fn fit_to_area(
     area: Res<StageArea>,
     window: Single<&Window, With<PrimaryWindow>>,
     mut camera: Single<&mut Camera, With<StageCamera>>,
 ) {
-    let physical = window.physical_size();
     let scale = window.scale_factor();
-    let left = ((area.left_points * scale) as u32).min(physical.x.saturating_sub(1));
-    let bottom = (area.bottom_points * scale) as u32;
-    let size = UVec2::new(physical.x.saturating_sub(left), physical.y.saturating_sub(bottom));
+    let place = area.in_window();
+    let pixels = |at: Vec2| (at * scale).max(Vec2::ZERO).as_uvec2().min(window.physical_size());
+    let (start, end) = (pixels(place.min), pixels(place.max));
+    let size = end.saturating_sub(start);
     if size.x == 0 || size.y == 0 {
         return;
     }
-    let viewport =
-        Viewport { physical_position: UVec2::new(left, 0), physical_size: size, ..default() };
+    let viewport = Viewport { physical_position: start, physical_size: size, ..default() };
     let is_new = camera.viewport.as_ref().is_none_or(|now| {
         (now.physical_position, now.physical_size)
             != (viewport.physical_position, viewport.physical_size)

@@ -8,6 +8,7 @@ use bevy::prelude::*;
 use super::camera::{CameraRig, StageCamera};
 use super::casting::{Change, what_if};
 use super::casting::{Pick, all_generations, dropped, exhibit_of, kept, leaders, with_one_more};
+use super::desk::{Desk, Over};
 use super::evolution::{Evolution, Status};
 use super::exhibit::Exhibit;
 use super::hands::Hands;
@@ -15,6 +16,7 @@ use super::lane::Lane;
 use super::look::Theme;
 use super::notice::Notices;
 use super::overlay::{Overlay, Overlays};
+use super::panels::{PanelKind, shown_in};
 use super::playback::Playback;
 use super::screenshot::Photograph;
 use super::stage::{Programme, Show, end_s};
@@ -107,6 +109,29 @@ pub(super) enum Command {
     ToggleTheme,
     /// Take a picture of the stage alone, or of the window.
     TakePicture(Photograph),
+    /// Take the last edit back.
+    Undo,
+    /// Do again what was taken back.
+    Redo,
+    /// Bring a panel to the front.
+    Open(PanelKind),
+    /// Put the panels back where they are at first.
+    ResetLayout,
+    /// Show the stage alone, or the panels again.
+    ToggleBare,
+    /// Draw the panels by a step larger or smaller.
+    ChangeScale {
+        /// Or else smaller.
+        larger: bool,
+    },
+    /// Draw the panels as large as usual.
+    ResetScale,
+    /// Lay something over the window, or take it away.
+    Cover(Over),
+    /// Leave what lies over the window.
+    Uncover,
+    /// Begin a lesson; the first is 0.
+    BeginLesson(usize),
     /// Close the window.
     Quit,
 }
@@ -198,6 +223,7 @@ fn apply(
     mut notices: ResMut<Notices>,
     mut exit: MessageWriter<AppExit>,
     opening: Res<Opening>,
+    mut desk: ResMut<Desk>,
     mut stage: StageParams,
 ) {
     for command in asked.read() {
@@ -231,6 +257,7 @@ fn apply(
                 exit.write(AppExit::Success);
                 Ok(())
             }
+            command if arrange(command, &mut desk) => Ok(()),
             command => {
                 let shown = on_stage(command, &mut stage, &evolution, &opening);
                 if shown == Ok(true) && stage.leaves_change(command) {
@@ -241,6 +268,31 @@ fn apply(
         };
         notices.problems(done.err());
     }
+}
+
+/// Does what concerns how the window is arranged. Says whether it was that.
+fn arrange(command: &Command, desk: &mut Desk) -> bool {
+    match command {
+        Command::Open(kind) => {
+            desk.is_bare = false;
+            desk.layout.open(*kind);
+        }
+        Command::ResetLayout => desk.layout.reset(),
+        Command::ToggleBare => desk.is_bare = !desk.is_bare,
+        Command::ChangeScale { larger } => desk.change_scale(*larger),
+        Command::ResetScale => desk.scale = 1.0,
+        Command::Cover(over) => {
+            if let Over::Tour(step) = over {
+                desk.is_bare = false;
+                shown_in(*step).into_iter().for_each(|kind| desk.layout.open(kind));
+            }
+            desk.cover(*over);
+        }
+        Command::Uncover if desk.over().is_none() => desk.is_bare = false,
+        Command::Uncover => desk.uncover(),
+        _ => return false,
+    }
+    true
 }
 
 /// Does what concerns the stage alone. Says whether others take the stage.
@@ -333,6 +385,7 @@ mod tests {
             .init_resource::<CameraRig>()
             .init_resource::<Overlays>()
             .init_resource::<Hands>()
+            .init_resource::<Desk>()
             .init_resource::<Theme>()
             .add_systems(Update, apply);
         let asked = [Command::Show(Pick::Opening(0)), Command::TogglePlayback];

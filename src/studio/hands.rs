@@ -6,7 +6,6 @@
 use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
-use bevy_egui::input::EguiWantsInput;
 use rapier3d::parry::query::{Ray, RayCast};
 use rapier3d::parry::shape::{Cuboid, HalfSpace};
 
@@ -14,8 +13,8 @@ use super::Frame;
 use super::camera::{CameraRig, StageCamera};
 use super::lane::Lane;
 use super::notice::Notices;
-use super::panels::StageArea;
 use super::playback::Playback;
+use super::stage_area::StageArea;
 use crate::world::{Pose, Pull, StairBox, Vector};
 
 /// What is selected, and what is held.
@@ -127,17 +126,17 @@ fn grasp(
     window: Single<&Window, With<PrimaryWindow>>,
     camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
     area: Res<StageArea>,
-    egui: Res<EguiWantsInput>,
     lanes: Query<(Entity, &Lane)>,
     time: Res<Time<Real>>,
 ) {
     let is_press =
         |press: &&MouseButtonInput| press.button == MouseButton::Left && press.state.is_pressed();
     let presses = presses.read().filter(is_press).count();
-    if presses == 0 || egui.wants_any_pointer_input() {
+    if presses == 0 {
         return;
     }
-    let Some(cursor) = window.cursor_position().filter(|cursor| area.contains(*cursor)) else {
+    let Some(cursor) = window.cursor_position().filter(|cursor| area.has_pointer_at(*cursor))
+    else {
         return;
     };
     let Some(ray) = ray_at(cursor, *camera) else { return };

@@ -1,45 +1,13 @@
-//! The keyboard: each key sends one command.
+//! The keyboard: turns what is pressed into the command of an action.
 
 use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::prelude::*;
 use bevy_egui::input::EguiWantsInput;
 
 use super::Frame;
-use super::casting::Pick;
+use super::actions::{Situation, of_keys};
 use super::command::Command;
-use super::evolution::{Evolution, Status};
-use super::overlay::Overlay;
-use super::screenshot::Photograph;
-use super::stage::Programme;
-
-/// The keys, as they are listed for a person: name, effect.
-pub(super) const KEYS: [(&str, &str); 25] = [
-    ("Space", "hold or play the stage"),
-    ("Left, Right", "a physics step back, on"),
-    ("R, End", "to the start, to the end"),
-    ("+, -", "faster, slower"),
-    ("O", "loop, or stay at the end"),
-    ("E", "start or pause evolution"),
-    ("G", "evolve a single generation"),
-    ("1 ... 9", "show a generation's champion"),
-    ("0", "show the saved champion"),
-    ("N", "race the generations"),
-    ("M", "race the latest ten"),
-    ("Esc", "leave a race, drop a change"),
-    ("F", "follow the snake, or not"),
-    ("C", "the next camera"),
-    ("Home", "put the camera back"),
-    ("V", "contacts and their forces"),
-    ("J", "the joints' torques"),
-    ("B", "the trail"),
-    ("L", "the fitness line"),
-    ("D", "the engine's own lines"),
-    ("A", "smooth edges, or faster drawing"),
-    ("T", "the light or the dark theme"),
-    ("P", "a picture of the stage"),
-    ("Shift P", "a picture of the window"),
-    ("Ctrl Q", "quit"),
-];
+use super::now::Now;
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, read.in_set(Frame::TakeIn));
@@ -51,9 +19,8 @@ pub(super) fn plugin(app: &mut App) {
 fn read(
     mut presses: MessageReader<KeyboardInput>,
     mut held: Local<Held>,
-    programme: Res<Programme>,
+    now: Now,
     egui: Res<EguiWantsInput>,
-    evolution: Res<Evolution>,
     mut send: MessageWriter<Command>,
 ) {
     for press in presses.read() {
@@ -64,14 +31,15 @@ fn read(
         }
         let repeats = matches!(press.logical_key, Key::ArrowLeft | Key::ArrowRight);
         let is_echo = press.repeat && !repeats;
-        if !press.state.is_pressed() || is_echo || egui.wants_any_keyboard_input() {
+        if !press.state.is_pressed() || is_echo {
             continue;
         }
-        let situation = Situation {
-            is_running: evolution.status() == Status::Running,
-            is_what_if: matches!(*programme, Programme::WhatIf { .. }),
-            is_race: *programme == Programme::Race,
-        };
+        let situation = now.situation();
+        // Whoever types, types; but Escape leaves what lies over the window, and Control is no letter.
+        let leaves = press.logical_key == Key::Escape && situation.is_covered;
+        if egui.wants_any_keyboard_input() && !leaves && !held.is_command(&press.logical_key) {
+            continue;
+        }
         send.write_batch(command(&press.logical_key, *held, situation));
     }
 }
@@ -83,86 +51,118 @@ struct Held {
     shift: bool,
 }
 
-/// What a key's meaning depends on.
-#[derive(Debug, Clone, Copy, Default)]
-struct Situation {
-    is_running: bool,
-    is_what_if: bool,
-    is_race: bool,
+impl Held {
+    /// Whether it is a key with Control that text fields have no use for.
+    fn is_command(self, key: &Key) -> bool {
+        let is_theirs =
+            |text: &str| ["a", "c", "v", "x", "z", "y"].contains(&text.to_lowercase().as_str());
+        self.control && !matches!(key, Key::Character(text) if is_theirs(text))
+    }
 }
 
-/// What a key asks for.
-fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
-    let text = match key {
-        Key::Space => " ".to_owned(),
-        Key::Home => return Some(Command::ResetCamera),
-        Key::End => return Some(Command::SeekEnd),
-        Key::ArrowLeft => return Some(Command::Step { forward: false }),
-        Key::ArrowRight => return Some(Command::Step { forward: true }),
-        Key::Escape if situation.is_what_if => return Some(Command::DropChange),
-        Key::Escape => return situation.is_race.then_some(Command::Single),
-        Key::Character(text) => text.to_lowercase(),
+/// The name of what is pressed, such as `Ctrl Shift Z`.
+fn name_of(key: &Key, held: Held) -> Option<String> {
+    let (name, is_letter) = match key {
+        Key::Space => ("Space".to_owned(), true),
+        Key::Home => ("Home".to_owned(), true),
+        Key::End => ("End".to_owned(), true),
+        Key::ArrowLeft => ("Left".to_owned(), true),
+        Key::ArrowRight => ("Right".to_owned(), true),
+        Key::Escape => ("Esc".to_owned(), true),
+        Key::F1 => ("F1".to_owned(), true),
+        Key::Character(text) => (text.to_uppercase(), text.chars().all(char::is_alphabetic)),
         _ => return None,
     };
-    if held.control {
-        return (text == "q").then_some(Command::Quit);
-    }
-    match text.as_str() {
-        " " => Some(Command::TogglePlayback),
-        "r" => Some(Command::Restart),
-        "e" if situation.is_running => Some(Command::Pause),
-        "e" => Some(Command::Start),
-        "g" => Some(Command::SingleGeneration),
-        "n" => Some(Command::RaceGenerations),
-        "m" => Some(Command::RaceLeaders(None)),
-        "o" => Some(Command::ToggleLoop),
-        "+" | "=" => Some(Command::ChangeSpeed { faster: true }),
-        "-" => Some(Command::ChangeSpeed { faster: false }),
-        "f" => Some(Command::ToggleFollow),
-        "c" => Some(Command::NextShot),
-        "v" => Some(Command::Toggle(Overlay::Contacts)),
-        "j" => Some(Command::Toggle(Overlay::Torques)),
-        "b" => Some(Command::Toggle(Overlay::Trail)),
-        "l" => Some(Command::Toggle(Overlay::FitnessLine)),
-        "d" => Some(Command::Toggle(Overlay::Wireframe)),
-        "a" => Some(Command::ToggleSmoothEdges),
-        "t" => Some(Command::ToggleTheme),
-        "p" if held.shift => Some(Command::TakePicture(Photograph::Window)),
-        "p" => Some(Command::TakePicture(Photograph::Stage)),
-        "0" => Some(Command::Show(Pick::Opening(0))),
-        digit => digit.parse().ok().map(|generation| Command::Show(Pick::Generation(generation))),
-    }
+    let control = if held.control { "Ctrl " } else { "" };
+    // Where a sign is printed that needs Shift differs from keyboard to keyboard.
+    let shift = if held.shift && is_letter { "Shift " } else { "" };
+    Some(format!("{control}{shift}{name}"))
+}
+
+/// What a press asks for.
+fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
+    let name = name_of(key, held)?;
+    let digit = name.parse().ok().filter(|digit| *digit > 0);
+    (of_keys(&name)?.asks)(Situation { digit, ..situation })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::actions::ACTIONS;
+    use crate::studio::casting::Pick;
+
+    const NONE: Held = Held { control: false, shift: false };
+    const CONTROL: Held = Held { control: true, shift: false };
+    const SHIFT: Held = Held { control: false, shift: true };
+
+    fn character(text: &str) -> Key {
+        Key::Character(text.into())
+    }
+
+    /// What has to be pressed for a key's name.
+    fn pressed(name: &str) -> (Key, Held) {
+        let control = name.contains("Ctrl ");
+        let shift = name.contains("Shift ");
+        let last = name.rsplit(' ').next().expect("a key");
+        let key = match last {
+            "Space" => Key::Space,
+            "Home" => Key::Home,
+            "End" => Key::End,
+            "Left" => Key::ArrowLeft,
+            "Right" => Key::ArrowRight,
+            "Esc" => Key::Escape,
+            "F1" => Key::F1,
+            text => character(&text.to_lowercase()),
+        };
+        (key, Held { control, shift })
+    }
 
     #[test]
-    fn every_listed_key_does_something_and_nothing_else_does() {
-        let (none, control) = (Held::default(), Held { control: true, shift: false });
-        let calm = Situation::default();
-        let does = |text: &str| command(&Key::Character(text.into()), none, calm);
-        for (names, _) in KEYS.into_iter().filter(|(names, _)| *names != "Ctrl Q") {
-            for name in names.split([',', ' ']).filter(|name| name.chars().count() == 1) {
-                assert!(does(name).is_some(), "{name}");
+    fn every_key_of_every_action_does_that_action() {
+        let situation =
+            Situation { is_race: true, can_undo: true, can_redo: true, ..Situation::default() };
+        for action in ACTIONS {
+            for name in action.keys {
+                let (key, held) = pressed(name);
+                assert_eq!(name_of(&key, held).as_deref(), Some(*name));
+                assert!(command(&key, held, situation).is_some(), "{name}");
             }
         }
-        assert_eq!(command(&Key::Escape, none, calm), None, "nothing to leave");
+    }
+
+    #[test]
+    fn what_a_key_does_depends_on_the_situation() {
+        let calm = Situation::default();
+        assert_eq!(command(&Key::Escape, NONE, calm), None, "nothing to leave");
         let is_race = Situation { is_race: true, ..calm };
-        assert_eq!(command(&Key::Escape, none, is_race), Some(Command::Single));
-        for key in [Key::Space, Key::Home, Key::End, Key::ArrowLeft, Key::ArrowRight] {
-            assert!(command(&key, none, calm).is_some(), "{key:?}");
-        }
-        let key = |text: &str| Key::Character(text.into());
-        let is_running = Situation { is_running: true, ..calm };
-        assert_eq!(command(&key("e"), none, is_running), Some(Command::Pause));
-        assert_eq!(command(&key("Q"), control, calm), Some(Command::Quit));
+        assert_eq!(command(&Key::Escape, NONE, is_race), Some(Command::Single));
         let is_what_if = Situation { is_what_if: true, ..calm };
-        assert_eq!(command(&Key::Escape, none, is_what_if), Some(Command::DropChange));
-        for text in ["q", "x", "-1", "*"] {
-            assert_eq!(does(text), None, "{text}");
+        assert_eq!(command(&Key::Escape, NONE, is_what_if), Some(Command::DropChange));
+        let is_covered = Situation { is_covered: true, ..is_what_if };
+        assert_eq!(command(&Key::Escape, NONE, is_covered), Some(Command::Uncover));
+        let is_running = Situation { is_running: true, ..calm };
+        assert_eq!(command(&character("e"), NONE, is_running), Some(Command::Pause));
+        assert_eq!(command(&character("e"), NONE, calm), Some(Command::Start));
+        let third = Command::Show(Pick::Generation(3));
+        assert_eq!(command(&character("3"), NONE, calm), Some(third));
+    }
+
+    #[test]
+    fn keys_that_no_action_has_do_nothing() {
+        let calm = Situation::default();
+        for text in ["q", "x", "*"] {
+            assert_eq!(command(&character(text), NONE, calm), None, "{text}");
         }
-        assert_eq!(command(&key("r"), control, calm), None, "control and R");
+        assert_eq!(command(&character("r"), CONTROL, calm), None, "control and R");
+        assert_eq!(command(&character("Q"), CONTROL, calm), Some(Command::Quit), "large letters");
+        assert_eq!(command(&character("R"), SHIFT, calm), Some(Command::Restart));
+    }
+
+    #[test]
+    fn a_text_field_keeps_the_keys_that_texts_are_edited_with() {
+        assert!(!CONTROL.is_command(&character("z")));
+        assert!(CONTROL.is_command(&character("k")));
+        assert!(!NONE.is_command(&character("k")));
     }
 }

@@ -30,6 +30,14 @@ impl Theme {
         }
     }
 
+    /// Its name, as in files and flags.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Dark => "dark",
+        }
+    }
+
     /// The other one.
     pub fn other(self) -> Self {
         match self {
@@ -87,14 +95,23 @@ pub const HEADING_SIZE: f32 = 22.0;
 pub const TITLE_SIZE: f32 = 15.0;
 /// Width of a field for a number, in points.
 pub const FIELD_WIDTH: f32 = 64.0;
-/// The list of keys takes at most this share of the window's height.
-pub const MOST_KEYS_SHARE: f32 = 0.35;
 /// Width of a list to choose from, in points.
 pub const COMBO_WIDTH: f32 = 190.0;
 /// Width of a slider without its number, in points.
 pub const SLIDER_WIDTH: f32 = 190.0;
-/// Width of the left panel, in points.
+/// Width that panels are laid out for at least, in points.
+#[cfg(test)]
 pub const PANEL_WIDTH: f32 = 320.0;
+/// Height of the panels' names over them, in points.
+pub const TAB_BAR_HEIGHT: f32 = 28.0;
+/// Least width of a menu, in points.
+pub const MENU_WIDTH: f32 = 230.0;
+/// Width of the palette of commands, in points.
+pub const PALETTE_WIDTH: f32 = 480.0;
+/// Width of a step of the tour, in points.
+pub const TOUR_WIDTH: f32 = 380.0;
+/// Width of a column of keys, in points.
+pub const KEY_COLUMN_WIDTH: f32 = 340.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torques under the stage, in points.

@@ -7,9 +7,12 @@
 //!
 //! What happens in a frame, in this order, is [`Frame`].
 
+mod access;
+mod actions;
 mod camera;
 mod casting;
 mod command;
+mod desk;
 mod engine;
 mod evolution;
 mod exhibit;
@@ -27,12 +30,14 @@ mod marks;
 mod name_tags;
 mod nosing;
 mod notice;
+mod now;
 mod offscreen;
 mod overlay;
 mod paint;
 mod panels;
 mod performance;
 mod playback;
+mod preferences;
 mod quality;
 pub mod render;
 mod rounded;
@@ -42,6 +47,7 @@ mod sky;
 mod snake;
 mod solid;
 mod stage;
+mod stage_area;
 mod start_up;
 mod title;
 mod view;
@@ -57,11 +63,15 @@ use bevy::winit::WinitSettings;
 
 use crate::run::RunSource;
 use crate::run::headless::HeadlessError;
-use crate::save::{Comparison, LoadedChampion, SaveError, SavesFolder, shipped_champion};
+use crate::save::{
+    Comparison, LoadedChampion, PreferencesFile, SaveError, SavesFolder, shipped_champion,
+};
 
 use casting::{Opening, Saved};
+use desk::Desk;
 pub use look::Theme;
 pub use overlay::Overlay;
+use preferences::Remembered;
 pub use stage::MOST_LANES;
 pub use view::Shot;
 
@@ -78,10 +88,12 @@ pub struct Options {
     pub champions: Vec<(String, LoadedChampion)>,
     /// A comparison of methods to show.
     pub comparison: Option<Comparison>,
-    /// Size of the window, in pixels.
-    pub window_size: (u32, u32),
-    /// The colours to open with.
-    pub theme: Theme,
+    /// Size of the window, in pixels; none: as it was before.
+    pub window_size: Option<(u32, u32)>,
+    /// The colours to open with; none: as they were before.
+    pub theme: Option<Theme>,
+    /// Where it is kept what a person has chosen for the window.
+    pub preferences: PreferencesFile,
     /// After how many frames to close by itself.
     pub exit_after_frames: Option<u32>,
 }
@@ -151,6 +163,12 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     if saved.is_empty() {
         saved.push(Saved::from((SHIPPED.to_owned(), shipped_champion()?)));
     }
+    let remembered = Remembered::read(&options.preferences);
+    let chosen = remembered.chosen().clone();
+    let theme = options.theme.unwrap_or_else(|| chosen.theme.parse().unwrap_or_default());
+    let size = options.window_size.or(chosen.window_size).unwrap_or(WINDOW_SIZE);
+    // Who has the window opened for some frames is no newcomer.
+    let tour_is_over = chosen.tour_is_over || options.exit_after_frames.is_some();
     let engine = engine::Engine::new(&options)?;
     let run_folder = engine.run_folder();
     let exit_after = options.exit_after_frames;
@@ -160,12 +178,14 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         let mut app = App::new();
         app.add_plugins(
             DefaultPlugins
-                .set(WindowPlugin { primary_window: Some(window(&options)), ..default() })
+                .set(WindowPlugin { primary_window: Some(window(size)), ..default() })
                 .set(LogPlugin { level: Level::WARN, ..default() }),
         )
         // A champion that climbs while the presenter types elsewhere goes on climbing.
         .insert_resource(WinitSettings::continuous())
-        .insert_resource(options.theme)
+        .insert_resource(theme)
+        .insert_resource(remembered)
+        .insert_resource(Desk::new(tour_is_over))
         .insert_resource(Opening(saved))
         .insert_resource(Opened(options.comparison.clone()))
         .insert_resource(engine)
@@ -182,6 +202,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
             (overlay::plugin, wireframe::plugin, screenshot::plugin),
             keys::plugin,
             (panels::plugin, name_tags::plugin, notice::plugin),
+            (desk::plugin, preferences::plugin, access::plugin),
             (title::plugin, graphics::plugin, start_up::plugin),
         ));
         if let Some(frames) = exit_after {
@@ -201,8 +222,10 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     }
 }
 
-fn window(options: &Options) -> Window {
-    let (width, height) = options.window_size;
+/// Size of a window for which nobody has asked for another, in pixels.
+const WINDOW_SIZE: (u32, u32) = (1280, 720);
+
+fn window((width, height): (u32, u32)) -> Window {
     Window {
         title: "Snakes & Stairs".to_owned(),
         name: Some("snakes-and-stairs".to_owned()),

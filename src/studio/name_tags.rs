@@ -7,7 +7,7 @@ use super::camera::StageCamera;
 use super::lane::Lane;
 use super::look;
 use super::overlay::{Overlay, Overlays};
-use super::panels::StageArea;
+use super::stage_area::StageArea;
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(EguiPrimaryContextPass, draw);
@@ -43,7 +43,7 @@ fn draw(
             } else {
                 format!("{y_m:.2} m")
             };
-            Some((egui::pos2(at.x, at.y), text))
+            Some((area.point_of(at), text))
         })
         .collect();
     tags.sort_by(|a, b| b.0.y.total_cmp(&a.0.y));

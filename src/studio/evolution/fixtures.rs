@@ -4,8 +4,8 @@ use super::*;
 use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Control, Experiment, pool};
-use crate::save::SavesFolder;
-use crate::studio::{Options, Theme};
+use crate::save::{PreferencesFile, SavesFolder};
+use crate::studio::Options;
 
 /// A run of the report's settings that has not begun.
 pub fn prepared_run() -> Evolution {
@@ -43,8 +43,9 @@ fn run_of(plan: RunPlan) -> Evolution {
         saves,
         champions: Vec::new(),
         comparison: None,
-        window_size: (1280, 720),
-        theme: Theme::default(),
+        window_size: None,
+        theme: None,
+        preferences: PreferencesFile::nowhere(),
         exit_after_frames: None,
     };
     Evolution::new(Engine::new(&options).expect("threads"))

@@ -1,4 +1,4 @@
-//! The left panel, and what stands around the stage: the player and the torques below it, the camera's buttons
+//! The panels around the stage, and what lies on its edges: the player and the torques below it, the camera's buttons
 //! above it, the board beside it.
 //!
 //! A panel is a struct with a `ui` method. It sees what is, and sends commands; it changes nothing.
@@ -13,30 +13,38 @@ mod evolution;
 mod explore;
 mod front_plot;
 mod icons;
+mod key_overlay;
 mod knobs;
+mod layout;
 mod limb_card;
+mod menu;
 mod method;
 mod number_field;
+mod palette;
 mod signals;
 mod timeline;
+mod tour;
 mod view_bar;
 mod world;
 
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+use egui_dock::{DockArea, TabStyle, TabViewer};
 
+use super::actions::Situation;
 use super::camera::{CameraRig, StageCamera};
 use super::casting::Opening;
 use super::command::Command;
+use super::desk::{Desk, Over};
 use super::evolution::Evolution;
 use super::exhibit::{Exhibit, Source};
 use super::hands::Hands;
-use super::keys::KEYS;
 use super::lane::Lane;
 use super::overlay::Overlays;
 use super::playback::Playback;
 use super::stage::{Programme, end_s};
+use super::stage_area::StageArea;
 use super::{Opened, look};
 use crate::evolve::Origin;
 
@@ -45,40 +53,18 @@ use champions::{ChampionsPanel, Shown};
 use chart::ChartPanel;
 use evolution::EvolutionPanel;
 use explore::ExplorePanel;
+use key_overlay::key_overlay;
+use layout::style;
 use limb_card::limb_card;
+use menu::menu;
+use palette::Palette;
 use timeline::TimelinePanel;
+use tour::tour;
 use view_bar::view_bar;
 use world::WorldPanel;
 
-/// The part of the window that is left for the stage, in points.
-#[derive(Resource, Debug, Default)]
-pub(super) struct StageArea {
-    /// Where it begins, from the window's left edge.
-    pub left_points: f32,
-    /// Where it ends, from the window's bottom edge.
-    pub bottom_points: f32,
-    /// Size of the window.
-    window: Vec2,
-}
-
-impl StageArea {
-    /// Whether a point of the window lies on the stage.
-    pub fn contains(&self, point: Vec2) -> bool {
-        point.x >= self.left_points && point.y <= self.window.y - self.bottom_points
-    }
-
-    /// Width over height.
-    pub fn aspect(&self) -> f32 {
-        let size = self.rect().size();
-        if size.x > 0.0 && size.y > 0.0 { size.x / size.y } else { 1.0 }
-    }
-
-    /// The stage in the window.
-    pub fn rect(&self) -> egui::Rect {
-        let end = egui::pos2(self.window.x, self.window.y - self.bottom_points);
-        egui::Rect::from_min_max(egui::pos2(self.left_points, 0.0), end)
-    }
-}
+pub(super) use layout::{Layout, PanelKind};
+pub(super) use tour::shown_in;
 
 /// What is on the stage, as the panels see it.
 #[derive(SystemParam)]
@@ -101,20 +87,10 @@ struct Panels {
     explore: ExplorePanel,
     world: WorldPanel,
     timeline: TimelinePanel,
-    tab: Tab,
+    palette: Palette,
+    /// Where each panel was drawn in this frame, in points.
+    places: Vec<(PanelKind, egui::Rect)>,
     is_dressed: bool,
-}
-
-/// What the left panel shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Tab {
-    /// The run: steer it, see how it goes, replay its champions.
-    #[default]
-    Run,
-    /// What the run found besides champions, and how methods compare.
-    Explore,
-    /// The world and the snake: tune them.
-    World,
 }
 
 impl FromWorld for Panels {
@@ -127,8 +103,8 @@ impl FromWorld for Panels {
             explore: ExplorePanel::new(comparison),
             world: WorldPanel::default(),
             timeline: TimelinePanel::default(),
-            // Who opens a comparison wants to see it.
-            tab: if comparison.is_some() { Tab::Explore } else { Tab::Run },
+            palette: Palette::default(),
+            places: Vec::new(),
             is_dressed: false,
         }
     }
@@ -155,19 +131,25 @@ impl Shown {
 
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins(bevy_egui::EguiPlugin::default())
-        .init_resource::<StageArea>()
         .init_resource::<Panels>()
         .add_systems(EguiPrimaryContextPass, draw);
+}
+
+/// What the panels look at.
+#[derive(SystemParam)]
+struct Seen<'w, 's> {
+    evolution: Res<'w, Evolution>,
+    opening: Res<'w, Opening>,
+    on_stage: OnStage<'w, 's>,
+    theme: Res<'w, look::Theme>,
 }
 
 fn draw(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
+    mut desk: ResMut<Desk>,
     mut area: ResMut<StageArea>,
-    evolution: Res<Evolution>,
-    opening: Res<Opening>,
-    on_stage: OnStage,
-    theme: Res<look::Theme>,
+    seen: Seen,
     mut send: MessageWriter<Command>,
 ) -> Result {
     let context = contexts.ctx_mut()?.clone();
@@ -175,82 +157,195 @@ fn draw(
         look::apply(&context);
         panels.is_dressed = true;
     }
-    look::show(&context, *theme);
-    let mut lanes: Vec<&Lane> = on_stage.lanes.iter().collect();
-    lanes.sort_by_key(|lane| lane.number());
-    let shown: Vec<Shown> =
-        lanes.iter().filter_map(|lane| Shown::of(lane.exhibit(), evolution.number())).collect();
+    look::show(&context, *seen.theme);
+    context.set_zoom_factor(desk.scale);
     let mut asked = Vec::new();
-    let window = context.viewport_rect();
+    let situation = Situation::of(&seen.evolution, &seen.on_stage.programme, &desk);
     let mut root = egui::Ui::new(
         context.clone(),
         "root".into(),
-        egui::UiBuilder::new().layer_id(egui::LayerId::background()).max_rect(window),
+        egui::UiBuilder::new()
+            .layer_id(egui::LayerId::background())
+            .max_rect(context.content_rect()),
     );
-    let frame =
-        egui::Frame::new().fill(look::of_context(&context).panel).inner_margin(look::GAP as i8 * 2);
-    let panel = egui::Panel::left("panel")
-        .exact_size(look::PANEL_WIDTH)
-        .resizable(false)
-        .frame(frame)
-        .show(&mut root, |ui| {
-            heading(ui, &evolution, &mut panels.tab);
-            // At the bottom, where the growing list does not push it away.
-            egui::Panel::bottom("keys").frame(egui::Frame::new()).show_separator_line(false).show(
-                ui,
-                |ui| {
-                    keys(ui, window.height() * look::MOST_KEYS_SHARE);
-                },
-            );
-            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                let panels = &mut *panels;
-                match panels.tab {
-                    Tab::Run => {
-                        panels.evolution.ui(ui, &evolution, &mut asked);
-                        panels.chart.ui(ui, evolution.settings(), evolution.reports());
-                        let reports = evolution.reports();
-                        let leaders = |generation| evolution.leaders(generation).len();
-                        panels.champions.ui(ui, &opening.0, reports, &shown, leaders, &mut asked);
-                    }
-                    Tab::Explore => {
-                        panels.explore.ui(ui, &evolution, shown.first().copied(), &mut asked)
-                    }
-                    Tab::World => panels.world.ui(ui, &evolution, &mut asked),
-                }
-            });
-        });
-    area.left_points = panel.response.rect.right();
-    area.window = Vec2::new(window.width(), window.height());
-    let focused = lanes.iter().find(|lane| lane.number() == on_stage.hands.lane);
-    if let Some(lane) = focused.or(lanes.first()) {
-        let below = egui::Panel::bottom("timeline")
-            .resizable(false)
-            .frame(
-                frame.inner_margin(egui::Margin::symmetric(look::GAP as i8 * 2, look::GAP as i8)),
-            )
-            .show(&mut root, |ui| {
-                let ends_s = end_s(lanes.iter().copied());
-                let (playback, run) = (&on_stage.playback, evolution.number());
-                panels.timeline.ui(ui, lane, playback, ends_s, run, &mut asked);
-            });
-        area.bottom_points = below.response.rect.height();
-        around_stage(&context, &area, &on_stage, &lanes, lane, *theme, &mut asked);
+    let mut lanes: Vec<&Lane> = seen.on_stage.lanes.iter().collect();
+    lanes.sort_by_key(|lane| lane.number());
+    panels.places.clear();
+    let panels = &mut *panels;
+    let mut viewer =
+        Viewer { panels: &mut *panels, seen: &seen, lanes: &lanes, stage: None, asked: &mut asked };
+    if desk.is_bare {
+        viewer.stage(&mut root);
+    } else {
+        let (preset, seed) = (seen.evolution.preset(), seen.evolution.seed());
+        let fill = look::of_context(&context).panel;
+        let margin = egui::Margin::symmetric(look::GAP as i8 * 2, look::GAP as i8 / 4);
+        egui::Panel::top("menu").frame(egui::Frame::new().fill(fill).inner_margin(margin)).show(
+            &mut root,
+            |ui| {
+                menu(ui, situation, &format!("{preset}, seed {seed}"), viewer.asked);
+            },
+        );
+        let style = style(&root);
+        let size = root.available_size();
+        DockArea::new(desk.layout.state_in(size))
+            .style(style)
+            .hidable_tab_bars(true)
+            .show_leaf_close_all_buttons(false)
+            .show_secondary_button_hint(false)
+            .show_inside(&mut root, &mut viewer);
+    }
+    if let Some(stage) = viewer.stage {
+        area.set(&context, stage);
+        if let Some(lane) = focused(&lanes, &seen.on_stage) {
+            around_stage(&context, stage, &seen.on_stage, &lanes, lane, *seen.theme, &mut asked);
+        }
+    }
+    match desk.over() {
+        Some(Over::Keys) => key_overlay(&context, &mut asked),
+        Some(Over::Palette) => panels.palette.ui(&context, situation, &[], &mut asked),
+        Some(Over::Tour(step)) => {
+            let target = shown_in(step)
+                .and_then(|kind| panels.places.iter().find(|(of, _)| *of == kind))
+                .map(|(_, place)| *place);
+            tour(&context, step, target, &mut asked);
+        }
+        None => {}
+    }
+    if desk.over() != Some(Over::Palette) {
+        panels.palette.close();
     }
     send.write_batch(asked);
     Ok(())
 }
 
+/// The lane whose numbers are shown.
+fn focused<'l>(lanes: &[&'l Lane], on_stage: &OnStage) -> Option<&'l Lane> {
+    let focused = lanes.iter().find(|lane| lane.number() == on_stage.hands.lane);
+    focused.or(lanes.first()).copied()
+}
+
+/// Draws a panel wherever it is.
+struct Viewer<'v, 'w, 's> {
+    panels: &'v mut Panels,
+    seen: &'v Seen<'w, 's>,
+    lanes: &'v [&'v Lane],
+    /// The part of the window that the stage has, once it is known.
+    stage: Option<egui::Rect>,
+    asked: &'v mut Vec<Command>,
+}
+
+impl Viewer<'_, '_, '_> {
+    /// The player at the bottom; the rest is the stage's.
+    fn stage(&mut self, ui: &mut egui::Ui) {
+        let OnStage { playback, .. } = &self.seen.on_stage;
+        if let Some(lane) = focused(self.lanes, &self.seen.on_stage) {
+            let margin = egui::Margin::symmetric(look::GAP as i8 * 2, look::GAP as i8);
+            let fill = look::of(ui).panel;
+            egui::Panel::bottom("timeline")
+                .resizable(false)
+                .frame(egui::Frame::new().fill(fill).inner_margin(margin))
+                .show(ui, |ui| {
+                    let ends_s = end_s(self.lanes.iter().copied());
+                    let run = self.seen.evolution.number();
+                    self.panels.timeline.ui(ui, lane, playback, ends_s, run, self.asked);
+                });
+        }
+        self.stage = Some(ui.available_rect_before_wrap());
+    }
+
+    /// What of the champions' list is on the stage.
+    fn shown(&self) -> Vec<Shown> {
+        let run = self.seen.evolution.number();
+        self.lanes.iter().filter_map(|lane| Shown::of(lane.exhibit(), run)).collect()
+    }
+
+    fn panel(&mut self, ui: &mut egui::Ui, kind: PanelKind) {
+        let shown = self.shown();
+        let Seen { evolution, opening, .. } = self.seen;
+        let (panels, asked) = (&mut *self.panels, &mut *self.asked);
+        match kind {
+            PanelKind::Stage => {}
+            PanelKind::Run => panels.evolution.ui(ui, evolution, asked),
+            PanelKind::World => panels.world.ui(ui, evolution, asked),
+            PanelKind::Charts => {
+                panels.chart.ui(ui, evolution.settings(), evolution.reports());
+                panels.explore.ui(ui, evolution, shown.first().copied(), asked);
+            }
+            PanelKind::Champions => {
+                let reports = evolution.reports();
+                let leaders = |generation| evolution.leaders(generation).len();
+                panels.champions.ui(ui, &opening.0, reports, &shown, leaders, asked);
+            }
+            PanelKind::Library | PanelKind::Lessons => {}
+        }
+    }
+}
+
+impl TabViewer for Viewer<'_, '_, '_> {
+    type Tab = PanelKind;
+
+    fn id(&mut self, kind: &mut PanelKind) -> egui::Id {
+        egui::Id::new(("panel", kind.name()))
+    }
+
+    fn title(&mut self, kind: &mut PanelKind) -> egui::WidgetText {
+        kind.name().into()
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, kind: &mut PanelKind) {
+        // A floating window's layer moves; only what is in the window itself is a place to point at.
+        self.panels.places.push((*kind, ui.clip_rect()));
+        if *kind == PanelKind::Stage {
+            self.stage(ui);
+        } else {
+            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.panel(ui, *kind));
+        }
+    }
+
+    fn on_tab_button(&mut self, kind: &mut PanelKind, response: &egui::Response) {
+        let name = format!("Panel {}", kind.name());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &name));
+        response.clone().on_hover_text(kind.hint());
+    }
+
+    fn is_closeable(&self, kind: &PanelKind) -> bool {
+        *kind != PanelKind::Stage
+    }
+
+    fn allowed_in_windows(&self, kind: &mut PanelKind) -> bool {
+        *kind != PanelKind::Stage
+    }
+
+    fn clear_background(&self, kind: &PanelKind) -> bool {
+        *kind != PanelKind::Stage
+    }
+
+    fn scroll_bars(&self, _kind: &PanelKind) -> [bool; 2] {
+        // Each panel scrolls as suits it.
+        [false, false]
+    }
+
+    fn tab_style_override(&self, kind: &PanelKind, style: &TabStyle) -> Option<TabStyle> {
+        (*kind == PanelKind::Stage).then(|| {
+            let mut style = style.clone();
+            style.tab_body.inner_margin = egui::Margin::ZERO;
+            style
+        })
+    }
+}
+
 /// The cards over the stage's edges.
 fn around_stage(
     context: &egui::Context,
-    area: &StageArea,
+    stage: egui::Rect,
     on_stage: &OnStage,
     lanes: &[&Lane],
     focused: &Lane,
     theme: look::Theme,
     asked: &mut Vec<Command>,
 ) {
-    let stage = area.rect().shrink(look::GAP * 1.5);
+    let stage = stage.shrink(look::GAP * 1.5);
     let palette = look::of_context(context);
     let card = |name: &str, pivot: egui::Align2, at: egui::Pos2| {
         egui::Area::new(egui::Id::new(name)).pivot(pivot).fixed_pos(at).constrain_to(stage)
@@ -279,29 +374,6 @@ fn around_stage(
             frame.show(ui, |ui| limb_card(ui, focused, limb));
         });
     }
-}
-
-fn heading(ui: &mut egui::Ui, evolution: &Evolution, tab: &mut Tab) {
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Snakes & Stairs").size(look::HEADING_SIZE).strong());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let (preset, seed) = (evolution.preset(), evolution.seed());
-            let origin = egui::RichText::new(format!("{preset}, seed {seed}"));
-            let hint = format!("Preset {preset}, seed {seed}");
-            ui.add(egui::Label::new(origin.color(look::of(ui).text_weak)).truncate())
-                .on_hover_text(hint);
-        });
-    });
-    ui.horizontal(|ui| {
-        for (choice, name, hint) in [
-            (Tab::Run, "Run", "Steer evolution, replay its champions"),
-            (Tab::Explore, "Explore", "Replay what else the run found, see how methods compare"),
-            (Tab::World, "World", "Tune the surface, the snake and the stairs"),
-        ] {
-            ui.selectable_value(tab, choice, name).on_hover_text(hint);
-        }
-    });
-    ui.separator();
 }
 
 /// A section's title.
@@ -333,28 +405,4 @@ fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, about: &str) -> egui::Resp
     let about = egui::RichText::new(about).color(color);
     let button = egui::Button::new(name).right_text(about).selected(is_shown);
     ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
-}
-
-fn keys(ui: &mut egui::Ui, most_height: f32) {
-    ui.add_space(look::GAP);
-    egui::CollapsingHeader::new("Keys and mouse").show(ui, |ui| {
-        let spacing = [look::GAP * 2.0, look::GAP / 4.0];
-        let list =
-            egui::ScrollArea::vertical().max_height(most_height).min_scrolled_height(most_height);
-        list.id_salt("keys").show(ui, |ui| {
-            egui::Grid::new("keys").num_columns(2).spacing(spacing).show(ui, |ui| {
-                let mouse = [
-                    ("Drag", "turn the camera; pull a limb"),
-                    ("Right drag", "move the camera"),
-                    ("Wheel", "zoom"),
-                    ("Double click", "look at what is there"),
-                ];
-                for (key, effect) in KEYS.into_iter().chain(mouse) {
-                    ui.label(egui::RichText::new(key).color(look::of(ui).accent));
-                    ui.label(effect);
-                    ui.end_row();
-                }
-            });
-        });
-    });
 }

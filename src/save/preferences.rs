@@ -1,0 +1,202 @@
+//! What a person has chosen for the window: format 1. Kept apart from everything that decides the bits of a run.
+//!
+//! The file is a convenience: one that cannot be read is put aside under another name, said plainly, and the window
+//! opens as it does for the first time.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use directories::ProjectDirs;
+use serde::{Deserialize, Serialize};
+
+use super::SaveError;
+use super::files::{Header, parse, prepare_folder, read_text, store_ron};
+use crate::check::{Invalid, within};
+
+const KIND: &str = "snakes-and-stairs preferences";
+const FORMAT: u32 = 1;
+/// How much larger or smaller than usual panels may be drawn.
+pub const UI_SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
+/// The longest description of where panels are, in bytes.
+const LONGEST_LAYOUT: usize = 100_000;
+
+/// What a person has chosen for the window.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// `light` or `dark`.
+    pub theme: String,
+    /// How large the panels are drawn: see [`UI_SCALES`].
+    pub ui_scale: f32,
+    /// Size of the window, in pixels; none: the usual one.
+    pub window_size: Option<(u32, u32)>,
+    /// Where the panels are, in the window's own words; empty: where they are at first.
+    pub layout: String,
+    /// What is drawn over the scene, by name.
+    pub overlays: Vec<String>,
+    /// Simulated seconds in a second.
+    pub speed: f32,
+    /// Whether the stage begins again after the end.
+    pub loops: bool,
+    /// Whether edges are smoothed; none: as suits the machine.
+    pub smooth_edges: Option<bool>,
+    /// Whether the tour was taken or skipped.
+    pub tour_is_over: bool,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Self {
+            theme: "light".to_owned(),
+            ui_scale: 1.0,
+            window_size: None,
+            layout: String::new(),
+            overlays: Vec::new(),
+            speed: 1.0,
+            loops: true,
+            smooth_edges: None,
+            tour_is_over: false,
+        }
+    }
+}
+
+impl Preferences {
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// One is out of it.
+    pub fn check(&self) -> Result<(), Invalid> {
+        if !["light", "dark"].contains(&self.theme.as_str()) {
+            let start: String = self.theme.chars().take(40).collect();
+            return Err(Invalid::new("theme", format!("{start:?}"), "light, dark"));
+        }
+        within("ui_scale", self.ui_scale, UI_SCALES[0]..=UI_SCALES[UI_SCALES.len() - 1])?;
+        if let Some((width, height)) = self.window_size {
+            within("window_size.0", width, 320..=16_384)?;
+            within("window_size.1", height, 240..=16_384)?;
+        }
+        within("layout", self.layout.len(), 0..=LONGEST_LAYOUT)?;
+        within("overlays", self.overlays.len(), 0..=20)?;
+        within("speed", self.speed, 0.01..=100.0)
+    }
+}
+
+/// Where the preferences are kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PreferencesFile(Option<PathBuf>);
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    kind: String,
+    format: u32,
+    preferences: Preferences,
+}
+
+impl PreferencesFile {
+    /// The file in the platform's folder for settings; nowhere, if the platform has none.
+    pub fn find() -> Self {
+        let folders = ProjectDirs::from("", "", "snakes-and-stairs");
+        Self(folders.map(|folders| folders.config_dir().join("studio.ron")))
+    }
+
+    /// A file at this place.
+    pub fn at(path: &Path) -> Self {
+        Self(Some(path.to_owned()))
+    }
+
+    /// Kept nowhere: every window opens as for the first time.
+    pub fn nowhere() -> Self {
+        Self(None)
+    }
+
+    /// Reads them; none, if there is no such file yet.
+    ///
+    /// # Errors
+    /// The file is there and cannot be read, or something in it is not allowed.
+    pub fn load(&self) -> Result<Option<Preferences>, SaveError> {
+        let Some(path) = self.0.as_deref().filter(|path| path.symlink_metadata().is_ok()) else {
+            return Ok(None);
+        };
+        let text = read_text(path)?;
+        Header::read(path, &text, KIND, FORMAT)?;
+        let File { preferences, .. } = parse(path, &text)?;
+        preferences
+            .check()
+            .map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+        Ok(Some(preferences))
+    }
+
+    /// Puts a file aside that cannot be read, so that it is not written over. Says where it is now.
+    pub fn put_aside(&self) -> Option<PathBuf> {
+        let path = self.0.as_deref()?;
+        let aside = path.with_extension("ron.unreadable");
+        fs::rename(path, &aside).ok().map(|()| aside)
+    }
+
+    /// Writes them, whole or not at all.
+    ///
+    /// # Errors
+    /// The file or its folder cannot be written.
+    pub fn store(&self, preferences: &Preferences) -> Result<(), SaveError> {
+        let Some(path) = &self.0 else { return Ok(()) };
+        if let Some(folder) = path.parent() {
+            prepare_folder(folder)?;
+        }
+        let file = File { kind: KIND.to_owned(), format: FORMAT, preferences: preferences.clone() };
+        store_ron(path, &file)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn preferences_come_back_and_what_is_missing_is_usual() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("deep/studio.ron");
+        let file = PreferencesFile::at(&path);
+        assert_eq!(file.load().expect("no file is no error"), None);
+        let chosen = Preferences {
+            ui_scale: 1.5,
+            theme: "dark".to_owned(),
+            smooth_edges: Some(true),
+            ..Preferences::default()
+        };
+        file.store(&chosen).expect("written");
+        assert_eq!(file.load().expect("read"), Some(chosen));
+        let short = format!("(kind: \"{KIND}\", format: 1, preferences: (ui_scale: 1.25))");
+        fs::write(&path, short).expect("written");
+        let read = file.load().expect("read").expect("there");
+        assert_eq!(read, Preferences { ui_scale: 1.25, ..Preferences::default() });
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_says_why_and_is_put_aside_not_written_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("studio.ron");
+        let file = PreferencesFile::at(&path);
+        for (text, message) in [
+            ("(", "damaged or incomplete"),
+            ("(kind: \"x\", format: 1)", "kind is \"x\""),
+            (
+                "(kind: \"snakes-and-stairs preferences\", format: 1, preferences: (ui_scale: 99))",
+                "ui_scale is 99; allowed: 0.75 to 2",
+            ),
+        ] {
+            fs::write(&path, text).expect("written");
+            let error = file.load().expect_err("refused").to_string();
+            assert!(error.contains(message), "{error}");
+            let aside = file.put_aside().expect("renamed");
+            assert_eq!(fs::read_to_string(aside).expect("there"), text);
+            assert!(!path.exists());
+        }
+    }
+
+    #[test]
+    fn where_they_are_kept_nowhere_nothing_is_written() {
+        let file = PreferencesFile::nowhere();
+        file.store(&Preferences::default()).expect("nothing to do");
+        assert_eq!(file.load().expect("nothing"), None);
+    }
+}
