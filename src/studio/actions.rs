@@ -179,6 +179,7 @@ pub(super) const ACTIONS: &[Action] = &[
     action(Menu::Panels, "Champions", &["Ctrl 4"], |_| Some(Command::Open(PanelKind::Champions))),
     action(Menu::Panels, "Library", &["Ctrl 5"], |_| Some(Command::Open(PanelKind::Library))),
     action(Menu::Panels, "Lessons", &["Ctrl 6"], |_| Some(Command::Open(PanelKind::Lessons))),
+    action(Menu::Panels, "Close the panel used last", &["Ctrl W"], |_| Some(Command::ClosePanel)),
     action(Menu::Panels, "Put all panels back", &[], |_| Some(Command::ResetLayout)),
     action(Menu::Help, "All keys", &["?", "F1"], |_| Some(Command::Cover(Over::Keys))),
     action(Menu::Help, "Find a command", &["Ctrl K", "Ctrl P"], |_| {

@@ -115,6 +115,8 @@ pub(super) enum Command {
     Redo,
     /// Bring a panel to the front.
     Open(PanelKind),
+    /// Close the panel that was used last.
+    ClosePanel,
     /// Put the panels back where they are at first.
     ResetLayout,
     /// Show the stage alone, or the panels again.
@@ -277,6 +279,7 @@ fn arrange(command: &Command, desk: &mut Desk) -> bool {
             desk.is_bare = false;
             desk.layout.open(*kind);
         }
+        Command::ClosePanel => desk.layout.close_front(),
         Command::ResetLayout => desk.layout.reset(),
         Command::ToggleBare => desk.is_bare = !desk.is_bare,
         Command::ChangeScale { larger } => desk.change_scale(*larger),

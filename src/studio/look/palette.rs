@@ -186,6 +186,11 @@ impl Palette {
             .inner_margin(Margin::symmetric(12, 8))
     }
 
+    /// A card that covers what is under it, to be read before anything else.
+    pub fn dialog(&self) -> Frame {
+        self.card(self.accent).fill(self.panel).inner_margin(Margin::symmetric(16, 12))
+    }
+
     /// Colours egui's style.
     pub(super) fn dress(&self, visuals: &mut egui::Visuals) {
         // Were they another theme's, all letters would be drawn anew at the change, and the panel be missing until

@@ -1,8 +1,9 @@
-//! The best of every generation, to click and replay.
+//! The best of every generation, the latest first, to click and replay.
 
 use bevy_egui::egui;
 
-use super::{explain, row, title_and};
+use super::{explain, row};
+use crate::evolve::Champion;
 use crate::run::GenerationReport;
 use crate::studio::casting::{Pick, Saved};
 use crate::studio::command::Command;
@@ -37,22 +38,22 @@ impl ChampionsPanel {
         asked: &mut Vec<Command>,
     ) {
         let champions = reports.iter().filter(|report| report.champion.is_some()).count();
-        title_and(ui, "Champions", |ui| {
+        ui.horizontal(|ui| {
             for (name, hint, is_on, command) in [
+                (
+                    "Race generations",
+                    "The generations' champions side by side (N)",
+                    champions > 1,
+                    Command::RaceGenerations,
+                ),
                 (
                     "Race top ten",
                     "The best of the latest generation, side by side (M)",
                     leaders(None) > 1,
                     Command::RaceLeaders(None),
                 ),
-                (
-                    "Race",
-                    "The generations' champions side by side (N)",
-                    champions > 1,
-                    Command::RaceGenerations,
-                ),
             ] {
-                let button = egui::Button::new(name).small();
+                let button = egui::Button::new(name);
                 let not_yet = "There is no such race yet";
                 let response = ui.add_enabled(is_on, button).on_hover_text(hint);
                 if response.on_disabled_hover_text(not_yet).clicked() {
@@ -60,35 +61,51 @@ impl ChampionsPanel {
                 }
             }
         });
-        for (index, saved) in opening.iter().enumerate() {
-            let name = if opening.len() == 1 { "Saved" } else { &saved.name };
-            let is_shown = shown.contains(&Shown::Opening(index));
-            let reached = saved.loaded.champion.reached();
-            entry(ui, is_shown, name, &reached, Pick::Opening(index), asked);
-        }
-        for report in reports {
-            let generation = report.generation;
-            let name = format!("Generation {generation}");
-            let Some(champion) = &report.champion else {
-                explain(ui, &format!("{name}: all disqualified"));
-                continue;
-            };
-            let individual = champion.origin.individual;
-            let is_shown = shown.iter().any(|shown| shown.is(generation, individual));
-            let pick = Pick::Generation(generation);
-            let row = entry(ui, is_shown, &name, &champion.reached(), pick, asked);
-            if leaders(Some(generation)) > 1 {
-                row.context_menu(|ui| {
-                    if ui.button("Race its best ten").clicked() {
-                        asked.push(Command::RaceLeaders(Some(generation)));
-                        ui.close();
-                    }
-                });
-            }
-        }
         if reports.is_empty() {
             explain(ui, "The best of each generation will appear here.");
         }
+        let fitness = |champion: &Champion| champion.evaluation.fitness;
+        let known = reports.iter().filter_map(|report| report.champion.as_ref()).map(fitness);
+        let best = known.fold(f32::MIN, f32::max);
+        let height = ui.spacing().interact_size.y;
+        let rows = opening.len() + reports.len();
+        let area = egui::ScrollArea::vertical().auto_shrink(false);
+        // Only those that are seen are drawn: there may be thousands.
+        area.show_rows(ui, height, rows, |ui, seen| {
+            for index in seen {
+                if let Some(saved) = opening.get(index) {
+                    let name = if opening.len() == 1 { "Saved" } else { &saved.name };
+                    let is_shown = shown.contains(&Shown::Opening(index));
+                    let reached = saved.loaded.champion.reached();
+                    entry(ui, is_shown, name, &reached, Pick::Opening(index), asked);
+                    continue;
+                }
+                // The latest first: that is what one waits for.
+                let Some(report) = reports.iter().rev().nth(index - opening.len()) else {
+                    continue;
+                };
+                let generation = report.generation;
+                let name = format!("Generation {generation}");
+                let Some(champion) = &report.champion else {
+                    row(ui, false, &name, "all disqualified");
+                    continue;
+                };
+                let individual = champion.origin.individual;
+                let is_shown = shown.iter().any(|shown| shown.is(generation, individual));
+                let pick = Pick::Generation(generation);
+                let is_best = fitness(champion) >= best;
+                let name = if is_best { format!("{name}, best") } else { name };
+                let row = entry(ui, is_shown, &name, &champion.reached(), pick, asked);
+                if leaders(Some(generation)) > 1 {
+                    row.context_menu(|ui| {
+                        if ui.button("Race its best ten").clicked() {
+                            asked.push(Command::RaceLeaders(Some(generation)));
+                            ui.close();
+                        }
+                    });
+                }
+            }
+        });
     }
 }
 
@@ -142,7 +159,7 @@ mod tests {
         harness.state_mut().clear();
         harness.get_by_label_contains("Generation 1").click_modifiers(egui::Modifiers::SHIFT);
         harness.run();
-        harness.get_by_label("Race").click();
+        harness.get_by_label("Race generations").click();
         harness.run();
         let asked = [Command::Join(Pick::Generation(1)), Command::RaceGenerations];
         assert_eq!(*harness.state(), asked);

@@ -20,9 +20,12 @@ const MOUSE: [(&str, &str); 6] = [
 pub(super) fn key_overlay(context: &egui::Context, asked: &mut Vec<Command>) {
     let palette = look::of_context(context);
     let screen = context.content_rect();
-    let modal = egui::Modal::new(egui::Id::new("keys")).frame(palette.card(palette.field_hovered));
+    let modal = egui::Modal::new(egui::Id::new("keys")).frame(palette.dialog());
+    // As many columns as there is room for.
+    let room = screen.width() - look::GAP * 8.0;
+    let columns = ((room / look::KEY_COLUMN_WIDTH) as usize).clamp(1, 3);
     let shown = modal.show(context, |ui| {
-        ui.set_max_width(screen.width() - look::GAP * 8.0);
+        ui.set_width(room.min(columns as f32 * look::KEY_COLUMN_WIDTH));
         ui.horizontal(|ui| {
             ui.label(egui::RichText::new("Keys and mouse").size(look::HEADING_SIZE).strong());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -35,15 +38,15 @@ pub(super) fn key_overlay(context: &egui::Context, asked: &mut Vec<Command>) {
             egui::RichText::new("Ctrl K finds any of these by name.").color(palette.text_weak),
         );
         ui.add_space(look::GAP);
-        let most_height = screen.height() - look::GAP * 16.0;
-        egui::ScrollArea::both().max_height(most_height).show(ui, |ui| {
-            // As many columns as there is room for.
-            let columns = ((screen.width() / look::KEY_COLUMN_WIDTH) as usize).clamp(1, 3);
+        let height = screen.height() - look::GAP * 16.0;
+        let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        area.show(ui, |ui| {
             let groups = groups();
-            ui.horizontal_top(|ui| {
-                for column in spread(&groups, columns) {
-                    ui.vertical(|ui| column.iter().for_each(|group| draw(ui, group)));
-                    ui.add_space(look::GAP * 2.0);
+            ui.columns(columns, |places| {
+                for (ui, column) in places.iter_mut().zip(spread(&groups, columns)) {
+                    // Lines of text, not of buttons.
+                    ui.spacing_mut().interact_size.y = look::GAP * 2.0;
+                    column.iter().for_each(|group| draw(ui, group));
                 }
             });
         });
@@ -99,7 +102,7 @@ fn spread(groups: &[Group], columns: usize) -> Vec<&[Group]> {
 fn draw(ui: &mut egui::Ui, group: &Group) {
     let palette = look::of(ui);
     ui.label(egui::RichText::new(group.name).size(look::TITLE_SIZE).strong());
-    let spacing = [look::GAP * 2.0, look::GAP / 4.0];
+    let spacing = [look::GAP * 1.5, look::GAP / 2.0];
     egui::Grid::new(group.name).num_columns(2).spacing(spacing).show(ui, |ui| {
         for (key, effect) in &group.keys {
             ui.label(egui::RichText::new(*key).color(palette.accent));

@@ -161,8 +161,15 @@ impl Layout {
         found(usual).or_else(|| found(&PanelKind::ALL))
     }
 
+    /// Closes the panel that was used last.
+    pub fn close_front(&mut self) {
+        let front = self.state.focused_leaf().and_then(|path| self.state.leaf(path).ok());
+        if let Some(kind) = front.and_then(|leaf| leaf.tabs.get(leaf.active.0).copied()) {
+            self.close(kind);
+        }
+    }
+
     /// Closes a panel. The stage stays.
-    #[cfg(test)]
     fn close(&mut self, kind: PanelKind) {
         if kind != PanelKind::Stage
             && let Some(path) = self.state.find_tab(&kind)

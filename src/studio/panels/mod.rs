@@ -192,6 +192,8 @@ fn draw(
             .style(style)
             .hidable_tab_bars(true)
             .show_leaf_close_all_buttons(false)
+            // Names alone have room beside each other; a right click on one closes its panel.
+            .show_close_buttons(false)
             .show_secondary_button_hint(false)
             .show_inside(&mut root, &mut viewer);
     }
@@ -298,6 +300,8 @@ impl TabViewer for Viewer<'_, '_, '_> {
         self.panels.places.push((*kind, ui.clip_rect()));
         if *kind == PanelKind::Stage {
             self.stage(ui);
+        } else if *kind == PanelKind::Champions {
+            self.panel(ui, *kind);
         } else {
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.panel(ui, *kind));
         }

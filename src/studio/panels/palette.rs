@@ -59,9 +59,7 @@ impl Palette {
         let palette = look::of_context(context);
         let area = egui::Modal::default_area(egui::Id::new("palette"))
             .anchor(egui::Align2::CENTER_TOP, [0.0, look::GAP * 8.0]);
-        let modal = egui::Modal::new(egui::Id::new("palette"))
-            .area(area)
-            .frame(palette.card(palette.field_hovered));
+        let modal = egui::Modal::new(egui::Id::new("palette")).area(area).frame(palette.dialog());
         let shown = modal.show(context, |ui| {
             ui.set_width(look::PALETTE_WIDTH.min(context.content_rect().width() - look::GAP * 4.0));
             let field = egui::TextEdit::singleline(&mut self.typed)

@@ -78,7 +78,7 @@ pub(super) fn tour(
         .fixed_pos(at)
         .constrain_to(screen.shrink(look::GAP))
         .show(context, |ui| {
-            palette.card(palette.accent).show(ui, |ui| {
+            palette.dialog().show(ui, |ui| {
                 ui.set_width(look::TOUR_WIDTH.min(screen.width() - look::GAP * 4.0));
                 ui.label(egui::RichText::new(step.title).size(look::TITLE_SIZE).strong());
                 ui.label(step.text);
@@ -115,13 +115,13 @@ fn buttons(ui: &mut egui::Ui, index: usize, asked: &mut Vec<Command>) {
     });
 }
 
-/// Beside what is shown, where there is more room; over the stage in its middle.
+/// Beside what is shown, where there is more room; over the stage in a corner, where the snake is not.
 fn place(target: egui::Rect, screen: egui::Rect) -> (egui::Align2, egui::Pos2) {
     let gap = look::GAP * 1.5;
     let right = screen.right() - target.right();
     let left = target.left() - screen.left();
     if target.width() > screen.width() / 2.0 {
-        (egui::Align2::CENTER_CENTER, target.center() - egui::vec2(0.0, target.height() * 0.15))
+        (egui::Align2::RIGHT_TOP, target.right_top() + egui::vec2(-gap, gap * 4.0))
     } else if right >= left {
         (egui::Align2::LEFT_TOP, target.right_top() + egui::vec2(gap, gap * 4.0))
     } else {
