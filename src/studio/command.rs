@@ -13,6 +13,7 @@ use super::evolution::{Evolution, Status};
 use super::exhibit::Exhibit;
 use super::hands::Hands;
 use super::lane::Lane;
+use super::lessons::Lessons;
 use super::look::Theme;
 use super::notice::Notices;
 use super::overlay::{Overlay, Overlays};
@@ -134,6 +135,12 @@ pub(super) enum Command {
     Uncover,
     /// Begin a lesson; the first is 0.
     BeginLesson(usize),
+    /// Show one of the lesson's scenes; the first is 0.
+    TryLesson(usize),
+    /// Tell the lesson's answer.
+    TellLesson,
+    /// End the lesson: everything is as it was before.
+    LeaveLesson,
     /// Close the window.
     Quit,
 }
@@ -226,6 +233,7 @@ fn apply(
     mut exit: MessageWriter<AppExit>,
     opening: Res<Opening>,
     mut desk: ResMut<Desk>,
+    mut lessons: ResMut<Lessons>,
     mut stage: StageParams,
 ) {
     for command in asked.read() {
@@ -255,6 +263,19 @@ fn apply(
             Command::SetPreset(name) => stage.try_out(&mut evolution, &Change::Preset(name)),
             Command::DropChange => dropped(&mut evolution, &stage.exhibits(), &stage.programme)
                 .map(|show| stage.present(show)),
+            Command::BeginLesson(index) => {
+                desk.is_bare = false;
+                desk.layout.open(PanelKind::Lessons);
+                let (exhibits, programme) = (stage.exhibits(), stage.programme.clone());
+                let shown = lessons.begin(*index, &mut evolution, exhibits, programme);
+                shown.map(|show| stage.present(show))
+            }
+            Command::TryLesson(scene) => lessons.try_out(*scene).map(|show| stage.present(show)),
+            Command::TellLesson => {
+                lessons.tell();
+                Ok(())
+            }
+            Command::LeaveLesson => lessons.leave(&mut evolution).map(|show| stage.present(show)),
             Command::Quit => {
                 exit.write(AppExit::Success);
                 Ok(())
@@ -389,6 +410,7 @@ mod tests {
             .init_resource::<Overlays>()
             .init_resource::<Hands>()
             .init_resource::<Desk>()
+            .init_resource::<Lessons>()
             .init_resource::<Theme>()
             .add_systems(Update, apply);
         let asked = [Command::Show(Pick::Opening(0)), Command::TogglePlayback];

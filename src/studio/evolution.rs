@@ -349,6 +349,15 @@ impl Evolution {
         self.take_over_if_ready()
     }
 
+    /// Gives the next run back what it had.
+    pub fn restore_next(&mut self, plan: RunPlan) -> Result<(), String> {
+        if self.engine.next == plan {
+            return Ok(());
+        }
+        self.engine.next = plan;
+        self.take_over_if_ready()
+    }
+
     fn take_over_if_ready(&mut self) -> Result<(), String> {
         if self.status() == Status::Ready {
             self.prepare_next();

@@ -25,6 +25,8 @@ pub(super) enum Source {
     Opening(usize),
     /// A run of this session; the first is 0. The generation is the champion's origin's.
     Run(u32),
+    /// A lesson.
+    Lesson,
 }
 
 /// How an exhibit is shown.
@@ -60,6 +62,11 @@ impl Exhibit {
             elsewhere: None,
             manner: Manner::Found,
         }
+    }
+
+    /// Somebody whom a lesson shows.
+    pub fn of_lesson(champion: &Champion) -> Self {
+        Self { source: Source::Lesson, ..Self::found(champion, 0) }
     }
 
     /// The same under another name.

@@ -23,6 +23,7 @@ mod ground;
 mod hands;
 mod keys;
 mod lane;
+mod lessons;
 mod lettering;
 mod limb;
 mod look;
@@ -202,7 +203,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
             (overlay::plugin, wireframe::plugin, screenshot::plugin),
             keys::plugin,
             (panels::plugin, name_tags::plugin, notice::plugin),
-            (desk::plugin, preferences::plugin, access::plugin),
+            (desk::plugin, preferences::plugin, access::plugin, lessons::plugin),
             (title::plugin, graphics::plugin, start_up::plugin),
         ));
         if let Some(frames) = exit_after {

@@ -34,6 +34,7 @@ fn update(
             let generation = lane.exhibit().generation();
             let what = match lane.exhibit().source() {
                 Source::Opening(_) => "saved champion".to_owned(),
+                Source::Lesson => "a lesson".to_owned(),
                 Source::Run(run) if run == evolution.number() => format!("generation {generation}"),
                 Source::Run(_) => format!("generation {generation} of an earlier run"),
             };

@@ -16,6 +16,7 @@ mod icons;
 mod key_overlay;
 mod knobs;
 mod layout;
+mod lessons;
 mod limb_card;
 mod menu;
 mod method;
@@ -41,6 +42,7 @@ use super::evolution::Evolution;
 use super::exhibit::{Exhibit, Source};
 use super::hands::Hands;
 use super::lane::Lane;
+use super::lessons::{LESSONS, Lessons};
 use super::overlay::Overlays;
 use super::playback::Playback;
 use super::stage::{Programme, end_s};
@@ -55,6 +57,7 @@ use evolution::EvolutionPanel;
 use explore::ExplorePanel;
 use key_overlay::key_overlay;
 use layout::style;
+use lessons::lessons;
 use limb_card::limb_card;
 use menu::menu;
 use palette::Palette;
@@ -119,7 +122,7 @@ impl Shown {
                 let Origin { generation, individual, .. } = exhibit.champion().origin;
                 Some(Self::Found { generation, individual })
             }
-            Source::Run(_) => None,
+            Source::Run(_) | Source::Lesson => None,
         }
     }
 
@@ -142,6 +145,7 @@ struct Seen<'w, 's> {
     opening: Res<'w, Opening>,
     on_stage: OnStage<'w, 's>,
     theme: Res<'w, look::Theme>,
+    lessons: Res<'w, Lessons>,
 }
 
 fn draw(
@@ -205,7 +209,10 @@ fn draw(
     }
     match desk.over() {
         Some(Over::Keys) => key_overlay(&context, &mut asked),
-        Some(Over::Palette) => panels.palette.ui(&context, situation, &[], &mut asked),
+        Some(Over::Palette) => {
+            let lessons = LESSONS.each_ref().map(|lesson| lesson.title);
+            panels.palette.ui(&context, situation, &lessons, &mut asked);
+        }
         Some(Over::Tour(step)) => {
             let target = shown_in(step)
                 .and_then(|kind| panels.places.iter().find(|(of, _)| *of == kind))
@@ -279,7 +286,8 @@ impl Viewer<'_, '_, '_> {
                 let leaders = |generation| evolution.leaders(generation).len();
                 panels.champions.ui(ui, &opening.0, reports, &shown, leaders, asked);
             }
-            PanelKind::Library | PanelKind::Lessons => {}
+            PanelKind::Lessons => lessons(ui, self.seen.lessons.view(), asked),
+            PanelKind::Library => {}
         }
     }
 }

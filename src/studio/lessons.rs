@@ -1,0 +1,388 @@
+//! Lessons: what the first stair climbers taught their makers, to be tried. A lesson borrows the stage and the settings of
+//! the next run, and gives both back; the run under way is held meanwhile, and otherwise left alone.
+
+mod catalogue;
+
+use bevy::prelude::*;
+
+use super::Frame;
+use super::evolution::{Evolution, Status};
+use super::exhibit::Exhibit;
+use super::notice::Notices;
+use super::stage::{Programme, Show};
+use crate::evolve::{Champion, RunPlan, Settings, with_fields};
+use crate::run::{GenerationReport, SideBySide, Told};
+use crate::save::{load_preset, shipped_champion};
+use crate::score::{Evaluation, evaluate};
+
+pub(super) use catalogue::LESSONS;
+use catalogue::{Scene, Side};
+
+/// The lesson that is going on, if one is.
+#[derive(Resource, Debug, Default)]
+pub(super) struct Lessons {
+    current: Option<Current>,
+}
+
+/// A lesson that is going on.
+#[derive(Debug)]
+struct Current {
+    /// Which one; the first is 0.
+    index: usize,
+    /// Which of its scenes is on the stage; the first is 0.
+    scene: usize,
+    /// What became of each lane of the scene: its name, and how it ended.
+    lanes: Vec<(String, Evaluation)>,
+    /// What became of each run of the scene.
+    runs: Vec<Found>,
+    under_way: Option<SideBySide>,
+    has_tried: bool,
+    own: Own,
+}
+
+/// A run of a lesson.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    /// What it is called.
+    pub name: String,
+    /// Its finished generations.
+    pub reports: Vec<GenerationReport>,
+    /// Its hash, once it is finished.
+    pub run_hash: Option<u64>,
+}
+
+/// What a person had before the lesson.
+#[derive(Debug)]
+struct Own {
+    next: RunPlan,
+    exhibits: Vec<Exhibit>,
+    programme: Programme,
+    was_running: bool,
+}
+
+/// A lesson as a panel sees it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct View<'l> {
+    /// Which one; the first is 0.
+    pub index: usize,
+    /// Which of its scenes is on the stage; the first is 0.
+    pub scene: usize,
+    /// What became of each lane: its name, and how it ended.
+    pub lanes: &'l [(String, Evaluation)],
+    /// What became of each run.
+    pub runs: &'l [Found],
+    /// Whether runs are under way.
+    pub is_busy: bool,
+    /// Whether something was tried, so that the answer may be told.
+    pub has_tried: bool,
+}
+
+impl Lessons {
+    /// The lesson that is going on.
+    pub fn view(&self) -> Option<View<'_>> {
+        self.current.as_ref().map(|current| View {
+            index: current.index,
+            scene: current.scene,
+            lanes: &current.lanes,
+            runs: &current.runs,
+            is_busy: current.under_way.is_some(),
+            has_tried: current.has_tried,
+        })
+    }
+
+    /// Begins a lesson; what is on the stage now comes back at its end.
+    pub fn begin(
+        &mut self,
+        index: usize,
+        evolution: &mut Evolution,
+        exhibits: Vec<Exhibit>,
+        programme: Programme,
+    ) -> Result<Option<Show>, String> {
+        if index >= LESSONS.len() {
+            return Err(format!("There are {} lessons.", LESSONS.len()));
+        }
+        let own = match self.current.take() {
+            // From one lesson to the next: one's own is still that of before the first.
+            Some(before) => before.own,
+            None => {
+                let was_running = evolution.status() == Status::Running;
+                evolution.pause()?;
+                Own { next: evolution.next_plan().clone(), exhibits, programme, was_running }
+            }
+        };
+        evolution.restore_next(own.next.clone())?;
+        self.current = Some(Current {
+            index,
+            scene: 0,
+            lanes: Vec::new(),
+            runs: Vec::new(),
+            under_way: None,
+            has_tried: false,
+            own,
+        });
+        self.show(0)
+    }
+
+    /// Tries one of the lesson's scenes; the first is 0.
+    pub fn try_out(&mut self, scene: usize) -> Result<Option<Show>, String> {
+        if let Some(current) = &mut self.current {
+            current.has_tried = true;
+        }
+        self.show(scene)
+    }
+
+    /// Tells the answer.
+    pub fn tell(&mut self) {
+        if let Some(current) = &mut self.current {
+            current.has_tried = true;
+        }
+    }
+
+    /// Ends the lesson: stage, settings and run are as they were before it.
+    pub fn leave(&mut self, evolution: &mut Evolution) -> Result<Option<Show>, String> {
+        let Some(Current { own, .. }) = self.current.take() else { return Ok(None) };
+        evolution.restore_next(own.next)?;
+        if own.was_running && evolution.status() == Status::Paused {
+            evolution.start()?;
+        }
+        Ok(Some(Show { exhibits: own.exhibits, programme: own.programme }))
+    }
+
+    /// Puts a scene on the stage, or begins its runs.
+    fn show(&mut self, number: usize) -> Result<Option<Show>, String> {
+        let Some(current) = &mut self.current else { return Ok(None) };
+        let Some(scene) = LESSONS[current.index].scenes.get(number) else { return Ok(None) };
+        (current.scene, current.under_way) = (number, None);
+        match scene {
+            Scene::Lanes { lanes, .. } => {
+                let exhibits = exhibits(lanes)?;
+                current.runs.clear();
+                current.lanes = exhibits
+                    .iter()
+                    .map(|exhibit| {
+                        let evaluation = evaluate(&exhibit.champion().genome, exhibit.trial());
+                        (exhibit.label().to_owned(), evaluation)
+                    })
+                    .collect();
+                Ok(Some(if exhibits.len() > 1 {
+                    Show::race(exhibits)
+                } else {
+                    Show { exhibits, programme: Programme::Solo }
+                }))
+            }
+            Scene::Runs { runs, .. } => {
+                let plans = runs.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
+                current.lanes.clear();
+                current.runs = runs.iter().map(found).collect();
+                let started = SideBySide::start(plans);
+                current.under_way =
+                    Some(started.map_err(|error| format!("The runs cannot begin: {error}"))?);
+                Ok(None)
+            }
+        }
+    }
+
+    /// Takes in what the runs have found. Says who is to be shown once they are over: the best of each.
+    fn take_in(&mut self) -> Result<Option<Show>, String> {
+        let Some(current) = &mut self.current else { return Ok(None) };
+        while let Some(told) = current.under_way.as_ref().and_then(SideBySide::poll) {
+            match told {
+                Told::Generation { run, report } => current.runs[run].reports.push(*report),
+                Told::Finished { run, run_hash } => current.runs[run].run_hash = Some(run_hash),
+                Told::BrokeOff(problem) => {
+                    current.under_way = None;
+                    return Err(format!("The lesson's runs broke off: {problem}"));
+                }
+            }
+        }
+        let is_over = current.runs.iter().all(|found| found.run_hash.is_some());
+        if current.under_way.is_none() || !is_over {
+            return Ok(None);
+        }
+        current.under_way = None;
+        let best = current.runs.iter().filter_map(|found| {
+            let champion = found.best()?;
+            Some(Exhibit::of_lesson(champion).named(found.name.clone()))
+        });
+        let exhibits: Vec<Exhibit> = best.collect();
+        Ok((!exhibits.is_empty()).then(|| Show::race(exhibits)))
+    }
+}
+
+impl Found {
+    /// The best of all its generations so far.
+    pub fn best(&self) -> Option<&Champion> {
+        let champions = self.reports.iter().filter_map(|report| report.champion.as_ref());
+        champions.max_by(|a, b| a.evaluation.fitness.total_cmp(&b.evaluation.fitness))
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Lessons>().add_systems(Update, take_in.in_set(Frame::TakeIn));
+}
+
+fn take_in(
+    mut lessons: ResMut<Lessons>,
+    mut show: MessageWriter<Show>,
+    mut notices: ResMut<Notices>,
+) {
+    if lessons.current.is_none() {
+        return;
+    }
+    match lessons.take_in() {
+        Ok(shown) => {
+            show.write_batch(shown);
+        }
+        Err(problem) => notices.problem(problem),
+    }
+}
+
+/// The saved champion in each of these worlds.
+fn exhibits(lanes: &[Side]) -> Result<Vec<Exhibit>, String> {
+    let loaded = shipped_champion().map_err(|error| error.to_string())?;
+    let original = Exhibit::of_lesson(&loaded.champion).named("as found".to_owned());
+    lanes
+        .iter()
+        .map(|Side { name, changes, .. }| {
+            let settings = Settings { trial: original.trial().clone(), ..Settings::default() };
+            let settings = with_fields(&settings, changes.iter().copied())
+                .map_err(|error| error.to_string())?;
+            let exhibit = original.in_world(&settings.trial, (*name).to_owned());
+            exhibit.check().map_err(|error| error.to_string())?;
+            Ok(exhibit)
+        })
+        .collect()
+}
+
+/// The run of one side: the quick preset with its changes.
+fn plan(side: &Side) -> Result<(RunPlan, usize), String> {
+    let preset = load_preset("quick").map_err(|error| error.to_string())?;
+    let settings = with_fields(&preset.settings, side.changes.iter().copied())
+        .map_err(|error| error.to_string())?;
+    Ok((RunPlan::new(&preset.name, side.seed, settings), side.threads))
+}
+
+fn found(side: &Side) -> Found {
+    Found { name: side.name.to_owned(), reports: Vec::new(), run_hash: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Control, Experiment, pool};
+    use crate::studio::evolution::prepared_run;
+
+    /// What the runs of a scene come to.
+    fn outcome(sides: &[Side]) -> Vec<Found> {
+        sides
+            .iter()
+            .map(|side| {
+                let (plan, threads) = plan(side).expect("allowed");
+                let pool = pool(threads).expect("a pool");
+                let mut experiment = Experiment::new(plan);
+                let mut found = found(side);
+                while !experiment.is_over() {
+                    let report = experiment.run_generation(&pool, &Control::default());
+                    found.reports.push(report.expect("not cancelled"));
+                }
+                found.run_hash = Some(experiment.run_hash());
+                found
+            })
+            .collect()
+    }
+
+    /// How the lanes of a scene end: the place of the centre, in metres.
+    fn ends_m(lanes: &[Side]) -> Vec<f32> {
+        let exhibits = exhibits(lanes).expect("they fit");
+        let evaluate = |exhibit: &Exhibit| evaluate(&exhibit.champion().genome, exhibit.trial());
+        exhibits.iter().map(|exhibit| evaluate(exhibit).centre_y_m).collect()
+    }
+
+    fn lanes(lesson: usize, scene: usize) -> &'static [Side] {
+        let Scene::Lanes { lanes, .. } = &LESSONS[lesson].scenes[scene] else { panic!("lanes") };
+        lanes
+    }
+
+    fn runs(lesson: usize, scene: usize) -> &'static [Side] {
+        let Scene::Runs { runs, .. } = &LESSONS[lesson].scenes[scene] else { panic!("runs") };
+        runs
+    }
+
+    #[test]
+    fn what_the_first_lesson_says_of_friction_is_so() {
+        let ends = ends_m(lanes(0, 0));
+        println!("{ends:?}");
+        let [little, found, much] = ends[..] else { panic!("three lanes") };
+        assert!(found > 21.0, "as found it stands on the landing");
+        assert!(little < found - 5.0 && much < found - 5.0, "{ends:?}");
+    }
+
+    #[test]
+    fn what_the_second_lesson_says_of_the_frame_rate_is_so() {
+        let ends = ends_m(lanes(1, 0));
+        println!("{ends:?}");
+        assert!(ends[1..].iter().all(|end| (end - ends[0]).abs() > 0.5), "{ends:?}");
+    }
+
+    #[test]
+    fn what_the_third_lesson_says_of_limits_is_so() {
+        let found = outcome(runs(2, 1));
+        let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
+        let [with, without] = &found[..] else { panic!("two runs") };
+        let best = |of: &Found| last(of).expect("somebody was healthy").best;
+        assert!(best(with) > best(without) + 3.0, "{} and {}", best(with), best(without));
+        let out = |of: &Found| of.reports.iter().map(|report| report.disqualified).sum::<u32>();
+        assert!(out(without) > out(with), "{} and {}", out(without), out(with));
+    }
+
+    #[test]
+    fn what_the_fourth_lesson_says_of_halving_is_so() {
+        let found = outcome(runs(3, 1));
+        let [halved, kept] = &found[..] else { panic!("two runs") };
+        let best = |of: &Found| of.best().expect("somebody").evaluation.fitness;
+        assert!(best(kept) > best(halved) + 3.0, "{} and {}", best(kept), best(halved));
+    }
+
+    #[test]
+    fn what_the_fifth_lesson_says_of_bits_is_so() {
+        let twice = outcome(runs(4, 1));
+        assert_eq!(twice[0].run_hash, twice[1].run_hash);
+        let apart = outcome(runs(4, 2));
+        assert_ne!(apart[0].run_hash, apart[1].run_hash);
+    }
+
+    #[test]
+    fn every_scene_of_every_lesson_can_be_shown() {
+        for lesson in &LESSONS {
+            for scene in lesson.scenes {
+                match scene {
+                    Scene::Lanes { lanes, .. } => {
+                        exhibits(lanes).expect(lesson.title);
+                    }
+                    Scene::Runs { runs, .. } => {
+                        runs.iter().for_each(|side| drop(plan(side).expect(lesson.title)));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn after_a_lesson_stage_and_settings_are_as_they_were() {
+        let mut evolution = prepared_run();
+        let own = exhibits(&[lanes(0, 0)[1].clone()]).expect("it fits");
+        let next = evolution.next_plan().clone();
+        let mut lessons = Lessons::default();
+        let shown = lessons.begin(0, &mut evolution, own.clone(), Programme::Solo);
+        assert_eq!(shown.expect("allowed").expect("a scene").exhibits.len(), 3);
+        evolution.set_field("surface.friction", "0.2").expect("allowed");
+        lessons.begin(1, &mut evolution, Vec::new(), Programme::Race).expect("allowed");
+        assert_eq!(*evolution.next_plan(), next, "the next lesson begins with one's own, too");
+        evolution.set_field("surface.friction", "0.3").expect("allowed");
+        let back = lessons.leave(&mut evolution).expect("allowed").expect("one's own");
+        assert_eq!(*evolution.next_plan(), next);
+        assert_eq!(back.programme, Programme::Solo);
+        assert_eq!(back.exhibits.len(), own.len());
+        assert!(lessons.view().is_none());
+    }
+}
