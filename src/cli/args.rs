@@ -107,6 +107,9 @@ pub struct Args {
     /// Where it is kept what you choose for the window: a file, or none [default: the platform's folder for settings]
     #[arg(long, global = true, value_name = "FILE")]
     preferences: Option<PathBuf>,
+    /// Write role, place and label of all that the panels show to a file, whenever it changes
+    #[arg(long, global = true, value_name = "FILE", hide_short_help = true)]
+    pub places: Option<PathBuf>,
     /// Close the window after that many frames and print the time each took
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true)]
     exit_after_frames: Option<String>,

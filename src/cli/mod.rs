@@ -135,6 +135,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         window_size: args.window_size()?,
         theme: args.theme()?,
         preferences: args.preferences(),
+        places: args.places.clone(),
         exit_after_frames: args.exit_after_frames()?,
     };
     Ok(studio::run(options)?)

@@ -36,7 +36,7 @@ pub use comparison::{
 };
 pub use files::SaveError;
 pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name, settings_fingerprint};
-pub use picture::{Picture, store_csv, store_picture};
+pub use picture::{Picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
 pub use preferences::{Preferences, PreferencesFile, UI_SCALES};
 pub use preset::{

@@ -1,4 +1,4 @@
-//! Pictures as PNG, tables as CSV.
+//! Pictures as PNG, tables as CSV, and plain texts.
 
 use std::path::Path;
 
@@ -40,6 +40,14 @@ pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
         source: std::io::Error::other(error),
     })?;
     write_whole(path, &bytes)
+}
+
+/// Writes a text, whole or not at all.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn store_text(path: &Path, text: &str) -> Result<(), SaveError> {
+    write_whole(path, text.as_bytes())
 }
 
 /// Writes records as CSV (RFC 4180), whole or not at all.

@@ -37,6 +37,7 @@ mod overlay;
 mod paint;
 mod panels;
 mod performance;
+mod places;
 mod playback;
 mod preferences;
 mod quality;
@@ -72,6 +73,7 @@ use casting::{Opening, Saved};
 use desk::Desk;
 pub use look::Theme;
 pub use overlay::Overlay;
+use places::Places;
 use preferences::Remembered;
 pub use stage::MOST_LANES;
 pub use view::Shot;
@@ -95,6 +97,8 @@ pub struct Options {
     pub theme: Option<Theme>,
     /// Where it is kept what a person has chosen for the window.
     pub preferences: PreferencesFile,
+    /// Where to write what the panels show, for scripts and tests.
+    pub places: Option<PathBuf>,
     /// After how many frames to close by itself.
     pub exit_after_frames: Option<u32>,
 }
@@ -186,6 +190,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(WinitSettings::continuous())
         .insert_resource(theme)
         .insert_resource(remembered)
+        .insert_resource(Places(options.places.clone()))
         .insert_resource(Desk::new(tour_is_over))
         .insert_resource(Opening(saved))
         .insert_resource(Opened(options.comparison.clone()))
@@ -203,7 +208,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
             (overlay::plugin, wireframe::plugin, screenshot::plugin),
             keys::plugin,
             (panels::plugin, name_tags::plugin, notice::plugin),
-            (desk::plugin, preferences::plugin, access::plugin, lessons::plugin),
+            (desk::plugin, preferences::plugin, access::plugin, places::plugin, lessons::plugin),
             (title::plugin, graphics::plugin, start_up::plugin),
         ));
         if let Some(frames) = exit_after {

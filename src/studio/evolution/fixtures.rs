@@ -46,6 +46,7 @@ fn run_of(plan: RunPlan) -> Evolution {
         window_size: None,
         theme: None,
         preferences: PreferencesFile::nowhere(),
+        places: None,
         exit_after_frames: None,
     };
     Evolution::new(Engine::new(&options).expect("threads"))

@@ -65,8 +65,10 @@ impl ChampionsPanel {
             explain(ui, "The best of each generation will appear here.");
         }
         let fitness = |champion: &Champion| champion.evaluation.fitness;
-        let known = reports.iter().filter_map(|report| report.champion.as_ref()).map(fitness);
-        let best = known.fold(f32::MIN, f32::max);
+        let known = reports.iter().filter_map(|report| report.champion.as_ref());
+        // Of equals, the first that was found.
+        let best = known.rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
+        let best = best.map(|champion| champion.origin.generation);
         let height = ui.spacing().interact_size.y;
         let rows = opening.len() + reports.len();
         let area = egui::ScrollArea::vertical().auto_shrink(false);
@@ -93,7 +95,7 @@ impl ChampionsPanel {
                 let individual = champion.origin.individual;
                 let is_shown = shown.iter().any(|shown| shown.is(generation, individual));
                 let pick = Pick::Generation(generation);
-                let is_best = fitness(champion) >= best;
+                let is_best = best == Some(generation);
                 let name = if is_best { format!("{name}, best") } else { name };
                 let row = entry(ui, is_shown, &name, &champion.reached(), pick, asked);
                 if leaders(Some(generation)) > 1 {

@@ -95,7 +95,7 @@ impl Layout {
         let room = if is_wide { size.x - RIGHT } else { size.x };
         let share = (LEFT / room.max(1.0)).min(0.5);
         let [_, left] = surface.split_left(stage, share, left);
-        let _ = surface.split_below(left, 0.62, vec![PanelKind::Champions]);
+        let _ = surface.split_below(left, 0.68, vec![PanelKind::Champions]);
         state
     }
 
