@@ -10,7 +10,7 @@ use super::{Controller, ControllerKind, Gait, Genome, GenomeSpace, JointSignals,
 
 /// What values a gene may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Range<'a> {
+pub(super) enum Range<'a> {
     /// Any from one end to the other.
     Between(f32, f32),
     /// An angle, where a full turn is the same as none, in radians.
@@ -30,7 +30,7 @@ pub struct Descent {
 
 impl Range<'_> {
     /// Whether there is nothing to choose.
-    fn is_point(self) -> bool {
+    pub(super) fn is_point(self) -> bool {
         match self {
             Self::Between(least, most) => least >= most,
             Self::Turn => false,
@@ -40,7 +40,7 @@ impl Range<'_> {
 
     /// The value at a coordinate. A turn goes on where it ends; what lies beyond the ends of another range is
     /// reflected, so that every coordinate means something and a small step is a small step.
-    fn at(self, coordinate: f64) -> f32 {
+    pub(super) fn at(self, coordinate: f64) -> f32 {
         let folded = self.folded(coordinate);
         match self {
             Self::Between(least, most) => {
@@ -68,7 +68,7 @@ impl Range<'_> {
     }
 
     /// A coordinate of a value: [`Self::at`] gives that value again, but for rounding.
-    fn coordinate(self, value: f32) -> f64 {
+    pub(super) fn coordinate(self, value: f32) -> f64 {
         match self {
             Self::Between(least, most) => f64::from((value - least) / (most - least)),
             Self::Turn => f64::from(value / TAU),
@@ -82,7 +82,7 @@ impl Range<'_> {
 
 impl GenomeSpace {
     /// Shows every gene of a genome and its range to `visit`, in a fixed order.
-    fn visit(&self, genome: &mut Genome, mut visit: impl FnMut(&mut f32, Range<'_>)) {
+    pub(super) fn visit(&self, genome: &mut Genome, mut visit: impl FnMut(&mut f32, Range<'_>)) {
         let waves_in = |waves: &mut Waves,
                         amplitude: f32,
                         visit: &mut dyn FnMut(&mut f32, Range<'_>)| {

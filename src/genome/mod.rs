@@ -3,6 +3,7 @@
 //! Plain data that can be written down and read back. How a genome is drawn and varied is in
 //! [`GenomeSpace`]; what it does to a body is decided in `score`, where it meets a trial.
 
+mod fit;
 mod gene;
 mod signal;
 mod space;
