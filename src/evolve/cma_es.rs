@@ -62,12 +62,14 @@ pub fn shape(dimension: usize) -> Shape {
 }
 
 impl CmaEs {
-    /// A fresh search.
+    /// A fresh search. A founder is where its mean begins, in the place of the best newborn.
     pub fn new(plan: &RunPlan) -> Self {
         let settings = Self::settings(plan);
         let mut fresh = Self { settings, search: Search::new(plan, 0), state: None };
-        if fresh.settings.newborns == 0 {
-            fresh.start(vec![0.5; fresh.search.dimension]);
+        match fresh.search.founder().map(<[f64]>::to_vec) {
+            Some(founder) => fresh.start(founder),
+            None if fresh.settings.newborns == 0 => fresh.start(vec![0.5; fresh.search.dimension]),
+            None => {}
         }
         fresh
     }
@@ -168,5 +170,10 @@ impl Strategy for CmaEs {
 
     fn state(&self) -> StrategyState {
         StrategyState::points(PointState::CmaEs(self.state.clone()))
+    }
+
+    fn amend(&mut self, plan: &RunPlan) {
+        // What it has learned depends on nothing that may change.
+        self.settings = Self::settings(plan);
     }
 }

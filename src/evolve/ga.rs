@@ -150,7 +150,8 @@ impl Breeder {
     /// The genomes of the next generation.
     pub fn genomes(&self) -> Vec<Genome> {
         let members = self.generation();
-        members.iter().map(|member| self.search.genome(&member.point)).collect()
+        let genomes = members.iter().map(|member| self.search.genome(&member.point)).collect();
+        self.search.beginning_with_founder(genomes)
     }
 
     /// Ends a generation: `order` lists its indices, best first.
@@ -161,6 +162,12 @@ impl Breeder {
         self.search.generation += 1;
     }
 
+    /// Takes the settings of a plan in which some were changed.
+    pub fn amend(&mut self, plan: &RunPlan) {
+        self.settings = plan.settings.evolution.ga.clone();
+        self.search.amend(plan);
+    }
+
     /// What it knows.
     pub fn state(&self) -> GaState {
         self.parents.clone()
@@ -169,8 +176,7 @@ impl Breeder {
     fn individual(&self, individual: usize) -> Member {
         let parents = &self.parents.0;
         if parents.is_empty() {
-            let point = self.search.newborn_point(individual);
-            return Member { step: f64::from(self.settings.step).max(*STEPS.start()), point };
+            return self.first(individual);
         }
         // Somebody has to change.
         let elites = (self.settings.elites as usize).min(self.search.population - 1);
@@ -187,6 +193,21 @@ impl Breeder {
         }
         self.mutate(&mut child, &mut rng);
         child
+    }
+
+    /// One of the first generation.
+    fn first(&self, individual: usize) -> Member {
+        let step = f64::from(self.settings.step).max(*STEPS.start());
+        let Some(founder) = self.search.founder() else {
+            return Member { step, point: self.search.newborn_point(individual) };
+        };
+        let mut member = Member { step, point: founder.to_vec() };
+        if !Search::is_founders_mutant(individual) {
+            member.point = self.search.newborn_point(individual);
+        } else if individual > 0 {
+            self.mutate(&mut member, &mut self.search.stream(individual, Purpose::Mutation));
+        }
+        member
     }
 
     fn parent(&self, rng: &mut ChaCha8Rng) -> &Member {
@@ -272,6 +293,10 @@ impl Strategy for Ga {
 
     fn state(&self) -> StrategyState {
         StrategyState::points(PointState::Ga(self.breeder.state()))
+    }
+
+    fn amend(&mut self, plan: &RunPlan) {
+        self.breeder.amend(plan);
     }
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{LARGEST_POPULATION, RunPlan, Strategy, StrategyState, ranking};
 use crate::check::{Invalid, within};
-use crate::genome::{Descent, Genome, GenomeSpace};
+use crate::genome::{Descent, Genome};
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
 
@@ -39,10 +39,7 @@ impl HalvingSettings {
 /// The report's method at work.
 #[derive(Debug, Clone)]
 pub struct Halving {
-    settings: HalvingSettings,
-    population: u32,
-    space: GenomeSpace,
-    run_seed: u64,
+    plan: RunPlan,
     descent: Descent,
     /// The generation that `ask` returns; the first is 1.
     generation: u32,
@@ -50,17 +47,13 @@ pub struct Halving {
 }
 
 impl Halving {
-    /// A fresh search.
+    /// A fresh search. A founder is the only parent of the first generation.
     pub fn new(plan: &RunPlan) -> Self {
-        let settings = &plan.settings;
         Self {
-            settings: settings.evolution.halving.clone(),
-            population: settings.evolution.population,
-            space: settings.genome.clone(),
-            run_seed: plan.seed,
-            descent: settings.trial.descent(),
+            descent: plan.settings.trial.descent(),
             generation: 1,
-            parents: Vec::new(),
+            parents: plan.founder.iter().map(|founder| founder.genome().clone()).collect(),
+            plan: plan.clone(),
         }
     }
 
@@ -90,31 +83,29 @@ impl Halving {
         Ok(Self { generation: finished + 1, parents, ..fresh })
     }
 
-    /// The range within which the children of the current generation are shifted, in N·m.
-    fn mutation_range_nm(&self) -> f32 {
-        // Repeated multiplication instead of a power: its bits are the same everywhere.
-        (2..self.generation)
-            .fold(self.settings.mutation_range_nm, |range, _| range * self.settings.mutation_decay)
-    }
-
     fn newborn(&self, individual: u32) -> Genome {
-        let mut rng = stream(self.run_seed, self.generation, individual, Purpose::Birth);
-        self.space.birth(self.descent, &mut rng)
+        let mut rng = stream(self.plan.seed, self.generation, individual, Purpose::Birth);
+        self.plan.settings.genome.birth(self.descent, &mut rng)
     }
 
     fn child(&self, individual: u32) -> Genome {
         // In turn, so that every parent has its equal share of the children.
         let parent = &self.parents[individual as usize % self.parents.len()];
-        let mut rng = stream(self.run_seed, self.generation, individual, Purpose::Mutation);
-        self.space.mutated(parent, self.mutation_range_nm(), &mut rng)
+        if self.generation == 1 && individual == 0 {
+            // The founder itself, so that it is not lost.
+            return parent.clone();
+        }
+        let mut rng = stream(self.plan.seed, self.generation, individual, Purpose::Mutation);
+        let range_nm = self.plan.mutation_range_nm(self.generation);
+        self.plan.settings.genome.mutated(parent, range_nm, &mut rng)
     }
 }
 
 impl Strategy for Halving {
-    /// The first generation is drawn from nothing; so is a later one that found nobody fit to be a
-    /// parent because all were disqualified.
+    /// The first generation is drawn from nothing, unless there is a founder; so is a later one that found nobody
+    /// fit to be a parent because all were disqualified.
     fn ask(&self) -> Vec<Genome> {
-        let individuals = 0..self.population;
+        let individuals = 0..self.plan.settings.evolution.population;
         if self.parents.is_empty() {
             individuals.map(|individual| self.newborn(individual)).collect()
         } else {
@@ -123,18 +114,24 @@ impl Strategy for Halving {
     }
 
     fn population(&self) -> usize {
-        self.population as usize
+        self.plan.settings.evolution.population as usize
     }
 
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
         let best = ranking(evaluations);
-        let chosen = best.iter().take(self.settings.parents as usize);
+        let chosen = best.iter().take(self.plan.settings.evolution.halving.parents as usize);
         self.parents = chosen.map(|&index| genomes[index].clone()).collect();
         self.generation += 1;
     }
 
     fn state(&self) -> StrategyState {
         StrategyState::Halving(self.parents.clone())
+    }
+
+    fn amend(&mut self, plan: &RunPlan) {
+        self.plan = plan.clone();
+        // They are in order: the best stay.
+        self.parents.truncate(plan.settings.evolution.halving.parents as usize);
     }
 }
 

@@ -140,7 +140,7 @@ impl MapElites {
         while points.len() < self.search.population {
             let individual = points.len();
             points.push(if elites.is_empty() {
-                self.search.newborn_point(individual)
+                self.search.first_point(individual, self.settings.step.into())
             } else {
                 self.varied(individual, &elites)
             });
@@ -211,7 +211,7 @@ impl MapElites {
 
 impl Strategy for MapElites {
     fn ask(&self) -> Vec<Genome> {
-        self.search.genomes(&self.points())
+        self.search.beginning_with_founder(self.search.genomes(&self.points()))
     }
 
     fn population(&self) -> usize {
@@ -243,6 +243,14 @@ impl Strategy for MapElites {
         let elites = self.archive.elites().map(|(cell, elite)| (cell, elite.clone())).collect();
         let emitter = self.emitter.clone();
         StrategyState::points(PointState::MapElites(MapElitesState { elites, emitter }))
+    }
+
+    fn amend(&mut self, plan: &RunPlan) {
+        self.settings = plan.settings.evolution.map_elites.clone();
+        self.search.amend(plan);
+        let share = self.emitter_population();
+        // One that made another number cannot learn from this: it begins again after the next generation.
+        self.emitter.take_if(|emitter| emitter.population() as usize != share);
     }
 
     fn archive(&self) -> Option<&Archive> {

@@ -3,6 +3,7 @@
 //! A strategy sees genomes and evaluations, never the world, a thread or a clock. All its randomness
 //! comes from streams named after the individual it is for.
 
+mod amend;
 mod archive;
 mod champion;
 mod cma;
@@ -10,6 +11,7 @@ mod cma_es;
 mod descriptor;
 mod eigen;
 mod field;
+mod founder;
 mod front;
 mod ga;
 mod halving;
@@ -20,11 +22,13 @@ mod restarts;
 mod search;
 mod settings;
 
+pub use amend::{Changes, MOST_CHANGES, SettingChange, may_change_during_run};
 pub use archive::{Archive, Elite};
 pub use champion::{Champion, Origin};
 pub use cma_es::CmaEsSettings;
 pub use descriptor::Descriptor;
 pub use field::{fields, with_field, with_fields};
+pub use founder::Founder;
 pub use front::{Front, FrontMember};
 pub use ga::{Crossover, GaSettings, Mutation, Selection};
 pub use halving::HalvingSettings;
@@ -53,6 +57,10 @@ pub trait Strategy: Send {
     /// All that it has learned: together with settings, seed and the number of finished generations,
     /// enough to go on bit for bit.
     fn state(&self) -> StrategyState;
+
+    /// Takes the settings of its plan anew, some of which were changed as [`may_change_during_run`] allows: the
+    /// next generation is made by them.
+    fn amend(&mut self, plan: &RunPlan);
 
     /// The best of every kind that it has seen, if it keeps such an archive.
     fn archive(&self) -> Option<&Archive> {

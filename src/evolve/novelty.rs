@@ -206,6 +206,12 @@ impl Strategy for Novelty {
             archive: self.archive.clone(),
         }))
     }
+
+    fn amend(&mut self, plan: &RunPlan) {
+        self.settings = plan.settings.evolution.novelty.clone();
+        self.archive.truncate(self.settings.archive_limit as usize);
+        self.breeder.amend(plan);
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,13 @@
-//! Random search: every individual is drawn from nothing, and nothing is learned.
+//! Random search: every individual is drawn from nothing, and nothing is learned. Only a founder, if there is one,
+//! makes a difference, in the first generation.
 
 use super::search::Search;
 use super::{PointState, RunPlan, Strategy, StrategyState};
 use crate::genome::Genome;
 use crate::score::Evaluation;
+
+/// Standard deviation of the steps of a founder's mutants, as a share of each gene's range.
+const FOUNDERS_STEP: f64 = 0.1;
 
 /// Random search at work.
 #[derive(Debug, Clone)]
@@ -25,7 +29,14 @@ impl Random {
 
 impl Strategy for Random {
     fn ask(&self) -> Vec<Genome> {
-        (0..self.search.population).map(|individual| self.search.newborn(individual)).collect()
+        let individual = |individual| match self.search.founder() {
+            Some(_) if Search::is_founders_mutant(individual) => {
+                self.search.genome(&self.search.first_point(individual, FOUNDERS_STEP))
+            }
+            _ => self.search.newborn(individual),
+        };
+        let genomes = (0..self.search.population).map(individual).collect();
+        self.search.beginning_with_founder(genomes)
     }
 
     fn population(&self) -> usize {
@@ -38,5 +49,9 @@ impl Strategy for Random {
 
     fn state(&self) -> StrategyState {
         StrategyState::points(PointState::Random)
+    }
+
+    fn amend(&mut self, plan: &RunPlan) {
+        self.search.amend(plan);
     }
 }

@@ -1,9 +1,11 @@
 //! What all strategies share that search among points of the unit cube.
 
+use std::sync::Arc;
+
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::RunPlan;
+use super::{Founder, RunPlan};
 use crate::check::{Invalid, within};
 use crate::genome::{Descent, Genome, GenomeSpace};
 use crate::rng::{Purpose, stream};
@@ -20,6 +22,8 @@ pub struct Search {
     pub population: usize,
     /// Coordinates of a point.
     pub dimension: usize,
+    /// From whom the first generation descends, and its point.
+    founder: Option<(Arc<Founder>, Vec<f64>)>,
 }
 
 impl Search {
@@ -27,7 +31,11 @@ impl Search {
     pub fn new(plan: &RunPlan, finished: u32) -> Self {
         let space = plan.settings.genome.clone();
         let descent = plan.settings.trial.descent();
+        let founder = plan.founder.as_ref().filter(|_| finished == 0);
+        let with_point =
+            |founder: &Arc<Founder>| (Arc::clone(founder), space.exact_point_of(founder.genome()));
         Self {
+            founder: founder.map(with_point),
             dimension: space.dimension(descent),
             space,
             descent,
@@ -35,6 +43,45 @@ impl Search {
             generation: finished + 1,
             population: plan.settings.evolution.population as usize,
         }
+    }
+
+    /// The founder's point, while the generation is asked for that descends from it.
+    pub fn founder(&self) -> Option<&[f64]> {
+        self.founder.as_ref().filter(|_| self.generation == 1).map(|(_, point)| point.as_slice())
+    }
+
+    /// Whether an individual of the first generation is a mutant of the founder: the first individual is the founder
+    /// itself, then every other one is a mutant, and the rest are newborns.
+    pub fn is_founders_mutant(individual: usize) -> bool {
+        individual.is_multiple_of(2)
+    }
+
+    /// The point of an individual of a generation that has no parents: of the founder, of a mutant of it by normally
+    /// distributed steps, or drawn from nothing.
+    pub fn first_point(&self, individual: usize, step: f64) -> Vec<f64> {
+        match self.founder() {
+            Some(founder) if individual == 0 => founder.to_vec(),
+            Some(founder) if Self::is_founders_mutant(individual) => {
+                let mut rng = self.stream(individual, Purpose::Mutation);
+                founder.iter().map(|x| x + step * normal(&mut rng)).collect()
+            }
+            _ => self.newborn_point(individual),
+        }
+    }
+
+    /// The genomes of a generation that begins with the founder: rounding would make it another.
+    pub fn beginning_with_founder(&self, mut genomes: Vec<Genome>) -> Vec<Genome> {
+        if let Some((founder, _)) = self.founder.as_ref().filter(|_| self.generation == 1)
+            && let Some(first) = genomes.first_mut()
+        {
+            first.clone_from(founder.genome());
+        }
+        genomes
+    }
+
+    /// Takes the size of generations from a plan in which it was changed.
+    pub fn amend(&mut self, plan: &RunPlan) {
+        self.population = plan.settings.evolution.population as usize;
     }
 
     /// The random stream of an individual of the current generation.

@@ -2,9 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::sync::Arc;
 
 use super::cma::LARGEST_SAMPLE;
-use super::{CmaEsSettings, GaSettings, HalvingSettings, MapElitesSettings, NoveltySettings};
+use super::{
+    Changes, CmaEsSettings, Founder, GaSettings, HalvingSettings, MapElitesSettings,
+    NoveltySettings,
+};
 use crate::check::{Invalid, within};
 use crate::genome::{ControllerKind, GenomeSpace, LARGEST_GENOME_TORQUES};
 use crate::score::Trial;
@@ -225,14 +229,20 @@ pub struct RunPlan {
     pub preset: String,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// The settings; they must have passed their check.
+    /// The settings; they must have passed their check. Of a run that was changed on its way they are those in
+    /// force after `changes`.
     pub settings: Settings,
+    /// From whom the first generation descends, if it is not drawn from nothing.
+    pub founder: Option<Arc<Founder>>,
+    /// What was changed since the run began.
+    pub changes: Changes,
 }
 
 impl RunPlan {
     /// A plan of that name.
     pub fn new(preset: &str, seed: u64, settings: Settings) -> Self {
-        Self { preset: preset.to_owned(), seed, settings }
+        let (founder, changes) = (None, Changes::default());
+        Self { preset: preset.to_owned(), seed, settings, founder, changes }
     }
 }
 

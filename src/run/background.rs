@@ -1,5 +1,6 @@
 //! An experiment on a thread of its own, for a window that must not wait.
 
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,14 +9,25 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
-use super::{Control, Experiment, GenerationReport, KeptRun, RunSource};
-use crate::evolve::{Archive, Champion, Front};
+use super::{Cancelled, Control, Experiment, GenerationReport, Keeper, KeptRun, RunSource};
+use crate::evolve::{Archive, Champion, Front, SettingChange};
 
 /// What an experiment in the background has to tell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
     /// The run's folder is open, and these generations are behind the run.
     Opened(Vec<GenerationReport>),
+    /// These settings were changed before, the earliest first. Told once, of a run that was.
+    WasChanged(Vec<SettingChange>),
+    /// A setting is changed, and takes effect with the generation that begins next.
+    Changed(SettingChange),
+    /// A setting stays as it is.
+    NotChanged {
+        /// Its full dotted name.
+        field: String,
+        /// Why, in a line.
+        reason: String,
+    },
     /// The run's folder cannot be opened: nothing is evolved.
     Refused(String),
     /// What has been found besides champions: after the generations behind the run, and before each further one.
@@ -66,6 +78,10 @@ pub struct Background {
     events: Mutex<Receiver<Event>>,
     /// Size of the generation under way. Some strategies change it.
     population: Arc<AtomicU32>,
+    /// Settings that are to be changed before the next generation, by full dotted names, with their values.
+    wishes: Arc<Mutex<VecDeque<(String, String)>>>,
+    /// The threads of the next generation.
+    pool: Arc<Mutex<Arc<ThreadPool>>>,
     has_ended: AtomicBool,
 }
 
@@ -87,6 +103,8 @@ impl Background {
         control.pause();
         let pause_after_generation = Arc::new(AtomicBool::new(false));
         let population = Arc::new(AtomicU32::new(source.plan.settings.evolution.population));
+        let wishes = Arc::default();
+        let pool = Arc::new(Mutex::new(pool));
         let (sender, events) = channel();
         if let Some(before) = &before {
             before.control.cancel();
@@ -96,6 +114,8 @@ impl Background {
                 control: Arc::clone(&control),
                 pause_after_generation: Arc::clone(&pause_after_generation),
                 population: Arc::clone(&population),
+                wishes: Arc::clone(&wishes),
+                pool: Arc::clone(&pool),
                 events: sender,
             };
             move || {
@@ -106,7 +126,7 @@ impl Background {
                     return;
                 }
                 match source.open("the studio") {
-                    Ok(run) => worker.work(run, &pool),
+                    Ok(run) => worker.work(run),
                     Err(error) => worker.tell(Event::Refused(error.to_string())),
                 }
             }
@@ -117,6 +137,8 @@ impl Background {
             pause_after_generation,
             events,
             population,
+            wishes,
+            pool,
             has_ended: AtomicBool::new(false),
         })
     }
@@ -136,6 +158,19 @@ impl Background {
     /// Holds the workers.
     pub fn pause(&self) {
         self.control.pause();
+    }
+
+    /// Changes settings, by their full dotted names, before the next generation begins; of a run that is held between
+    /// two generations, at once. What comes of it is told: [`Event::Changed`], [`Event::NotChanged`], or nothing, if
+    /// it is already so.
+    pub fn amend(&self, changes: impl IntoIterator<Item = (String, String)>) {
+        self.wishes.lock().unwrap_or_else(PoisonError::into_inner).extend(changes);
+        self.control.nudge();
+    }
+
+    /// Takes other worker threads, from the next generation on. That changes no bit.
+    pub fn set_pool(&self, pool: Arc<ThreadPool>) {
+        *self.pool.lock().unwrap_or_else(PoisonError::into_inner) = pool;
     }
 
     /// Whether the workers are held.
@@ -192,6 +227,8 @@ struct Worker {
     control: Arc<Control>,
     pause_after_generation: Arc<AtomicBool>,
     population: Arc<AtomicU32>,
+    wishes: Arc<Mutex<VecDeque<(String, String)>>>,
+    pool: Arc<Mutex<Arc<ThreadPool>>>,
     events: Sender<Event>,
 }
 
@@ -201,22 +238,31 @@ impl Worker {
         drop(self.events.send(event));
     }
 
-    fn work(&self, run: KeptRun, pool: &ThreadPool) {
+    fn work(&self, run: KeptRun) {
         let KeptRun { mut experiment, mut keeper, reports } = run;
         let control = &*self.control;
         let explored =
             |experiment: &Experiment| Event::Explored(Box::new(Exploration::of(experiment)));
         self.population.store(experiment.population(), Ordering::Relaxed);
         self.tell(Event::Opened(reports));
+        if !keeper.changes().is_empty() {
+            self.tell(Event::WasChanged(keeper.changes().to_vec()));
+        }
         if experiment.finished() > 0 {
             self.tell(explored(&experiment));
         }
         while !experiment.is_over() {
-            self.population.store(experiment.population(), Ordering::Relaxed);
+            if self.take_up_wishes(&mut experiment, &mut keeper).is_err() {
+                return;
+            }
+            if experiment.is_over() {
+                break;
+            }
+            let pool = Arc::clone(&self.pool.lock().unwrap_or_else(PoisonError::into_inner));
             let note = |generation, individual, evaluation: &_| {
                 keeper.note(generation, individual, evaluation);
             };
-            let Ok(report) = experiment.run_generation_noting(pool, control, note) else { return };
+            let Ok(report) = experiment.run_generation_noting(&pool, control, note) else { return };
             let crashes = loop {
                 match keeper.keep(&experiment, &report) {
                     Ok(crashes) => break crashes,
@@ -237,6 +283,34 @@ impl Worker {
             self.tell(Event::Generation(Box::new(report)));
         }
         self.tell(Event::Finished { run_hash: experiment.run_hash() });
+    }
+
+    /// Changes what is to be changed before the next generation. While the run is held, that has not begun.
+    fn take_up_wishes(
+        &self,
+        experiment: &mut Experiment,
+        keeper: &mut Keeper,
+    ) -> Result<(), Cancelled> {
+        self.control.start_generation();
+        let wishes = || self.wishes.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            loop {
+                let Some((field, text)) = wishes().pop_front() else { break };
+                match keeper.amend(experiment, &field, &text) {
+                    Ok(change) => {
+                        self.population.store(experiment.population(), Ordering::Relaxed);
+                        change.into_iter().for_each(|change| self.tell(Event::Changed(change)));
+                    }
+                    Err(error) => {
+                        self.tell(Event::NotChanged { field, reason: error.to_string() });
+                    }
+                }
+            }
+            self.population.store(experiment.population(), Ordering::Relaxed);
+            if self.control.pass_unless(|| !wishes().is_empty())? {
+                return Ok(());
+            }
+        }
     }
 }
 
@@ -377,6 +451,52 @@ mod tests {
         background.resume();
         while !matches!(next(&background), Event::Finished { .. }) {}
         assert_eq!(background.progress(), (8, 8));
+    }
+
+    #[test]
+    fn a_change_counts_from_the_next_generation_on_and_at_once_while_the_run_is_held_between_two() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let background = start(&folder);
+        let wish = |field: &str, value: &str| (format!("evolution.{field}"), value.to_owned());
+        background.run_single_generation();
+        assert!(matches!(next(&background), Event::Generation(_)));
+        background.amend([
+            wish("halving.parents", "2"),
+            wish("halving.parents", "2"),
+            wish("halving.parents", "0"),
+            wish("strategy", "ga"),
+            wish("population", "5"),
+            wish("generations", "4"),
+        ]);
+        let change = |generation, field: &str, value: &str| {
+            let (field, value) = wish(field, value);
+            Event::Changed(SettingChange { generation, field, value })
+        };
+        let is_refused = |event: Event, of: &str, why: &str| matches!(event, Event::NotChanged { field, reason } if field.ends_with(of) && reason.contains(why));
+        assert_eq!(next(&background), change(2, "halving.parents", "2"));
+        assert!(is_refused(next(&background), "parents", "is 0; allowed: 1 to"));
+        assert!(is_refused(next(&background), "strategy", "means nothing to another method"));
+        assert_eq!(next(&background), change(2, "population", "5"));
+        assert_eq!(next(&background), change(2, "generations", "4"));
+        assert_eq!(background.poll(), None, "and nothing more");
+        assert!(background.is_paused());
+        assert_eq!(background.progress(), (0, 5));
+        background.set_pool(Arc::new(pool(1).expect("a pool")));
+        background.resume();
+        let mut reports = Vec::new();
+        let run_hash = loop {
+            match next(&background) {
+                Event::Finished { run_hash } => break run_hash,
+                Event::Generation(report) => reports.push(report.evaluations),
+                other => panic!("{other:?}"),
+            }
+        };
+        assert_eq!(reports, [5, 5, 5]);
+        // Opened again, it tells what was changed, and has the same end.
+        let again = start_after(&folder, Some(background));
+        assert!(matches!(next(&again), Event::Opened(behind) if behind.len() == 4));
+        assert!(matches!(next(&again), Event::WasChanged(changes) if changes.len() == 3));
+        assert_eq!(next(&again), Event::Finished { run_hash });
     }
 
     #[test]

@@ -68,6 +68,24 @@ impl Control {
         }
     }
 
+    /// Waits while paused, until `is_wanted` for something else; then whether to go on, or to do that first. Whoever
+    /// wants something calls [`Self::nudge`] after it has said so.
+    pub(super) fn pass_unless(&self, is_wanted: impl Fn() -> bool) -> Result<bool, Cancelled> {
+        let waits = |gate: &mut Gate| *gate == Gate::Paused && !is_wanted();
+        let held = self.gate_moved.wait_while(self.gate(), waits);
+        match *held.unwrap_or_else(PoisonError::into_inner) {
+            Gate::Cancelled => Err(Cancelled),
+            Gate::Open | Gate::Paused => Ok(!is_wanted()),
+        }
+    }
+
+    /// Lets who waits look whether something is wanted.
+    pub(super) fn nudge(&self) {
+        // Between its look and its wait nobody else has the lock: no nudge is lost.
+        drop(self.gate());
+        self.gate_moved.notify_all();
+    }
+
     pub(super) fn start_generation(&self) {
         self.done.store(0, Ordering::Relaxed);
     }

@@ -1,6 +1,7 @@
 //! A run of the learning method: asks the strategy, evaluates in parallel, tells it in order.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, VecDeque};
 use std::time::Instant;
 
 use rayon::ThreadPool;
@@ -9,10 +10,10 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use super::report::{Crash, generation_hash, meaning};
 use super::{Cancelled, Control, GenerationReport, Statistics, caught};
-use crate::check::Invalid;
+use crate::check::{Invalid, within};
 use crate::evolve::{
-    Archive, Champion, Front, FrontMember, Origin, RunPlan, Settings, Strategy, begin, ranking,
-    resume,
+    Archive, Champion, Front, FrontMember, Origin, RunPlan, SettingChange, Settings, Strategy,
+    StrategyKind, begin, ranking, resume,
 };
 use crate::genome::Genome;
 use crate::save::{Knowledge, Progress};
@@ -21,7 +22,10 @@ use crate::world::Disqualification;
 
 /// A run, between two generations.
 pub struct Experiment {
+    /// That of the generation under way, or of the last one.
     plan: RunPlan,
+    /// Changes that were written down and concern generations to come, the earliest first.
+    ahead: VecDeque<SettingChange>,
     strategy: Box<dyn Strategy>,
     front: Front,
     finished: u32,
@@ -47,6 +51,7 @@ impl Experiment {
         Self {
             strategy: begin(&plan),
             plan,
+            ahead: VecDeque::new(),
             front: Front::default(),
             finished: 0,
             evaluated: 0,
@@ -64,7 +69,12 @@ impl Experiment {
     /// What was learned does not fit the plan.
     pub fn resumed(plan: RunPlan, progress: &Progress) -> Result<Self, Invalid> {
         let finished = progress.records.len() as u32;
-        let mut experiment = Self::new(plan);
+        let begun = plan;
+        let mut experiment = Self::new(begun.in_generation(finished, &progress.changes)?);
+        // What is ahead must be allowed, too: when its time comes, nobody is there to be told.
+        begun.in_generation(u32::MAX, &progress.changes)?;
+        let ahead = progress.changes.iter().filter(|change| change.generation > finished);
+        experiment.ahead = ahead.cloned().collect();
         if let Some(Knowledge { strategy, front }) = &progress.knowledge {
             experiment.strategy = resume(&experiment.plan, finished, strategy.clone())?;
             experiment.front = front.clone();
@@ -84,9 +94,63 @@ impl Experiment {
         Ok(experiment)
     }
 
-    /// The settings of the run.
-    pub fn settings(&self) -> &Settings {
-        &self.plan.settings
+    /// The settings of the run: those of the next generation, if they were changed.
+    pub fn settings(&self) -> Cow<'_, Settings> {
+        match self.next_plan() {
+            Cow::Borrowed(plan) => Cow::Borrowed(&plan.settings),
+            Cow::Owned(plan) => Cow::Owned(plan.settings),
+        }
+    }
+
+    /// The plan of the next generation.
+    pub fn next_plan(&self) -> Cow<'_, RunPlan> {
+        let due = self.ahead.iter().take_while(|change| change.generation <= self.finished + 1);
+        let mut plan = Cow::Borrowed(&self.plan);
+        for change in due {
+            // All were found to be allowed before.
+            let _ = plan.to_mut().change(change);
+        }
+        plan
+    }
+
+    /// The change of a setting that a person means by a text, from the next generation on; none if that would change
+    /// nothing. Nothing is changed yet: see [`Self::amend`].
+    ///
+    /// # Errors
+    /// The setting may not change during a run, its value is not allowed, or an earlier change is still ahead.
+    pub fn proposed(&self, field: &str, text: &str) -> Result<Option<SettingChange>, Invalid> {
+        let next = self.finished + 1;
+        if let Some(later) = self.ahead.iter().find(|change| change.generation > next) {
+            let allowed =
+                format!("no other change before generation {}, as before", later.generation);
+            return Err(Invalid::new("a change during a run", format!("{field:?}"), allowed));
+        }
+        self.next_plan().proposed(next, field, text)
+    }
+
+    /// Makes a change that was proposed: it takes effect with the next generation. What is known of that generation
+    /// was found under the old setting, and is forgotten.
+    ///
+    /// # Errors
+    /// As [`Self::proposed`]; nothing is changed then.
+    pub fn amend(&mut self, change: &SettingChange) -> Result<(), Invalid> {
+        let next = self.finished + 1;
+        within("generation", change.generation, next..=next)?;
+        self.take_up_changes();
+        self.plan.change(change)?;
+        self.strategy.amend(&self.plan);
+        self.known.clear();
+        Ok(())
+    }
+
+    /// Makes the changes that were written down for the next generation.
+    fn take_up_changes(&mut self) {
+        let next = self.next_plan();
+        if let Cow::Owned(plan) = next {
+            self.plan = plan;
+            self.strategy.amend(&self.plan);
+            self.ahead.retain(|change| change.generation > self.finished + 1);
+        }
     }
 
     /// Generations finished so far.
@@ -96,14 +160,20 @@ impl Experiment {
 
     /// Whether all generations are done, or the next would cost more evaluations than are left.
     pub fn is_over(&self) -> bool {
-        let evolution = &self.plan.settings.evolution;
-        self.finished >= evolution.generations
-            || self.evaluated + u64::from(self.population()) > evolution.budget()
+        let plan = self.next_plan();
+        self.finished >= plan.settings.evolution.generations
+            || self.evaluated + u64::from(self.population()) > plan.budget()
     }
 
     /// How many individuals the next generation has.
     pub fn population(&self) -> u32 {
-        u32::try_from(self.strategy.population()).unwrap_or(u32::MAX)
+        match self.next_plan() {
+            // The population of CMA-ES may not change, but changes by itself.
+            Cow::Owned(plan) if plan.settings.evolution.strategy != StrategyKind::CmaEs => {
+                plan.settings.evolution.population
+            }
+            _ => u32::try_from(self.strategy.population()).unwrap_or(u32::MAX),
+        }
     }
 
     /// Evaluations of the finished generations.
@@ -141,7 +211,7 @@ impl Experiment {
         Knowledge { strategy: self.strategy.state(), front: self.front.clone() }
     }
 
-    /// Evaluates one generation on `pool` and lets the strategy learn from it.
+    /// Evaluates one generation, under the settings that were changed for it, on `pool` and lets the strategy learn from it.
     ///
     /// # Errors
     /// [`Cancelled`], if `control` was; the experiment then is as it was before the call.
@@ -165,6 +235,7 @@ impl Experiment {
     ) -> Result<GenerationReport, Cancelled> {
         let started = Instant::now();
         control.start_generation();
+        self.take_up_changes();
         let generation = self.finished + 1;
         let genomes = self.strategy.ask();
         let trial = &self.plan.settings.trial;
@@ -357,6 +428,7 @@ mod tests {
         let mut noted = noted.into_inner().expect("no panic");
         noted.truncate(7);
         let progress = Progress {
+            changes: Vec::new(),
             records: Vec::new(),
             champions: Vec::new(),
             knowledge: None,

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::{Cancelled, Control, Experiment, GenerationReport, KeptRun, RunSource, caught, pool};
 use crate::ENGINE_VERSION;
-use crate::evolve::{Champion, RunPlan};
+use crate::evolve::{Champion, RunPlan, SettingChange};
 use crate::save::{SaveError, load_champion};
 use crate::score::{Evaluation, evaluate};
 use crate::world::{Effort, HealthLimits};
@@ -96,21 +96,27 @@ pub fn evolve(
     control: &Arc<Control>,
     out: &mut dyn Write,
 ) -> Result<(), HeadlessError> {
-    let RunPlan { preset, seed, settings } = source.plan.clone();
+    let RunPlan { preset, seed, founder, .. } = source.plan.clone();
     let KeptRun { mut experiment, mut keeper, reports } = source.open("snakes --no-render")?;
     let pool = pool(threads)?;
     let folder = keeper.folder().to_owned();
+    let settings = experiment.settings().into_owned();
     let generations = settings.evolution.generations;
     let behind = match reports.len() {
         0 => String::new(),
         _ if experiment.is_over() => "; finished before (--restart evolves it again)".to_owned(),
         behind => format!("; goes on after generation {behind}"),
     };
+    let founder = founder.map(|founder| format!(", from {}", founder.name()));
+    let from = founder.unwrap_or_default();
     say(&format!(
-        "preset {preset}, seed {seed}: generations {generations}, population {}, threads \
+        "preset {preset}, seed {seed}{from}: generations {generations}, population {}, threads \
          {threads}{behind}",
         settings.evolution.population
     ));
+    if !keeper.changes().is_empty() {
+        say(&format!("changed on the way: {}", in_words(keeper.changes())));
+    }
     if !json {
         writeln!(out, "{TABLE_HEAD}")?;
     }
@@ -163,6 +169,22 @@ pub fn evolve(
         writeln!(out, "run hash  {run_hash}")?;
     }
     best.map(|_| ()).ok_or(HeadlessError::NoChampion)
+}
+
+/// What was changed, in a line; of many changes the latest.
+fn in_words(changes: &[SettingChange]) -> String {
+    const MOST: usize = 6;
+    let left_out = changes.len().saturating_sub(MOST);
+    let mut texts: Vec<String> = Vec::new();
+    if left_out > 0 {
+        texts.push(format!("{left_out} earlier"));
+    }
+    texts.extend(changes.iter().skip(left_out).map(|change| {
+        let SettingChange { generation, field, value } = change;
+        let name = field.strip_prefix("evolution.").unwrap_or(field);
+        format!("{name} {value} from generation {generation}")
+    }));
+    texts.join(", ")
 }
 
 /// Counts evaluations up to the first agent on the landing.

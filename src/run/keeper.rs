@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{Crash, Experiment, GenerationReport};
-use crate::evolve::RunPlan;
+use crate::check::Invalid;
+use crate::evolve::{RunPlan, SettingChange};
 use crate::save::{Earlier, RunFolder, SaveError, SavesFolder, load_plan};
 use crate::score::{Evaluation, Recording};
 
@@ -23,6 +24,17 @@ pub struct Keeper {
     folder: RunFolder,
     /// The best champion's file, and what it reached.
     best: Option<(PathBuf, f32)>,
+}
+
+/// Why a setting was not changed.
+#[derive(Debug, thiserror::Error)]
+pub enum ChangeError {
+    /// It may not change, or not to this.
+    #[error(transparent)]
+    Refused(#[from] Invalid),
+    /// It could not be written down, without which the run could not be repeated.
+    #[error(transparent)]
+    NotSaved(#[from] SaveError),
 }
 
 /// Which run to open, and how.
@@ -61,10 +73,12 @@ impl RunSource {
         let run_file = self.folder.join("run.ron");
         let experiment = Experiment::resumed(self.plan, &progress)
             .map_err(|source| SaveError::Invalid { path: run_file, source })?;
-        let trial = &experiment.settings().trial;
+        let settings = experiment.settings().into_owned();
         let pairs = progress.records.iter().zip(progress.champions);
         let reports: Vec<GenerationReport> = pairs
-            .map(|(record, champion)| GenerationReport::of_record(record, champion, trial))
+            .map(|(record, champion)| {
+                GenerationReport::of_record(record, champion, &settings.trial)
+            })
             .collect();
         let mut keeper = Keeper { folder, best: None };
         for report in &reports {
@@ -90,6 +104,29 @@ impl Keeper {
     /// Notes an evaluation of the generation under way.
     pub fn note(&self, generation: u32, individual: u32, evaluation: &Evaluation) {
         self.folder.note(generation, individual, evaluation);
+    }
+
+    /// Changes a setting of the run from its next generation on, written down first. Returns the change; none if it
+    /// changes nothing.
+    ///
+    /// # Errors
+    /// The setting may not change during a run, or not to that value, or the change cannot be written down: then
+    /// everything is as it was.
+    pub fn amend(
+        &mut self,
+        experiment: &mut Experiment,
+        field: &str,
+        text: &str,
+    ) -> Result<Option<SettingChange>, ChangeError> {
+        let Some(change) = experiment.proposed(field, text)? else { return Ok(None) };
+        self.folder.change(&change)?;
+        experiment.amend(&change)?;
+        Ok(Some(change))
+    }
+
+    /// What was changed of the run, the earliest first.
+    pub fn changes(&self) -> &[SettingChange] {
+        self.folder.changes()
     }
 
     /// Writes down the generation that was just finished. If that fails, it may be tried again. Returns a
@@ -145,7 +182,7 @@ impl Keeper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Settings, StrategyKind};
+    use crate::evolve::{Founder, Settings, StrategyKind};
     use crate::genome::ControllerKind;
     use crate::run::{Control, pool};
     use std::fs;
@@ -316,6 +353,221 @@ mod tests {
         let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         evolve(&mut again, 6);
         assert_eq!(again.experiment.run_hash(), undisturbed(&plan()).run_hash());
+    }
+
+    /// Before which generation, which setting, to what.
+    type MadeBefore = (u32, &'static str, &'static str);
+
+    /// What is changed of a run of each method.
+    const CHANGES: [(StrategyKind, &[MadeBefore]); 6] = [
+        (
+            StrategyKind::Halving,
+            &[
+                (2, "halving.parents", "2"),
+                (3, "halving.mutation_range_nm", "200"),
+                (5, "halving.mutation_decay", "0.9"),
+                (5, "population", "5"),
+                (6, "generations", "8"),
+            ],
+        ),
+        (
+            StrategyKind::Ga,
+            &[(2, "ga.elites", "0"), (3, "population", "11"), (4, "generations", "5")],
+        ),
+        (StrategyKind::CmaEs, &[(3, "generations", "9")]),
+        (
+            StrategyKind::MapElites,
+            &[(2, "map_elites.cma_share", "0.9"), (4, "population", "12"), (4, "generations", "7")],
+        ),
+        (
+            StrategyKind::Novelty,
+            &[(2, "novelty.archive_limit", "3"), (4, "novelty.weight", "1"), (5, "ga.elites", "0")],
+        ),
+        (StrategyKind::Random, &[(1, "population", "5"), (4, "generations", "8")]),
+    ];
+
+    fn changing_plan(strategy: StrategyKind) -> RunPlan {
+        let mut plan = plan();
+        plan.settings.evolution.strategy = strategy;
+        plan.settings.genome.controller = ControllerKind::Gait;
+        plan
+    }
+
+    /// Evolves a kept run to its end or to the end of a generation, and makes the changes on the way that it does
+    /// not know yet.
+    fn evolve_changing(run: &mut KeptRun, changes: &[MadeBefore], last: u32) {
+        while !run.experiment.is_over() && run.experiment.finished() < last {
+            let next = run.experiment.finished() + 1;
+            for (_, field, value) in changes.iter().filter(|(of, _, _)| *of == next) {
+                let field = format!("evolution.{field}");
+                let known = run.keeper.changes().iter().any(|known| known.field == field);
+                let made = run.keeper.amend(&mut run.experiment, &field, value).expect("allowed");
+                assert_ne!(made.is_some(), known, "made once: {field}");
+            }
+            evolve(run, 1);
+        }
+    }
+
+    #[test]
+    fn a_changed_run_that_is_stopped_after_any_generation_goes_on_bit_for_bit() {
+        for (strategy, changes) in CHANGES {
+            let plan = changing_plan(strategy);
+            let source = |saves: &Path| {
+                RunSource::in_saves(&SavesFolder::find(Some(saves)), plan.clone(), Earlier::Keep)
+            };
+            let saves = tempfile::tempdir().expect("a folder");
+            let mut whole = source(saves.path()).open("a test").expect("opened");
+            evolve_changing(&mut whole, changes, u32::MAX);
+            let expected = &whole.experiment;
+            assert_ne!(expected.run_hash(), undisturbed(&plan).run_hash(), "{strategy}");
+            let generations = changes.iter().find(|(_, field, _)| *field == "generations");
+            if let Some((_, _, generations)) = generations {
+                assert!(expected.finished().to_string() == *generations, "{strategy}");
+            }
+            for stop in 0..expected.finished() {
+                let saves = tempfile::tempdir().expect("a folder");
+                let mut first = source(saves.path()).open("a test").expect("opened");
+                evolve_changing(&mut first, changes, stop);
+                drop(first);
+                // Once more, right after the changes of the next generation were written down.
+                let mut again = source(saves.path()).open("a test").expect("opened");
+                assert_eq!(again.reports.len() as u32, stop);
+                for (_, field, value) in changes.iter().filter(|(of, _, _)| *of == stop + 1) {
+                    let field = format!("evolution.{field}");
+                    again.keeper.amend(&mut again.experiment, &field, value).expect("allowed");
+                }
+                drop(again);
+                let mut again = source(saves.path()).open("a test").expect("opened");
+                evolve_changing(&mut again, changes, u32::MAX);
+                let what = format!("{strategy}, stopped after {stop}");
+                assert_eq!(again.experiment.run_hash(), expected.run_hash(), "{what}");
+                assert_eq!(again.experiment.knowledge(), expected.knowledge(), "{what}");
+                assert_eq!(again.keeper.changes(), whole.keeper.changes(), "{what}");
+                assert_eq!(again.experiment.next_plan(), expected.next_plan(), "{what}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_changed_run_without_its_latest_checkpoints_makes_its_changes_again_at_their_generations() {
+        for (strategy, changes) in CHANGES {
+            let plan = changing_plan(strategy);
+            let saves = tempfile::tempdir().expect("a folder");
+            let source =
+                RunSource::in_saves(&SavesFolder::find(Some(saves.path())), plan, Earlier::Keep);
+            let mut run = source.clone().open("a test").expect("opened");
+            evolve_changing(&mut run, changes, u32::MAX);
+            let (hash, folder) = (run.experiment.run_hash(), run.keeper.folder().to_owned());
+            drop(run);
+            for number in 2..=9 {
+                let _ = fs::remove_file(folder.join(format!("checkpoint-{number}.ron")));
+            }
+            let mut again = source.open("a test").expect("opened");
+            assert_eq!(again.reports.len(), 1);
+            let later = changes.iter().any(|(generation, _, _)| *generation > 2);
+            let field = "evolution.generations";
+            let refused = again.keeper.amend(&mut again.experiment, field, "30").err();
+            assert_eq!(refused.is_some(), later, "{strategy}: nothing before what is ahead");
+            if refused.is_some() {
+                evolve(&mut again, 30);
+                assert_eq!(again.experiment.run_hash(), hash, "{strategy}");
+            }
+        }
+    }
+
+    #[test]
+    fn evaluations_from_before_a_change_are_not_taken_for_those_after_it() {
+        let plan = changing_plan(StrategyKind::Halving);
+        let saves = tempfile::tempdir().expect("a folder");
+        let source =
+            RunSource::in_saves(&SavesFolder::find(Some(saves.path())), plan, Earlier::Keep);
+        let (field, notes) = ("evolution.halving.mutation_range_nm", "evaluations.jsonl");
+        // With the change from the beginning of the second generation on.
+        let other = tempfile::tempdir().expect("a folder");
+        let mut straight = RunSource { folder: other.path().to_owned(), ..source.clone() }
+            .open("a test")
+            .expect("opened");
+        evolve(&mut straight, 1);
+        straight.keeper.amend(&mut straight.experiment, field, "700").expect("allowed");
+        evolve(&mut straight, 1);
+        // With the notes of another second generation in its way.
+        let mut run = source.clone().open("a test").expect("opened");
+        evolve(&mut run, 1);
+        let mut old = source.clone();
+        old.folder = saves.path().join("old");
+        fs::create_dir(&old.folder).expect("created");
+        for file in files(run.keeper.folder()) {
+            let from = run.keeper.folder().join(&file);
+            fs::copy(from, old.folder.join(&file)).expect("copied");
+        }
+        let mut old = old.open("a test").expect("opened");
+        let noted = std::sync::Mutex::new(Vec::new());
+        let note = |g, i, evaluation: &Evaluation| {
+            noted.lock().expect("no panic").push((g, i, *evaluation));
+        };
+        let pool = pool(1).expect("a pool");
+        old.experiment.run_generation_noting(&pool, &Control::default(), note).expect("fine");
+        for (generation, individual, evaluation) in noted.into_inner().expect("no panic") {
+            run.keeper.note(generation, individual, &evaluation);
+        }
+        let folder = run.keeper.folder().to_owned();
+        let of_before = fs::read(folder.join(notes)).expect("noted");
+        drop(run);
+        // Known when it is opened, forgotten when it is changed; nor are they believed when they come back.
+        let mut run = source.clone().open("a test").expect("opened");
+        run.keeper.amend(&mut run.experiment, field, "700").expect("allowed");
+        drop(run);
+        fs::write(folder.join(notes), of_before).expect("written");
+        let mut run = source.open("a test").expect("opened");
+        evolve(&mut run, 1);
+        assert_eq!(run.experiment.run_hash(), straight.experiment.run_hash());
+    }
+
+    #[test]
+    fn a_run_whose_changes_were_edited_does_not_go_on_as_another() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+        evolve(&mut run, 1);
+        let field = "evolution.halving.parents";
+        run.keeper.amend(&mut run.experiment, field, "2").expect("allowed");
+        evolve(&mut run, 2);
+        let file = run.keeper.folder().join("changes.jsonl");
+        drop(run);
+        fs::remove_file(&file).expect("removed");
+        let error = source(saves.path(), Earlier::Keep).open("a test").err().expect("refused");
+        assert!(error.to_string().contains("checkpoint-3.ron: plan is"), "{error}");
+        fs::write(&file, "").expect("written");
+        // Whoever begins anew begins with what it began with.
+        let anew = source(saves.path(), Earlier::Discard).open("a test").expect("opened");
+        assert_eq!((anew.keeper.changes().len(), anew.reports.len()), (0, 0));
+        assert!(!file.exists());
+    }
+
+    #[test]
+    fn a_run_with_a_founder_is_stopped_and_goes_on_bit_for_bit_and_is_another_than_without() {
+        let mut rng = crate::rng::stream(9, 1, 0, crate::rng::Purpose::Birth);
+        for strategy in StrategyKind::ALL {
+            for controller in [ControllerKind::Signal, ControllerKind::Gait] {
+                let mut plan = plan();
+                plan.settings.evolution.strategy = strategy;
+                plan.settings.evolution.generations = 3;
+                plan.settings.genome.controller = controller;
+                let without = undisturbed(&plan).run_hash();
+                let descent = plan.settings.trial.descent();
+                let genome = plan.settings.genome.birth(descent, &mut rng);
+                let founded = plan.clone().founded_by(Founder::new("x", genome)).expect("fits");
+                assert_ne!(undisturbed(&founded).run_hash(), without, "{strategy}");
+                stops_and_goes_on(&founded);
+                let saves = SavesFolder::find(Some(Path::new("x")));
+                assert_ne!(saves.of_run(&founded), saves.of_run(&plan), "a folder of its own");
+                // And it is read back from its folder as it was.
+                let folder = tempfile::tempdir().expect("a folder");
+                let saves = SavesFolder::find(Some(folder.path()));
+                let source = RunSource::in_saves(&saves, founded, Earlier::Keep);
+                drop(source.clone().open("a test").expect("opened"));
+                assert_eq!(RunSource::in_folder(&source.folder).expect("read"), source);
+            }
+        }
     }
 
     #[test]

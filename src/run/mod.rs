@@ -21,7 +21,7 @@ pub mod verify;
 pub use background::{Background, Event, Exploration};
 pub use control::{Cancelled, Control};
 pub use experiment::Experiment;
-pub use keeper::{Keeper, KeptRun, RunSource};
+pub use keeper::{ChangeError, Keeper, KeptRun, RunSource};
 pub use listing::Listing;
 pub use lookahead::Lookahead;
 pub use panics::caught;

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use directories::ProjectDirs;
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::change::read_changes;
 use super::files::{numbered, prepare_folder, refuse_link};
 use super::plan::load_plan;
 use super::record::{count_records, read_records};
 use super::{LoadedChampion, SaveError, load_champion};
 use crate::ENGINE_VERSION;
-use crate::evolve::{RunPlan, StrategyKind};
+use crate::evolve::{RunPlan, SettingChange, StrategyKind};
 
 /// The folder champions are written to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,16 +78,18 @@ impl SavesFolder {
         let mut folders: Vec<PathBuf> = folders.map(|entry| entry.path()).collect();
         folders.sort();
         let summary = |folder: PathBuf| {
-            let plan = load_plan(&folder).ok()?;
+            let begun = load_plan(&folder).ok()?;
+            let changes = read_changes(&folder, &begun).ok()?;
+            let plan = begun.in_generation(u32::MAX, &changes).ok()?;
             let finished = count_records(&folder).ok()?;
             let evolution = &plan.settings.evolution;
             let mut is_stopped = finished < evolution.generations;
             // Restarts make larger generations, which may use the budget up before.
             if is_stopped && finished > 0 && evolution.strategy == StrategyKind::CmaEs {
-                let records = read_records(&folder, &plan.settings).ok()?;
+                let records = read_records(&folder, &plan).ok()?;
                 let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
                 let next = records.last().map_or(0, |last| u64::from(last.evaluations));
-                is_stopped = spent + next <= evolution.budget();
+                is_stopped = spent + next <= plan.budget();
             }
             Some(RunSummary { folder, plan, finished, is_stopped })
         };
@@ -104,7 +107,7 @@ impl SavesFolder {
 pub struct RunSummary {
     /// Its folder.
     pub folder: PathBuf,
-    /// What run it is.
+    /// What run it is, after all its changes.
     pub plan: RunPlan,
     /// How many generations are finished.
     pub finished: u32,
@@ -127,17 +130,25 @@ pub fn run_name(plan: &RunPlan) -> String {
     format!("{preset}-seed{}-{}", plan.seed, settings_fingerprint(plan))
 }
 
-/// Eight hexadecimal digits that stand for a plan's settings and the engine.
+/// Eight hexadecimal digits that stand for a plan's settings, its founder and the engine.
 pub fn settings_fingerprint(plan: &RunPlan) -> String {
     let settings = ron::to_string(&plan.settings).unwrap_or_default();
-    let hash = xxh3_64(format!("{ENGINE_VERSION} {settings}").as_bytes()) as u32;
-    format!("{hash:08x}")
+    let founder = plan.founder.as_ref().map(|founder| {
+        let genome = founder.genome();
+        format!(" from {} {:016x}", genome.controller.kind(), genome.hash())
+    });
+    let text = format!("{ENGINE_VERSION} {settings}{}", founder.unwrap_or_default());
+    format!("{:08x}", xxh3_64(text.as_bytes()) as u32)
 }
 
-/// Sixteen hexadecimal digits that stand for all that decides a run's bits.
+/// Sixteen hexadecimal digits that stand for all that decides a run's bits, up to the generations of its latest
+/// change.
 pub fn fingerprint(plan: &RunPlan) -> String {
-    let settings = settings_fingerprint(plan);
-    format!("{:016x}", xxh3_64(format!("{} {settings}", plan.seed).as_bytes()))
+    let mut text = format!("{} {}", plan.seed, settings_fingerprint(plan));
+    for SettingChange { generation, field, value } in plan.changes.made() {
+        text += &format!(" {generation} {field} {value:?}");
+    }
+    format!("{:016x}", xxh3_64(text.as_bytes()))
 }
 
 /// The name of the file, in a run's folder, of the champion of a generation; the first is 1.
@@ -191,7 +202,7 @@ mod tests {
         let name = |preset: &str, seed, population| {
             let mut settings = Settings::default();
             settings.evolution.population = population;
-            run_name(&RunPlan { preset: preset.to_owned(), seed, settings })
+            run_name(&RunPlan::new(preset, seed, settings))
         };
         let first = name("report", 1, 500);
         assert!(first.starts_with("report-seed1-"), "{first}");

@@ -6,6 +6,7 @@
 //! used; what is wrong with it is said with the file, the field, the value and what is allowed.
 
 mod champion;
+mod change;
 mod checkpoint;
 mod comparison;
 mod files;
@@ -29,6 +30,7 @@ mod v4;
 pub use champion::{
     LoadedChampion, load_champion, parse_champion, shipped_champion, store_champion,
 };
+pub use change::parse_changes;
 pub use checkpoint::{Knowledge, parse_checkpoint};
 pub use comparison::{
     CURVE_POINTS, ComparedBest, ComparedRun, Comparison, MOST_RUNS, load_comparison,

@@ -10,7 +10,7 @@ use super::folder::fingerprint;
 use super::log::{parse_log, read_log_bytes};
 use super::v4::RecordedV4;
 use crate::check::{Invalid, within};
-use crate::evolve::{RunPlan, Settings};
+use crate::evolve::RunPlan;
 use crate::score::{Evaluation, FITNESS_RANGE};
 use crate::world::Disqualification;
 
@@ -83,26 +83,24 @@ pub fn count_records(folder: &Path) -> Result<u32, SaveError> {
 }
 
 /// The finished generations of a run's folder.
-pub fn read_records(
-    folder: &Path,
-    settings: &Settings,
-) -> Result<Vec<GenerationRecord>, SaveError> {
+pub fn read_records(folder: &Path, plan: &RunPlan) -> Result<Vec<GenerationRecord>, SaveError> {
     let path = folder.join(LOG_FILE);
-    parse_records(&path, &read_log_bytes(&path)?, settings)
+    parse_records(&path, &read_log_bytes(&path)?, plan)
 }
 
-/// Reads finished generations from the bytes of a log; `path` is what errors call it.
+/// Reads finished generations from the bytes of a log; `path` is what errors call it. The plan is that after all
+/// changes.
 ///
 /// # Errors
 /// A whole line is damaged, out of its order, or beyond the end of the run.
 pub fn parse_records(
     path: &Path,
     bytes: &[u8],
-    settings: &Settings,
+    plan: &RunPlan,
 ) -> Result<Vec<GenerationRecord>, SaveError> {
     let records: Vec<GenerationRecord> = parse_log(path, bytes)?;
-    let generations = settings.evolution.generations;
-    let most = u32::try_from(settings.evolution.budget()).unwrap_or(u32::MAX);
+    let generations = plan.settings.evolution.generations;
+    let most = u32::try_from(plan.budget()).unwrap_or(u32::MAX);
     let check = |(record, generation): (&GenerationRecord, u32)| {
         within("generation", record.generation, generation..=generation)?;
         within("generation", generation, 1..=generations)?;
@@ -159,7 +157,7 @@ pub fn parse_evaluations(
         return Ok(Vec::new());
     }
     let read = |record: EvaluationRecord| {
-        let last = plan.settings.evolution.budget().saturating_sub(1);
+        let last = plan.budget().saturating_sub(1);
         within("individual", u64::from(record.individual), 0..=last)?;
         let EvaluationRecord { individual, disqualified, recorded, .. } = record;
         Ok((individual, Evaluation { disqualified, ..recorded.evaluation()? }))

@@ -2,7 +2,8 @@
 //!
 //! | file | what it holds | written |
 //! |---|---|---|
-//! | `run.ron` | preset, seed, settings, engine | once, whole |
+//! | `run.ron` | preset, seed, settings, founder, engine | once, whole |
+//! | `changes.jsonl` | a line per setting that was changed on the way | added to, before the generation that it concerns |
 //! | `generation-N.ron` | the champion of generation N | whole, before the log's line |
 //! | `checkpoint-N.ron` | what the strategy knew after generation N | whole, before the log's line |
 //! | `log.jsonl` | a line per finished generation | added to; a generation is finished once its line stands |
@@ -19,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::champion::{load_champion, store_champion};
+use super::change::{CHANGES_FILE, ChangeRecord, read_changes};
 use super::checkpoint::{Knowledge, checkpoints, load_checkpoint, store_checkpoint, thin};
 use super::files::{prepare_folder, refuse_link, remove_unfinished};
 use super::folder::{champion_file_name, fingerprint};
@@ -27,14 +29,18 @@ use super::log::Log;
 use super::plan::{RUN_FILE, load_plan, store_plan};
 use super::record::{EVALUATIONS_FILE, EvaluationRecord, LOG_FILE, read_evaluations, read_records};
 use super::{GenerationRecord, SaveError};
-use crate::evolve::{Champion, RunPlan};
+use crate::check::Invalid;
+use crate::evolve::{Champion, RunPlan, SettingChange};
 use crate::score::{Evaluation, Recording};
 
 /// A run keeps so many genomes on which the program failed.
 const MOST_CRASHED: usize = 30;
+
 /// What a run has behind it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Progress {
+    /// What was changed of it, the earliest first. If finished generations were lost, some changes may be ahead.
+    pub changes: Vec<SettingChange>,
     /// The finished generations, the first first.
     pub records: Vec<GenerationRecord>,
     /// The champion of each of them; none, if it had none or its file is gone.
@@ -51,10 +57,20 @@ pub struct RunFolder {
     path: PathBuf,
     log: Log,
     /// The generation under way, and the evaluations written of it.
-    evaluations: Mutex<Option<(u32, Log)>>,
-    /// Ties what is written to the plan of the run.
-    plan: String,
+    evaluations: Mutex<Option<Notes>>,
+    /// What the run began with, and what was changed since: what is written is tied to both.
+    plan: RunPlan,
+    changes: Vec<SettingChange>,
     _lock: Lock,
+}
+
+/// The evaluations of a generation under way.
+#[derive(Debug)]
+struct Notes {
+    generation: u32,
+    /// Ties them to the plan of the run in that generation.
+    plan: String,
+    log: Log,
 }
 
 /// What to do with what a folder already holds of a run.
@@ -94,6 +110,10 @@ impl RunFolder {
             store_plan(&file, plan)?;
         }
         let log_path = path.join(LOG_FILE);
+        if earlier == Earlier::Discard {
+            // First: without them, what is left of the earlier run is known to be of another.
+            discard(&path.join(CHANGES_FILE))?;
+        }
         let progress = match earlier {
             Earlier::Keep => Progress::read(path, plan)?,
             Earlier::Discard => Progress::none(),
@@ -102,7 +122,8 @@ impl RunFolder {
             path: path.to_owned(),
             log: Log::open(&log_path, progress.records.len())?,
             evaluations: Mutex::new(None),
-            plan: fingerprint(plan),
+            plan: plan.clone(),
+            changes: progress.changes.clone(),
             _lock: lock,
         };
         let next = progress.records.len() as u32 + 1;
@@ -111,7 +132,8 @@ impl RunFolder {
             let _ = fs::remove_file(path.join(EVALUATIONS_FILE));
         } else {
             let log = Log::open(&path.join(EVALUATIONS_FILE), progress.evaluations.len())?;
-            folder.evaluations_log().replace((next, log));
+            let plan = folder.fingerprint(next)?;
+            folder.evaluations_log().replace(Notes { generation: next, plan, log });
         }
         if earlier == Earlier::Discard {
             thin(path, 0);
@@ -133,13 +155,14 @@ impl RunFolder {
     /// cannot be noted is computed again: that is no error.
     pub fn note(&self, generation: u32, individual: u32, evaluation: &Evaluation) {
         let mut log = self.evaluations_log();
-        if log.as_ref().is_none_or(|(of, _)| *of != generation) {
+        if log.as_ref().is_none_or(|notes| notes.generation != generation) {
             let fresh = Log::open(&self.path.join(EVALUATIONS_FILE), 0);
-            *log = fresh.ok().map(|fresh| (generation, fresh));
+            let plan = self.fingerprint(generation).ok();
+            *log = fresh.ok().zip(plan).map(|(log, plan)| Notes { generation, plan, log });
         }
-        if let Some((_, log)) = log.as_mut() {
+        if let Some(Notes { plan, log, .. }) = log.as_mut() {
             let _ = log.append_lightly(&EvaluationRecord {
-                plan: self.plan.clone(),
+                plan: plan.clone(),
                 generation,
                 individual,
                 disqualified: evaluation.disqualified,
@@ -164,13 +187,43 @@ impl RunFolder {
         if let Some((champion, recording)) = champion {
             store_champion(&champion_path, champion, Some(recording))?;
         }
-        store_checkpoint(&self.path, &self.plan, record.generation, run_hash, knowledge)?;
+        let plan = self.fingerprint(record.generation)?;
+        store_checkpoint(&self.path, &plan, record.generation, run_hash, knowledge)?;
         self.log.append(record)?;
         // They are in the champion, the checkpoint and the log now.
         self.evaluations_log().take();
         let _ = fs::remove_file(self.path.join(EVALUATIONS_FILE));
         thin(&self.path, record.generation);
         Ok(champion.map(|_| champion_path))
+    }
+
+    /// Writes down, before the generation that it concerns, that a setting is changed. Evaluations of that
+    /// generation that are known already were made under the old one, and are forgotten.
+    ///
+    /// # Errors
+    /// It cannot be written; it then is not made.
+    pub fn change(&mut self, change: &SettingChange) -> Result<(), SaveError> {
+        let mut log = Log::open(&self.path.join(CHANGES_FILE), self.changes.len())?;
+        log.append(&ChangeRecord::from(change))?;
+        if self.changes.is_empty() {
+            // That the name of a new file survives a power cut is up to the platform.
+            #[cfg(unix)]
+            let _ = fs::File::open(&self.path).and_then(|folder| folder.sync_all());
+        }
+        self.changes.push(change.clone());
+        self.evaluations_log().take();
+        Ok(())
+    }
+
+    /// What was changed of the run, the earliest first.
+    pub fn changes(&self) -> &[SettingChange] {
+        &self.changes
+    }
+
+    /// Ties what is written to the plan of the run in a generation.
+    fn fingerprint(&self, generation: u32) -> Result<String, SaveError> {
+        let path = || self.path.join(CHANGES_FILE);
+        Ok(fingerprint(&in_generation(&self.plan, generation, &self.changes, path)?))
     }
 
     /// Writes a genome down on which the program failed, to be looked into.
@@ -192,14 +245,36 @@ impl RunFolder {
         Ok(path)
     }
 
-    fn evaluations_log(&self) -> std::sync::MutexGuard<'_, Option<(u32, Log)>> {
+    fn evaluations_log(&self) -> std::sync::MutexGuard<'_, Option<Notes>> {
         self.evaluations.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The plan of a run in a generation; `path` is what errors call the changes.
+fn in_generation(
+    plan: &RunPlan,
+    generation: u32,
+    changes: &[SettingChange],
+    path: impl FnOnce() -> PathBuf,
+) -> Result<RunPlan, SaveError> {
+    let invalid = |source: Invalid| SaveError::Invalid { path: path(), source };
+    plan.in_generation(generation, changes).map_err(invalid)
+}
+
+/// Removes what an earlier run has left.
+fn discard(path: &Path) -> Result<(), SaveError> {
+    match fs::remove_file(path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(SaveError::Unwritable { path: path.to_owned(), source })
+        }
+        _ => Ok(()),
     }
 }
 
 impl Progress {
     fn none() -> Self {
         Self {
+            changes: Vec::new(),
             records: Vec::new(),
             champions: Vec::new(),
             knowledge: None,
@@ -209,11 +284,14 @@ impl Progress {
 
     /// Reads what a folder has of a run.
     fn read(folder: &Path, plan: &RunPlan) -> Result<Self, SaveError> {
-        let mut records = read_records(folder, &plan.settings)?;
+        let changes = read_changes(folder, plan)?;
+        let plan_in =
+            |generation| in_generation(plan, generation, &changes, || folder.join(CHANGES_FILE));
+        let mut records = read_records(folder, &plan_in(u32::MAX)?)?;
         let known = checkpoints(folder)?;
         let latest = known.into_iter().filter(|&of| of as usize <= records.len()).max();
         records.truncate(latest.unwrap_or(0) as usize);
-        let knowledge = latest.map(|of| load_checkpoint(folder, of, &records, plan));
+        let knowledge = latest.map(|of| load_checkpoint(folder, of, &records, &plan_in(of)?));
         let champion = |record: &GenerationRecord| {
             let path = folder.join(champion_file_name(record.generation));
             let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
@@ -226,8 +304,12 @@ impl Progress {
         Ok(Self {
             knowledge: knowledge.transpose()?,
             champions: records.iter().map(champion).collect::<Result<_, _>>()?,
-            evaluations: read_evaluations(folder, records.len() as u32 + 1, plan)?,
+            evaluations: {
+                let next = records.len() as u32 + 1;
+                read_evaluations(folder, next, &plan_in(next)?)?
+            },
             records,
+            changes,
         })
     }
 }

@@ -1,0 +1,240 @@
+//! Tests of changes during a run.
+
+use super::*;
+use crate::evolve::{Strategy, begin, resume};
+use crate::genome::ControllerKind;
+use crate::score::{Behaviour, Evaluation};
+use crate::world::{Disqualification, Effort};
+
+fn plan(strategy: StrategyKind) -> RunPlan {
+    let mut settings = Settings::default();
+    settings.evolution.strategy = strategy;
+    settings.evolution.population = 24;
+    settings.genome.controller = ControllerKind::Gait;
+    settings.trial.duration_s = 1.0;
+    RunPlan::new("test", 1, settings)
+}
+
+fn change(generation: u32, field: &str, value: &str) -> SettingChange {
+    let (field, value) = (format!("evolution.{field}"), value.to_owned());
+    SettingChange { generation, field, value }
+}
+
+fn changed(plan: &RunPlan, changes: &[(u32, &str, &str)]) -> RunPlan {
+    let mut plan = plan.clone();
+    for (generation, field, value) in changes {
+        plan.change(&change(*generation, field, value)).expect("allowed");
+    }
+    plan
+}
+
+/// Evaluations that differ, some disqualified, without a world.
+fn evaluations(generation: u32, count: usize) -> Vec<Evaluation> {
+    let evaluation = |index: usize| {
+        let number = ((index * 37 + generation as usize * 11) % 101) as f32;
+        Evaluation {
+            fitness: number / 10.0 - 7.0,
+            centre_y_m: number / 10.0 - 7.0,
+            disqualified: (index % 7 == 3).then_some(Disqualification::TooFast),
+            trace_hash: 0,
+            steps: 60,
+            effort: Some(Effort { energy_j: 100.0 * number, ..Effort::default() }),
+            behaviour: Some(Behaviour { contact_duty: number / 101.0, ..Behaviour::default() }),
+        }
+    };
+    (0..count).map(evaluation).collect()
+}
+
+fn advance(strategy: &mut dyn Strategy, generation: u32) {
+    let genomes = strategy.ask();
+    strategy.tell(&genomes, &evaluations(generation, genomes.len()));
+}
+
+/// What may be changed of each method, and to what.
+const ALLOWED: [(StrategyKind, &[(&str, &str)]); 6] = [
+    (
+        StrategyKind::Halving,
+        &[
+            ("halving.parents", "2"),
+            ("halving.parents", "9"),
+            ("halving.mutation_range_nm", "300"),
+            ("halving.mutation_decay", "1"),
+            ("population", "7"),
+            ("population", "30"),
+            ("generations", "9"),
+        ],
+    ),
+    (
+        StrategyKind::Ga,
+        &[
+            ("ga.selection", "rank"),
+            ("ga.tournament", "7"),
+            ("ga.crossover", "one_point"),
+            ("ga.crossover_share", "0.9"),
+            ("ga.mutation", "uniform"),
+            ("ga.cooling", "0.7"),
+            ("ga.elites", "5"),
+            ("population", "7"),
+            ("population", "30"),
+        ],
+    ),
+    (StrategyKind::CmaEs, &[("generations", "40")]),
+    (
+        StrategyKind::MapElites,
+        &[
+            ("map_elites.step", "0.2"),
+            ("map_elites.line", "1"),
+            ("map_elites.cma_share", "0.2"),
+            ("map_elites.cma_share", "1"),
+            ("map_elites.cma_share", "0"),
+            ("map_elites.cma_step", "0.4"),
+            ("population", "7"),
+            ("population", "30"),
+        ],
+    ),
+    (
+        StrategyKind::Novelty,
+        &[
+            ("novelty.weight", "1"),
+            ("novelty.neighbours", "2"),
+            ("novelty.remembered", "20"),
+            ("novelty.archive_limit", "3"),
+            ("novelty.archive_limit", "15"),
+            ("ga.elites", "5"),
+            ("population", "7"),
+            ("population", "30"),
+        ],
+    ),
+    (StrategyKind::Random, &[("population", "7"), ("generations", "9")]),
+];
+
+#[test]
+fn a_method_that_is_told_of_a_change_goes_on_like_one_that_is_resumed_with_it() {
+    for (kind, changes) in ALLOWED {
+        let begun = plan(kind);
+        for (field, value) in changes {
+            let what = format!("{kind}: {field} {value}");
+            let mut told = begin(&begun);
+            (1..=3).for_each(|generation| advance(&mut *told, generation));
+            let plan = changed(&begun, &[(4, field, value)]);
+            let unchanged = told.ask();
+            told.amend(&plan);
+            // What a program that was killed now would begin with.
+            let mut resumed = resume(&begun, 3, {
+                let mut before = begin(&begun);
+                (1..=3).for_each(|generation| advance(&mut *before, generation));
+                before.state()
+            });
+            let resumed = resumed.as_mut().expect("its own state");
+            resumed.amend(&plan);
+            for generation in 4..=6 {
+                assert_eq!(told.ask(), resumed.ask(), "{what}");
+                assert_eq!(told.state(), resumed.state(), "{what}");
+                assert_eq!(told.population(), told.ask().len(), "{what}");
+                advance(&mut *told, generation);
+                advance(&mut **resumed, generation);
+                // And whatever it knows then can be read back from a checkpoint.
+                let again = resume(&plan, generation, told.state()).expect(&what);
+                assert_eq!(again.ask(), told.ask(), "{what}");
+            }
+            let has_effect = *field != "generations";
+            let mut otherwise = begin(&begun);
+            (1..=3).for_each(|generation| advance(&mut *otherwise, generation));
+            assert_eq!(otherwise.ask(), unchanged);
+            (4..=6).for_each(|generation| advance(&mut *otherwise, generation));
+            assert_eq!(otherwise.ask() != told.ask(), has_effect, "{what}");
+        }
+    }
+}
+
+#[test]
+fn what_may_change_is_named_and_what_may_not_has_a_reason() {
+    for kind in StrategyKind::ALL {
+        let settings = plan(kind).settings;
+        let allowed: Vec<String> = fields(&settings)
+            .into_iter()
+            .map(|(field, _)| field)
+            .filter(|field| match may_change_during_run(field, &settings) {
+                Ok(()) => true,
+                Err(reason) => {
+                    assert!(reason.ends_with('.') && reason != UNKNOWN, "{field}: {reason}");
+                    false
+                }
+            })
+            .collect();
+        assert!(allowed.iter().all(|field| field.starts_with("evolution.")), "{allowed:?}");
+        assert!(allowed.contains(&"evolution.generations".to_owned()));
+        let (_, known) = ALLOWED.iter().find(|(of, _)| *of == kind).expect("listed");
+        for (field, _) in *known {
+            assert!(allowed.contains(&format!("evolution.{field}")), "{kind}: {field}");
+        }
+    }
+    let settings = Settings::default();
+    let reason = |field| may_change_during_run(field, &settings).expect_err("not allowed");
+    assert_eq!(reason("trial.surface.friction"), WORLD);
+    assert_eq!(reason("genome.points_per_s"), GENOME);
+    assert_eq!(reason("evolution.ga.elites"), UNUSED);
+    assert_eq!(reason("population"), UNKNOWN, "by its full name only");
+}
+
+#[test]
+fn the_range_of_mutation_is_what_is_set_and_decays_from_there() {
+    let begun = plan(StrategyKind::Halving);
+    let (range, decay) = ("halving.mutation_range_nm", "halving.mutation_decay");
+    let ranges = |changes: &[(u32, &str, &str)], from: u32| {
+        let plan = changed(&begun, changes);
+        [0, 1, 2].map(|more| plan.mutation_range_nm(from + more))
+    };
+    assert_eq!(ranges(&[], 2), [100.0, 50.0, 25.0]);
+    assert_eq!(ranges(&[(1, range, "80")], 2), [80.0, 40.0, 20.0]);
+    assert_eq!(ranges(&[(2, range, "80"), (2, decay, "0.25")], 2), [80.0, 20.0, 5.0]);
+    assert_eq!(ranges(&[(4, range, "80")], 4), [80.0, 40.0, 20.0]);
+    // The third had 50.
+    assert_eq!(ranges(&[(4, decay, "1")], 4), [50.0, 50.0, 50.0]);
+    assert_eq!(ranges(&[(4, decay, "0.1"), (4, decay, "1")], 4), [50.0, 50.0, 50.0]);
+    // Together they mean the same in either order.
+    assert_eq!(ranges(&[(4, range, "80"), (4, decay, "0.25")], 4), [80.0, 20.0, 5.0]);
+    assert_eq!(ranges(&[(4, decay, "0.25"), (4, range, "80")], 4), [80.0, 20.0, 5.0]);
+    assert_eq!(ranges(&[(4, range, "80"), (6, decay, "1")], 5), [40.0, 40.0, 40.0]);
+}
+
+#[test]
+fn a_run_costs_what_its_generations_cost_whatever_their_size() {
+    let begun = plan(StrategyKind::Ga);
+    assert_eq!(begun.budget(), 24 * 6);
+    let smaller = changed(&begun, &[(4, "population", "5")]);
+    assert_eq!(smaller.budget(), 3 * 24 + 3 * 5);
+    let longer = changed(&smaller, &[(5, "generations", "10"), (6, "population", "8")]);
+    assert_eq!(longer.budget(), 3 * 24 + 2 * 5 + 5 * 8);
+}
+
+#[test]
+fn what_is_not_allowed_is_refused_and_changes_nothing() {
+    let mut plan = changed(&plan(StrategyKind::Halving), &[(3, "generations", "8")]);
+    let before = plan.clone();
+    for (generation, field, value, complaint) in [
+        (2, "generations", "7", "generation is 2; allowed: 3 to 8"),
+        (9, "generations", "10", "generation is 9; allowed: 3 to 8"),
+        (4, "generations", "3", "evolution.generations is 3; allowed: 4 to 10000"),
+        (4, "halving.parents", "0", "evolution.halving.parents is 0; allowed: 1 to 100000"),
+        (4, "halving.parents", "x", "evolution.halving.parents is \"x\"; allowed: a whole"),
+        (4, "strategy", "ga", "a change during a run is \"evolution.strategy\"; allowed: What"),
+        (4, "ga.elites", "1", "a change during a run is \"evolution.ga.elites\"; allowed: The m"),
+    ] {
+        let error = plan.change(&change(generation, field, value)).expect_err("refused");
+        assert!(error.to_string().starts_with(complaint), "{error}");
+        assert_eq!(plan, before);
+    }
+    let long = plan.change(&change(4, "population", &"1".repeat(100_000))).expect_err("refused");
+    assert!(long.to_string().len() < 200, "{long}");
+}
+
+#[test]
+fn a_change_is_kept_as_its_setting_is_listed_and_none_is_none() {
+    let plan = plan(StrategyKind::Halving);
+    let field = "evolution.halving.mutation_range_nm";
+    let proposed = plan.proposed(3, field, "5e1").expect("allowed").expect("a change");
+    assert_eq!((proposed.generation, &*proposed.value), (3, "50"));
+    assert_eq!(plan.proposed(3, field, "100.0"), Ok(None));
+    assert!(plan.proposed(3, "mutation_range_nm", "50").is_err(), "by its full name only");
+}

@@ -1,0 +1,114 @@
+//! What was changed of a run on its way: `changes.jsonl`, a line per setting.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::SaveError;
+use super::log::{parse_log, read_log_bytes};
+use crate::check::within;
+use crate::evolve::{MOST_CHANGES, RunPlan, SettingChange};
+
+pub const CHANGES_FILE: &str = "changes.jsonl";
+
+/// A change of one setting, as a line of the log.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ChangeRecord {
+    /// The first generation that it concerns.
+    generation: u32,
+    field: String,
+    value: String,
+}
+
+impl From<&SettingChange> for ChangeRecord {
+    fn from(change: &SettingChange) -> Self {
+        let SettingChange { generation, field, value } = change.clone();
+        Self { generation, field, value }
+    }
+}
+
+/// The changes of the run in a folder, the earliest first; none of one that was never changed.
+pub fn read_changes(folder: &Path, plan: &RunPlan) -> Result<Vec<SettingChange>, SaveError> {
+    let path = folder.join(CHANGES_FILE);
+    parse_changes(&path, &read_log_bytes(&path)?, plan)
+}
+
+/// Reads the changes of the run that began with `plan` from the bytes of a log; `path` is what errors call it.
+///
+/// # Errors
+/// A whole line is damaged, out of its order, or changes what may not be changed.
+pub fn parse_changes(
+    path: &Path,
+    bytes: &[u8],
+    plan: &RunPlan,
+) -> Result<Vec<SettingChange>, SaveError> {
+    let records: Vec<ChangeRecord> = parse_log(path, bytes)?;
+    let changes: Vec<SettingChange> = records
+        .into_iter()
+        .map(|ChangeRecord { generation, field, value }| SettingChange { generation, field, value })
+        .collect();
+    let checked = within("changes", changes.len(), 0..=MOST_CHANGES)
+        .and_then(|()| plan.in_generation(u32::MAX, &changes));
+    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    Ok(changes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+    use crate::save::log::Log;
+
+    fn plan() -> RunPlan {
+        RunPlan::new("test", 1, Settings::default())
+    }
+
+    fn change(generation: u32, field: &str, value: &str) -> SettingChange {
+        let field = format!("evolution.{field}");
+        SettingChange { generation, field, value: value.to_owned() }
+    }
+
+    fn read(changes: &[SettingChange]) -> Result<Vec<SettingChange>, SaveError> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut log = Log::open(&folder.path().join(CHANGES_FILE), 0).expect("opened");
+        for change in changes {
+            log.append(&ChangeRecord::from(change)).expect("written");
+        }
+        read_changes(folder.path(), &plan())
+    }
+
+    #[test]
+    fn changes_come_back_in_their_order() {
+        let changes = [
+            change(2, "halving.parents", "7"),
+            change(3, "halving.mutation_range_nm", "0.1"),
+            change(3, "generations", "9"),
+            change(8, "population", "50"),
+        ];
+        assert_eq!(read(&changes).expect("allowed"), changes);
+        assert_eq!(read(&[]).expect("none"), []);
+    }
+
+    #[test]
+    fn what_could_not_have_been_changed_is_refused_with_the_file_and_the_reason() {
+        for (changes, complaint) in [
+            (vec![change(7, "generations", "9")], "generation is 7; allowed: 1 to 6"),
+            (vec![change(0, "generations", "9")], "generation is 0; allowed: 1 to 6"),
+            (
+                vec![change(3, "halving.parents", "7"), change(2, "halving.parents", "8")],
+                "generation is 2; allowed: 3 to 6",
+            ),
+            (vec![change(2, "halving.parents", "0")], "evolution.halving.parents is 0; allowed: 1"),
+            (
+                vec![change(2, "strategy", "ga")],
+                "a change during a run is \"evolution.strategy\"; allowed: What was learned",
+            ),
+            (vec![change(2, "halving.parents", "7"); 2001], "changes is 2001; allowed: 0 to 2000"),
+        ] {
+            let error = read(&changes).expect_err("refused").to_string();
+            assert!(error.contains(CHANGES_FILE) && error.contains(complaint), "{error}");
+            assert_eq!(error.lines().count(), 1, "{error}");
+        }
+    }
+}
