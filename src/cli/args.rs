@@ -12,11 +12,13 @@ use super::compare::CompareArgs;
 use super::render::RenderArgs;
 use super::robust::OffBy;
 use crate::check::{Invalid, within};
-use crate::evolve::{RunPlan, Settings, with_fields};
+use crate::evolve::{Champion, Founder, RunPlan, Settings, with_fields};
 use crate::run::{RunSource, THREADS_RANGE, available_cores};
 #[cfg(feature = "studio")]
 use crate::save::PreferencesFile;
-use crate::save::{DEFAULT_PRESET, Earlier, Preset, SavesFolder, load_preset};
+use crate::save::{
+    DEFAULT_PRESET, Earlier, Preset, SavesFolder, load_champion, load_preset, shipped_presets,
+};
 #[cfg(feature = "studio")]
 use crate::studio::Theme;
 
@@ -79,10 +81,14 @@ pub struct Args {
         conflicts_with_all = [
             "preset", "seed", "population", "generations", "parents", "mutation_range",
             "points_per_s", "duration", "steps_per_s", "substeps", "gravity", "fitness", "set", "out",
-            "restart",
+            "restart", "from",
         ]
     )]
     resume: Option<PathBuf>,
+    /// Begin a run from a saved champion: the first generation descends from it, in its own world unless --preset
+    /// or --set say otherwise
+    #[arg(long, value_name = "FILE", conflicts_with = "resume")]
+    from: Option<PathBuf>,
     /// Begin the run anew; without this, one that was stopped goes on, and a finished one is shown
     #[arg(long, global = true)]
     pub restart: bool,
@@ -260,15 +266,46 @@ impl Args {
         if let Some(folder) = &self.resume {
             return Ok(RunSource::in_folder(folder)?);
         }
-        let (preset, settings) = self.settings()?;
-        let plan = RunPlan { preset, seed: self.seed()?, settings };
+        let plan = match &self.from {
+            Some(file) => self.plan_from(file)?,
+            None => {
+                let (preset, settings) = self.settings()?;
+                RunPlan::new(&preset, self.seed()?, settings)
+            }
+        };
         let earlier = if self.restart { Earlier::Discard } else { Earlier::Keep };
         Ok(RunSource::in_saves(&self.saves_folder(), plan, earlier))
     }
 
+    /// The run that begins from a saved champion. It searches by the preset that was named, else by the one the
+    /// champion comes from; the world is that of the preset that was named, else the champion's own. Genomes may be
+    /// what the preset says, and what the champion is; then the flags' values are put in.
+    fn plan_from(&self, file: &Path) -> Result<RunPlan, CliError> {
+        let Champion { genome, trial, origin, .. } = load_champion(file)?.champion;
+        let mut preset = match &self.preset {
+            Some(named) => load_preset(named)?,
+            None => {
+                let shipped = shipped_presets()?;
+                let its_own = shipped.into_iter().find(|preset| preset.name == origin.preset);
+                its_own.map_or_else(|| self.preset(), Ok)?
+            }
+        };
+        if self.preset.is_none() {
+            preset.settings.trial = trial;
+        }
+        preset.settings.genome = preset.settings.genome.widened_for(&genome);
+        let (preset, settings) = self.flags_over(preset)?;
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        let founder = Founder::new(&name, genome);
+        Ok(RunPlan::new(&preset, self.seed()?, settings).founded_by(founder)?)
+    }
+
     /// The preset's name and its settings, with the flags' values put in and everything checked.
     pub fn settings(&self) -> Result<(String, Settings), CliError> {
-        let preset = self.preset()?;
+        self.flags_over(self.preset()?)
+    }
+
+    fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
         let mut settings = preset.settings;
         let Settings { trial, genome, evolution } = &mut settings;
         for (flag, given, target) in [

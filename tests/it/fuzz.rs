@@ -10,8 +10,8 @@ use proptest::test_runner::FileFailurePersistence;
 use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
 use snakes_and_stairs::genome::ControllerKind;
 use snakes_and_stairs::save::{
-    fingerprint, parse_champion, parse_checkpoint, parse_evaluations, parse_plan, parse_preset,
-    parse_records,
+    fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_plan,
+    parse_preset, parse_records,
 };
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -192,15 +192,19 @@ fn no_log_stops_the_program() {
     // The first byte tells the fuzz target of the same name what to do.
     let lines =
         |text: &str| summed(text.replace("PLAN", &fingerprint).get(1..).unwrap_or("").as_bytes());
-    let records = |path: &Path, text: &str| parse_records(path, &lines(text), &plan.settings);
+    let records = |path: &Path, text: &str| parse_records(path, &lines(text), &plan);
+    let changes = |path: &Path, text: &str| parse_changes(path, &lines(text), &plan);
     let evaluations = |path: &Path, text: &str| parse_evaluations(path, &lines(text), 1, &plan);
     let untouched = include_str!("../../fuzz/corpus/logs/generations");
     assert_eq!(records(Path::new("x"), untouched).expect("allowed").len(), 3);
     let untouched = include_str!("../../fuzz/corpus/logs/evaluations");
     assert_eq!(evaluations(Path::new("x"), untouched).expect("allowed").len(), 2);
+    let untouched = include_str!("../../fuzz/corpus/logs/changes");
+    assert_eq!(changes(Path::new("x"), untouched).expect("allowed").len(), 4);
     read_all("logs", records);
+    read_all("logs", changes);
     read_all("logs", evaluations);
-    read_all("logs", |path, text| parse_records(path, text.as_bytes(), &plan.settings));
+    read_all("logs", |path, text| parse_records(path, text.as_bytes(), &plan));
 }
 
 #[test]

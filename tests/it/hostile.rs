@@ -243,10 +243,14 @@ fn runs(all: &mut Collection, good: &Path) {
     let read = |file: &str| fs::read_to_string(good.join(file)).expect("a file of the good run");
     let (plan, log, checkpoint) = (read("run.ron"), read("log.jsonl"), read("checkpoint-2.ron"));
     for (from, to) in [
-        ("format: 2", "format: 1"),
-        ("format: 2", "format: 3"),
+        ("format: 3", "format: 1"),
+        ("format: 3", "format: 2"),
+        ("format: 3", "format: 4"),
         ("engine: 2", "engine: 1"),
         ("engine: 2", "engine: 3"),
+        ("founder: None", "founder: Some(())"),
+        ("founder: None", "founder: Some((name: \"x\", genome: 1))"),
+        ("founder: None", "founder: None, founder: None"),
         ("kind: \"snakes-and-stairs run\"", "kind: \"snakes-and-stairs champion\""),
         ("preset: \"report\"", "preset: \"../../../etc\""),
         ("population: 4", "population: 4000000000"),
@@ -332,6 +336,8 @@ fn runs(all: &mut Collection, good: &Path) {
     for (what, text) in logs {
         all.add_to_run(what, "log.jsonl", text);
     }
+    changes(all);
+    founders(all, &plan);
     all.add_to_run(
         "a log of eleven megabytes",
         "log.jsonl",
@@ -339,6 +345,85 @@ fn runs(all: &mut Collection, good: &Path) {
     );
     all.add_to_run("a champion cut off", "generation-1.ron", "(kind: ");
     all.add_to_run("another file as champion", "generation-2.ron", plan);
+}
+
+/// What somebody who means harm could write down as changed.
+fn changes(all: &mut Collection) {
+    let change = |generation: &str, field: &str, value: &str| {
+        line(&format!("{{\"generation\":{generation},\"field\":{field:?},\"value\":{value:?}}}"))
+    };
+    let parents = "evolution.halving.parents";
+    let good = change("2", parents, "2");
+    let mut files = vec![
+        ("of generation 0".to_owned(), change("0", parents, "2")),
+        ("of a generation after the end".to_owned(), change("4", parents, "2")),
+        ("of no generation".to_owned(), change("-1", parents, "2")),
+        ("of a huge generation".to_owned(), change("4294967296", parents, "2")),
+        ("out of order".to_owned(), change("3", parents, "3") + &good),
+        ("too many".to_owned(), good.repeat(2001)),
+        ("of eleven megabytes".to_owned(), good.repeat(11 * 1024 * 1024 / good.len() + 1)),
+        ("without a sum".to_owned(), "{\"generation\":2}\n".to_owned()),
+        ("of a field that is not known".to_owned(), good.replace("value", "valve")),
+        ("before what it would shorten".to_owned(), change("3", "evolution.generations", "2")),
+        ("without end".to_owned(), change("2", "evolution.generations", "10001")),
+        ("of a long value".to_owned(), change("2", parents, &"2".repeat(5_000_000))),
+        ("of a long field".to_owned(), change("2", &"x".repeat(5_000_000), "2")),
+        ("deep".to_owned(), change("2", parents, &"[".repeat(50))),
+    ];
+    for value in ["0", "-1", "NaN", "none", "", "1e99", "\u{1b}[2J", "null", "{}"] {
+        files.push((format!("to {value:?}"), change("2", parents, value)));
+    }
+    for (field, value) in [
+        ("trial.surface.friction", "0.5"),
+        ("genome.controller", "gait"),
+        ("evolution.strategy", "ga"),
+        ("evolution.ga.elites", "1"),
+        ("halving.parents", "2"),
+        ("../../etc/passwd", "2"),
+        ("\u{1b}[2J", "2"),
+        ("", ""),
+    ] {
+        files.push((format!("of {field:?}"), change("2", field, value)));
+    }
+    for place in (0..good.len() - 1).step_by(17) {
+        let mut bytes = good.clone().into_bytes();
+        bytes[place] ^= 2;
+        all.add_to_run(format!("changes with byte {place} flipped"), "changes.jsonl", bytes);
+    }
+    for (what, text) in files {
+        all.add_to_run(format!("changes {what}"), "changes.jsonl", text);
+    }
+    // Allowed by itself, but the checkpoint after generation 2 was written without it.
+    all.add_to_run("a change that was not made", "changes.jsonl", good);
+}
+
+/// Founders that do not fit, or mean harm.
+fn founders(all: &mut Collection, plan: &str) {
+    let genome = CHAMPION.split_once("    genome: ").expect("a genome").1;
+    let genome =
+        genome.split_once("    poses: ").expect("poses").0.trim_end_matches([',', ' ', '\n']);
+    let torques =
+        genome.split_once("torques_nm").expect("torques").1.trim_end().trim_end_matches(')');
+    let genome = |points: &str| {
+        format!(
+            "(bend_limit_rad: 0.6, twist_limit_rad: 0.9, density_kg_m3: 2.2, controller: \
+             Signal(points_per_s: {points}, torques_nm{torques}))"
+        )
+    };
+    for (what, name, genome) in [
+        ("of another length", "x", genome("10.0")),
+        ("of another rate", "x", genome("3.0")),
+        ("of a hostile name", "../\\u{1b}[2J", genome("10.0")),
+        ("of an endless name", &*"x".repeat(5_000_000), genome("10.0")),
+        ("of no name", "", genome("10.0")),
+        ("without a controller", "x", "(bend_limit_rad: 0.6)".to_owned()),
+        ("of numbers that are none", "x", genome("NaN")),
+    ] {
+        let founder = format!("founder: Some((name: \"{name}\", genome: {genome}))");
+        let text = plan.replacen("founder: None", &founder, 1);
+        assert_ne!(text, plan);
+        all.add_to_run(format!("a founder {what}"), "run.ron", text);
+    }
 }
 
 /// Runs the program within 200 MiB, apart from its own code.
@@ -497,6 +582,7 @@ fn links_folders_and_pipes_in_the_place_of_files_are_refused_and_not_followed() 
         "checkpoint-2.ron",
         "generation-1.ron",
         "evaluations.jsonl",
+        "changes.jsonl",
         "lock",
     ];
     let mut number = 0;
