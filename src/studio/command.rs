@@ -46,6 +46,21 @@ pub(super) enum Command {
         /// Its value as text.
         text: String,
     },
+    /// Change one setting of the run under way, by its full dotted name, from its next generation on. The next run
+    /// keeps what it has.
+    #[expect(dead_code, reason = "for panels that change the run alone")]
+    ChangeRun {
+        /// The setting's full dotted name: see [`crate::evolve::fields`].
+        field: String,
+        /// Its value as text.
+        text: String,
+    },
+    /// Evolve on so many worker threads, from the next generation on.
+    SetThreads(usize),
+    /// Let the next run descend from somebody, in whose world it takes place.
+    Found(Pick),
+    /// Let the next run begin from nothing again.
+    ForgetFounder,
     /// Take this shipped preset for the next run, and show what it does to what is on the stage.
     SetPreset(String),
     /// Go on with what was changed: it stays alone on the stage.
@@ -260,6 +275,19 @@ fn apply(
             Command::SetField { field, text } => {
                 stage.try_out(&mut evolution, &Change::Field { field, text })
             }
+            Command::ChangeRun { field, text } => evolution.change_running(field, text),
+            Command::SetThreads(threads) => evolution.set_threads(*threads),
+            Command::Found(pick) => match exhibit_of(pick, &evolution, &opening) {
+                Some(founder) => {
+                    let found = evolution.found_run(founder.champion(), founder.name());
+                    if found.is_ok() {
+                        notices.news(format!("The next run begins from {}.", founder.name()));
+                    }
+                    found
+                }
+                None => Ok(()),
+            },
+            Command::ForgetFounder => evolution.forget_founder(),
             Command::SetPreset(name) => stage.try_out(&mut evolution, &Change::Preset(name)),
             Command::DropChange => dropped(&mut evolution, &stage.exhibits(), &stage.programme)
                 .map(|show| stage.present(show)),

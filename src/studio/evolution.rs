@@ -1,5 +1,6 @@
 //! The experiment behind the window: started, held, reset; its reports kept for the panels.
 
+mod amend;
 mod take_in;
 
 use std::collections::VecDeque;
@@ -10,7 +11,7 @@ use bevy::prelude::*;
 
 use super::engine::Engine;
 use crate::check::Invalid;
-use crate::evolve::{Champion, Origin, RunPlan, Settings, with_field};
+use crate::evolve::{Champion, Origin, RunPlan, Settings, fields, with_field};
 use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
 use crate::save::{Earlier, RunSummary, load_preset};
 use crate::score::evaluate;
@@ -37,8 +38,12 @@ pub(super) struct Evolution {
     engine: Engine,
     /// Which run of this session it is; the first is 0.
     number: u32,
-    /// The current run; the engine's plan is that of the next.
+    /// The current run as it began; the engine's plan is that of the next.
     source: RunSource,
+    /// Its plan after all its changes.
+    source_now: RunPlan,
+    /// Its settings once those changes are made, too, that wait for its next generation.
+    awaited: Settings,
     background: Option<Background>,
     /// The run before, if it may still be ending.
     before: Option<Background>,
@@ -73,6 +78,8 @@ impl Evolution {
     /// A prepared run.
     fn prepared(source: RunSource, engine: Engine) -> Self {
         Self {
+            source_now: source.plan.clone(),
+            awaited: source.plan.settings.clone(),
             source,
             engine,
             number: 0,
@@ -117,9 +124,9 @@ impl Evolution {
         self.engine.next.seed
     }
 
-    /// Settings of the current run.
+    /// Settings of the current run, as they are after all its changes.
     pub fn settings(&self) -> &Settings {
-        &self.source.plan.settings
+        &self.source_now.settings
     }
 
     /// Settings of the next run.
@@ -142,9 +149,11 @@ impl Evolution {
         self.engine.next.settings.evolution.population
     }
 
-    /// Whether seed or settings were changed since the run was prepared.
+    /// Whether the next run has another seed, founder or settings than the current one has by now, or soon.
     pub fn next_run_differs(&self) -> bool {
-        self.source.plan != self.engine.next
+        let (now, next) = (&self.source_now, &self.engine.next);
+        let of = |plan: &RunPlan| (plan.seed, plan.preset.clone());
+        of(now) != of(next) || now.founder != next.founder || self.awaited != next.settings
     }
 
     /// Runs that were stopped before their end and can go on, once somebody has asked for them.
@@ -259,7 +268,8 @@ impl Evolution {
     /// Prepares the next run. The same run is thrown away, and begins anew; another, which was stopped at
     /// some time, will go on.
     pub fn reset(&mut self) -> Result<(), String> {
-        if self.next_run_differs() {
+        // One that was changed on its way is another than one that begins with what it was changed to.
+        if self.source.plan != self.engine.next {
             self.prepare_next();
         } else {
             self.replace(RunSource { earlier: Earlier::Discard, ..self.source.clone() });
@@ -316,15 +326,29 @@ impl Evolution {
         self.take_over_if_ready()
     }
 
-    /// Sets the population of the next run; a run that has not begun takes it at once.
+    /// Sets the population of the next run; a run that has not begun takes it at once, and one that is under way from
+    /// its next generation on, if its method allows it.
     pub fn set_population(&mut self, population: u32) -> Result<(), String> {
         self.set_field("evolution.population", &population.to_string())
     }
 
-    /// Sets one setting of the next run, by its name; a run that has not begun takes it at once.
+    /// Sets one setting of the next run, by its name; a run that has not begun takes it at once, and one that is under
+    /// way from its next generation on, if that setting may change.
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
-        self.engine.next.settings = with_field(&self.engine.next.settings, field, text)
-            .map_err(|error: Invalid| error.to_string())?;
+        let next = &self.engine.next;
+        let settings =
+            with_field(&next.settings, field, text).map_err(|e: Invalid| e.to_string())?;
+        let plan = RunPlan { settings, ..next.clone() };
+        plan.check_founder().map_err(|error| {
+            format!("The next run begins from a champion, whom this does not suit: {error}")
+        })?;
+        self.engine.next = plan;
+        // A name may be typed in short.
+        let is_it = |name: &String| name == field || name.ends_with(&format!(".{field}"));
+        let full = fields(self.settings()).into_iter().map(|(name, _)| name).find(is_it);
+        if let Some(field) = full {
+            self.change_running_too(&field, text)?;
+        }
         self.take_over_if_ready()
     }
 
@@ -333,6 +357,7 @@ impl Evolution {
         let preset = load_preset(name).map_err(|error| error.to_string())?;
         self.engine.next.preset = preset.name;
         self.engine.next.settings = preset.settings;
+        self.engine.next.founder = None;
         self.take_over_if_ready()
     }
 
@@ -345,6 +370,11 @@ impl Evolution {
         } else {
             next.preset.clone_from(&before.preset);
             next.settings = before.settings.clone();
+            next.founder.clone_from(&before.founder);
+        }
+        // One that was chosen meanwhile may not suit that world.
+        if next.check_founder().is_err() {
+            next.founder = None;
         }
         self.take_over_if_ready()
     }
@@ -389,6 +419,8 @@ impl Evolution {
         Ok(self.background.insert(background))
     }
 }
+
+pub(super) use amend::news_of;
 
 #[cfg(test)]
 mod fixtures;

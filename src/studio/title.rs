@@ -53,8 +53,9 @@ fn update(
         true => String::new(),
         false => format!(", held at {:.2} s", playback.time_s()),
     };
+    let from = evolution.founder().map(|name| format!(", from {name}")).unwrap_or_default();
     let title = format!(
-        "Snakes & Stairs - {}, seed {} - {} of {} generations, {status} - showing {shown}{held}",
+        "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{held}",
         evolution.preset(),
         evolution.seed(),
         evolution.reports().len(),

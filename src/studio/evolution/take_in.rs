@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 
 use super::Evolution;
+use super::amend::news_of;
 use crate::evolve::Champion;
 use crate::run::Event;
 use crate::save::Earlier;
@@ -83,6 +84,15 @@ fn take_in(
                 evolution.background = None;
                 evolution.engine.set_run_folder(None);
             }
+            Event::WasChanged(changes) => evolution.take_in_earlier_changes(&changes),
+            Event::Changed(change) => {
+                notices.news(news_of(&change));
+                evolution.take_in_changes(&[change]);
+            }
+            Event::NotChanged { field, reason } => {
+                evolution.await_no_change();
+                notices.problem(format!("The run keeps its {field}: {reason}"));
+            }
             Event::Explored(exploration) => evolution.explore(exploration),
             Event::Generation(report) => {
                 let champion = report.champion.iter();
@@ -103,5 +113,103 @@ fn take_in(
             }
             Event::Crashed(problem) => notices.problem(problem),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::run::RunSource;
+    use crate::save::SavesFolder;
+    use crate::studio::engine::Engine;
+    use crate::studio::evolution::Status;
+    use crate::studio::{Options, Theme};
+    use std::time::{Duration, Instant};
+
+    /// A studio without a window, whose run is saved in a folder.
+    fn studio(saves: &SavesFolder) -> App {
+        let mut settings = Settings::default();
+        settings.evolution.population = 6;
+        settings.evolution.generations = 3;
+        settings.trial.duration_s = 0.5;
+        let plan = RunPlan::new("test", 1, settings);
+        let options = Options {
+            run: RunSource::in_saves(saves, plan, Earlier::Keep),
+            threads: 1,
+            saves: saves.clone(),
+            champions: Vec::new(),
+            comparison: None,
+            window_size: (1280, 720),
+            theme: Theme::default(),
+            exit_after_frames: None,
+        };
+        let mut app = App::new();
+        app.insert_resource(Evolution::new(Engine::new(&options).expect("threads")))
+            .init_resource::<Notices>()
+            .init_resource::<Programme>()
+            .init_resource::<Playback>()
+            .add_message::<Show>()
+            .add_systems(Update, take_in);
+        app
+    }
+
+    /// Lets frames pass until something is so.
+    fn wait_until(app: &mut App, is_so: impl Fn(&Evolution) -> bool) {
+        // Nobody ever sends: whoever listens rests.
+        let (_never, rest) = std::sync::mpsc::channel::<()>();
+        let began = Instant::now();
+        while began.elapsed() < Duration::from_secs(60) {
+            app.update();
+            if is_so(app.world().resource()) {
+                return;
+            }
+            let _ = rest.recv_timeout(Duration::from_millis(2));
+        }
+        panic!("it never came");
+    }
+
+    #[test]
+    fn what_may_change_changes_in_the_run_and_the_next_and_what_may_not_in_the_next_alone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let mut app = studio(&saves);
+        let run = |app: &mut App, act: &dyn Fn(&mut Evolution) -> Result<(), String>| {
+            act(&mut app.world_mut().resource_mut::<Evolution>()).expect("allowed");
+        };
+        run(&mut app, &|run| run.single_generation());
+        wait_until(&mut app, |run| run.reports().len() == 1);
+        run(&mut app, &|run| {
+            run.set_field("halving.parents", "2")?;
+            run.set_population(4)?;
+            run.set_field("surface.friction", "0.5")?;
+            assert!(run.next_run_differs(), "in its friction");
+            run.set_field("surface.friction", "1")?;
+            assert!(!run.next_run_differs(), "the run will soon be like the next");
+            run.change_running("evolution.generations", "4")
+        });
+        wait_until(&mut app, |run| run.changes().len() == 3);
+        run(&mut app, &|run| {
+            let (now, next) = (&run.settings().evolution, &run.next_settings().evolution);
+            assert_eq!((now.halving.parents, now.population, now.generations), (2, 4, 4));
+            assert_eq!((next.halving.parents, next.population, next.generations), (2, 4, 3));
+            assert!(run.changes().iter().all(|change| change.generation == 2));
+            assert!(run.may_change("trial.surface.friction").is_err());
+            run.start()
+        });
+        wait_until(&mut app, |run| run.status() == Status::Finished);
+        let evolution = app.world().resource::<Evolution>();
+        let sizes: Vec<u32> = evolution.reports().iter().map(|report| report.evaluations).collect();
+        assert_eq!(sizes, [6, 4, 4, 4]);
+        // Gone on with by another session, it is what it was.
+        let (hash, folder) = (evolution.run_hash(), evolution.source.folder.clone());
+        drop(app);
+        let mut app = studio(&saves);
+        run(&mut app, &|run| run.go_on_with(&folder));
+        wait_until(&mut app, |run| run.status() == Status::Finished);
+        let evolution = app.world().resource::<Evolution>();
+        assert_eq!((evolution.run_hash(), evolution.changes().len()), (hash, 3));
+        assert_eq!(evolution.settings().evolution.generations, 4);
+        assert!(!evolution.next_run_differs(), "the next run is like this one");
     }
 }

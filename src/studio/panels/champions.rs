@@ -79,7 +79,7 @@ impl ChampionsPanel {
                     let name = if opening.len() == 1 { "Saved" } else { &saved.name };
                     let is_shown = shown.contains(&Shown::Opening(index));
                     let reached = saved.loaded.champion.reached();
-                    entry(ui, is_shown, name, &reached, Pick::Opening(index), asked);
+                    entry(ui, is_shown, name, &reached, Pick::Opening(index), None, asked);
                     continue;
                 }
                 // The latest first: that is what one waits for.
@@ -97,36 +97,44 @@ impl ChampionsPanel {
                 let pick = Pick::Generation(generation);
                 let is_best = best == Some(generation);
                 let name = if is_best { format!("{name}, best") } else { name };
-                let row = entry(ui, is_shown, &name, &champion.reached(), pick, asked);
-                if leaders(Some(generation)) > 1 {
-                    row.context_menu(|ui| {
-                        if ui.button("Race its best ten").clicked() {
-                            asked.push(Command::RaceLeaders(Some(generation)));
-                            ui.close();
-                        }
-                    });
-                }
+                let race = (leaders(Some(generation)) > 1).then_some(generation);
+                entry(ui, is_shown, &name, &champion.reached(), pick, race, asked);
             }
         });
     }
 }
 
-/// A row for somebody: a click shows it alone, one with Shift or Control puts it beside those on the stage.
+/// A row for somebody: a click shows it alone, one with Shift or Control puts it beside those on the stage; its menu
+/// lets the next run begin from it, and the best ten of its generation race, if they can.
 fn entry(
     ui: &mut egui::Ui,
     is_shown: bool,
     name: &str,
     reached: &str,
     pick: Pick,
+    race: Option<u32>,
     asked: &mut Vec<Command>,
-) -> egui::Response {
-    let hint = "Click to replay; with Shift, beside what is on the stage; right click for its generation's best";
+) {
+    let hint = "Click to replay; with Shift, beside what is on the stage; right click for more";
     let response = row(ui, is_shown, name, reached).on_hover_text(hint);
     if response.clicked() {
         let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
         asked.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
     }
-    response
+    response.context_menu(|ui| {
+        let found = ui.button("Begin the next run from it");
+        let hint = "The first generation descends from it, in its own world";
+        if found.on_hover_text(hint).clicked() {
+            asked.push(Command::Found(pick));
+            ui.close();
+        }
+        if let Some(generation) = race
+            && ui.button("Race its best ten").clicked()
+        {
+            asked.push(Command::RaceLeaders(Some(generation)));
+            ui.close();
+        }
+    });
 }
 
 #[cfg(test)]

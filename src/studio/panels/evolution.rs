@@ -6,8 +6,9 @@ use super::method::{method, preset_switch};
 use super::number_field::NumberField;
 use super::{explain, row, title_and};
 use crate::evolve::{LARGEST_POPULATION, RunPlan};
+use crate::run::THREADS_RANGE;
 use crate::studio::command::Command;
-use crate::studio::evolution::{Evolution, Status};
+use crate::studio::evolution::{Evolution, Status, news_of};
 use crate::studio::look;
 
 /// The panel, with what is being typed.
@@ -15,6 +16,7 @@ use crate::studio::look;
 pub(super) struct EvolutionPanel {
     seed: NumberField,
     population: NumberField,
+    threads: NumberField,
 }
 
 impl EvolutionPanel {
@@ -108,22 +110,62 @@ impl EvolutionPanel {
             let hint = "The same seed and settings give the same run, bit for bit";
             let seed = self.seed.ui(ui, "Seed", hint, run.next_seed(), 0..=u64::MAX);
             asked.extend(seed.map(Command::SetSeed));
-            let hint = "Snakes in a generation";
+            let hint = "Snakes in a generation, 1 to 100000. A run under way takes it from its next generation on, if its \
+                        method allows that";
             let range = 1..=LARGEST_POPULATION;
             let now = run.next_population();
             let population = self.population.ui(ui, "Population", hint, now, range);
             asked.extend(population.map(Command::SetPopulation));
         });
-        for problem in [self.seed.problem(), self.population.problem()].into_iter().flatten() {
+        ui.horizontal(|ui| {
+            let hint = "Worker threads that evolve, 1 to 1024, from the next generation on. They make it faster, \
+                        never other: leave a core to the window";
+            let threads = self.threads.ui(ui, "Threads", hint, run.threads(), THREADS_RANGE);
+            asked.extend(threads.map(Command::SetThreads));
+        });
+        let problems = [self.seed.problem(), self.population.problem(), self.threads.problem()];
+        for problem in problems.into_iter().flatten() {
             ui.colored_label(look::of(ui).problem, problem);
         }
         method(ui, run, asked);
+        founder(ui, run, asked);
+        changes(ui, run);
         if run.next_run_differs() {
             let hint = "Reset to begin a run with these values.";
             ui.label(egui::RichText::new(hint).color(look::of(ui).second));
         }
     }
 }
+
+/// From whom the next run begins, if from anybody, and the way back.
+fn founder(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+    let Some(name) = run.next_founder() else { return };
+    ui.horizontal(|ui| {
+        ui.label(format!("Begins from {name}"));
+        let button = ui.small_button("From nothing");
+        if button.on_hover_text("Draw the first generation of the next run from nothing").clicked()
+        {
+            asked.push(Command::ForgetFounder);
+        }
+    });
+}
+
+/// What was changed of the current run on its way.
+fn changes(ui: &mut egui::Ui, run: &Evolution) {
+    let lines: Vec<String> = run.changes().iter().map(news_of).collect();
+    let text = match lines.len() {
+        0 => return,
+        1 => "1 setting changed on the way".to_owned(),
+        several => format!("{several} settings changed on the way"),
+    };
+    let label = ui.label(egui::RichText::new(text).color(look::of(ui).second));
+    // The latest are what is remembered.
+    let latest = lines[lines.len().saturating_sub(MOST_LISTED)..].join("\n");
+    label.on_hover_text(latest);
+}
+
+/// So many changes are listed; more would not fit into a hint.
+const MOST_LISTED: usize = 12;
 
 /// Runs that were stopped before their end, to go on with.
 fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
@@ -136,7 +178,7 @@ fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
             explain(ui, "No other run was stopped before its end.");
         }
         for summary in stopped {
-            let RunPlan { preset, seed, settings } = &summary.plan;
+            let RunPlan { preset, seed, settings, .. } = &summary.plan;
             let (finished, all) = (summary.finished, settings.evolution.generations);
             let (name, behind) = (format!("{preset}, seed {seed}"), format!("{finished} of {all}"));
             let hint = format!(
@@ -186,6 +228,27 @@ mod tests {
         let mut run = run();
         run.start().expect("a thread");
         assert_eq!(sent(&run, |harness| harness.get_by_label("Pause").click()), [Command::Pause]);
+    }
+
+    #[test]
+    fn a_typed_number_of_threads_is_sent_and_the_founder_of_the_next_run_can_be_forgotten() {
+        let mut run = run();
+        let asked = sent(&run, |harness| {
+            harness.get_by_label("Threads").focus();
+            harness.run();
+            harness.get_by_label("Threads").type_text("2");
+            harness.run();
+            harness.key_press(egui::Key::Enter);
+            harness.run();
+        });
+        assert_eq!(asked, [Command::SetThreads(12)], "appended to the 1 that was there");
+        let champion = crate::save::shipped_champion().expect("well formed").champion;
+        run.found_run(&champion, "climber").expect("it fits");
+        let asked = sent(&run, |harness| {
+            assert!(harness.query_by_label("Begins from climber").is_some());
+            harness.get_by_label("From nothing").click();
+        });
+        assert_eq!(asked, [Command::ForgetFounder]);
     }
 
     #[test]

@@ -1,0 +1,188 @@
+//! The run under way is changed, or a champion founds the next one.
+
+use std::sync::Arc;
+
+use super::{Evolution, Status};
+use crate::check::within;
+use crate::evolve::{
+    Champion, Founder, RunPlan, SettingChange, Settings, may_change_during_run, with_field,
+};
+use crate::run::{THREADS_RANGE, pool};
+
+impl Evolution {
+    /// Whether a run is under way whose settings could change.
+    pub fn is_under_way(&self) -> bool {
+        matches!(self.status(), Status::Running | Status::Paused)
+    }
+
+    /// Whether a setting, by its full dotted name, may change in the run under way. The error is a sentence for a
+    /// tooltip.
+    pub fn may_change(&self, field: &str) -> Result<(), &'static str> {
+        if !self.is_under_way() {
+            return Err("No run is under way; the next run takes it.");
+        }
+        may_change_during_run(field, self.settings())
+    }
+
+    /// Changes a setting of the run under way, by its full dotted name, from its next generation on.
+    pub fn change_running(&mut self, field: &str, text: &str) -> Result<(), String> {
+        self.may_change(field).map_err(str::to_owned)?;
+        self.awaited = with_field(&self.awaited, field, text).map_err(|error| error.to_string())?;
+        if let Some(background) = &self.background {
+            background.amend([(field.to_owned(), text.to_owned())]);
+        }
+        Ok(())
+    }
+
+    /// Changes a setting of the run under way if it may change, and leaves it to the next run if not.
+    pub(super) fn change_running_too(&mut self, field: &str, text: &str) -> Result<(), String> {
+        if self.may_change(field).is_err() {
+            return Ok(());
+        }
+        self.change_running(field, text)
+    }
+
+    /// What was changed in the current run, the earliest first: for marks in a chart.
+    pub fn changes(&self) -> &[SettingChange] {
+        self.source_now.changes.made()
+    }
+
+    /// Takes in changes that the run has made.
+    pub(super) fn take_in_changes(&mut self, changes: &[SettingChange]) {
+        for change in changes {
+            // The run has allowed it before.
+            let _ = self.source_now.change(change);
+        }
+    }
+
+    /// Takes in what an earlier session has changed of a run that goes on. The next run is to be like it.
+    pub(super) fn take_in_earlier_changes(&mut self, changes: &[SettingChange]) {
+        let is_alike = self.source.plan == self.engine.next;
+        self.take_in_changes(changes);
+        self.awaited = self.source_now.settings.clone();
+        if is_alike {
+            self.engine.next.settings = self.awaited.clone();
+        }
+    }
+
+    /// Takes in that a change was refused.
+    pub(super) fn await_no_change(&mut self) {
+        self.awaited = self.source_now.settings.clone();
+    }
+
+    /// How many threads evolve.
+    pub fn threads(&self) -> usize {
+        self.engine.pool.current_num_threads()
+    }
+
+    /// Evolves on so many threads, from the next generation on and in later runs. That changes no bit.
+    pub fn set_threads(&mut self, threads: usize) -> Result<(), String> {
+        within("threads", threads, THREADS_RANGE).map_err(|error| error.to_string())?;
+        let pool = pool(threads).map_err(|error| format!("threads: cannot be started: {error}"))?;
+        self.engine.pool = Arc::new(pool);
+        if let Some(background) = &self.background {
+            background.set_pool(Arc::clone(&self.engine.pool));
+        }
+        Ok(())
+    }
+
+    /// Prepares the next run so that it descends from a champion, in the champion's own world. Genomes may be what
+    /// they could be, and what the champion is. A run that has not begun is replaced by it at once.
+    pub fn found_run(&mut self, champion: &Champion, name: &str) -> Result<(), String> {
+        let next = &self.engine.next;
+        let settings = Settings {
+            trial: champion.trial.clone(),
+            genome: next.settings.genome.widened_for(&champion.genome),
+            evolution: next.settings.evolution.clone(),
+        };
+        let founder = Founder::new(name, champion.genome.clone());
+        let plan = settings
+            .check()
+            .and_then(|()| RunPlan::new(&next.preset, next.seed, settings).founded_by(founder));
+        self.engine.next = plan.map_err(|error| format!("No run can begin from it: {error}"))?;
+        self.take_over_if_ready()
+    }
+
+    /// Lets the next run begin from nothing again.
+    pub fn forget_founder(&mut self) -> Result<(), String> {
+        self.engine.next.founder = None;
+        self.take_over_if_ready()
+    }
+
+    /// What the founder of the current run is called, if it has one.
+    pub fn founder(&self) -> Option<&str> {
+        self.source.plan.founder.as_ref().map(|founder| founder.name())
+    }
+
+    /// What the founder of the next run is called, if it has one.
+    pub fn next_founder(&self) -> Option<&str> {
+        self.engine.next.founder.as_ref().map(|founder| founder.name())
+    }
+}
+
+/// A change in a few words: "From generation 8: mutation range 50 N·m".
+pub(in crate::studio) fn news_of(change: &SettingChange) -> String {
+    let SettingChange { generation, field, value } = change;
+    let name = field.rsplit('.').next().unwrap_or(field);
+    let (name, unit) = match name.strip_suffix("_nm") {
+        Some(name) => (name, " N·m"),
+        None => (name, ""),
+    };
+    let (name, value) = (name.replace('_', " "), value.replace('_', " "));
+    format!("From generation {generation}: {name} {value}{unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::evolution::prepared_run;
+
+    #[test]
+    fn a_change_is_told_in_words() {
+        let change = |field: &str, value: &str| {
+            let (field, value) = (format!("evolution.{field}"), value.to_owned());
+            news_of(&SettingChange { generation: 8, field, value })
+        };
+        let range = change("halving.mutation_range_nm", "50");
+        assert_eq!(range, "From generation 8: mutation range 50 N·m");
+        assert_eq!(change("ga.crossover", "one_point"), "From generation 8: crossover one point");
+    }
+
+    #[test]
+    fn nothing_can_be_changed_of_a_run_that_has_not_begun() {
+        let mut run = prepared_run();
+        let reason = run.change_running("evolution.generations", "9").expect_err("refused");
+        assert!(reason.starts_with("No run is under way"), "{reason}");
+        assert_eq!(run.changes(), []);
+    }
+
+    #[test]
+    fn the_threads_change_and_too_many_are_refused() {
+        let mut run = prepared_run();
+        run.set_threads(2).expect("allowed");
+        assert_eq!(run.threads(), 2);
+        let refusal = run.set_threads(0).expect_err("refused");
+        assert_eq!(refusal, "threads is 0; allowed: 1 to 1024");
+        assert_eq!(run.threads(), 2);
+    }
+
+    #[test]
+    fn a_champion_founds_the_next_run_in_its_own_world() {
+        let mut run = prepared_run();
+        let champion = shipped_champion().expect("well formed").champion;
+        run.found_run(&champion, "climber").expect("it fits");
+        assert_eq!((run.founder(), run.next_founder()), (Some("climber"), Some("climber")));
+        assert_eq!(run.settings().trial, champion.trial);
+        assert_eq!(run.settings().genome.controller, champion.genome.controller.kind());
+        let refusal = run.set_field("agent.limbs", "7").expect_err("refused");
+        assert!(refusal.contains("founder.controller joints is 4; allowed: 6"), "{refusal}");
+        assert_eq!(run.next_founder(), Some("climber"), "and everything is as it was");
+        run.forget_founder().expect("allowed");
+        assert_eq!((run.founder(), run.next_founder()), (None, None));
+        run.set_field("agent.limbs", "7").expect("allowed again");
+        run.found_run(&champion, "climber").expect("it fits");
+        run.set_preset("report").expect("shipped");
+        assert_eq!(run.next_founder(), None, "a preset begins from nothing");
+    }
+}
