@@ -56,6 +56,7 @@ pub(super) enum Command {
         text: String,
     },
     /// Evolve on so many worker threads, from the next generation on.
+    #[expect(dead_code, reason = "for a panel with a control of threads")]
     SetThreads(usize),
     /// Let the next run descend from somebody, in whose world it takes place.
     Found(Pick),

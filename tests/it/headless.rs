@@ -94,6 +94,82 @@ fn saves_in_the_working_directory_are_used_if_there_are_some_else_the_data_folde
     assert!(here.starts_with("saves/"), "{here}");
 }
 
+/// A champion that stands on the landing.
+const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
+
+#[test]
+fn a_run_from_a_champion_loses_nothing_is_told_so_and_can_be_gone_on_with() {
+    let folder = folder();
+    let small = "--set newborns=0 --population 6 --generations 2 --out out";
+    let arguments = format!("--no-render --json --from {CLIMBER} --set strategy=halving {small}");
+    let output = run(folder.path(), &arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
+    assert!(stderr.contains("seed 1, from climber: generations 2"), "{stderr}");
+    let lines: Vec<serde_json::Value> = String::from_utf8_lossy(&output.stdout)
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect();
+    let replay = json_lines(folder.path(), &format!("replay {CLIMBER} --no-render --json"));
+    let reached = replay[0]["fitness"].as_f64().expect("a number");
+    assert!(lines[0]["best"].as_f64().expect("a number") >= reached, "{lines:?}");
+    let champion = lines[2]["champion"].as_str().expect("a path");
+    let its_folder = champion.rsplit_once('/').expect("a folder").0;
+    // As a kill after the first generation would have left it.
+    let log = folder.path().join(its_folder).join("log.jsonl");
+    let text = std::fs::read_to_string(&log).expect("read");
+    std::fs::write(&log, text.split_inclusive('\n').next().expect("a line")).expect("written");
+    let resumed = json_lines(folder.path(), &format!("--no-render --json --resume {its_folder}"));
+    assert_eq!(resumed[2]["run_hash"], lines[2]["run_hash"]);
+    // Another run than the one from nothing.
+    let without = format!("--no-render --json --set strategy=halving {small}");
+    let without = json_lines(folder.path(), &without);
+    assert_ne!(
+        without[2]["champion"].as_str().and_then(|path| path.rsplit_once('/')).map(|p| p.0),
+        Some(its_folder)
+    );
+}
+
+#[test]
+fn a_run_from_a_champion_begins_with_any_method() {
+    let folder = folder();
+    for strategy in ["halving", "ga", "cma_es", "map_elites", "novelty", "random"] {
+        let small = "--population 8 --generations 2 --duration 1 --out out";
+        let arguments =
+            format!("--no-render --json --from {CLIMBER} --set strategy={strategy} {small}");
+        let lines = json_lines(folder.path(), &arguments);
+        assert_eq!(lines[2]["done"], json!(true), "{strategy}");
+    }
+}
+
+#[test]
+fn whom_a_run_cannot_begin_from_is_refused_with_what_does_not_fit() {
+    let folder = folder();
+    let no_champion = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/presets/mud.ron");
+    for (arguments, code, complaint) in [
+        (
+            format!("--from {CLIMBER} --set agent.limbs=7"),
+            2,
+            "founder.controller joints is 4; allowed: 6",
+        ),
+        (
+            format!("--from {CLIMBER} --set controller=signal"),
+            2,
+            "founder.controller is gait; allowed: signal",
+        ),
+        ("--from nosuch.ron".to_owned(), 1, "nosuch.ron: cannot be read"),
+        (format!("--from {no_champion}"), 1, "mud.ron: kind is \"\""),
+        (format!("--from {CLIMBER} --resume x"), 2, "cannot be used with"),
+    ] {
+        let output = run(folder.path(), &format!("--no-render --out out {arguments}"));
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains(complaint), "{message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert_eq!(output.status.code(), Some(code), "{message}");
+        assert!(!folder.path().join("out").exists(), "nothing was begun");
+    }
+}
+
 #[test]
 fn presets_are_listed_with_what_they_are() {
     let folder = folder();

@@ -12,7 +12,7 @@ use rand::RngExt;
 use serde_json::{Value, json};
 use snakes_and_stairs::evolve::{RunPlan, Settings};
 use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::run::RunSource;
+use snakes_and_stairs::run::{Control, KeptRun, RunSource, pool};
 use snakes_and_stairs::save::{Earlier, SavesFolder};
 
 use super::program::{folder, json_lines, run, snakes};
@@ -111,6 +111,82 @@ fn a_run_that_is_killed_at_any_instant_goes_on_and_ends_with_the_same_hash() {
     }
     assert!(killed_on_the_way >= 40, "only {killed_on_the_way} of 50 were killed on the way");
     println!("killed on the way: {killed_on_the_way} of 50");
+}
+
+/// Settings of a tiny run that change on its way: before which generation, what, to what.
+const CHANGES: [(u32, &str, &str); 5] = [
+    (2, "halving.parents", "2"),
+    (9, "halving.mutation_range_nm", "300"),
+    (9, "population", "6"),
+    (21, "halving.mutation_decay", "0.9"),
+    (38, "generations", "44"),
+];
+
+/// Evolves a kept run until so many generations are finished, and makes the changes on the way.
+fn evolve_changing(run: &mut KeptRun, last: u32) {
+    let pool = pool(2).expect("a pool");
+    while !run.experiment.is_over() && run.experiment.finished() < last {
+        let next = run.experiment.finished() + 1;
+        for (_, field, value) in CHANGES.iter().filter(|(of, _, _)| *of == next) {
+            let field = format!("evolution.{field}");
+            run.keeper.amend(&mut run.experiment, &field, value).expect("allowed");
+        }
+        let report = run.experiment.run_generation(&pool, &Control::default());
+        run.keeper.keep(&run.experiment, &report.expect("not cancelled")).expect("kept");
+    }
+}
+
+#[test]
+fn a_run_that_was_changed_and_is_killed_at_any_instant_makes_its_changes_again() {
+    let saves = folder();
+    let mut settings: Settings =
+        snakes_and_stairs::save::load_preset("report").expect("shipped").settings;
+    settings.evolution.population = 4;
+    settings.evolution.generations = 40;
+    settings.trial.duration_s = 0.2;
+    let plan = RunPlan::new("report", 1, settings);
+    let open = |name: &str| {
+        let folder = SavesFolder::find(Some(&saves.path().join(name)));
+        RunSource::in_saves(&folder, plan.clone(), Earlier::Keep).open("a test").expect("opened")
+    };
+    let mut whole = open("whole");
+    evolve_changing(&mut whole, u32::MAX);
+    assert_eq!(whole.experiment.finished(), 44);
+    let expected = json!(format!("{:016x}", whole.experiment.run_hash()));
+    let changes = fs::read(whole.keeper.folder().join("changes.jsonl")).expect("read");
+    assert_eq!(changes.iter().filter(|byte| **byte == b'\n').count(), CHANGES.len());
+    let mut rng = stream(2, 0, 0, Purpose::Calibration);
+    for round in 0..12 {
+        let mut begun = open(&format!("out-{round}"));
+        // After the first change, after the third, after none.
+        evolve_changing(&mut begun, [1, 3, 12, 0][round % 4]);
+        let run_folder = begun.keeper.folder().to_owned();
+        drop(begun);
+        // As if a disk had lost the latest generations: all changes are known, some are still ahead.
+        fs::write(run_folder.join("changes.jsonl"), &changes).expect("written");
+        if [2, 3].contains(&(round % 4)) {
+            // Of those that count already none was left out.
+            fs::remove_file(run_folder.join("log.jsonl")).expect("removed");
+        }
+        let resume = format!("--no-render --json --resume {} --threads 2", run_folder.display());
+        for _ in 0..2 {
+            let and_then = Duration::from_micros(rng.random_range(0..8000));
+            kill_after(rng.random_range(1..43), and_then, saves.path(), &resume);
+        }
+        let output = run(saves.path(), &resume);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "round {round}: {stderr}");
+        let second = stderr.lines().nth(1).unwrap_or_default();
+        let told = "changed on the way: halving.parents 2 from generation 2, halving.mutation_range_nm 300";
+        assert!(second.starts_with(told), "{stderr}");
+        let stdout = String::from_utf8_lossy(&output.stdout);
+        let last = stdout.lines().last().expect("lines");
+        let last: Value = serde_json::from_str(last).expect("JSON");
+        assert_eq!(last["run_hash"], expected, "round {round}");
+        assert_eq!(stdout.lines().count(), 45, "44 generations");
+        let kept = fs::read(run_folder.join("changes.jsonl")).expect("read");
+        assert_eq!(kept, changes, "nothing is written down twice");
+    }
 }
 
 #[test]

@@ -6,7 +6,6 @@ use super::method::{method, preset_switch};
 use super::number_field::NumberField;
 use super::{explain, row, title_and};
 use crate::evolve::{LARGEST_POPULATION, RunPlan};
-use crate::run::THREADS_RANGE;
 use crate::studio::command::Command;
 use crate::studio::evolution::{Evolution, Status, news_of};
 use crate::studio::look;
@@ -16,7 +15,6 @@ use crate::studio::look;
 pub(super) struct EvolutionPanel {
     seed: NumberField,
     population: NumberField,
-    threads: NumberField,
 }
 
 impl EvolutionPanel {
@@ -117,14 +115,7 @@ impl EvolutionPanel {
             let population = self.population.ui(ui, "Population", hint, now, range);
             asked.extend(population.map(Command::SetPopulation));
         });
-        ui.horizontal(|ui| {
-            let hint = "Worker threads that evolve, 1 to 1024, from the next generation on. They make it faster, \
-                        never other: leave a core to the window";
-            let threads = self.threads.ui(ui, "Threads", hint, run.threads(), THREADS_RANGE);
-            asked.extend(threads.map(Command::SetThreads));
-        });
-        let problems = [self.seed.problem(), self.population.problem(), self.threads.problem()];
-        for problem in problems.into_iter().flatten() {
+        for problem in [self.seed.problem(), self.population.problem()].into_iter().flatten() {
             ui.colored_label(look::of(ui).problem, problem);
         }
         method(ui, run, asked);
@@ -231,17 +222,8 @@ mod tests {
     }
 
     #[test]
-    fn a_typed_number_of_threads_is_sent_and_the_founder_of_the_next_run_can_be_forgotten() {
+    fn the_founder_of_the_next_run_can_be_forgotten() {
         let mut run = run();
-        let asked = sent(&run, |harness| {
-            harness.get_by_label("Threads").focus();
-            harness.run();
-            harness.get_by_label("Threads").type_text("2");
-            harness.run();
-            harness.key_press(egui::Key::Enter);
-            harness.run();
-        });
-        assert_eq!(asked, [Command::SetThreads(12)], "appended to the 1 that was there");
         let champion = crate::save::shipped_champion().expect("well formed").champion;
         run.found_run(&champion, "climber").expect("it fits");
         let asked = sent(&run, |harness| {
