@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::cma::{Ranked, Shape};
 use super::restarts::{CmaSettings, RestartKind, Restarting};
 use super::search::Search;
-use super::{PointState, RunPlan, Strategy, StrategyState, full_ranking};
+use super::{Parents, PointState, RunPlan, Strategy, StrategyState, full_ranking};
 use crate::check::{Invalid, within};
 use crate::genome::Genome;
 use crate::rng::Purpose;
@@ -175,5 +175,11 @@ impl Strategy for CmaEs {
     fn amend(&mut self, plan: &RunPlan) {
         // What it has learned depends on nothing that may change.
         self.settings = Self::settings(plan);
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let is_learned = self.state.is_some();
+        let parents = if is_learned { Parents::Distribution } else { Parents::Newborn };
+        vec![parents; self.population()]
     }
 }

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::search::{Search, normal};
-use super::{PointState, RunPlan, Strategy, StrategyState, full_ranking};
+use super::{Parents, Place, PointState, RunPlan, Strategy, StrategyState, full_ranking};
 use crate::check::{Invalid, within};
 use crate::genome::Genome;
 use crate::rng::Purpose;
@@ -114,6 +114,16 @@ pub struct Member {
 #[serde(transparent)]
 pub struct GaState(Vec<Member>);
 
+/// How an individual comes about; the numbers are indices among the last generation, best first.
+enum Origin {
+    /// From nothing.
+    Newborn,
+    /// It goes on unchanged.
+    Elite(usize),
+    /// From one parent, or two.
+    Child(usize, Option<usize>),
+}
+
 /// Makes generations of points; who is best is told from outside.
 #[derive(Debug, Clone)]
 pub struct Breeder {
@@ -122,13 +132,16 @@ pub struct Breeder {
     pub search: Search,
     /// The last generation, best first; nobody at the beginning.
     parents: GaState,
+    /// Where they come from; nothing, if that is not known.
+    places: Vec<Place>,
 }
 
 impl Breeder {
     /// A breeder at its beginning.
     pub fn new(plan: &RunPlan) -> Self {
         let settings = plan.settings.evolution.ga.clone();
-        Self { settings, search: Search::new(plan, 0), parents: GaState::default() }
+        let (search, parents) = (Search::new(plan, 0), GaState::default());
+        Self { settings, search, parents, places: Vec::new() }
     }
 
     /// A breeder that goes on.
@@ -139,7 +152,8 @@ impl Breeder {
             within("step", member.step, STEPS)?;
             search.check(&member.point)?;
         }
-        Ok(Self { settings: plan.settings.evolution.ga.clone(), search, parents })
+        let settings = plan.settings.evolution.ga.clone();
+        Ok(Self { settings, search, parents, places: Vec::new() })
     }
 
     /// The next generation.
@@ -159,6 +173,7 @@ impl Breeder {
         let generation = self.generation();
         self.parents =
             GaState(order.iter().filter_map(|&index| generation.get(index).cloned()).collect());
+        self.places = Place::all(self.search.generation, order);
         self.search.generation += 1;
     }
 
@@ -173,23 +188,61 @@ impl Breeder {
         self.parents.clone()
     }
 
-    fn individual(&self, individual: usize) -> Member {
-        let parents = &self.parents.0;
-        if parents.is_empty() {
-            return self.first(individual);
-        }
+    /// Whom the next generation comes from.
+    pub fn parents(&self) -> Vec<Parents> {
+        let of = |individual| {
+            let place = |index: usize| self.places.get(index).copied();
+            let parents = match self.origin(individual).0 {
+                Origin::Newborn => Some(Parents::Newborn),
+                Origin::Elite(index) | Origin::Child(index, None) => place(index).map(Parents::One),
+                Origin::Child(first, Some(second)) => {
+                    place(first).zip(place(second)).map(|(a, b)| Parents::Two(a, b))
+                }
+            };
+            parents.unwrap_or(Parents::Unknown)
+        };
+        (0..self.search.population).map(of).collect()
+    }
+
+    /// The places of the last generation, best first.
+    pub fn breeders(&self) -> Vec<Place> {
+        self.places.clone()
+    }
+
+    /// Takes in what [`Self::breeders`] said.
+    pub fn recall(&mut self, breeders: &[Place]) {
+        self.places = breeders.get(..self.parents.0.len()).unwrap_or_default().to_vec();
+    }
+
+    /// How an individual comes about, and the random numbers that are left for what follows.
+    fn origin(&self, individual: usize) -> (Origin, ChaCha8Rng) {
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let count = self.parents.0.len();
         // Somebody has to change.
         let elites = (self.settings.elites as usize).min(self.search.population - 1);
-        if individual < elites
-            && let Some(elite) = parents.get(individual)
-        {
-            return elite.clone();
-        }
-        let mut rng = self.search.stream(individual, Purpose::Mutation);
-        let mut child = self.parent(&mut rng).clone();
-        if rng.random_range(0.0..1.0) < f64::from(self.settings.crossover_share) {
-            let other = self.parent(&mut rng);
-            self.cross(&mut child, other, &mut rng);
+        let origin = if count == 0 {
+            Origin::Newborn
+        } else if individual < elites.min(count) {
+            Origin::Elite(individual)
+        } else {
+            let first = self.parent(&mut rng);
+            let is_crossed = rng.random_range(0.0..1.0) < f64::from(self.settings.crossover_share);
+            Origin::Child(first, is_crossed.then(|| self.parent(&mut rng)))
+        };
+        (origin, rng)
+    }
+
+    fn individual(&self, individual: usize) -> Member {
+        let parents = &self.parents.0;
+        let (origin, mut rng) = self.origin(individual);
+        let (first, second) = match origin {
+            Origin::Newborn => return self.first(individual),
+            Origin::Elite(index) => return parents[index].clone(),
+            Origin::Child(first, second) => (first, second),
+        };
+        let mut child = parents[first].clone();
+        if let Some(other) = second {
+            self.cross(&mut child, &parents[other], &mut rng);
         }
         self.mutate(&mut child, &mut rng);
         child
@@ -210,10 +263,10 @@ impl Breeder {
         member
     }
 
-    fn parent(&self, rng: &mut ChaCha8Rng) -> &Member {
-        let parents = &self.parents.0;
-        let count = parents.len();
-        let index = match self.settings.selection {
+    /// The index of somebody who becomes a parent.
+    fn parent(&self, rng: &mut ChaCha8Rng) -> usize {
+        let count = self.parents.0.len();
+        match self.settings.selection {
             // They are in order: the best of the drawn is the one with the least index.
             Selection::Tournament => (0..self.settings.tournament)
                 .map(|_| rng.random_range(0..count))
@@ -221,8 +274,7 @@ impl Breeder {
             // Linear ranking with selection pressure 2: the lesser of two drawn at random has its
             // distribution, P(i) in proportion to n - i - 1/2.
             Selection::Rank => rng.random_range(0..count).min(rng.random_range(0..count)),
-        };
-        &parents[index]
+        }
     }
 
     fn cross(&self, child: &mut Member, other: &Member, rng: &mut ChaCha8Rng) {
@@ -298,6 +350,18 @@ impl Strategy for Ga {
     fn amend(&mut self, plan: &RunPlan) {
         self.breeder.amend(plan);
     }
+
+    fn parents(&self) -> Vec<Parents> {
+        self.breeder.parents()
+    }
+
+    fn breeders(&self) -> Vec<Place> {
+        self.breeder.breeders()
+    }
+
+    fn recall(&mut self, breeders: &[Place]) {
+        self.breeder.recall(breeders);
+    }
 }
 
 #[cfg(test)]
@@ -320,9 +384,7 @@ mod tests {
         let mut counts = vec![0; 200];
         let mut rng = breeder.search.stream(0, Purpose::Mutation);
         for _ in 0..40_000 {
-            let parent = breeder.parent(&mut rng);
-            let index = breeder.parents.0.iter().position(|member| member == parent);
-            counts[index.expect("one of them")] += 1;
+            counts[breeder.parent(&mut rng)] += 1;
         }
         counts
     }
@@ -345,6 +407,26 @@ mod tests {
         let next = breeder.generation();
         assert_eq!(next[..3], breeder.parents.0[..3]);
         assert!(next[3..].iter().all(|child| !breeder.parents.0.contains(child)));
+    }
+
+    #[test]
+    fn every_gene_of_a_child_is_near_that_of_a_parent_it_names() {
+        let breeder = breeder(|settings| settings.step = 1.0e-4);
+        let index_of = |place: Place| {
+            breeder.places.iter().position(|known| *known == place).expect("one of the last")
+        };
+        let mut seen = [0; 3];
+        for (child, parents) in breeder.generation().iter().zip(breeder.parents()) {
+            let parents: Vec<_> = parents.places().map(index_of).collect();
+            seen[parents.len()] += 1;
+            let members: Vec<_> = parents.iter().map(|&index| &breeder.parents.0[index]).collect();
+            for (gene, value) in child.point.iter().enumerate() {
+                let is_near = |member: &&Member| (member.point[gene] - value).abs() < 0.01;
+                assert!(members.iter().any(|member| is_near(member)), "gene {gene}");
+            }
+        }
+        assert!(seen[0] == 0 && seen[1] > 50 && seen[2] > 50, "{seen:?}");
+        assert_eq!(breeder.parents()[0], Parents::One(breeder.places[0]), "the first is an elite");
     }
 
     #[test]

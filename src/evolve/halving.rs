@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{LARGEST_POPULATION, RunPlan, Strategy, StrategyState, ranking};
+use super::{LARGEST_POPULATION, Parents, Place, RunPlan, Strategy, StrategyState, ranking};
 use crate::check::{Invalid, within};
 use crate::genome::{Descent, Genome};
 use crate::rng::{Purpose, stream};
@@ -44,6 +44,8 @@ pub struct Halving {
     /// The generation that `ask` returns; the first is 1.
     generation: u32,
     parents: Vec<Genome>,
+    /// Where they come from; nothing, if that is not known.
+    places: Vec<Place>,
 }
 
 impl Halving {
@@ -53,6 +55,7 @@ impl Halving {
             descent: plan.settings.trial.descent(),
             generation: 1,
             parents: plan.founder.iter().map(|founder| founder.genome().clone()).collect(),
+            places: Vec::new(),
             plan: plan.clone(),
         }
     }
@@ -88,9 +91,14 @@ impl Halving {
         self.plan.settings.genome.birth(self.descent, &mut rng)
     }
 
-    fn child(&self, individual: u32) -> Genome {
+    /// Which of the parents, of whom there is one at least, is that of an individual.
+    fn parent_of(&self, individual: u32) -> usize {
         // In turn, so that every parent has its equal share of the children.
-        let parent = &self.parents[individual as usize % self.parents.len()];
+        individual as usize % self.parents.len()
+    }
+
+    fn child(&self, individual: u32) -> Genome {
+        let parent = &self.parents[self.parent_of(individual)];
         if self.generation == 1 && individual == 0 {
             // The founder itself, so that it is not lost.
             return parent.clone();
@@ -119,8 +127,10 @@ impl Strategy for Halving {
 
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
         let best = ranking(evaluations);
-        let chosen = best.iter().take(self.plan.settings.evolution.halving.parents as usize);
-        self.parents = chosen.map(|&index| genomes[index].clone()).collect();
+        let most = self.plan.settings.evolution.halving.parents as usize;
+        let chosen = &best[..best.len().min(most)];
+        self.parents = chosen.iter().map(|&index| genomes[index].clone()).collect();
+        self.places = Place::all(self.generation, chosen);
         self.generation += 1;
     }
 
@@ -132,6 +142,27 @@ impl Strategy for Halving {
         self.plan = plan.clone();
         // They are in order: the best stay.
         self.parents.truncate(plan.settings.evolution.halving.parents as usize);
+        self.places.truncate(self.parents.len());
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let of = |individual| {
+            if self.parents.is_empty() {
+                return Parents::Newborn;
+            }
+            let place = self.places.get(self.parent_of(individual));
+            place.map_or(Parents::Unknown, |place| Parents::One(*place))
+        };
+        (0..self.plan.settings.evolution.population).map(of).collect()
+    }
+
+    fn breeders(&self) -> Vec<Place> {
+        self.places.clone()
+    }
+
+    fn recall(&mut self, breeders: &[Place]) {
+        // Others may be written down behind them.
+        self.places = breeders.get(..self.parents.len()).unwrap_or_default().to_vec();
     }
 }
 
@@ -188,6 +219,35 @@ mod tests {
             }
             genomes = children;
         }
+    }
+
+    #[test]
+    fn without_mutation_a_child_is_its_parent_and_so_it_is_after_a_stop() {
+        let mut settings = Settings::default();
+        settings.evolution.population = 8;
+        settings.evolution.halving.parents = 3;
+        settings.evolution.halving.mutation_range_nm = 0.0;
+        settings.trial.duration_s = 1.0;
+        let plan = RunPlan::new("test", 1, settings);
+        let mut halving = Halving::new(&plan);
+        assert_eq!(halving.parents(), [Parents::Newborn; 8]);
+        let genomes = halving.ask();
+        let evaluations: Vec<_> = (0..8).map(|i| evaluated(i as f32)).collect();
+        halving.tell(&genomes, &evaluations);
+        let is_right = |halving: &Halving| {
+            for (child, parents) in halving.ask().iter().zip(halving.parents()) {
+                let Parents::One(place) = parents else { panic!("{parents:?}") };
+                assert_eq!(place.generation, 1);
+                assert_eq!(*child, genomes[place.individual as usize]);
+            }
+        };
+        is_right(&halving);
+        let mut again = Halving::resumed(&plan, 1, halving.parents.clone()).expect("it fits");
+        assert_eq!(again.parents(), [Parents::Unknown; 8]);
+        again.recall(&halving.breeders()[..2]);
+        assert_eq!(again.parents(), [Parents::Unknown; 8], "too few to be them");
+        again.recall(&halving.breeders());
+        is_right(&again);
     }
 
     #[test]

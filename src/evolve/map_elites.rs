@@ -3,13 +3,16 @@
 //! Mouret, GECCO 2018), and one that searches for improvements by CMA-ES (Fontaine and others, GECCO 2020).
 
 use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::archive::Addition;
 use super::cma::{Cma, Ranked};
 use super::cma_es::shape;
 use super::search::{Search, normal};
-use super::{Archive, Descriptor, Elite, PointState, RunPlan, Strategy, StrategyState};
+use super::{
+    Archive, Descriptor, Elite, Parents, Place, PointState, RunPlan, Strategy, StrategyState,
+};
 use crate::check::{Invalid, within};
 use crate::genome::Genome;
 use crate::rng::Purpose;
@@ -148,11 +151,18 @@ impl MapElites {
         points
     }
 
+    /// Which of the elites is varied, which one it moves towards, and the random numbers for how far.
+    fn chosen(&self, individual: usize, elites: usize) -> (usize, usize, ChaCha8Rng) {
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let parent = rng.random_range(0..elites);
+        let other = rng.random_range(0..elites);
+        (parent, other, rng)
+    }
+
     /// An elite, moved by a normally distributed step in every gene and along the line to another elite.
     fn varied(&self, individual: usize, elites: &[&Elite]) -> Vec<f64> {
-        let mut rng = self.search.stream(individual, Purpose::Mutation);
-        let parent = elites[rng.random_range(0..elites.len())];
-        let other = elites[rng.random_range(0..elites.len())];
+        let (parent, other, mut rng) = self.chosen(individual, elites.len());
+        let (parent, other) = (elites[parent], elites[other]);
         let along = f64::from(self.settings.line) * normal(&mut rng);
         let step = f64::from(self.settings.step);
         let pairs = parent.point.iter().zip(&other.point);
@@ -253,7 +263,82 @@ impl Strategy for MapElites {
         self.emitter.take_if(|emitter| emitter.population() as usize != share);
     }
 
+    fn parents(&self) -> Vec<Parents> {
+        let elites = self.breeders();
+        let drawn = self.emitter.as_ref().map_or(0, |emitter| emitter.population() as usize);
+        let of = |individual| {
+            if individual < drawn {
+                return Parents::Distribution;
+            }
+            if elites.is_empty() {
+                return Parents::Newborn;
+            }
+            let (parent, other, _) = self.chosen(individual, elites.len());
+            if parent == other || self.settings.line == 0.0 {
+                return Parents::One(elites[parent]);
+            }
+            Parents::Two(elites[parent], elites[other])
+        };
+        (0..self.search.population).map(of).collect()
+    }
+
+    fn breeders(&self) -> Vec<Place> {
+        let place =
+            |elite: &Elite| Place { generation: elite.generation, individual: elite.individual };
+        self.archive.elites().map(|(_, elite)| place(elite)).collect()
+    }
+
     fn archive(&self) -> Option<&Archive> {
         Some(&self.archive)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+    use crate::score::Behaviour;
+
+    #[test]
+    fn without_a_step_a_child_is_the_elite_it_names() {
+        let mut settings = Settings::default();
+        settings.evolution.population = 12;
+        settings.trial.duration_s = 1.0;
+        settings.evolution.map_elites = MapElitesSettings {
+            x: Descriptor::BodyHeight,
+            y: Descriptor::ContactDuty,
+            step: 0.0,
+            cma_share: 0.0,
+            ..MapElitesSettings::default()
+        };
+        let mut search = MapElites::new(&RunPlan::new("test", 1, settings));
+        let genomes = search.ask();
+        assert_eq!(search.parents(), [Parents::Newborn; 12]);
+        let evaluations: Vec<Evaluation> = (0..12)
+            .map(|index| Evaluation {
+                fitness: index as f32,
+                centre_y_m: index as f32,
+                disqualified: None,
+                trace_hash: 0,
+                steps: 1,
+                effort: None,
+                behaviour: Some(Behaviour {
+                    contact_duty: index as f32 / 12.0,
+                    ..Behaviour::default()
+                }),
+            })
+            .collect();
+        search.tell(&genomes, &evaluations);
+        assert!(search.breeders().len() > 3, "several kinds");
+        let parents = search.parents();
+        assert!(parents.iter().any(|parents| matches!(parents, Parents::Two(..))));
+        search.settings.line = 0.0;
+        for (child, parents) in search.ask().iter().zip(search.parents()) {
+            let Parents::One(parent) = parents else { panic!("{parents:?}") };
+            let point = search.search.folded(&search.search.point_of(child));
+            let elite = &genomes[parent.individual as usize];
+            let off = point.iter().zip(search.search.point_of(elite)).map(|(a, b)| (a - b).abs());
+            assert!(off.fold(0.0, f64::max) < 1.0e-4, "its genes are those of its parent");
+        }
     }
 }

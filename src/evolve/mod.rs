@@ -17,6 +17,7 @@ mod ga;
 mod halving;
 mod map_elites;
 mod novelty;
+mod parents;
 mod random;
 mod restarts;
 mod search;
@@ -34,6 +35,7 @@ pub use ga::{Crossover, GaSettings, Mutation, Selection};
 pub use halving::HalvingSettings;
 pub use map_elites::MapElitesSettings;
 pub use novelty::NoveltySettings;
+pub use parents::{Parents, Place};
 pub use restarts::RestartKind;
 pub use settings::{EvolutionSettings, LARGEST_POPULATION, RunPlan, Settings, StrategyKind};
 
@@ -61,6 +63,18 @@ pub trait Strategy: Send {
     /// Takes the settings of its plan anew, some of which were changed as [`may_change_during_run`] allows: the
     /// next generation is made by them.
     fn amend(&mut self, plan: &RunPlan);
+
+    /// Whom the genomes that `ask` returns come from, in the same order.
+    fn parents(&self) -> Vec<Parents>;
+
+    /// Everybody who may become a parent from now on, in an order of its own.
+    fn breeders(&self) -> Vec<Place> {
+        Vec::new()
+    }
+
+    /// Tells a strategy that goes on what [`Self::breeders`] said before it was stopped: its state has their genes,
+    /// but not their places. Whatever does not fit that state is left out, and they stay unknown.
+    fn recall(&mut self, _breeders: &[Place]) {}
 
     /// The best of every kind that it has seen, if it keeps such an archive.
     fn archive(&self) -> Option<&Archive> {

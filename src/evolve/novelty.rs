@@ -5,7 +5,9 @@ use rand::RngExt;
 use serde::{Deserialize, Serialize};
 
 use super::ga::{Breeder, GaState};
-use super::{Descriptor, PointState, RunPlan, Strategy, StrategyState, full_ranking};
+use super::{
+    Descriptor, Parents, Place, PointState, RunPlan, Strategy, StrategyState, full_ranking,
+};
 use crate::check::{Invalid, within};
 use crate::genome::Genome;
 use crate::rng::Purpose;
@@ -55,7 +57,7 @@ impl NoveltySettings {
 }
 
 /// A behaviour as a point: where the agent ended, and its two descriptors, each from 0 to 1.
-type Place = [f64; 3];
+type Spot = [f64; 3];
 
 /// What novelty search knows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -64,7 +66,7 @@ pub struct NoveltyState {
     /// The last generation, best first.
     members: GaState,
     /// The behaviours that are remembered.
-    archive: Vec<Place>,
+    archive: Vec<Spot>,
 }
 
 /// Novelty search at work.
@@ -72,7 +74,7 @@ pub struct NoveltyState {
 pub struct Novelty {
     settings: NoveltySettings,
     breeder: Breeder,
-    archive: Vec<Place>,
+    archive: Vec<Spot>,
     start_y_m: f32,
     stairs: Stairs,
 }
@@ -92,7 +94,7 @@ impl Novelty {
         Ok(Self::with(plan, Breeder::resumed(plan, finished, members)?, archive))
     }
 
-    fn with(plan: &RunPlan, breeder: Breeder, archive: Vec<Place>) -> Self {
+    fn with(plan: &RunPlan, breeder: Breeder, archive: Vec<Spot>) -> Self {
         let trial = &plan.settings.trial;
         Self {
             settings: plan.settings.evolution.novelty.clone(),
@@ -104,7 +106,7 @@ impl Novelty {
     }
 
     /// The behaviour of an agent; none if it was disqualified.
-    fn place(&self, evaluation: &Evaluation) -> Option<Place> {
+    fn place(&self, evaluation: &Evaluation) -> Option<Spot> {
         if evaluation.disqualified.is_some() {
             return None;
         }
@@ -121,8 +123,8 @@ impl Novelty {
 
     /// Mean distance of each place to its nearest neighbours among all of them and the archive. Who has no
     /// place is not new at all.
-    fn novelties(&self, places: &[Option<Place>]) -> Vec<f64> {
-        let novelty = |(index, place): (usize, &Option<Place>)| {
+    fn novelties(&self, places: &[Option<Spot>]) -> Vec<f64> {
+        let novelty = |(index, place): (usize, &Option<Spot>)| {
             let Some(place) = place else { return f64::NEG_INFINITY };
             let others = places.iter().enumerate().filter(|(other, _)| *other != index);
             let all = others.filter_map(|(_, place)| place.as_ref()).chain(&self.archive);
@@ -138,9 +140,9 @@ impl Novelty {
         places.iter().enumerate().map(novelty).collect()
     }
 
-    fn remember(&mut self, places: &[Option<Place>]) {
+    fn remember(&mut self, places: &[Option<Spot>]) {
         let mut rng = self.breeder.search.stream(0, Purpose::Archive);
-        let mut candidates: Vec<Place> = places.iter().flatten().copied().collect();
+        let mut candidates: Vec<Spot> = places.iter().flatten().copied().collect();
         for _ in 0..self.settings.remembered {
             if candidates.is_empty() {
                 break;
@@ -156,7 +158,7 @@ impl Novelty {
     }
 }
 
-fn distance(a: &Place, b: &Place) -> f64 {
+fn distance(a: &Spot, b: &Spot) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
@@ -180,7 +182,7 @@ impl Strategy for Novelty {
 
     /// Novelty and fitness have no common unit; what is mixed is the place in either's order.
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        let places: Vec<Option<Place>> =
+        let places: Vec<Option<Spot>> =
             evaluations.iter().map(|evaluation| self.place(evaluation)).collect();
         let novelties = self.novelties(&places);
         let mut by_novelty: Vec<usize> = (0..evaluations.len()).collect();
@@ -211,6 +213,18 @@ impl Strategy for Novelty {
         self.settings = plan.settings.evolution.novelty.clone();
         self.archive.truncate(self.settings.archive_limit as usize);
         self.breeder.amend(plan);
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        self.breeder.parents()
+    }
+
+    fn breeders(&self) -> Vec<Place> {
+        self.breeder.breeders()
+    }
+
+    fn recall(&mut self, breeders: &[Place]) {
+        self.breeder.recall(breeders);
     }
 }
 

@@ -2,7 +2,7 @@
 //! makes a difference, in the first generation.
 
 use super::search::Search;
-use super::{PointState, RunPlan, Strategy, StrategyState};
+use super::{Parents, PointState, RunPlan, Strategy, StrategyState};
 use crate::genome::Genome;
 use crate::score::Evaluation;
 
@@ -53,5 +53,9 @@ impl Strategy for Random {
 
     fn amend(&mut self, plan: &RunPlan) {
         self.search.amend(plan);
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        vec![Parents::Newborn; self.search.population]
     }
 }

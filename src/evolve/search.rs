@@ -94,6 +94,12 @@ impl Search {
         self.space.genome_at(point, self.descent)
     }
 
+    /// The point of a genome.
+    #[cfg(test)]
+    pub fn point_of(&self, genome: &Genome) -> Vec<f64> {
+        self.space.point_of(genome)
+    }
+
     /// The genomes at several points.
     pub fn genomes(&self, points: &[Vec<f64>]) -> Vec<Genome> {
         points.iter().map(|point| self.genome(point)).collect()
