@@ -422,7 +422,7 @@ mod tests {
             let members: Vec<_> = parents.iter().map(|&index| &breeder.parents.0[index]).collect();
             for (gene, value) in child.point.iter().enumerate() {
                 let is_near = |member: &&Member| (member.point[gene] - value).abs() < 0.01;
-                assert!(members.iter().any(|member| is_near(member)), "gene {gene}");
+                assert!(members.iter().any(is_near), "gene {gene}");
             }
         }
         assert!(seen[0] == 0 && seen[1] > 50 && seen[2] > 50, "{seen:?}");

@@ -9,7 +9,10 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
-use super::{Cancelled, Control, Experiment, GenerationReport, Keeper, KeptRun, RunSource};
+use super::{
+    Ancestor, Cancelled, Control, Descent, Experiment, Generation, GenerationReport, Keeper,
+    KeptRun, RunSource,
+};
 use crate::evolve::{Archive, Champion, Front, SettingChange};
 
 /// What an experiment in the background has to tell.
@@ -56,14 +59,24 @@ pub struct Exploration {
     pub archive: Option<Archive>,
     /// The best of the latest generation, the best first; nobody of a generation that an earlier session finished.
     pub leaders: Vec<Champion>,
+    /// The latest generation; none if an earlier session finished it.
+    pub generation: Option<Arc<Generation>>,
+    /// The parents of the next generation, each with how many children it will have, as far as they are known.
+    pub parents: Vec<(Arc<Ancestor>, u32)>,
+    /// The line of descent of the best so far.
+    pub descent: Descent,
 }
 
 impl Exploration {
-    fn of(experiment: &Experiment) -> Self {
+    /// Of an experiment, as it is.
+    pub fn of(experiment: &Experiment) -> Self {
         Self {
             front: experiment.front().clone(),
             archive: experiment.archive().cloned(),
             leaders: experiment.leaders().to_vec(),
+            generation: experiment.generation().cloned(),
+            parents: experiment.parents(),
+            descent: experiment.descent(),
         }
     }
 }
@@ -428,8 +441,16 @@ mod tests {
         assert!(matches!(next_of_all(&second), Event::Opened(behind) if behind.len() == 1));
         // Who else was in the generation is not kept.
         assert_eq!(explored.leaders.len(), 8);
-        let known = Exploration { leaders: Vec::new(), ..*explored };
-        assert_eq!(next_of_all(&second), Event::Explored(Box::new(known)));
+        assert_eq!(explored.generation.as_ref().map(|of| of.genomes.len()), Some(8));
+        let Event::Explored(known) = next_of_all(&second) else { panic!("not explored") };
+        assert_eq!((known.leaders.len(), &known.generation), (0, &None));
+        assert_eq!((&known.front, &known.archive), (&explored.front, &explored.archive));
+        let places = |explored: &Exploration| -> Vec<_> {
+            let parents = explored.parents.iter().map(|(parent, _)| parent.place);
+            parents.chain(explored.descent.line.iter().map(|ancestor| ancestor.place)).collect()
+        };
+        assert_eq!(places(&known), places(&explored));
+        assert_eq!(places(&known).len(), 4 + 1, "four parents, and the best");
     }
 
     #[test]

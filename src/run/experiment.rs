@@ -2,21 +2,25 @@
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3Default;
 
+use super::lineage::Lineage;
 use super::report::{Crash, generation_hash, meaning};
-use super::{Cancelled, Control, GenerationReport, Statistics, caught};
+use super::{
+    Ancestor, Cancelled, Control, Descent, Generation, GenerationReport, Statistics, caught,
+};
 use crate::check::{Invalid, within};
 use crate::evolve::{
-    Archive, Champion, Front, FrontMember, Origin, RunPlan, SettingChange, Settings, Strategy,
-    StrategyKind, begin, ranking, resume,
+    Archive, Champion, Front, FrontMember, Origin, Place, RunPlan, SettingChange, Settings,
+    Strategy, StrategyKind, begin, ranking, resume,
 };
 use crate::genome::Genome;
-use crate::save::{Knowledge, Progress};
+use crate::save::{BornRecord, Knowledge, LineageRecord, Progress};
 use crate::score::{Evaluation, Trial, evaluate};
 use crate::world::Disqualification;
 
@@ -34,6 +38,11 @@ pub struct Experiment {
     best: Option<Champion>,
     /// The best of the last generation, the best first.
     leaders: Vec<Champion>,
+    /// The last generation, if this session has finished it.
+    generation: Option<Arc<Generation>>,
+    lineage: Lineage,
+    /// What of the last generation is to be written down.
+    lineage_record: Option<LineageRecord>,
     /// Evaluations of the next generation that were made before a kill.
     known: BTreeMap<u32, Evaluation>,
     /// Only a test puts another in its place.
@@ -58,6 +67,9 @@ impl Experiment {
             hash: Xxh3Default::new(),
             best: None,
             leaders: Vec::new(),
+            generation: None,
+            lineage: Lineage::default(),
+            lineage_record: None,
             known: BTreeMap::new(),
             evaluate,
         }
@@ -90,6 +102,15 @@ impl Experiment {
         experiment.known = progress.evaluations.iter().copied().collect();
         for champion in &progress.champions {
             experiment.keep_if_better(champion.as_ref());
+        }
+        experiment.lineage = Lineage::recalled(&progress.lineage);
+        if let Some(last) = progress.lineage.last().filter(|last| last.generation == finished) {
+            let place = |&BornRecord(individual, ..): &BornRecord| Place {
+                generation: finished,
+                individual,
+            };
+            let breeders: Vec<Place> = last.born.iter().map(place).collect();
+            experiment.strategy.recall(&breeders);
         }
         Ok(experiment)
     }
@@ -191,6 +212,37 @@ impl Experiment {
         &self.leaders
     }
 
+    /// The last generation, if this session has finished it.
+    pub fn generation(&self) -> Option<&Arc<Generation>> {
+        self.generation.as_ref()
+    }
+
+    /// The line of descent of the best individual so far.
+    pub fn descent(&self) -> Descent {
+        self.lineage.descent(self.best_place())
+    }
+
+    /// The parents of the next generation, each with how many children it will have, in the order of their places; as
+    /// far as they are known.
+    pub fn parents(&self) -> Vec<(Arc<Ancestor>, u32)> {
+        let mut children = BTreeMap::new();
+        for place in self.strategy.parents().into_iter().flat_map(|parents| parents.places()) {
+            *children.entry(place).or_insert(0) += 1;
+        }
+        let known = |(place, count)| Some((Arc::clone(self.lineage.get(place)?), count));
+        children.into_iter().filter_map(known).collect()
+    }
+
+    /// What of the last generation is to be written down about who came from whom.
+    pub fn lineage_record(&self) -> Option<&LineageRecord> {
+        self.lineage_record.as_ref()
+    }
+
+    fn best_place(&self) -> Option<Place> {
+        let Origin { generation, individual, .. } = self.best.as_ref()?.origin;
+        Some(Place { generation, individual })
+    }
+
     /// Who is beaten by nobody in distance and energy so far.
     pub fn front(&self) -> &Front {
         &self.front
@@ -237,7 +289,7 @@ impl Experiment {
         control.start_generation();
         self.take_up_changes();
         let generation = self.finished + 1;
-        let genomes = self.strategy.ask();
+        let (genomes, parents) = (self.strategy.ask(), self.strategy.parents());
         let trial = &self.plan.settings.trial;
         let score = |(index, genome): (usize, &Genome)| {
             let individual = index as u32;
@@ -316,7 +368,17 @@ impl Experiment {
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
         self.keep_if_better(report.champion.as_ref());
+        let genomes = genomes.into_iter().map(Arc::new).collect();
+        self.remember(Generation { number: generation, genomes, evaluations, parents });
         Ok(report)
+    }
+
+    /// Remembers a generation that was just finished, and who in it may have descendants.
+    fn remember(&mut self, generation: Generation) {
+        let (breeders, best) = (self.strategy.breeders(), self.best_place());
+        self.lineage_record = Some(self.lineage.add(&generation, &breeders, best));
+        self.lineage.retain(breeders.into_iter().chain(best));
+        self.generation = Some(Arc::new(generation));
     }
 
     fn keep_if_better(&mut self, candidate: Option<&Champion>) {
@@ -433,6 +495,7 @@ mod tests {
             champions: Vec::new(),
             knowledge: None,
             evaluations: noted.clone(),
+            lineage: Vec::new(),
         };
         let mut again = Experiment::resumed(first.plan.clone(), &progress).expect("it fits");
         let made = std::sync::atomic::AtomicU32::new(0);
@@ -443,6 +506,26 @@ mod tests {
         again.run_generation_noting(&pool, &Control::default(), count).expect("not cancelled");
         assert_eq!(made.into_inner(), 5);
         assert_eq!(again.run_hash(), first.run_hash());
+    }
+
+    #[test]
+    fn the_last_generation_is_kept_with_its_parents_and_the_best_has_its_line() {
+        let mut experiment = small(1);
+        let pool = pool(2).expect("a pool");
+        while !experiment.is_over() {
+            experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
+        }
+        let generation = experiment.generation().expect("kept");
+        assert_eq!((generation.number, generation.genomes.len()), (3, 12));
+        let best = experiment.best().expect("somebody was healthy");
+        let line = experiment.descent().line;
+        assert_eq!(line.len() as u32, best.origin.generation, "back to the first generation");
+        assert_eq!(line[0].fitness, Some(best.evaluation.fitness));
+        assert_eq!(line[0].genome.as_deref(), Some(&best.genome));
+        assert_eq!(experiment.descent().spreads.len(), 3);
+        let parents = experiment.parents();
+        assert_eq!(parents.len(), 4, "the report has four");
+        assert!(parents.iter().all(|(_, children)| *children == 3));
     }
 
     #[test]

@@ -386,6 +386,7 @@ mod tests {
             std: 0.25,
             worst: -9.0,
             mean_centre_y_m: -7.225,
+            quartiles: None,
         };
         GenerationReport {
             generation: 1,

@@ -143,6 +143,9 @@ impl Keeper {
         let champion = report.champion.as_ref();
         // One more evaluation a generation buys a champion that any later engine can show.
         let recording = champion.map(|champion| Recording::of(&champion.genome, &champion.trial));
+        if let Some(lineage) = experiment.lineage_record() {
+            self.folder.note_lineage(lineage);
+        }
         let path = self.folder.finish_generation(
             &report.record(),
             champion.zip(recording.as_ref()),
@@ -256,11 +259,22 @@ mod tests {
             drop(first);
             let mut again = source(saves.path()).open("a test").expect("opened");
             assert_eq!(again.reports.len() as u32, stop);
+            let places = |experiment: &Experiment| -> Vec<_> {
+                let descent = experiment.descent();
+                descent.line.iter().map(|ancestor| (ancestor.place, ancestor.fitness)).collect()
+            };
             evolve(&mut again, 6);
             let what = format!("{}, stopped after {stop}", plan.settings.evolution.strategy);
             assert_eq!(again.experiment.run_hash(), expected.run_hash(), "{what}");
             assert_eq!(again.experiment.best(), expected.best(), "{what}");
             assert_eq!(again.experiment.knowledge(), expected.knowledge(), "{what}");
+            assert_eq!(places(&again.experiment), places(&expected), "{what}");
+            let parents = |experiment: &Experiment| {
+                experiment.generation().map(|generation| generation.parents.clone())
+            };
+            if stop < expected.finished() {
+                assert_eq!(parents(&again.experiment), parents(&expected), "{what}");
+            }
         }
     }
 

@@ -2,6 +2,7 @@
 
 use xxhash_rust::xxh3::Xxh3Default;
 
+use super::compare::Quartiles;
 use crate::evolve::Champion;
 use crate::save::{GenerationRecord, StatisticsRecord};
 use crate::score::{Evaluation, Trial};
@@ -55,8 +56,19 @@ impl GenerationReport {
             on_landing: self.on_landing,
             first_on_landing: self.first_on_landing,
             statistics: self.statistics.map(|statistics| {
-                let Statistics { mean, best, median, std, worst, mean_centre_y_m } = statistics;
-                StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m }
+                let Statistics { mean, best, median, std, worst, mean_centre_y_m, quartiles } =
+                    statistics;
+                let (lower_quartile, upper_quartile) = quartiles.unzip();
+                StatisticsRecord {
+                    mean,
+                    best,
+                    median,
+                    std,
+                    worst,
+                    mean_centre_y_m,
+                    lower_quartile,
+                    upper_quartile,
+                }
             }),
             hash: format!("{:016x}", self.hash),
             elapsed_s: self.elapsed_s,
@@ -66,8 +78,10 @@ impl GenerationReport {
     /// The report that is in a line of the log, under the trial of its run.
     pub fn of_record(record: &GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
         let statistics = record.statistics.map(|statistics| {
-            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m } = statistics;
-            Statistics { mean, best, median, std, worst, mean_centre_y_m }
+            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m, .. } =
+                statistics;
+            let quartiles = statistics.lower_quartile.zip(statistics.upper_quartile);
+            Statistics { mean, best, median, std, worst, mean_centre_y_m, quartiles }
         });
         Self {
             generation: record.generation,
@@ -110,6 +124,9 @@ pub struct Statistics {
     pub worst: f64,
     /// Mean y of the centre at the end, in m, whatever is rewarded.
     pub mean_centre_y_m: f64,
+    /// Below the first lies a quarter, above the second another; none where an earlier version of the program left
+    /// them out.
+    pub quartiles: Option<(f64, f64)>,
 }
 
 impl Statistics {
@@ -126,7 +143,8 @@ impl Statistics {
         let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
         let mean_centre_y_m = healthy.map(|e| f64::from(e.centre_y_m)).sum::<f64>() / count;
         let median = (low + high) / 2.0;
-        Some(Self { mean, best, median, std: variance.sqrt(), worst, mean_centre_y_m })
+        let quartiles = Quartiles::of(fitness).map(|quartiles| (quartiles.low, quartiles.high));
+        Some(Self { mean, best, median, std: variance.sqrt(), worst, mean_centre_y_m, quartiles })
     }
 }
 
@@ -173,6 +191,7 @@ mod tests {
         assert_eq!((statistics.best, statistics.worst), (5.0, -2.0));
         assert_eq!(statistics.mean_centre_y_m, 3.0);
         assert_eq!(statistics.std, 7.5_f64.sqrt());
+        assert_eq!(statistics.quartiles, Some((0.25, 4.25)), "of -2, 1, 4, 5");
         assert_eq!(Statistics::of(&evaluations[1..2]), None);
     }
 

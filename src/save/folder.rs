@@ -53,6 +53,12 @@ impl SavesFolder {
         Self(self.0.join("pictures"))
     }
 
+    /// The folder in it for charts that were written as files.
+    #[must_use]
+    pub fn exports(&self) -> Self {
+        Self(self.0.join("exports"))
+    }
+
     /// A path in it that is not taken yet: the name and the next number.
     pub fn free_name(&self, name: &str, extension: &str) -> PathBuf {
         let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));

@@ -11,6 +11,7 @@ mod checkpoint;
 mod comparison;
 mod files;
 mod folder;
+mod lineage;
 mod lock;
 mod log;
 mod mirror;
@@ -38,11 +39,12 @@ pub use comparison::{
 };
 pub use files::SaveError;
 pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name, settings_fingerprint};
+pub use lineage::{BornRecord, LineageRecord, MOST_SPREAD, parse_lineage};
 pub use picture::{Picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
 pub use preferences::{Preferences, PreferencesFile, UI_SCALES};
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
 };
-pub use record::{GenerationRecord, StatisticsRecord, parse_evaluations, parse_records};
+pub use record::{GenerationRecord, StatisticsRecord, load_log, parse_evaluations, parse_records};
 pub use run::{Earlier, Progress, RunFolder};

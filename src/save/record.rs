@@ -5,9 +5,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::SaveError;
+use super::change::{CHANGES_FILE, read_changes};
 use super::files::{hash_of, refuse_link};
 use super::folder::fingerprint;
 use super::log::{parse_log, read_log_bytes};
+use super::plan::load_plan;
 use super::v4::RecordedV4;
 use crate::check::{Invalid, within};
 use crate::evolve::RunPlan;
@@ -52,6 +54,11 @@ pub struct StatisticsRecord {
     pub std: f64,
     pub worst: f64,
     pub mean_centre_y_m: f64,
+    /// Logs of earlier versions do not have them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower_quartile: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_quartile: Option<f64>,
 }
 
 /// An evaluation of the generation under way.
@@ -88,6 +95,23 @@ pub fn read_records(folder: &Path, plan: &RunPlan) -> Result<Vec<GenerationRecor
     parse_records(&path, &read_log_bytes(&path)?, plan)
 }
 
+/// What run a folder holds, and its finished generations: its log alone, without champions.
+///
+/// # Errors
+/// There is no run in it, it was recorded by another engine, or something in it is damaged.
+pub fn load_log(folder: &Path) -> Result<(RunPlan, Vec<GenerationRecord>), SaveError> {
+    let plan = load_plan(folder)?;
+    let changes = read_changes(folder, &plan)?;
+    // Reading the changes has checked this.
+    let changed = plan
+        .in_generation(u32::MAX, &changes)
+        .map_err(|source| SaveError::Invalid { path: folder.join(CHANGES_FILE), source })?;
+    let path = folder.join(LOG_FILE);
+    refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
+    let records = read_records(folder, &changed)?;
+    Ok((plan, records))
+}
+
 /// Reads finished generations from the bytes of a log; `path` is what errors call it. The plan is that after all
 /// changes.
 ///
@@ -113,11 +137,14 @@ pub fn parse_records(
         }
         within("elapsed_s", record.elapsed_s, 0.0..=1.0e9)?;
         if let Some(statistics) = record.statistics {
-            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m } = statistics;
+            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m, .. } =
+                statistics;
+            let quartiles = [statistics.lower_quartile, statistics.upper_quartile];
             let values = [mean, best, median, std, worst, mean_centre_y_m];
             let (least, most) =
                 (f64::from(*FITNESS_RANGE.start()), f64::from(*FITNESS_RANGE.end()));
-            values.into_iter().try_for_each(|value| within("statistics", value, least..=most))?;
+            let mut values = values.into_iter().chain(quartiles.into_iter().flatten());
+            values.try_for_each(|value| within("statistics", value, least..=most))?;
         }
         hash_of("hash", &record.hash).map(drop)
     };

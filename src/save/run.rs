@@ -7,6 +7,7 @@
 //! | `generation-N.ron` | the champion of generation N | whole, before the log's line |
 //! | `checkpoint-N.ron` | what the strategy knew after generation N | whole, before the log's line |
 //! | `log.jsonl` | a line per finished generation | added to; a generation is finished once its line stands |
+//! | `lineage.jsonl` | who came from whom, a line per finished generation | added to, before the log's line |
 //! | `evaluations.jsonl` | the evaluations of the generation under way | added to, begun anew with each |
 //! | `crashed-N-I.ron` | a genome on which the program failed | whole |
 //! | `lock` | who writes into the folder | while somebody does |
@@ -24,6 +25,7 @@ use super::change::{CHANGES_FILE, ChangeRecord, read_changes};
 use super::checkpoint::{Knowledge, checkpoints, load_checkpoint, store_checkpoint, thin};
 use super::files::{prepare_folder, refuse_link, remove_unfinished};
 use super::folder::{champion_file_name, fingerprint};
+use super::lineage::{LINEAGE_FILE, LineageRecord, read_lineage};
 use super::lock::Lock;
 use super::log::Log;
 use super::plan::{RUN_FILE, load_plan, store_plan};
@@ -49,6 +51,8 @@ pub struct Progress {
     pub knowledge: Option<Knowledge>,
     /// What is known of the generation under way: individuals and their evaluations.
     pub evaluations: Vec<(u32, Evaluation)>,
+    /// Who came from whom, as far as it was written down; nothing of a run depends on it.
+    pub lineage: Vec<LineageRecord>,
 }
 
 /// A run's folder, open for writing. Nobody else can open it meanwhile.
@@ -61,6 +65,8 @@ pub struct RunFolder {
     /// What the run began with, and what was changed since: what is written is tied to both.
     plan: RunPlan,
     changes: Vec<SettingChange>,
+    /// Who came from whom, and the last generation of which it tells. None, if it cannot be written.
+    lineage: Option<(u32, Log)>,
     _lock: Lock,
 }
 
@@ -124,6 +130,11 @@ impl RunFolder {
             evaluations: Mutex::new(None),
             plan: plan.clone(),
             changes: progress.changes.clone(),
+            lineage: {
+                let log = Log::open(&path.join(LINEAGE_FILE), progress.lineage.len()).ok();
+                let last = progress.lineage.last().map_or(0, |record| record.generation);
+                log.map(|log| (last, log))
+            },
             _lock: lock,
         };
         let next = progress.records.len() as u32 + 1;
@@ -168,6 +179,16 @@ impl RunFolder {
                 disqualified: evaluation.disqualified,
                 recorded: (*evaluation).into(),
             });
+        }
+    }
+
+    /// Notes who came from whom in a generation that is about to be finished. What cannot be noted is not known
+    /// later: that is no error.
+    pub fn note_lineage(&mut self, record: &LineageRecord) {
+        let Some((last, log)) = &mut self.lineage else { return };
+        // A generation that could not be saved comes again.
+        if record.generation > *last && log.append_lightly(record).is_ok() {
+            *last = record.generation;
         }
     }
 
@@ -279,6 +300,7 @@ impl Progress {
             champions: Vec::new(),
             knowledge: None,
             evaluations: Vec::new(),
+            lineage: Vec::new(),
         }
     }
 
@@ -308,6 +330,7 @@ impl Progress {
                 let next = records.len() as u32 + 1;
                 read_evaluations(folder, next, &plan_in(next)?)?
             },
+            lineage: read_lineage(folder, records.len() as u32, &plan_in(u32::MAX)?.settings),
             records,
             changes,
         })

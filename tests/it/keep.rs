@@ -309,7 +309,7 @@ fn a_disk_that_fills_up_ends_the_run_with_an_error_and_it_can_go_on() {
 }
 
 #[test]
-fn a_run_is_a_folder_of_settings_log_checkpoints_and_champions() {
+fn a_run_is_a_folder_of_settings_logs_checkpoints_and_champions() {
     let saves = folder();
     let lines = json_lines(saves.path(), &format!("{TINY} --out out"));
     let run = run_in(&saves.path().join("out")).expect("a run");
@@ -321,7 +321,7 @@ fn a_run_is_a_folder_of_settings_log_checkpoints_and_champions() {
     files.sort();
     let kept = [1, 16, 2, 32, 39, 4, 40, 8].map(|number| format!("checkpoint-{number}.ron"));
     assert_eq!(files[..8], kept, "{files:?}");
-    assert_eq!(files[8..], ["lock", "log.jsonl", "run.ron"]);
+    assert_eq!(files[8..], ["lineage.jsonl", "lock", "log.jsonl", "run.ron"]);
     let log = fs::read_to_string(run.join("log.jsonl")).expect("read");
     for (line, printed) in log.lines().zip(&lines) {
         let line: Value = serde_json::from_str(line).expect("JSON");

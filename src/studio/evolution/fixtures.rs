@@ -26,11 +26,7 @@ pub fn explored_run() -> Evolution {
         experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
     }
     let mut run = run_of(plan);
-    run.explore(Box::new(Exploration {
-        front: experiment.front().clone(),
-        archive: experiment.archive().cloned(),
-        leaders: experiment.leaders().to_vec(),
-    }));
+    run.explore(Box::new(Exploration::of(&experiment)));
     run
 }
 
