@@ -1,4 +1,8 @@
-//! Plots as pictures: Table 1 beside ours, and a torque signal as in the report's Figure 4.
+//! Plots as pictures: Table 1 beside ours, a torque signal as in the report's Figure 4, and whatever chart there is as
+//! data.
+
+mod figure;
+mod paint;
 
 use std::error::Error;
 use std::ops::Range;
@@ -12,6 +16,9 @@ use crate::genome::{Controller, ControllerKind, Wave, Waves};
 use crate::run::compare::{Quartiles, Row};
 use crate::run::table1::{REPORT_MEANS, Table1};
 use crate::save::{CURVE_POINTS, Comparison, Picture};
+
+pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
+pub use paint::{figure, ramp, role_color};
 
 /// A plot could not be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

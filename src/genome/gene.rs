@@ -1,5 +1,9 @@
 //! A genome as a row of genes, each with its range: what lets any strategy search in any space.
 
+mod features;
+
+pub use features::Feature;
+
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f32::consts::TAU;

@@ -9,7 +9,7 @@ mod signal;
 mod space;
 mod wave;
 
-pub use gene::Descent;
+pub use gene::{Descent, Feature};
 pub use signal::{JointSignals, Signals};
 pub use space::{
     ControllerKind, DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD,

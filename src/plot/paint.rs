@@ -1,0 +1,323 @@
+//! A figure as a picture: light, large, with its legend.
+
+use std::error::Error;
+
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+use plotters::style::FontTransform;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{Area, Axis, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
+use super::{TEXT_PIXELS, TITLE_PIXELS, draw, strategy_color};
+use crate::save::Picture;
+
+/// Size of every picture of a figure, in pixels.
+const SIZE: (u32, u32) = (1600, 900);
+/// Between a picture's edge and what is in it, in pixels.
+const MARGIN: i32 = 24;
+/// Height of a line of the legend, in pixels.
+const LEGEND_LINE: i32 = 30;
+/// Length of a sample in the legend, in pixels.
+const SAMPLE: i32 = 34;
+/// So many of the parts of a dashed line are on and off, in pixels.
+const DASH: (i32, i32) = (10, 7);
+/// Room for names below a chart, in pixels; they stand upright.
+const NAMES_HEIGHT: u32 = 230;
+/// Names are cut after so many letters.
+const LONGEST_NAME: usize = 30;
+
+/// The colour of a role, as red, green and blue: that of the light theme.
+pub fn role_color(role: Role) -> [u8; 3] {
+    match role {
+        Role::First | Role::Bend => [0x1a, 0x66, 0xd9],
+        Role::Second => [0x96, 0x58, 0x00],
+        Role::Third => [0x00, 0x72, 0x5c],
+        Role::Others => [0x52, 0x5c, 0x6e],
+        Role::Twist => [0xb3, 0x5c, 0x00],
+        Role::Strategy(kind) => strategy_color(kind),
+        Role::Share(share) => ramp(share),
+    }
+}
+
+/// From the least to the most: viridis (van der Walt and Smith, 2015), whose brightness rises evenly, so that it
+/// reads in order without its hues too.
+const RAMP: [[u8; 3]; 9] = [
+    [0x44, 0x01, 0x54],
+    [0x47, 0x2d, 0x7b],
+    [0x3b, 0x52, 0x8b],
+    [0x2c, 0x72, 0x8e],
+    [0x21, 0x91, 0x8c],
+    [0x28, 0xae, 0x80],
+    [0x5e, 0xc9, 0x62],
+    [0xad, 0xdc, 0x30],
+    [0xfd, 0xe7, 0x25],
+];
+
+/// The colour of a value between the least, 0, and the most, 1, as red, green and blue.
+pub fn ramp(share: f32) -> [u8; 3] {
+    let last = RAMP.len() - 1;
+    let place = share.clamp(0.0, 1.0) * last as f32;
+    let below = (place as usize).min(last - 1);
+    let part = place - below as f32;
+    let mix = |channel: usize| {
+        let [from, to] = [RAMP[below], RAMP[below + 1]].map(|color| f32::from(color[channel]));
+        (from + (to - from) * part).round() as u8
+    };
+    [mix(0), mix(1), mix(2)]
+}
+
+/// Draws a figure.
+///
+/// # Errors
+/// The plotting library failed.
+pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
+    draw(SIZE, |area| {
+        let title = (FONT, TITLE_PIXELS).into_font().color(&INK);
+        area.draw(&Text::new(figure.title.as_str(), (MARGIN, MARGIN), title))?;
+        let top = MARGIN + TITLE_PIXELS as i32 + 12;
+        let below = legend(area, figure, top)?;
+        let (_, charts) = area.split_vertically(below);
+        // About as wide as high.
+        let columns = (1..=figure.charts.len()).find(|n| n * n * 2 >= figure.charts.len() * 3);
+        let columns = columns.unwrap_or(1).min(figure.charts.len().max(1));
+        let rows = figure.charts.len().div_ceil(columns);
+        for (part, chart) in charts.split_evenly((rows, columns)).iter().zip(&figure.charts) {
+            paint(part, chart)?;
+        }
+        Ok(())
+    })
+}
+
+/// Writes the legend from a height on. Returns where it ends.
+fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>> {
+    let text = (FONT, TEXT_PIXELS).into_font().color(&INK);
+    let (mut x, mut y) = (MARGIN, top);
+    let mut listed: Vec<&str> = Vec::new();
+    for series in figure.charts.iter().flat_map(|chart| &chart.series) {
+        if series.name.is_empty() || listed.contains(&series.name.as_str()) {
+            continue;
+        }
+        listed.push(&series.name);
+        let (width, _) = area.estimate_text_size(&series.name, &text)?;
+        let needed = SAMPLE + 10 + width as i32 + 28;
+        if x + needed > SIZE.0 as i32 && x > MARGIN {
+            (x, y) = (MARGIN, y + LEGEND_LINE);
+        }
+        sample(area, series, (x, y + TEXT_PIXELS as i32 / 2))?;
+        area.draw(&Text::new(series.name.as_str(), (x + SAMPLE + 10, y), text.clone()))?;
+        x += needed;
+    }
+    Ok(if listed.is_empty() { top } else { y + LEGEND_LINE })
+}
+
+/// A sample of how a series is drawn.
+fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dyn Error>> {
+    let color = color_of(series.role);
+    let ends = [(x, y), (x + SAMPLE, y)];
+    let block = [(x, y - 7), (x + SAMPLE, y + 7)];
+    match &series.shape {
+        Shape::Line(_) => area.draw(&PathElement::new(ends, color.stroke_width(3)))?,
+        Shape::Dashed(_) => {
+            let (on, off) = DASH;
+            let style = color.stroke_width(2);
+            area.draw(&DashedPathElement::new(ends, on, off, style))?;
+        }
+        Shape::Points(_) => area.draw(&Circle::new((x + SAMPLE / 2, y), 5, color.filled()))?,
+        Shape::Band(_) => area.draw(&Rectangle::new(block, color.mix(0.25).filled()))?,
+        Shape::Bars { .. } => area.draw(&Rectangle::new(block, color.filled()))?,
+        Shape::Cells(_) => {
+            for step in 0..SAMPLE {
+                let color = color_of(Role::Share(step as f32 / (SAMPLE - 1) as f32));
+                let line = [(x + step, y - 7), (x + step, y + 7)];
+                area.draw(&PathElement::new(line, color.stroke_width(1)))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn color_of(role: Role) -> RGBColor {
+    let [red, green, blue] = role_color(role);
+    RGBColor(red, green, blue)
+}
+
+type Axes<'a, 'b> =
+    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+fn paint(
+    area: &DrawingArea<BitMapBackend<'_>, Shift>,
+    chart: &Chart,
+) -> Result<(), Box<dyn Error>> {
+    let text = || (FONT, TEXT_PIXELS).into_font().color(&INK);
+    let has_names = !chart.x.names.is_empty();
+    let ends = |axis: &Axis| *axis.range.start()..*axis.range.end();
+    let mut builder = ChartBuilder::on(area);
+    builder.margin(MARGIN).y_label_area_size(78);
+    builder.x_label_area_size(if has_names { NAMES_HEIGHT } else { 48 });
+    if !chart.name.is_empty() {
+        builder.caption(&chart.name, text());
+    }
+    let mut axes = builder.build_cartesian_2d(ends(&chart.x), ends(&chart.y))?;
+    let y_width = chart.y.range.end() - chart.y.range.start();
+    let digits = |width: f64| {
+        if width < 0.5 {
+            3
+        } else if width < 5.0 {
+            1
+        } else {
+            0
+        }
+    };
+    let y_digits = digits(y_width);
+    let x_digits = digits(chart.x.range.end() - chart.x.range.start());
+    let x_label = if has_names { String::new() } else { chart.x.label() };
+    let x_text = |x: &f64| if has_names { String::new() } else { format!("{x:.x_digits$}") };
+    axes.configure_mesh()
+        .x_labels(if area.dim_in_pixel().0 > 800 { 12 } else { 6 })
+        .x_label_formatter(&x_text)
+        .x_desc(x_label)
+        .y_label_formatter(&|y| format!("{y:.y_digits$}"))
+        .y_desc(chart.y.label())
+        .light_line_style(WHITE)
+        .bold_line_style(if has_names { WHITE } else { FAINT })
+        .axis_style(INK)
+        .label_style(text())
+        .draw()?;
+    for (place, name) in &chart.x.names {
+        let upright = [(*place, *chart.y.range.start()), (*place, *chart.y.range.end())];
+        axes.draw_series(LineSeries::new(upright, FAINT.stroke_width(1)))?;
+        let (x, y) = axes.plotting_area().map_coordinate(&upright[0]);
+        let short: String = name.chars().take(LONGEST_NAME).collect();
+        let style = text().transform(FontTransform::Rotate270);
+        let style = style.pos(Pos::new(HPos::Right, VPos::Center));
+        let (left, top) = area.get_base_pixel();
+        area.draw(&Text::new(short, (x - left, y - top + 10), style))?;
+    }
+    for series in &chart.series {
+        paint_series(&mut axes, series)?;
+    }
+    for mark in &chart.marks {
+        let ends = [(*chart.x.range.start(), mark.y), (*chart.x.range.end(), mark.y)];
+        let dashes = DashedLineSeries::new(ends, DASH.0, DASH.1, color_of(Role::Others).into());
+        axes.draw_series(dashes)?;
+        let weak = color_of(Role::Others);
+        let style = text().color(&weak);
+        let style = style.pos(Pos::new(HPos::Left, VPos::Bottom));
+        let name = Text::new(format!(" {}", mark.name), ends[0], style);
+        axes.draw_series([name])?;
+    }
+    Ok(())
+}
+
+fn paint_series(axes: &mut Axes<'_, '_>, series: &Series) -> Result<(), Box<dyn Error>> {
+    let color = color_of(series.role);
+    let pairs =
+        |points: &[[f64; 2]]| -> Vec<(f64, f64)> { points.iter().map(|&[x, y]| (x, y)).collect() };
+    match &series.shape {
+        Shape::Line(points) => {
+            let dot = if points.len() <= 60 { 3 } else { 0 };
+            let line = LineSeries::new(pairs(points), color.stroke_width(3)).point_size(dot);
+            axes.draw_series(line)?;
+        }
+        Shape::Dashed(points) => {
+            let style = color.stroke_width(2);
+            axes.draw_series(DashedLineSeries::new(pairs(points), DASH.0, DASH.1, style))?;
+        }
+        Shape::Points(points) => {
+            let is_crowd = series.role == Role::Others;
+            let (radius, style) =
+                if is_crowd { (2, color.mix(0.35)) } else { (5, color.to_rgba()) };
+            let dots = pairs(points).into_iter();
+            axes.draw_series(dots.map(|at| Circle::new(at, radius, style.filled())))?;
+        }
+        Shape::Band(ends) => {
+            let above = ends.iter().map(|&[x, _, high]| (x, high));
+            let below = ends.iter().rev().map(|&[x, low, _]| (x, low));
+            let edge: Vec<(f64, f64)> = above.chain(below).collect();
+            axes.draw_series([Polygon::new(edge, color.mix(0.18).filled())])?;
+        }
+        Shape::Bars { width, bars } => {
+            let half = width / 2.0;
+            let rectangle = |&[x, height]: &[f64; 2]| {
+                Rectangle::new([(x - half, 0.0), (x + half, height)], color.filled())
+            };
+            axes.draw_series(bars.iter().map(rectangle))?;
+        }
+        Shape::Cells(cells) => {
+            let rectangle = |&([left, right, bottom, top], share, _): &([f64; 4], f32, f64)| {
+                let color = color_of(Role::Share(share));
+                Rectangle::new([(left, bottom), (right, top)], color.filled())
+            };
+            axes.draw_series(cells.iter().map(rectangle))?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::Mark;
+
+    fn chart(name: &str, series: Vec<Series>) -> Chart {
+        Chart {
+            name: name.to_owned(),
+            x: Axis::new("Generation", "", 0.0..=4.0),
+            y: Axis::new("Fitness", "m", -1.0..=4.0),
+            series,
+            marks: vec![Mark { name: "the first step".to_owned(), y: 3.0 }],
+        }
+    }
+
+    /// How many pixels of a picture have the colour of a role.
+    fn pixels(picture: &Picture, role: Role) -> usize {
+        let color = role_color(role);
+        picture.rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == color).count()
+    }
+
+    #[test]
+    fn every_shape_is_in_the_picture_in_its_colour() {
+        let points = vec![[1.0, 1.0], [2.0, 2.0], [3.0, 1.0]];
+        for (role, shape, fewest) in [
+            (Role::First, Shape::Line(points.clone()), 1000),
+            (Role::Second, Shape::Dashed(points.clone()), 500),
+            (Role::Third, Shape::Points(points.clone()), 100),
+            (Role::First, Shape::Bars { width: 0.5, bars: points }, 20_000),
+            (Role::Share(1.0), Shape::Cells(vec![([1.0, 2.0, 1.0, 2.0], 1.0, 9.0)]), 20_000),
+        ] {
+            let name = format!("{shape:?}");
+            let figure = Figure::of("Title", chart("", vec![Series::new("it", role, shape)]));
+            let picture = super::figure(&figure).expect("drawn");
+            assert_eq!((picture.width, picture.height), SIZE);
+            let found = pixels(&picture, role);
+            assert!(found > fewest, "{name}: {found} pixels");
+        }
+    }
+
+    #[test]
+    fn several_charts_have_a_part_each_and_names_stand_below() {
+        let line = |role| Series::new("it", role, Shape::Line(vec![[0.0, 0.0], [4.0, 3.0]]));
+        let mut charts: Vec<Chart> = [Role::First, Role::Second, Role::Third, Role::Twist]
+            .map(|role| chart("joint", vec![line(role)]))
+            .into();
+        charts[0].x.names = vec![(1.0, "density (kg/m³)".to_owned())];
+        let figure = Figure { title: "Torques".to_owned(), charts };
+        let picture = super::figure(&figure).expect("drawn");
+        for role in [Role::First, Role::Second, Role::Third, Role::Twist] {
+            assert!(pixels(&picture, role) > 300, "{role:?}");
+        }
+    }
+
+    #[test]
+    fn an_empty_figure_is_a_picture_too() {
+        let figure = Figure { title: "Nothing".to_owned(), charts: Vec::new() };
+        assert!(super::figure(&figure).is_ok());
+    }
+
+    #[test]
+    fn the_ramp_goes_from_its_first_colour_to_its_last() {
+        assert_eq!((ramp(0.0), ramp(1.0)), (RAMP[0], RAMP[8]));
+    }
+}
