@@ -15,6 +15,7 @@ mod lineage;
 mod lock;
 mod log;
 mod mirror;
+mod own_preset;
 mod picture;
 mod plan;
 mod poses;
@@ -40,6 +41,7 @@ pub use comparison::{
 pub use files::SaveError;
 pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name, settings_fingerprint};
 pub use lineage::{BornRecord, LineageRecord, MOST_SPREAD, parse_lineage};
+pub use own_preset::{OwnPreset, check_own_name};
 pub use picture::{Picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
 pub use preferences::{Preferences, PreferencesFile, UI_SCALES};
