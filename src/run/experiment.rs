@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::lineage::Lineage;
-use super::report::{Crash, generation_hash, meaning};
+use super::report::{Crash, generation_hash, meaning, reasons};
 use super::{
     Ancestor, Cancelled, Control, Descent, Generation, GenerationReport, Statistics, caught,
 };
@@ -343,6 +343,7 @@ impl Experiment {
             first_on_landing: first_on_landing.map(|index| index as u32),
             evaluations: evaluations.len() as u32,
             disqualified: count(|_| true),
+            reasons: reasons(&evaluations),
             crashed: count(|reason| *reason == Disqualification::Crashed),
             crashes: crashes.take(MOST_CRASHES).collect(),
             statistics,

@@ -392,6 +392,7 @@ mod tests {
             generation: 1,
             evaluations: 500,
             disqualified: 12,
+            reasons: Default::default(),
             crashed: 0,
             crashes: Vec::new(),
             on_landing: 0,

@@ -1,11 +1,14 @@
 //! What a generation was like, in numbers.
 
+use std::collections::BTreeMap;
+
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::compare::Quartiles;
 use crate::evolve::Champion;
 use crate::save::{GenerationRecord, StatisticsRecord};
 use crate::score::{Evaluation, Trial};
+use crate::world::Disqualification;
 
 /// The result of one generation.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +19,8 @@ pub struct GenerationReport {
     pub evaluations: u32,
     /// How many of them were disqualified, for whatever reason.
     pub disqualified: u32,
+    /// How many for which reason; nothing of a generation that is known from its log.
+    pub reasons: BTreeMap<Disqualification, u32>,
     /// On how many of them the program failed.
     pub crashed: u32,
     /// The first few of these.
@@ -87,6 +92,7 @@ impl GenerationReport {
             generation: record.generation,
             evaluations: record.evaluations,
             disqualified: record.disqualified,
+            reasons: BTreeMap::new(),
             crashed: record.crashed,
             crashes: Vec::new(),
             on_landing: record.on_landing,
@@ -107,6 +113,15 @@ pub fn meaning(statistics: Option<&Statistics>, trial: &Trial) -> String {
         Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
         None => "all disqualified".to_owned(),
     }
+}
+
+/// How many were disqualified for which reason.
+pub fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
+    let mut counts = BTreeMap::new();
+    for reason in evaluations.iter().filter_map(|evaluation| evaluation.disqualified) {
+        *counts.entry(reason).or_default() += 1;
+    }
+    counts
 }
 
 /// Statistics over the fitness of those agents of one generation that were not disqualified.
@@ -163,7 +178,6 @@ pub fn generation_hash(evaluations: &[Evaluation]) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::Disqualification;
 
     fn evaluation(fitness: f32, disqualified: Option<Disqualification>) -> Evaluation {
         Evaluation {
@@ -193,6 +207,18 @@ mod tests {
         assert_eq!(statistics.std, 7.5_f64.sqrt());
         assert_eq!(statistics.quartiles, Some((0.25, 4.25)), "of -2, 1, 4, 5");
         assert_eq!(Statistics::of(&evaluations[1..2]), None);
+    }
+
+    #[test]
+    fn the_disqualified_are_counted_by_reason() {
+        let evaluations = [
+            evaluation(4.0, None),
+            evaluation(180.0, Some(Disqualification::TooFast)),
+            evaluation(-2.0, Some(Disqualification::LeftArena)),
+            evaluation(190.0, Some(Disqualification::TooFast)),
+        ];
+        let counts = [(Disqualification::TooFast, 2), (Disqualification::LeftArena, 1)];
+        assert_eq!(reasons(&evaluations), BTreeMap::from(counts));
     }
 
     #[test]

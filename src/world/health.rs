@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::check::{Invalid, within};
 
 /// Why an agent was taken out of the competition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Disqualification {
     /// A pose or a velocity was not finite.
     NotFinite,
