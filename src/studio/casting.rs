@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::evolution::Evolution;
 use super::exhibit::{Exhibit, Source};
 use super::stage::{MOST_LANES, Programme, Show};
-use crate::evolve::{Champion, Settings, fields, with_field};
+use crate::evolve::{Champion, Settings, fields, with_field, with_fields};
 use crate::save::LoadedChampion;
 use crate::score::Trial;
 
@@ -63,7 +63,9 @@ pub(super) enum Change<'a> {
         /// Its value as text.
         text: &'a str,
     },
-    /// To that of a shipped preset.
+    /// Of several settings at once, by their names.
+    Fields(&'a [(String, String)]),
+    /// To that of a preset.
     Preset(&'a str),
 }
 
@@ -160,6 +162,7 @@ pub(super) fn what_if(
     };
     match change {
         Change::Field { field, text } => evolution.set_field(field, text)?,
+        Change::Fields(changes) => evolution.set_fields(changes)?,
         Change::Preset(name) => evolution.set_preset(name)?,
     }
     // Only the change is to make a difference, not another engine too.
@@ -176,6 +179,11 @@ pub(super) fn what_if(
         Change::Field { field, text } => {
             let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
             with_field(&settings, field, text).map_err(|error| error.to_string())?.trial
+        }
+        Change::Fields(changes) => {
+            let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
+            let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+            with_fields(&settings, changes).map_err(|error| error.to_string())?.trial
         }
         // Its world; how long it lasts and what is rewarded stay, so that the two can be compared.
         Change::Preset(_) => Trial {
@@ -194,7 +202,7 @@ pub(super) fn what_if(
     }
     let label = match change {
         Change::Preset(name) => (*name).to_owned(),
-        Change::Field { .. } => difference(original.trial(), &trial),
+        Change::Field { .. } | Change::Fields(_) => world_in_words(original.trial(), &trial),
     };
     let changed = original.in_world(&trial, label);
     changed.check().map_err(|reason| {
@@ -222,11 +230,16 @@ pub(super) fn kept(on_show: &[Exhibit], programme: &Programme) -> Option<Show> {
 }
 
 /// What is other in a world, in a few words: "friction 0.5, rise 0.7".
-fn difference(original: &Trial, changed: &Trial) -> String {
-    let of = |trial: &Trial| fields(&Settings { trial: trial.clone(), ..Settings::default() });
-    let before = of(original);
+pub(super) fn world_in_words(original: &Trial, changed: &Trial) -> String {
+    let of = |trial: &Trial| Settings { trial: trial.clone(), ..Settings::default() };
+    changes_in_words(&of(original), &of(changed))
+}
+
+/// What is other in some settings, in a few words.
+pub(super) fn changes_in_words(original: &Settings, changed: &Settings) -> String {
+    let before = fields(original);
     let was_there = |path: &str| before.iter().any(|(known, _)| known == path);
-    let mut other: Vec<String> = of(changed)
+    let mut other: Vec<String> = fields(changed)
         .into_iter()
         .filter(|field| !before.contains(field))
         .map(|(path, value)| {
@@ -329,7 +342,7 @@ mod tests {
         run.set_seed(77).expect("allowed");
         run.set_population(9).expect("allowed");
         dropped(&mut run, &second.exhibits, &second.programme).expect("allowed");
-        assert_eq!((run.next_seed(), run.next_population()), (77, 9));
+        assert_eq!((run.next_seed(), run.next_settings().evolution.population), (77, 9));
         assert_eq!(run.next_settings().trial, plan.settings.trial);
     }
 
@@ -351,7 +364,7 @@ mod tests {
         let parents = Change::Field { field: "evolution.population", text: "7" };
         let shown = what_if(&mut run, &[saved(0)], &Programme::Solo, &parents).expect("allowed");
         assert!(shown.is_none());
-        assert_eq!(run.next_population(), 7);
+        assert_eq!(run.next_settings().evolution.population, 7);
     }
 
     #[test]

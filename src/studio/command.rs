@@ -21,6 +21,7 @@ use super::panels::{PanelKind, shown_in};
 use super::playback::Playback;
 use super::screenshot::Photograph;
 use super::stage::{Programme, Show, end_s};
+use super::undo::{History, Step, Way, followed, stepped};
 use super::view::Shot;
 use super::{Frame, Opening};
 
@@ -56,14 +57,23 @@ pub(super) enum Command {
         text: String,
     },
     /// Evolve on so many worker threads, from the next generation on.
-    #[expect(dead_code, reason = "for a panel with a control of threads")]
     SetThreads(usize),
     /// Let the next run descend from somebody, in whose world it takes place.
     Found(Pick),
     /// Let the next run begin from nothing again.
     ForgetFounder,
-    /// Take this shipped preset for the next run, and show what it does to what is on the stage.
+    /// Change several settings of the next run at once, and show what they do to what is on the stage.
+    SetFields(Vec<(String, String)>),
+    /// Take this preset for the next run, and show what it does to what is on the stage.
     SetPreset(String),
+    /// Keep the next run's settings as a preset of this name.
+    StorePreset(String),
+    /// Look for presets anew.
+    ListPresets,
+    /// Undo the latest change of the next run's plan.
+    Undo,
+    /// Do again what was undone last.
+    Redo,
     /// Go on with what was changed: it stays alone on the stage.
     KeepChange,
     /// Forget what was changed.
@@ -126,10 +136,6 @@ pub(super) enum Command {
     ToggleTheme,
     /// Take a picture of the stage alone, or of the window.
     TakePicture(Photograph),
-    /// Take the last edit back.
-    Undo,
-    /// Do again what was taken back.
-    Redo,
     /// Bring a panel to the front.
     Open(PanelKind),
     /// Close the panel that was used last.
@@ -241,11 +247,29 @@ impl StageParams<'_, '_> {
     }
 }
 
+impl StageParams<'_, '_> {
+    /// Takes a step back or forth; the stage follows.
+    fn step(&mut self, evolution: &mut Evolution, step: &Step, way: Way) -> Result<(), String> {
+        match step {
+            Step::Plan { before, after, .. } => {
+                let (from, to) = if way == Way::Back { (after, before) } else { (before, after) };
+                let now = evolution.next_plan().clone();
+                evolution.set_next_plan(stepped(&now, from, to))?;
+                let next = evolution.next_plan();
+                let show = followed(&self.exhibits(), &self.programme, &now, next)?;
+                self.present(show);
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Does what was asked for, in the order in which it was asked.
 fn apply(
     mut asked: MessageReader<Command>,
     mut evolution: ResMut<Evolution>,
     mut notices: ResMut<Notices>,
+    mut history: ResMut<History>,
     mut exit: MessageWriter<AppExit>,
     opening: Res<Opening>,
     mut desk: ResMut<Desk>,
@@ -253,6 +277,7 @@ fn apply(
     mut stage: StageParams,
 ) {
     for command in asked.read() {
+        let before = evolution.next_plan().clone();
         let done = match command {
             Command::Start => {
                 if evolution.status() == Status::Finished {
@@ -289,14 +314,28 @@ fn apply(
                 None => Ok(()),
             },
             Command::ForgetFounder => evolution.forget_founder(),
+            Command::SetFields(changes) => stage.try_out(&mut evolution, &Change::Fields(changes)),
             Command::SetPreset(name) => stage.try_out(&mut evolution, &Change::Preset(name)),
+            Command::StorePreset(name) => evolution.store_preset(name),
+            Command::ListPresets => {
+                evolution.list_presets();
+                Ok(())
+            }
+            Command::Undo | Command::Redo => {
+                let way = if *command == Command::Undo { Way::Back } else { Way::Forth };
+                let step = history.take(way);
+                let said = step.as_ref().map_or(way.nothing().to_owned(), |step| way.taken(step));
+                notices.news(said);
+                step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
+            }
             Command::DropChange => dropped(&mut evolution, &stage.exhibits(), &stage.programme)
                 .map(|show| stage.present(show)),
             Command::BeginLesson(index) => {
                 desk.is_bare = false;
                 desk.layout.open(PanelKind::Lessons);
-                let (exhibits, programme) = (stage.exhibits(), stage.programme.clone());
-                let shown = lessons.begin(*index, &mut evolution, exhibits, programme);
+                let programme = stage.programme.clone();
+                let on_show = Show { exhibits: stage.exhibits(), programme };
+                let shown = lessons.begin(*index, &mut evolution, on_show, &history);
                 shown.map(|show| stage.present(show))
             }
             Command::TryLesson(scene) => lessons.try_out(*scene).map(|show| stage.present(show)),
@@ -304,7 +343,10 @@ fn apply(
                 lessons.tell();
                 Ok(())
             }
-            Command::LeaveLesson => lessons.leave(&mut evolution).map(|show| stage.present(show)),
+            Command::LeaveLesson => {
+                let shown = lessons.leave(&mut evolution, &mut history);
+                shown.map(|show| stage.present(show))
+            }
             Command::Quit => {
                 exit.write(AppExit::Success);
                 Ok(())
@@ -318,6 +360,7 @@ fn apply(
                 shown.map(drop)
             }
         };
+        history.note(command, before, evolution.next_plan());
         notices.problems(done.err());
     }
 }
@@ -440,6 +483,7 @@ mod tests {
             .init_resource::<Hands>()
             .init_resource::<Desk>()
             .init_resource::<Lessons>()
+            .init_resource::<History>()
             .init_resource::<Theme>()
             .add_systems(Update, apply);
         let asked = [Command::Show(Pick::Opening(0)), Command::TogglePlayback];

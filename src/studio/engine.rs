@@ -6,6 +6,7 @@ use std::sync::{Arc, PoisonError};
 use bevy::prelude::*;
 use rayon::ThreadPool;
 
+use super::presets::Presets;
 use super::start_up::RunInProgress;
 use super::{Options, StudioError};
 use crate::evolve::RunPlan;
@@ -24,6 +25,8 @@ pub(super) struct Engine {
     pub first: RunSource,
     /// The run after the current one.
     pub next: RunPlan,
+    /// The presets that can be chosen.
+    pub presets: Arc<Presets>,
     run_folder: RunInProgress,
 }
 
@@ -36,6 +39,7 @@ impl Engine {
             saves: options.saves.clone(),
             first: options.run.clone(),
             next: options.run.plan.clone(),
+            presets: Arc::new(Presets::read(&options.saves)),
             run_folder: RunInProgress::default(),
         })
     }

@@ -10,10 +10,11 @@ use std::sync::Arc;
 use bevy::prelude::*;
 
 use super::engine::Engine;
+use super::presets::Presets;
 use crate::check::Invalid;
-use crate::evolve::{Champion, Origin, RunPlan, Settings, fields, with_field};
+use crate::evolve::{Champion, Origin, RunPlan, Settings, fields, with_field, with_fields};
 use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
-use crate::save::{Earlier, RunSummary, load_preset};
+use crate::save::{Earlier, Preset, RunSummary, load_preset};
 use crate::score::evaluate;
 
 /// Of so many generations the best ten are remembered.
@@ -142,11 +143,6 @@ impl Evolution {
     /// Name of the preset that the next run starts from.
     pub fn next_preset(&self) -> &str {
         &self.engine.next.preset
-    }
-
-    /// Population of the next run.
-    pub fn next_population(&self) -> u32 {
-        self.engine.next.settings.evolution.population
     }
 
     /// Whether the next run has another seed, founder or settings than the current one has by now, or soon.
@@ -352,9 +348,56 @@ impl Evolution {
         self.take_over_if_ready()
     }
 
-    /// Takes a shipped preset for the next run.
+    /// Sets several settings of the next run at once, checked after the last.
+    pub fn set_fields(&mut self, changes: &[(String, String)]) -> Result<(), String> {
+        let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+        self.engine.next.settings = with_fields(&self.engine.next.settings, changes)
+            .map_err(|error: Invalid| error.to_string())?;
+        self.take_over_if_ready()
+    }
+
+    /// Gives the next run another plan; a run that has not begun takes it at once.
+    pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
+        self.engine.next = plan;
+        self.take_over_if_ready()
+    }
+
+    /// The presets that can be chosen.
+    pub fn presets(&self) -> &Presets {
+        &self.engine.presets
+    }
+
+    /// Looks for a person's own presets anew.
+    pub fn list_presets(&mut self) {
+        self.engine.presets = Arc::new(Presets::read(&self.engine.saves));
+    }
+
+    /// The settings of the next run's preset as they come, if it is known.
+    pub fn preset_settings(&self) -> Option<&Settings> {
+        let name = self.next_preset();
+        let first = &self.engine.first.plan;
+        // Somebody may have begun with a file of their own.
+        let of_first = (first.preset == name).then_some(&first.settings);
+        self.engine.presets.settings_of(name).or(of_first)
+    }
+
+    /// Keeps the next run's settings as a preset of a person's own, of which they are from now on.
+    pub fn store_preset(&mut self, name: &str) -> Result<(), String> {
+        let next = &self.engine.next;
+        let about = format!("Your own; it began as {}.", next.preset);
+        let preset = Preset { name: name.to_owned(), about, settings: next.settings.clone() };
+        self.engine.saves.store_own_preset(&preset).map_err(|error| error.to_string())?;
+        self.list_presets();
+        self.engine.next.preset = preset.name;
+        self.take_over_if_ready()
+    }
+
+    /// Takes a preset for the next run: a shipped one, or one of a person's own.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
-        let preset = load_preset(name).map_err(|error| error.to_string())?;
+        let preset = match self.engine.presets.find(name)? {
+            Some(preset) => preset.clone(),
+            None => load_preset(name).map_err(|error| error.to_string())?,
+        };
         self.engine.next.preset = preset.name;
         self.engine.next.settings = preset.settings;
         self.engine.next.founder = None;

@@ -10,6 +10,7 @@ use super::evolution::{Evolution, Status};
 use super::exhibit::Exhibit;
 use super::notice::Notices;
 use super::stage::{Programme, Show};
+use super::undo::History;
 use crate::evolve::{Champion, RunPlan, Settings, with_fields};
 use crate::run::{GenerationReport, SideBySide, Told};
 use crate::save::{load_preset, shipped_champion};
@@ -57,6 +58,7 @@ struct Own {
     next: RunPlan,
     exhibits: Vec<Exhibit>,
     programme: Programme,
+    history: History,
     was_running: bool,
 }
 
@@ -95,8 +97,8 @@ impl Lessons {
         &mut self,
         index: usize,
         evolution: &mut Evolution,
-        exhibits: Vec<Exhibit>,
-        programme: Programme,
+        Show { exhibits, programme }: Show,
+        history: &History,
     ) -> Result<Option<Show>, String> {
         if index >= LESSONS.len() {
             return Err(format!("There are {} lessons.", LESSONS.len()));
@@ -107,7 +109,8 @@ impl Lessons {
             None => {
                 let was_running = evolution.status() == Status::Running;
                 evolution.pause()?;
-                Own { next: evolution.next_plan().clone(), exhibits, programme, was_running }
+                let (next, history) = (evolution.next_plan().clone(), history.clone());
+                Own { next, exhibits, programme, history, was_running }
             }
         };
         evolution.restore_next(own.next.clone())?;
@@ -139,9 +142,14 @@ impl Lessons {
     }
 
     /// Ends the lesson: stage, settings and run are as they were before it.
-    pub fn leave(&mut self, evolution: &mut Evolution) -> Result<Option<Show>, String> {
+    pub fn leave(
+        &mut self,
+        evolution: &mut Evolution,
+        history: &mut History,
+    ) -> Result<Option<Show>, String> {
         let Some(Current { own, .. }) = self.current.take() else { return Ok(None) };
         evolution.restore_next(own.next)?;
+        *history = own.history;
         if own.was_running && evolution.status() == Status::Paused {
             evolution.start()?;
         }
@@ -373,13 +381,16 @@ mod tests {
         let own = exhibits(&[lanes(0, 0)[1].clone()]).expect("it fits");
         let next = evolution.next_plan().clone();
         let mut lessons = Lessons::default();
-        let shown = lessons.begin(0, &mut evolution, own.clone(), Programme::Solo);
+        let stage = |exhibits: Vec<Exhibit>| Show { exhibits, programme: Programme::Solo };
+        let mut history = History::default();
+        let shown = lessons.begin(0, &mut evolution, stage(own.clone()), &history);
         assert_eq!(shown.expect("allowed").expect("a scene").exhibits.len(), 3);
         evolution.set_field("surface.friction", "0.2").expect("allowed");
-        lessons.begin(1, &mut evolution, Vec::new(), Programme::Race).expect("allowed");
+        lessons.begin(1, &mut evolution, stage(Vec::new()), &history).expect("allowed");
         assert_eq!(*evolution.next_plan(), next, "the next lesson begins with one's own, too");
         evolution.set_field("surface.friction", "0.3").expect("allowed");
-        let back = lessons.leave(&mut evolution).expect("allowed").expect("one's own");
+        let back =
+            lessons.leave(&mut evolution, &mut history).expect("allowed").expect("one's own");
         assert_eq!(*evolution.next_plan(), next);
         assert_eq!(back.programme, Programme::Solo);
         assert_eq!(back.exhibits.len(), own.len());

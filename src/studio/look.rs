@@ -97,8 +97,6 @@ pub const TITLE_SIZE: f32 = 15.0;
 pub const FIELD_WIDTH: f32 = 64.0;
 /// Width of a list to choose from, in points.
 pub const COMBO_WIDTH: f32 = 190.0;
-/// Width of a slider without its number, in points.
-pub const SLIDER_WIDTH: f32 = 190.0;
 /// Width that panels are laid out for at least, in points.
 #[cfg(test)]
 pub const PANEL_WIDTH: f32 = 320.0;
@@ -134,8 +132,6 @@ pub const MAP_HEIGHT: f32 = 190.0;
 pub const AXIS_WIDTH: f32 = 24.0;
 /// Size of the letters in and at charts, in points.
 pub const SMALL_SIZE: f32 = 11.0;
-/// Width of the list of controllers, in points.
-pub const CONTROLLER_WIDTH: f32 = 84.0;
 /// Corner radius of cards and buttons, in points.
 const CORNER: CornerRadius = CornerRadius::same(6);
 

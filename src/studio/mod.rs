@@ -40,6 +40,7 @@ mod performance;
 mod places;
 mod playback;
 mod preferences;
+mod presets;
 mod quality;
 pub mod render;
 mod rounded;
@@ -52,6 +53,7 @@ mod stage;
 mod stage_area;
 mod start_up;
 mod title;
+mod undo;
 mod view;
 mod wireframe;
 
@@ -101,6 +103,25 @@ pub struct Options {
     pub places: Option<PathBuf>,
     /// After how many frames to close by itself.
     pub exit_after_frames: Option<u32>,
+}
+
+#[cfg(test)]
+impl Options {
+    /// Those of a test: this run, on one thread, and nothing of a person's own.
+    fn of_test(run: RunSource, saves: SavesFolder) -> Self {
+        Self {
+            run,
+            threads: 1,
+            saves,
+            champions: Vec::new(),
+            comparison: None,
+            window_size: None,
+            theme: None,
+            preferences: PreferencesFile::nowhere(),
+            places: None,
+            exit_after_frames: None,
+        }
+    }
 }
 
 /// Why the studio could not open, or ended badly.
@@ -198,7 +219,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(failure)
         .configure_sets(Update, (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain())
         .add_plugins((
-            command::plugin,
+            (command::plugin, undo::plugin),
             evolution::plugin,
             stage::plugin,
             scene::plugin,

@@ -71,7 +71,6 @@ impl Evolution {
     }
 
     /// How many threads evolve.
-    #[cfg_attr(not(test), expect(dead_code, reason = "for a panel with a control of threads"))]
     pub fn threads(&self) -> usize {
         self.engine.pool.current_num_threads()
     }

@@ -4,7 +4,7 @@ use super::*;
 use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Control, Experiment, pool};
-use crate::save::{PreferencesFile, SavesFolder};
+use crate::save::SavesFolder;
 use crate::studio::Options;
 
 /// A run of the report's settings that has not begun.
@@ -33,18 +33,8 @@ pub fn explored_run() -> Evolution {
 fn run_of(plan: RunPlan) -> Evolution {
     let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
     let saves = SavesFolder::find(Some(&folder));
-    let options = Options {
-        run: RunSource::in_saves(&saves, plan, Earlier::Keep),
-        threads: 1,
-        saves,
-        champions: Vec::new(),
-        comparison: None,
-        window_size: None,
-        theme: None,
-        preferences: PreferencesFile::nowhere(),
-        places: None,
-        exit_after_frames: None,
-    };
+    let run = RunSource::in_saves(&saves, plan, Earlier::Keep);
+    let options = Options::of_test(run, saves);
     Evolution::new(Engine::new(&options).expect("threads"))
 }
 

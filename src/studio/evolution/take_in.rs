@@ -122,9 +122,9 @@ mod tests {
     use crate::evolve::{RunPlan, Settings};
     use crate::run::RunSource;
     use crate::save::SavesFolder;
+    use crate::studio::Options;
     use crate::studio::engine::Engine;
     use crate::studio::evolution::Status;
-    use crate::studio::{Options, Theme};
     use std::time::{Duration, Instant};
 
     /// A studio without a window, whose run is saved in a folder.
@@ -134,16 +134,8 @@ mod tests {
         settings.evolution.generations = 3;
         settings.trial.duration_s = 0.5;
         let plan = RunPlan::new("test", 1, settings);
-        let options = Options {
-            run: RunSource::in_saves(saves, plan, Earlier::Keep),
-            threads: 1,
-            saves: saves.clone(),
-            champions: Vec::new(),
-            comparison: None,
-            window_size: (1280, 720),
-            theme: Theme::default(),
-            exit_after_frames: None,
-        };
+        let run = RunSource::in_saves(saves, plan, Earlier::Keep);
+        let options = Options::of_test(run, saves.clone());
         let mut app = App::new();
         app.insert_resource(Evolution::new(Engine::new(&options).expect("threads")))
             .init_resource::<Notices>()

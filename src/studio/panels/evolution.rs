@@ -1,11 +1,13 @@
-//! Steering a run: start, pause, single generation, reset; seed and population; progress.
+//! Steering a run: start, pause, single generation, reset; progress; how long and by which method it searches.
 
 use bevy_egui::egui;
 
-use super::method::{method, preset_switch};
 use super::number_field::NumberField;
+use super::parameters::{Section, Sheet, controller, strategies};
+use super::progress::progress;
 use super::{explain, row, title_and};
-use crate::evolve::{LARGEST_POPULATION, RunPlan};
+use crate::evolve::{RunPlan, StrategyKind};
+use crate::run::THREADS_RANGE;
 use crate::studio::command::Command;
 use crate::studio::evolution::{Evolution, Status, news_of};
 use crate::studio::look;
@@ -14,24 +16,26 @@ use crate::studio::look;
 #[derive(Debug, Default)]
 pub(super) struct EvolutionPanel {
     seed: NumberField,
-    population: NumberField,
+    threads: NumberField,
+    sheet: Sheet,
 }
 
 impl EvolutionPanel {
     /// Draws the panel and adds what was asked for.
     pub fn ui(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+        self.sheet.begin(ui, run);
         title_and(ui, "Evolution", |ui| preset_switch(ui, run, asked));
         // A click on a button also ends what is typed below it; the typed value comes first.
         let mut pressed = Vec::new();
         self.buttons(ui, run, &mut pressed);
-        self.progress(ui, run);
+        progress(ui, run);
         self.fields(ui, run, asked);
         stopped_runs(ui, run, asked);
         asked.append(&mut pressed);
     }
 
     fn buttons(&self, ui: &mut egui::Ui, run: &Evolution, pressed: &mut Vec<Command>) {
-        let is_wrong = self.seed.problem().or(self.population.problem()).is_some();
+        let is_wrong = self.seed.problem().is_some() || self.sheet.has_problem();
         let status = run.status();
         let is_finished = status == Status::Finished;
         let (label, start) = match status {
@@ -77,54 +81,87 @@ impl EvolutionPanel {
         });
     }
 
-    fn progress(&self, ui: &mut egui::Ui, run: &Evolution) {
-        let (done, population) = run.progress();
-        let generations = run.settings().evolution.generations;
-        let finished = run.reports().len();
-        let (text, share) = match run.status() {
-            // Larger generations make for fewer of them.
-            Status::Finished => (format!("All {finished} generations done"), 1.0),
-            status => {
-                let held = match status {
-                    Status::Ready => ", ready to start",
-                    Status::Paused => ", paused",
-                    Status::Running | Status::Finished => "",
-                };
-                let text = format!("Generation {} of {generations}{held}", finished + 1);
-                (text, done as f32 / population.max(1) as f32)
-            }
-        };
-        ui.label(text);
-        let inside = match run.run_hash() {
-            Some(hash) => format!("run hash {hash:016x}"),
-            None => format!("{done} of {population} snakes"),
-        };
-        ui.add(egui::ProgressBar::new(share).text(inside).fill(look::of(ui).accent_soft))
-            .on_hover_text("Evaluated snakes of the current generation");
-    }
-
     fn fields(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             let hint = "The same seed and settings give the same run, bit for bit";
             let seed = self.seed.ui(ui, "Seed", hint, run.next_seed(), 0..=u64::MAX);
             asked.extend(seed.map(Command::SetSeed));
-            let hint = "Snakes in a generation, 1 to 100000. A run under way takes it from its next generation on, if its \
-                        method allows that";
-            let range = 1..=LARGEST_POPULATION;
-            let now = run.next_population();
-            let population = self.population.ui(ui, "Population", hint, now, range);
-            asked.extend(population.map(Command::SetPopulation));
+            let hint = "So many snakes are evaluated at a time; more than there are processors is no quicker. The \
+                        result is the same for any number";
+            let threads = self.threads.ui(ui, "Threads", hint, run.threads(), THREADS_RANGE);
+            asked.extend(threads.map(Command::SetThreads));
         });
-        for problem in [self.seed.problem(), self.population.problem()].into_iter().flatten() {
+        for problem in [self.seed.problem(), self.threads.problem()].into_iter().flatten() {
             ui.colored_label(look::of(ui).problem, problem);
         }
-        method(ui, run, asked);
+        self.sheet.section(ui, run, &strategies::RUN, asked);
         founder(ui, run, asked);
         changes(ui, run);
         if run.next_run_differs() {
             let hint = "Reset to begin a run with these values.";
             ui.label(egui::RichText::new(hint).color(look::of(ui).second));
         }
+        self.strategy(ui, run, asked);
+        self.controller(ui, run, asked);
+    }
+
+    /// The method, with its settings, and those of the others.
+    fn strategy(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+        let chosen = run.next_settings().evolution.strategy;
+        self.sheet.section(ui, run, &strategies::STRATEGY, asked);
+        if let Some(section) = strategies::section_of(chosen) {
+            self.folded(ui, run, section, true, asked);
+        }
+        // Novelty search makes its children as the genetic algorithm is told to.
+        let is_shared = chosen == StrategyKind::Novelty;
+        if is_shared && let Some(section) = strategies::section_of(StrategyKind::Ga) {
+            self.folded(ui, run, section, false, asked);
+        }
+        let others = StrategyKind::ALL
+            .into_iter()
+            .filter(|kind| *kind != chosen && !(is_shared && *kind == StrategyKind::Ga));
+        let header = egui::CollapsingHeader::new("Other strategies");
+        let shown = header.show(ui, |ui| {
+            for section in others.filter_map(strategies::section_of) {
+                self.folded(ui, run, section, false, asked);
+            }
+        });
+        shown.header_response.on_hover_text("What they are told once one of them is chosen");
+    }
+
+    /// What drives the joints, and what genomes may be.
+    fn controller(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+        self.sheet.section(ui, run, &controller::CONTROLLER, asked);
+        for section in controller::GENOME {
+            self.folded(ui, run, section, false, asked);
+        }
+    }
+
+    /// A section that folds away.
+    fn folded(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &Evolution,
+        section: &Section,
+        is_open: bool,
+        asked: &mut Vec<Command>,
+    ) {
+        // What has nothing to do with the chosen controller says so.
+        let kind = run.next_settings().genome.controller;
+        let is_idle = !controller::concerns(kind, section);
+        let name = egui::RichText::new(section.title);
+        let name = if is_idle { name.color(look::of(ui).text_weak) } else { name };
+        // One that is chosen opens, whether or not it was opened among the others.
+        let header = egui::CollapsingHeader::new(name)
+            .id_salt((section.prefix, section.title, is_open))
+            .default_open(is_open);
+        let shown = header.show_unindented(ui, |ui| {
+            if is_idle {
+                explain(ui, "The chosen controller has no use for these.");
+            }
+            self.sheet.section(ui, run, section, asked);
+        });
+        shown.header_response.on_hover_text(section.about);
     }
 }
 
@@ -157,6 +194,22 @@ fn changes(ui: &mut egui::Ui, run: &Evolution) {
 
 /// So many changes are listed; more would not fit into a hint.
 const MOST_LISTED: usize = 12;
+/// Draws the way to the report's run, or back to the climb, and adds what was asked for.
+fn preset_switch(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+    let (label, preset, hint) = if run.next_preset() == REPORT {
+        ("The climb", CLIMB, "Take the preset that climbs to the top for the next run")
+    } else {
+        ("The report's run", REPORT, "Take the report's own method and world for the next run")
+    };
+    if ui.small_button(label).on_hover_text(hint).clicked() {
+        asked.push(Command::SetPreset(preset.to_owned()));
+    }
+}
+
+/// The preset of the report's run.
+const REPORT: &str = "report";
+/// The preset of the climb to the landing.
+const CLIMB: &str = "climb";
 
 /// Runs that were stopped before their end, to go on with.
 fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
@@ -196,7 +249,9 @@ mod tests {
     /// What the panel sends when a person does `act`.
     fn sent(run: &Evolution, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
         let mut panel = EvolutionPanel::default();
-        let mut harness = Harness::new_ui_state(|ui, asked| panel.ui(ui, run, asked), Vec::new());
+        let mut harness = Harness::builder()
+            .with_size(egui::vec2(look::PANEL_WIDTH, 1600.0))
+            .build_ui_state(|ui, asked| panel.ui(ui, run, asked), Vec::new());
         act(&mut harness);
         harness.run();
         harness.state().clone()
@@ -279,5 +334,90 @@ mod tests {
             harness.run();
         });
         assert_eq!(sent, [Command::SetSeed(19), Command::Start]);
+    }
+
+    /// What is sent when a person clicks on one label after another.
+    fn clicked(run: &Evolution, labels: &[&str]) -> Vec<Command> {
+        sent(run, |harness| {
+            for label in labels {
+                match label.strip_prefix("list ") {
+                    Some(list) => {
+                        let role = egui::accesskit::Role::ComboBox;
+                        harness.get_by_role_and_label(role, list).click();
+                    }
+                    None => harness.get_by_label(label).click(),
+                }
+                harness.run();
+            }
+        })
+    }
+
+    fn set(field: &str, text: &str) -> Command {
+        Command::SetField { field: field.to_owned(), text: text.to_owned() }
+    }
+
+    #[test]
+    fn every_strategy_and_controller_can_be_chosen() {
+        let run = run();
+        for kind in &StrategyKind::ALL[1..] {
+            let asked = clicked(&run, &["list Strategy", kind.title()]);
+            assert_eq!(asked, [set("evolution.strategy", kind.name())]);
+        }
+        for (title, name) in [("Wave", "wave"), ("Gait", "gait")] {
+            let asked = clicked(&run, &["list Controller", title]);
+            assert_eq!(asked, [set("genome.controller", name)]);
+        }
+    }
+
+    #[test]
+    fn the_chosen_strategy_shows_its_settings_and_the_others_can_be_reached() {
+        let mut run = run();
+        let is_shown = |run: &Evolution, clicks: &[&str], label: &str| {
+            let mut is_shown = false;
+            sent(run, |harness| {
+                for click in clicks {
+                    harness.get_by_label(click).click();
+                    harness.run();
+                }
+                is_shown = harness.query_all_by_label(label).next().is_some();
+            });
+            is_shown
+        };
+        assert!(is_shown(&run, &[], "Mutation decay"));
+        assert!(!is_shown(&run, &[], "Tournament"));
+        assert!(is_shown(&run, &["Other strategies", "Genetic algorithm"], "Tournament"));
+        run.set_field("evolution.strategy", "cma_es").expect("allowed");
+        assert!(!is_shown(&run, &[], "Mutation decay"));
+        assert!(is_shown(&run, &[], "Newborns first"));
+    }
+
+    #[test]
+    fn typed_population_and_threads_are_sent() {
+        let run = run();
+        for (label, asked) in [
+            ("Population", Command::SetPopulation(40)),
+            ("Generations", set("evolution.generations", "40")),
+            ("Threads", Command::SetThreads(40)),
+        ] {
+            let sent = sent(&run, |harness| {
+                harness.get_by_label(label).focus();
+                harness.run();
+                harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+                harness.run();
+                harness.get_by_label(label).type_text("40");
+                harness.run();
+                harness.key_press(egui::Key::Enter);
+                harness.run();
+            });
+            assert_eq!(sent, [asked]);
+        }
+    }
+
+    #[test]
+    fn the_reports_run_and_the_climb_are_a_click_from_each_other() {
+        let mut run = run();
+        assert_eq!(clicked(&run, &["The climb"]), [Command::SetPreset("climb".to_owned())]);
+        run.set_preset("climb").expect("shipped");
+        assert_eq!(clicked(&run, &["The report's run"]), [Command::SetPreset("report".to_owned())]);
     }
 }

@@ -13,10 +13,16 @@ pub(super) enum Icon {
     Hold,
     StepForward,
     Loop,
+    /// Back to the preset's value.
+    Reset,
+    Undo,
+    Redo,
 }
 
 /// Side of a button, in points.
 const SIDE: f32 = 28.0;
+/// Side of a small button, in points.
+const SMALL_SIDE: f32 = 22.0;
 
 impl Icon {
     /// What a screen reader says.
@@ -28,6 +34,9 @@ impl Icon {
             Self::Hold => "Hold",
             Self::StepForward => "Step forward",
             Self::Loop => "Loop",
+            Self::Reset => "Reset",
+            Self::Undo => "Undo",
+            Self::Redo => "Redo",
         }
     }
 
@@ -47,25 +56,70 @@ impl Icon {
             Self::ToStart => {
                 vec![bar(0.0, 0.14), triangle(0.6, 0.16), triangle(1.05, 0.6)]
             }
-            Self::Loop => {
-                // Three quarters of a circle, and the head of an arrow at its end.
-                let (centre, radius) = (square.center(), square.width() * 0.46);
-                let on_circle = |turn: f32| {
-                    let (sin, cos) = libm::sincosf(turn * std::f32::consts::TAU);
-                    centre + egui::vec2(sin, -cos) * radius
-                };
-                let line = (0..=18).map(|part| on_circle(0.13 + 0.75 * part as f32 / 18.0));
-                let end = on_circle(0.9);
-                let side = radius * 0.62;
-                let head = vec![
-                    end + egui::vec2(-side * 0.5, -side * 0.75),
-                    end + egui::vec2(side * 0.85, -side * 0.1),
-                    end + egui::vec2(-side * 0.35, side * 0.85),
-                ];
-                vec![Shape::line(line.collect(), stroke), filled(head)]
-            }
+            Self::Loop => round_arrow(square, stroke, false),
+            Self::Reset => round_arrow(square, stroke, true),
+            Self::Undo => turned_arrow(square, stroke, true),
+            Self::Redo => turned_arrow(square, stroke, false),
         }
     }
+}
+
+/// Three quarters of a circle, and the head of an arrow at its end; mirrored, it runs against the clock.
+fn round_arrow(square: Rect, stroke: Stroke, is_mirrored: bool) -> Vec<Shape> {
+    let (centre, radius) = (square.center(), square.width() * 0.46);
+    let side = if is_mirrored { -1.0 } else { 1.0 };
+    let on_circle = |turn: f32| {
+        let (sin, cos) = libm::sincosf(turn * std::f32::consts::TAU);
+        centre + egui::vec2(side * sin, -cos) * radius
+    };
+    let line = (0..=18).map(|part| on_circle(0.13 + 0.75 * part as f32 / 18.0));
+    let end = on_circle(0.9);
+    let head_size = radius * 0.62;
+    let corner = |x: f32, y: f32| end + egui::vec2(side * x, y) * head_size;
+    let head = vec![corner(-0.5, -0.75), corner(0.85, -0.1), corner(-0.35, 0.85)];
+    let head = Shape::convex_polygon(head, stroke.color, Stroke::NONE);
+    vec![Shape::line(line.collect(), stroke), head]
+}
+
+/// An arrow that comes from below and turns to the left; or else to the right.
+fn turned_arrow(square: Rect, stroke: Stroke, is_left: bool) -> Vec<Shape> {
+    let at = |x: f32, y: f32| square.lerp_inside(egui::vec2(if is_left { x } else { 1.0 - x }, y));
+    let line = (0..=12).map(|part| {
+        let (sin, cos) = libm::sincosf(std::f32::consts::PI * part as f32 / 12.0);
+        at(0.55 + 0.4 * sin, 0.6 - 0.32 * cos)
+    });
+    let line: Vec<Pos2> =
+        std::iter::once(at(0.3, 0.28)).chain(line).chain([at(0.25, 0.92)]).collect();
+    let head = vec![at(0.0, 0.28), at(0.36, 0.0), at(0.36, 0.56)];
+    vec![Shape::line(line, stroke), Shape::convex_polygon(head, stroke.color, Stroke::NONE)]
+}
+
+/// A small button with a sign, named for screen readers by what it is for.
+pub(super) fn small_icon_button(
+    ui: &mut egui::Ui,
+    icon: Icon,
+    label: &str,
+    hint: &str,
+) -> egui::Response {
+    let palette = look::of(ui);
+    let size = egui::Vec2::splat(SMALL_SIDE);
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    let is_on = ui.is_enabled();
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, is_on, label));
+    if ui.is_rect_visible(rect) {
+        let corner = ui.visuals().widgets.inactive.corner_radius;
+        if response.hovered() {
+            ui.painter().rect_filled(rect, corner, palette.field_hovered);
+        }
+        if response.has_focus() {
+            let stroke = Stroke::new(1.5, palette.accent);
+            ui.painter().rect_stroke(rect, corner, stroke, egui::StrokeKind::Inside);
+        }
+        let color = if is_on { palette.text } else { palette.text_weak.gamma_multiply(0.5) };
+        let square = Rect::from_center_size(rect.center(), size * 0.55);
+        ui.painter().extend(icon.shapes(square, Stroke::new(1.6, color)));
+    }
+    response.on_hover_text(hint).on_disabled_hover_text(hint)
 }
 
 /// A button with a sign.

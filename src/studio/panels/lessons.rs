@@ -176,7 +176,8 @@ mod tests {
     use super::*;
     use crate::studio::evolution::prepared_run;
     use crate::studio::lessons::Lessons;
-    use crate::studio::stage::Programme;
+    use crate::studio::stage::{Programme, Show};
+    use crate::studio::undo::History;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -204,7 +205,8 @@ mod tests {
     fn a_lesson_is_tried_answered_and_left_by_its_buttons() {
         let mut evolution = prepared_run();
         let mut of = Lessons::default();
-        of.begin(0, &mut evolution, Vec::new(), Programme::Solo).expect("allowed");
+        let on_show = Show { exhibits: Vec::new(), programme: Programme::Solo };
+        of.begin(0, &mut evolution, on_show, &History::default()).expect("allowed");
         let second = LESSONS[0].scenes[1].label();
         assert_eq!(sent(&of, second), [Command::TryLesson(1)]);
         assert_eq!(sent(&of, "Tell me"), [Command::TellLesson]);

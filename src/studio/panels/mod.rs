@@ -14,14 +14,15 @@ mod explore;
 mod front_plot;
 mod icons;
 mod key_overlay;
-mod knobs;
 mod layout;
 mod lessons;
 mod limb_card;
 mod menu;
-mod method;
 mod number_field;
 mod palette;
+mod parameters;
+mod presets;
+mod progress;
 mod signals;
 mod timeline;
 mod tour;
@@ -47,6 +48,7 @@ use super::overlay::Overlays;
 use super::playback::Playback;
 use super::stage::{Programme, end_s};
 use super::stage_area::StageArea;
+use super::undo::History;
 use super::{Opened, look};
 use crate::evolve::Origin;
 
@@ -78,6 +80,7 @@ struct OnStage<'w, 's> {
     hands: Res<'w, Hands>,
     rig: Res<'w, CameraRig>,
     overlays: Res<'w, Overlays>,
+    history: Res<'w, History>,
     smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
 }
 
@@ -164,7 +167,8 @@ fn draw(
     look::show(&context, *seen.theme);
     context.set_zoom_factor(desk.scale);
     let mut asked = Vec::new();
-    let situation = Situation::of(&seen.evolution, &seen.on_stage.programme, &desk);
+    let situation =
+        Situation::of(&seen.evolution, &seen.on_stage.programme, &desk, &seen.on_stage.history);
     let mut root = egui::Ui::new(
         context.clone(),
         "root".into(),
@@ -276,7 +280,7 @@ impl Viewer<'_, '_, '_> {
         match kind {
             PanelKind::Stage => {}
             PanelKind::Run => panels.evolution.ui(ui, evolution, asked),
-            PanelKind::World => panels.world.ui(ui, evolution, asked),
+            PanelKind::World => panels.world.ui(ui, evolution, &self.seen.on_stage.history, asked),
             PanelKind::Charts => {
                 panels.chart.ui(ui, evolution.settings(), evolution.reports());
                 panels.explore.ui(ui, evolution, shown.first().copied(), asked);

@@ -1,261 +1,194 @@
-//! The world and the snake that the next run gets: surface, stairs, joints, limbs, and what is rewarded.
-//!
-//! A change also goes to the stage: beside what is on show the same genome begins under it. So that a drag does not
-//! start the stage again with every pixel, a slider is taken when it is let go, or rests for a moment.
+//! The world and the snake that the next run gets, section by section, and a way to find a setting among all.
 
 use bevy_egui::egui;
 
-use super::knobs::{Knob, LIMITS, SNAKE, STAIRS, SURFACE};
-use super::title;
-use crate::evolve::Settings;
-use crate::save::shipped_presets;
-use crate::score::{Fitness, PerPart};
+use super::icons::{Icon, small_icon_button};
+use super::parameters::{Section, Sheet, WORLD, all_sections};
+use super::presets::PresetChoice;
+use super::{explain, title_and};
 use crate::studio::command::Command;
 use crate::studio::evolution::Evolution;
 use crate::studio::look;
+use crate::studio::undo::{History, Way};
 
 /// The panel, with what is being dragged or typed.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct WorldPanel {
-    /// The field being changed, the value it has so far, and since when, in seconds.
-    changing: Option<(String, f32, f64)>,
-    /// The frame in which the panel was drawn last.
-    drawn_in: u64,
-    /// Names and descriptions of the shipped presets.
-    presets: Vec<(String, String)>,
-}
-
-/// A slider that is held still for so long shows what it does, in seconds.
-const REST_S: f64 = 0.35;
-
-impl Default for WorldPanel {
-    fn default() -> Self {
-        // The shipped presets are well formed; a test holds them to it.
-        let presets = shipped_presets().unwrap_or_default();
-        let presets = presets.into_iter().map(|preset| (preset.name, preset.about)).collect();
-        Self { changing: None, drawn_in: 0, presets }
-    }
+    sheet: Sheet,
+    presets: PresetChoice,
+    /// What somebody looks for.
+    wanted: String,
 }
 
 impl WorldPanel {
     /// Draws the panel and adds what was asked for.
-    pub fn ui(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
-        let settings = run.next_settings();
-        let frame = ui.ctx().cumulative_frame_nr();
-        if frame > self.drawn_in + 1 {
-            // What was left unfinished when the panel was left is forgotten.
-            self.changing = None;
-        }
-        self.drawn_in = frame;
-        self.choices(ui, run, asked);
-        // Always there, so that nothing moves under the pointer when a slider is let go.
-        let differs = run.next_run_differs();
-        let (text, color) = if differs {
-            ("The run under way keeps its own world.", look::of(ui).second)
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &Evolution,
+        history: &History,
+        asked: &mut Vec<Command>,
+    ) {
+        self.sheet.begin(ui, run);
+        title_and(ui, "World", |ui| undo_buttons(ui, history, asked));
+        self.presets.ui(ui, run, asked);
+        next_run(ui, run, asked);
+        self.find(ui);
+        if self.wanted.trim().is_empty() {
+            self.sections(ui, run, asked);
         } else {
-            ("The run under way is in this world.", look::of(ui).text_weak)
-        };
-        ui.label(egui::RichText::new(text).color(color));
-        if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
-            asked.extend([Command::Reset, Command::Start]);
+            self.found(ui, run, asked);
         }
-        let section = |ui: &mut egui::Ui, name: &str, is_open: bool| {
-            ui.add_space(look::GAP / 2.0);
-            let name = egui::RichText::new(name).size(look::TITLE_SIZE).strong();
-            egui::CollapsingHeader::new(name).default_open(is_open)
-        };
-        section(ui, "Surface", true).show(ui, |ui| self.surfaces(ui, settings, asked));
-        section(ui, "Snake", false).show(ui, |ui| {
-            for (knob, value) in &SNAKE {
-                self.slider(ui, "", knob, value(settings), asked);
-            }
-            for (knob, given) in &LIMITS {
-                self.limit(ui, knob, given(settings), asked);
-            }
-        });
-        section(ui, "Stairs and world", false).show(ui, |ui| {
-            for (knob, value) in &STAIRS {
-                self.slider(ui, "", knob, value(settings), asked);
-            }
-        });
     }
 
-    /// Preset and fitness.
-    fn choices(&self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
-        title(ui, "World");
-        let fitness = run.next_settings().trial.fitness;
-        egui::Grid::new("choices").num_columns(2).show(ui, |ui| {
-            ui.label("Preset");
-            egui::ComboBox::from_id_salt("preset")
-                .selected_text(run.next_preset())
-                .width(look::COMBO_WIDTH)
-                .show_ui(ui, |ui| {
-                    for (name, about) in &self.presets {
-                        let is_chosen = name == run.next_preset();
-                        let choice = ui.selectable_label(is_chosen, name).on_hover_text(about);
-                        if choice.clicked() {
-                            asked.push(Command::SetPreset(name.clone()));
-                        }
-                    }
-                });
-            ui.end_row();
-            ui.label("Fitness");
-            egui::ComboBox::from_id_salt("fitness")
-                .selected_text(short_name(fitness))
-                .width(look::COMBO_WIDTH)
-                .show_ui(ui, |ui| {
-                    for kind in Fitness::ALL {
-                        let choice = ui
-                            .selectable_label(kind == fitness, short_name(kind))
-                            .on_hover_text(about(kind));
-                        if choice.clicked() {
-                            asked.push(set("trial.fitness", kind.name()));
-                        }
-                    }
-                })
-                .response
-                .on_hover_text(about(fitness));
-            ui.end_row();
-        });
-    }
-
-    fn surfaces(&mut self, ui: &mut egui::Ui, settings: &Settings, asked: &mut Vec<Command>) {
-        let trial = &settings.trial;
-        let mut differs = trial.ground.is_some();
-        if ui.checkbox(&mut differs, "The ground has a surface of its own").changed() {
-            asked.push(if differs {
-                set("ground.friction", &trial.surface.friction.to_string())
-            } else {
-                set("trial.ground", "none")
+    /// The field for what somebody looks for.
+    fn find(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            let is_searching = !self.wanted.is_empty();
+            let clear = if is_searching { look::GAP * 8.0 } else { 0.0 };
+            let field = egui::TextEdit::singleline(&mut self.wanted)
+                .hint_text("Find a setting")
+                .desired_width(ui.available_width() - clear - look::GAP);
+            let response = ui.add(field);
+            let is_on = ui.is_enabled();
+            response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, is_on, "Find a setting")
             });
+            response.on_hover_text(
+                "Shows the settings of all sections, the search's too, that are about it",
+            );
+            if is_searching && ui.small_button("Clear").clicked() {
+                self.wanted.clear();
+            }
+        });
+    }
+
+    fn sections(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+        for section in WORLD {
+            ui.add_space(look::GAP / 2.0);
+            let name = egui::RichText::new(section.title).size(look::TITLE_SIZE).strong();
+            let header = egui::CollapsingHeader::new(name).default_open(is_open_at_first(section));
+            let shown = header.show_unindented(ui, |ui| {
+                if section.prefix == GROUND_PREFIX {
+                    own_ground(ui, run, asked);
+                }
+                self.sheet.section(ui, run, section, asked);
+            });
+            shown.header_response.on_hover_text(section.about);
         }
-        if trial.ground.is_some() {
-            ui.label(egui::RichText::new("Stairs").color(look::of(ui).text_weak));
-        }
-        for (knob, value) in &SURFACE {
-            self.slider(ui, "trial.surface.", knob, value(&trial.surface), asked);
-        }
-        if let Some(ground) = &trial.ground {
-            ui.label(egui::RichText::new("Ground").color(look::of(ui).text_weak));
-            for (knob, value) in &SURFACE {
-                self.slider(ui, "trial.ground.", knob, value(ground), asked);
+    }
+
+    /// The settings that somebody looks for, under the titles of their sections.
+    fn found(&mut self, ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+        let wanted = self.wanted.clone();
+        let mut is_anything = false;
+        for section in all_sections() {
+            let is_section =
+                section.title.to_lowercase().contains(wanted.trim().to_lowercase().as_str());
+            let is_wanted =
+                |entry: &super::parameters::Entry| is_section || entry.is_about(&wanted);
+            let is_ground = section.prefix == GROUND_PREFIX;
+            let is_there = !is_ground || run.next_settings().trial.ground.is_some();
+            if is_there && section.entries.iter().any(is_wanted) {
+                is_anything = true;
+                ui.add_space(look::GAP / 2.0);
+                explain(ui, section.title);
+                self.sheet.entries(ui, run, section, is_wanted, asked);
             }
         }
-    }
-
-    /// A limit that is each genome's own unless it is given.
-    fn limit(
-        &mut self,
-        ui: &mut egui::Ui,
-        knob: &Knob,
-        given: &Option<PerPart>,
-        asked: &mut Vec<Command>,
-    ) {
-        let mut is_given = given.is_some();
-        let hint = "Unticked, each genome has its own, drawn from the preset's list";
-        if ui.checkbox(&mut is_given, knob.label).on_hover_text(hint).changed() {
-            asked.push(set(knob.field, if is_given { "1" } else { "none" }));
-        }
-        if let Some(given) = given {
-            self.slider(ui, "", knob, given.at(0), asked);
+        if !is_anything {
+            explain(ui, "No setting is about that.");
         }
     }
+}
 
-    /// A slider with a name over it. What it is set to is asked for when it is let go.
-    fn slider(
-        &mut self,
-        ui: &mut egui::Ui,
-        prefix: &str,
-        knob: &Knob,
-        value: f32,
-        asked: &mut Vec<Command>,
-    ) {
-        let field = format!("{prefix}{}", knob.field);
-        let mut shown = match &self.changing {
-            Some((changing, so_far, _)) if *changing == field => *so_far,
-            _ => value,
+/// How the names of the ground's settings begin.
+const GROUND_PREFIX: &str = "trial.ground.";
+
+fn is_open_at_first(section: &Section) -> bool {
+    ["Surface", "Ground", "Reward"].contains(&section.title)
+}
+
+/// Whether the ground has a surface of its own.
+fn own_ground(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+    let trial = &run.next_settings().trial;
+    let mut differs = trial.ground.is_some();
+    let hint = "Ticked, what the ground is made of begins as a copy of the stairs' surface; unticked, both are one";
+    let name = "The ground has a surface of its own";
+    if ui.checkbox(&mut differs, name).on_hover_text(hint).changed() {
+        let (field, text) = if differs {
+            ("ground.friction", trial.surface.friction.to_string())
+        } else {
+            ("trial.ground", "none".to_owned())
         };
-        let mut slider = egui::Slider::new(&mut shown, knob.least..=knob.most)
-            .clamping(egui::SliderClamping::Never)
-            .custom_formatter(|value, _| rounded(value as f32));
-        if let Some(from) = knob.logarithmic_from {
-            slider = slider.logarithmic(true).smallest_positive(f64::from(from));
-        }
-        if knob.is_whole {
-            slider = slider.step_by(1.0);
-        }
-        let name = ui.label(knob.label).on_hover_text(knob.hint);
-        ui.spacing_mut().slider_width = look::SLIDER_WIDTH;
-        let response = ui.add(slider).labelled_by(name.id).on_hover_text(knob.hint);
-        let now_s = ui.input(|input| input.time);
-        if response.changed() {
-            self.changing = Some((field.clone(), shown, now_s));
-        }
-        let since_s = match &self.changing {
-            Some((changing, _, since_s)) if *changing == field => *since_s,
-            _ => return,
+        asked.push(Command::SetField { field: field.to_owned(), text });
+    }
+}
+
+/// In which world the run under way is, and the way to the next.
+fn next_run(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+    // Always there, so that nothing moves under the pointer when a slider is let go.
+    let differs = run.next_run_differs();
+    let (text, color) = if differs {
+        ("The run under way keeps its own world.", look::of(ui).second)
+    } else {
+        ("The run under way is in this world.", look::of(ui).text_weak)
+    };
+    ui.label(egui::RichText::new(text).color(color));
+    if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
+        asked.extend([Command::Reset, Command::Start]);
+    }
+}
+
+/// Draws the ways through what was changed, and adds what was asked for.
+pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &History, asked: &mut Vec<Command>) {
+    for (way, icon, name, command) in [
+        (Way::Forth, Icon::Redo, "Redo", Command::Redo),
+        (Way::Back, Icon::Undo, "Undo", Command::Undo),
+    ] {
+        let hint = match history.next(way) {
+            Some(step) => format!("{name} {step}"),
+            None => way.nothing().to_owned(),
         };
-        let is_let_go = !response.dragged() && !response.has_focus();
-        let rests = response.dragged() && now_s - since_s > REST_S;
-        if is_let_go {
-            self.changing = None;
-        }
-        let text = rounded(shown);
-        if (is_let_go || rests) && text != rounded(value) {
-            asked.push(set(&field, &text));
-            if rests {
-                // Once, until it is moved again.
-                self.changing = Some((field, shown, f64::INFINITY));
-            }
+        let is_on = history.next(way).is_some();
+        let button = |ui: &mut egui::Ui| small_icon_button(ui, icon, name, &hint);
+        if ui.add_enabled_ui(is_on, button).inner.clicked() {
+            asked.push(command);
         }
     }
-}
-
-fn set(field: &str, text: &str) -> Command {
-    Command::SetField { field: field.to_owned(), text: text.to_owned() }
-}
-
-/// A slider's value with as many digits as a person can mean: four that count.
-fn rounded(value: f32) -> String {
-    let four_digits: f32 = format!("{value:.3e}").parse().unwrap_or(value);
-    four_digits.to_string()
-}
-
-fn short_name(fitness: Fitness) -> &'static str {
-    match fitness {
-        Fitness::Centre => "Centre, y",
-        Fitness::Head => "Head, y",
-        Fitness::CentreOfMass => "Centre of mass, y",
-        Fitness::Height => "Height",
-        Fitness::FurthestY => "Furthest y ever",
-        Fitness::StepsClimbed => "Steps climbed",
-        Fitness::Climb => "Climb: y on the stairs",
-    }
-}
-
-fn about(fitness: Fitness) -> String {
-    format!("The {}.\nRewards wrongly: {}", fitness.words(), fitness.rewards_wrongly())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::with_field;
     use crate::studio::evolution::prepared_run;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     /// What the panel sends when a person does `act`.
     fn sent(run: &Evolution, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+        sent_at(run, look::PANEL_WIDTH, &History::default(), act)
+    }
+
+    /// The same at some width, after what was changed.
+    fn sent_at(
+        run: &Evolution,
+        width: f32,
+        history: &History,
+        act: impl FnOnce(&mut Harness<'_, Vec<Command>>),
+    ) -> Vec<Command> {
         let mut panel = WorldPanel::default();
-        let size = egui::vec2(look::PANEL_WIDTH, 1000.0);
         let mut harness = Harness::builder()
-            .with_size(size)
+            .with_size(egui::vec2(width, 2000.0))
             .with_step_dt(1.0 / 60.0)
-            .build_ui_state(|ui, asked| panel.ui(ui, run, asked), Vec::new());
+            .build_ui_state(|ui, asked| panel.ui(ui, run, history, asked), Vec::new());
         act(&mut harness);
         harness.run();
         harness.state().clone()
+    }
+
+    fn set(field: &str, text: &str) -> Command {
+        Command::SetField { field: field.to_owned(), text: text.to_owned() }
     }
 
     #[test]
@@ -302,35 +235,104 @@ mod tests {
     }
 
     #[test]
-    fn every_slider_sets_a_field_that_there_is() {
-        let mut settings = Settings::default();
-        settings.trial.ground = Some(settings.trial.surface.clone());
-        let surfaces = ["trial.surface.", "trial.ground."].into_iter().flat_map(|prefix| {
-            SURFACE.iter().map(move |(knob, _)| (format!("{prefix}{}", knob.field), knob))
+    fn a_value_that_differs_can_be_given_back_alone_or_with_its_section() {
+        let mut run = prepared_run();
+        run.set_preset("report").expect("shipped");
+        let calm = sent(&run, |harness| {
+            assert!(harness.query_by_label("Reset Friction").is_none(), "nothing differs");
         });
-        let others = STAIRS.iter().chain(&SNAKE).map(|(knob, _)| (knob.field.to_owned(), knob));
-        let limits = LIMITS.iter().map(|(knob, _)| (knob.field.to_owned(), knob));
-        for (field, knob) in surfaces.chain(others).chain(limits) {
-            for value in [knob.least, knob.most] {
-                with_field(&settings, &field, &rounded(value)).expect(&field);
-            }
-        }
+        assert_eq!(calm, []);
+        run.set_field("surface.friction", "0.5").expect("allowed");
+        run.set_field("surface.bounce", "0.25").expect("allowed");
+        let preset = run.preset_settings().expect("shipped").trial.surface.clone();
+        let (friction, bounce) = (preset.friction.to_string(), preset.bounce.to_string());
+        let asked = sent(&run, |harness| harness.get_by_label("Reset Friction").click());
+        assert_eq!(asked, [set("trial.surface.friction", &friction)]);
+        let asked = sent(&run, |harness| harness.get_by_label("Reset section").click());
+        let back = [("friction", friction), ("bounce", bounce)]
+            .map(|(field, text)| (format!("trial.surface.{field}"), text));
+        assert_eq!(asked, [Command::SetFields(back.to_vec())]);
     }
 
     #[test]
-    fn every_slider_shows_the_field_that_it_sets() {
-        let settings = Settings::default();
-        for (knob, value) in STAIRS.iter().chain(&SNAKE) {
-            let target = (knob.least + knob.most) / 2.0;
-            let target = if knob.is_whole { target.round() } else { target };
-            let changed = with_field(&settings, knob.field, &rounded(target)).expect(knob.field);
-            assert_eq!(value(&changed), target, "{}", knob.field);
+    fn a_setting_of_a_closed_section_or_of_the_search_is_found_by_a_word() {
+        let run = prepared_run();
+        let find = |word: &'static str, found: &'static str| {
+            sent(&run, move |harness| {
+                harness.get_by_label("Find a setting").focus();
+                harness.run();
+                harness.get_by_label("Find a setting").type_text(word);
+                harness.run();
+                assert!(
+                    harness.query_all_by_label_contains(found).next().is_some(),
+                    "{word}: {found}"
+                );
+            })
+        };
+        find("moon", "Gravity, m/s²");
+        find("Tournament", "Selection");
+        find("joint DAMP", "Joint damping, N·m·s/rad");
+        find("xyz", "No setting is about that.");
+    }
+
+    #[test]
+    fn undo_and_redo_say_what_they_are_about_and_are_off_without_it() {
+        let mut run = prepared_run();
+        let mut history = History::default();
+        let off = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Undo").click());
+        assert_eq!(off, []);
+        let before = run.next_plan().clone();
+        run.set_field("surface.friction", "0.5").expect("allowed");
+        history.note(&set("trial.surface.friction", "0.5"), before, run.next_plan());
+        let on = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Undo").click());
+        assert_eq!(on, [Command::Undo]);
+        history.take(Way::Back);
+        let on = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Redo").click());
+        assert_eq!(on, [Command::Redo]);
+    }
+
+    #[test]
+    fn at_every_width_the_columns_align_and_nothing_is_wider_than_the_panel() {
+        use egui::accesskit::Role;
+        let mut run = prepared_run();
+        // Whatever makes a row fuller: ways back, a list of limbs, a limit that is given.
+        let given = [
+            ("trial.surface.soft_cfm_m_s_per_n", "0.00012345"),
+            ("trial.agent.limb_width_m", "[1, 1.5, 1, 1, 1]"),
+            ("trial.agent.bend_limit_rad", "1"),
+            ("trial.agent.joint_damping_nms_per_rad", "12.5"),
+        ];
+        for (field, text) in given {
+            run.set_field(field, text).expect("allowed");
         }
-        for (knob, value) in &SURFACE {
-            let target = (knob.least + knob.most) / 2.0;
-            let field = format!("surface.{}", knob.field);
-            let changed = with_field(&settings, &field, &rounded(target)).expect(&field);
-            assert_eq!(value(&changed.trial.surface), target, "{field}");
+        for width in [300.0, 320.0, 459.0, 480.0, 600.0, 900.0] {
+            sent_at(&run, width, &History::default(), |harness| {
+                for title in ["Body", "Joints", "Repeated trials", "Disqualification"] {
+                    harness.get_by_label(title).click();
+                    harness.run();
+                }
+                let rect = |label: &str| harness.get_by_role_and_label(Role::Slider, label).rect();
+                let one = rect("Friction");
+                for other in ["Soft CFM, m/s per N", "Limb length, m", "Joint damping, N·m·s/rad"]
+                {
+                    let other = rect(other);
+                    let are_aligned = one.left() == other.left() && one.width() == other.width();
+                    assert!(are_aligned, "{one:?} and {other:?} at {width} points");
+                }
+                let roles = [
+                    Role::Label,
+                    Role::Slider,
+                    Role::TextInput,
+                    Role::Button,
+                    Role::CheckBox,
+                    Role::ComboBox,
+                ];
+                for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
+                    let rect = node.rect();
+                    let is_inside = rect.left() >= 0.0 && rect.right() <= width;
+                    assert!(is_inside, "{rect:?} of {width} points: {node:?}");
+                }
+            });
         }
     }
 }

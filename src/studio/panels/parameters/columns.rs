@@ -1,0 +1,75 @@
+//! Where a setting's name, control and way back stand: in columns where there is room, else in two lines.
+
+use bevy_egui::egui;
+
+use crate::studio::look;
+
+/// The widths of a row, in points.
+#[derive(Debug, Clone, Copy)]
+pub struct Columns {
+    is_wide: bool,
+    label: f32,
+    control: f32,
+}
+
+/// A part of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The name.
+    Label,
+    /// The control.
+    Control,
+    /// The way back to the preset's value.
+    Reset,
+}
+
+/// From this width on a row needs only one line, in points.
+const WIDE: f32 = 460.0;
+/// Width of the way back, in points.
+pub const RESET_WIDTH: f32 = 22.0;
+/// Width of a field for a number, in points.
+pub const VALUE_WIDTH: f32 = 76.0;
+
+impl Columns {
+    /// The columns for what is left of a panel's width.
+    pub fn of(ui: &egui::Ui) -> Self {
+        let all = ui.available_width();
+        let gap = look::GAP;
+        if all < WIDE {
+            return Self {
+                is_wide: false,
+                label: (all - RESET_WIDTH - gap).max(0.0),
+                control: all,
+            };
+        }
+        // On a very wide panel a slider over its whole width is no easier to set.
+        let label = (all * 0.42).min(300.0);
+        let control = (all - label - RESET_WIDTH - 2.0 * gap).min(440.0);
+        Self { is_wide: true, label, control }
+    }
+
+    /// Draws a row: its parts in the order of reading.
+    pub fn row(self, ui: &mut egui::Ui, mut part: impl FnMut(&mut egui::Ui, Part, f32)) {
+        let Self { is_wide, label, control } = self;
+        ui.horizontal(|ui| {
+            cell(ui, label, |ui| part(ui, Part::Label, label));
+            if is_wide {
+                cell(ui, control, |ui| part(ui, Part::Control, control));
+            }
+            cell(ui, RESET_WIDTH, |ui| part(ui, Part::Reset, RESET_WIDTH));
+        });
+        if !is_wide {
+            cell(ui, control, |ui| part(ui, Part::Control, control));
+        }
+    }
+}
+
+/// A part of exactly this width, whatever is in it.
+fn cell(ui: &mut egui::Ui, width: f32, show: impl FnOnce(&mut egui::Ui)) {
+    let size = egui::vec2(width, ui.spacing().interact_size.y);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_width(width);
+        show(ui);
+    });
+}

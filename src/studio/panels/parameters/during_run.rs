@@ -1,0 +1,11 @@
+//! What may be changed while a run is under way.
+
+pub use crate::evolve::may_change_during_run;
+
+/// When a change takes effect, in a sentence.
+pub fn when(answer: Result<(), &'static str>) -> String {
+    match answer {
+        Ok(()) => "Takes effect from the next generation.".to_owned(),
+        Err(reason) => format!("Goes to the next run: {}.", reason.trim_end_matches('.')),
+    }
+}

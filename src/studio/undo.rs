@@ -1,0 +1,276 @@
+//! Undo and redo of what was changed in the next run's plan.
+//!
+//! Every command that changes the plan leaves a [`Step`]. Whoever drags a slider and rests on the way changes it
+//! several times: between two presses of a mouse's button or a key all changes of one setting are one step.
+
+mod follow;
+
+use std::collections::VecDeque;
+
+use bevy::prelude::*;
+
+use super::Frame;
+use super::casting::changes_in_words;
+use super::command::Command;
+use crate::evolve::RunPlan;
+
+pub(super) use follow::followed;
+
+/// So many steps can be undone.
+const MOST_STEPS: usize = 200;
+
+/// Something that can be undone. Whatever else is to be undone in the same order, such as a file that was deleted,
+/// is a kind of its own here, with its way back and forth where commands are applied.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Step {
+    /// The next run's plan was changed.
+    Plan {
+        /// The plan before.
+        before: Box<RunPlan>,
+        /// The plan after.
+        after: Box<RunPlan>,
+        /// What was changed, in a few words: "friction 0.5".
+        label: String,
+        /// What was changed, by its name: further changes of it within one drag belong to this step.
+        subject: String,
+    },
+}
+
+impl Step {
+    /// What was changed, in a few words.
+    pub fn label(&self) -> &str {
+        match self {
+            Self::Plan { label, .. } => label,
+        }
+    }
+}
+
+/// Which way through the steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    /// Undo.
+    Back,
+    /// Redo.
+    Forth,
+}
+
+impl Way {
+    /// What to say when a step was taken.
+    pub fn taken(self, step: &Step) -> String {
+        let done = if self == Self::Back { "Undone" } else { "Redone" };
+        format!("{done}: {}", step.label())
+    }
+
+    /// What to say when there is no step.
+    pub fn nothing(self) -> &'static str {
+        if self == Self::Back { "There is nothing to undo." } else { "There is nothing to redo." }
+    }
+}
+
+/// The steps that were done, and those that were undone.
+#[derive(Resource, Debug, Clone, Default)]
+pub(super) struct History {
+    /// The latest last.
+    done: VecDeque<Step>,
+    /// The one to redo first last.
+    undone: Vec<Step>,
+    /// Whether the latest step is complete: further changes are steps of their own.
+    is_settled: bool,
+}
+
+impl History {
+    /// Notes what a command has done to the next run's plan.
+    pub fn note(&mut self, command: &Command, before: RunPlan, after: &RunPlan) {
+        if before == *after {
+            return;
+        }
+        let Some((subject, label)) = words_of(command, &before, after) else { return };
+        self.push(Step::Plan {
+            before: Box::new(before),
+            after: Box::new(after.clone()),
+            label,
+            subject,
+        });
+    }
+
+    /// Adds a step. What was undone before cannot be redone any more.
+    pub fn push(&mut self, step: Step) {
+        self.undone.clear();
+        let is_open = !std::mem::take(&mut self.is_settled);
+        let joined = match (self.done.back(), &step) {
+            (
+                Some(Step::Plan { before, subject: earlier, .. }),
+                Step::Plan { after, label, subject, .. },
+            ) if is_open && earlier == subject => Some(Step::Plan {
+                before: before.clone(),
+                after: after.clone(),
+                label: label.clone(),
+                subject: subject.clone(),
+            }),
+            _ => None,
+        };
+        if let Some(joined) = joined {
+            self.done.pop_back();
+            // There and back again within a drag is no step at all.
+            let is_none = matches!(&joined, Step::Plan { before, after, .. } if before == after);
+            self.done.extend((!is_none).then_some(joined));
+        } else {
+            self.done.push_back(step);
+        }
+        if self.done.len() > MOST_STEPS {
+            self.done.pop_front();
+        }
+    }
+
+    /// From now on a change is a step of its own.
+    pub fn settle(&mut self) {
+        self.is_settled = true;
+    }
+
+    /// Takes the next step one way, to be carried out. None if there is none.
+    pub fn take(&mut self, way: Way) -> Option<Step> {
+        self.is_settled = true;
+        let step = match way {
+            Way::Back => self.done.pop_back()?,
+            Way::Forth => self.undone.pop()?,
+        };
+        match way {
+            Way::Back => self.undone.push(step.clone()),
+            Way::Forth => self.done.push_back(step.clone()),
+        }
+        Some(step)
+    }
+
+    /// What the next step one way would undo or redo, in a few words.
+    pub fn next(&self, way: Way) -> Option<&str> {
+        match way {
+            Way::Back => self.done.back(),
+            Way::Forth => self.undone.last(),
+        }
+        .map(Step::label)
+    }
+}
+
+/// What a command has changed, by its name and in a few words; none of a command that is no edit.
+fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(String, String)> {
+    let changes = || changes_in_words(&before.settings, &after.settings);
+    Some(match command {
+        Command::SetField { field, .. } => (field.clone(), changes()),
+        Command::SetFields(_) => ("several".to_owned(), changes()),
+        Command::SetPopulation(_) => ("evolution.population".to_owned(), changes()),
+        Command::SetSeed(seed) => ("seed".to_owned(), format!("seed {seed}")),
+        Command::SetPreset(name) => ("preset".to_owned(), format!("preset {name}")),
+        Command::StorePreset(name) => ("preset".to_owned(), format!("preset {name}")),
+        Command::DropChange => ("drop".to_owned(), "changes dropped".to_owned()),
+        Command::Continue(_) => {
+            let RunPlan { preset, seed, .. } = after;
+            ("continue".to_owned(), format!("the settings of {preset}, seed {seed}"))
+        }
+        _ => return None,
+    })
+}
+
+/// The plan after a step from one plan to another is taken, beginning at what the plan is by now. A new run has
+/// its own seed, which a step that was about something else leaves alone.
+pub(super) fn stepped(now: &RunPlan, from: &RunPlan, to: &RunPlan) -> RunPlan {
+    let seed = if from.seed == to.seed { now.seed } else { to.seed };
+    RunPlan { seed, ..to.clone() }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<History>().add_systems(Update, settle_on_press.in_set(Frame::TakeIn));
+}
+
+/// Whoever presses something anew begins a new step.
+fn settle_on_press(
+    buttons: Res<ButtonInput<MouseButton>>,
+    keys: Res<ButtonInput<KeyCode>>,
+    mut history: ResMut<History>,
+) {
+    if buttons.get_just_pressed().next().is_some() || keys.get_just_pressed().next().is_some() {
+        history.settle();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{Settings, with_field};
+
+    /// A plan with this friction.
+    fn plan(friction: &str) -> RunPlan {
+        let settings = with_field(&Settings::default(), "surface.friction", friction);
+        RunPlan::new("report", 1, settings.expect("allowed"))
+    }
+
+    fn set(text: &str) -> Command {
+        Command::SetField { field: "trial.surface.friction".to_owned(), text: text.to_owned() }
+    }
+
+    /// The plans of a step.
+    fn plans(step: Option<Step>) -> (RunPlan, RunPlan) {
+        let Some(Step::Plan { before, after, .. }) = step else { panic!("a step") };
+        (*before, *after)
+    }
+
+    #[test]
+    fn steps_go_back_and_forth_with_their_names() {
+        let mut history = History::default();
+        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        history.settle();
+        history.note(&set("0.2"), plan("0.5"), &plan("0.2"));
+        assert_eq!(history.next(Way::Back), Some("friction 0.2"));
+        let step = history.take(Way::Back);
+        assert_eq!(Way::Back.taken(step.as_ref().expect("a step")), "Undone: friction 0.2");
+        assert_eq!(plans(step), (plan("0.5"), plan("0.2")));
+        assert_eq!(plans(history.take(Way::Back)), (plan("1"), plan("0.5")));
+        assert_eq!(history.take(Way::Back), None);
+        assert_eq!(plans(history.take(Way::Forth)), (plan("1"), plan("0.5")));
+        assert_eq!(history.next(Way::Forth), Some("friction 0.2"));
+    }
+
+    #[test]
+    fn one_drag_is_one_step_however_often_it_rests() {
+        let mut history = History::default();
+        for (before, after) in [("1", "0.8"), ("0.8", "0.5"), ("0.5", "0.3")] {
+            history.note(&set(after), plan(before), &plan(after));
+        }
+        assert_eq!(plans(history.take(Way::Back)), (plan("1"), plan("0.3")));
+        assert_eq!(history.take(Way::Back), None);
+        // Back to where it began it is none.
+        history.note(&set("0.8"), plan("1"), &plan("0.8"));
+        history.note(&set("1"), plan("0.8"), &plan("1"));
+        assert_eq!(history.next(Way::Back), None);
+    }
+
+    #[test]
+    fn a_new_change_ends_what_could_be_redone_and_what_changes_nothing_is_no_step() {
+        let mut history = History::default();
+        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        history.take(Way::Back);
+        history.note(&set("1"), plan("1"), &plan("1"));
+        assert!(history.next(Way::Forth).is_some(), "nothing was changed");
+        history.note(&set("0.7"), plan("1"), &plan("0.7"));
+        assert_eq!(history.next(Way::Forth), None);
+    }
+
+    #[test]
+    fn only_so_many_steps_are_kept() {
+        let mut history = History::default();
+        for number in 0..MOST_STEPS + 50 {
+            let after = plan(&format!("{}", number + 2));
+            history.note(&set(""), plan(&format!("{}", number + 1)), &after);
+            history.settle();
+        }
+        let steps = std::iter::from_fn(|| history.take(Way::Back)).count();
+        assert_eq!(steps, MOST_STEPS);
+    }
+
+    #[test]
+    fn the_seed_of_a_new_run_is_left_alone_by_a_step_that_is_not_about_it() {
+        let now = RunPlan { seed: 2, ..plan("0.5") };
+        assert_eq!(stepped(&now, &plan("0.5"), &plan("1")).seed, 2);
+        let other_seed = RunPlan { seed: 9, ..plan("1") };
+        assert_eq!(stepped(&now, &plan("0.5"), &other_seed).seed, 9);
+    }
+}
