@@ -465,8 +465,8 @@ mod tests {
     use crate::studio::casting::Saved;
     use crate::studio::evolution::prepared_run;
 
-    #[test]
-    fn who_holds_the_stage_in_the_frame_in_which_others_come_holds_them() {
+    /// The place where commands are done, with nobody on the stage.
+    fn app() -> App {
         let loaded = shipped_champion().expect("well formed");
         let mut app = App::new();
         app.add_message::<Command>()
@@ -486,6 +486,72 @@ mod tests {
             .init_resource::<History>()
             .init_resource::<Theme>()
             .add_systems(Update, apply);
+        app
+    }
+
+    /// Asks for something, frame by frame, and returns the next run's friction.
+    fn friction_after(app: &mut App, asked: &[Command]) -> f32 {
+        for command in asked {
+            app.world_mut().write_message(command.clone());
+            app.update();
+        }
+        app.world().resource::<Evolution>().next_settings().trial.surface.friction
+    }
+
+    #[test]
+    fn what_was_set_is_undone_and_redone_drag_by_drag() {
+        let mut app = app();
+        let set = |text: &str| Command::SetField {
+            field: "trial.surface.friction".to_owned(),
+            text: text.to_owned(),
+        };
+        let first = friction_after(&mut app, &[]);
+        // A drag that rests twice.
+        assert_eq!(friction_after(&mut app, &[set("0.5"), set("0.4"), set("0.3")]), 0.3);
+        app.world_mut().resource_mut::<History>().settle();
+        assert_eq!(friction_after(&mut app, &[set("0.2")]), 0.2);
+        assert_eq!(friction_after(&mut app, &[Command::Undo]), 0.3);
+        assert_eq!(friction_after(&mut app, &[Command::Undo]), first);
+        assert_eq!(friction_after(&mut app, &[Command::Undo]), first, "there is nothing more");
+        assert_eq!(friction_after(&mut app, &[Command::Redo, Command::Redo]), 0.2);
+        assert_eq!(app.world().resource::<Notices>().len(), 4, "each said what it did");
+    }
+
+    #[test]
+    fn a_preset_a_seed_and_several_settings_at_once_are_a_step_each() {
+        let mut app = app();
+        let plan = |app: &App| app.world().resource::<Evolution>().next_plan().clone();
+        let back = [("trial.surface.friction", "0.7"), ("trial.surface.bounce", "0.1")];
+        let back = back.map(|(field, text)| (field.to_owned(), text.to_owned()));
+        let mut plans = vec![plan(&app)];
+        for command in [
+            Command::SetPreset("ice".to_owned()),
+            Command::SetSeed(77),
+            Command::SetPopulation(9),
+            Command::SetFields(back.to_vec()),
+        ] {
+            friction_after(&mut app, &[command]);
+            plans.push(plan(&app));
+        }
+        while let Some(expected) = plans.pop() {
+            assert_eq!(plan(&app), expected);
+            friction_after(&mut app, &[Command::Undo]);
+        }
+    }
+
+    #[test]
+    fn what_is_refused_is_no_step() {
+        let mut app = app();
+        let wrong =
+            Command::SetField { field: "trial.surface.friction".to_owned(), text: "-1".to_owned() };
+        friction_after(&mut app, &[wrong, Command::SetThreads(3)]);
+        assert_eq!(app.world().resource::<History>().next(Way::Back), None);
+        assert_eq!(app.world().resource::<Notices>().len(), 2);
+    }
+
+    #[test]
+    fn who_holds_the_stage_in_the_frame_in_which_others_come_holds_them() {
+        let mut app = app();
         let asked = [Command::Show(Pick::Opening(0)), Command::TogglePlayback];
         app.world_mut().write_message_batch(asked);
         app.update();

@@ -62,3 +62,26 @@ impl Presets {
         self.find(name) != Ok(None)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn own_presets_are_found_beside_the_shipped_and_damaged_ones_say_why() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let shipped = Presets::read(&saves);
+        assert!(shipped.own().is_empty() && shipped.has("ice") && !shipped.has("my-ice"));
+        let ice = shipped.find("ice").expect("in order").expect("shipped").clone();
+        let mine = Preset { name: "my-ice".to_owned(), ..ice };
+        saves.store_own_preset(&mine).expect("written");
+        std::fs::write(saves.presets().join("torn.ron"), "(name:").expect("written");
+        let presets = Presets::read(&saves);
+        assert_eq!(presets.settings_of("my-ice"), Some(&mine.settings));
+        assert!(presets.has("torn") && presets.settings_of("torn").is_none());
+        let reason = presets.find("torn").expect_err("damaged");
+        assert!(reason.contains("damaged or incomplete"), "{reason}");
+        assert_eq!(presets.find("nobody"), Ok(None));
+    }
+}

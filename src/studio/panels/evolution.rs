@@ -420,4 +420,67 @@ mod tests {
         run.set_preset("climb").expect("shipped");
         assert_eq!(clicked(&run, &["The report's run"]), [Command::SetPreset("report".to_owned())]);
     }
+
+    #[test]
+    fn a_wrong_value_in_a_section_that_is_gone_no_longer_stands_in_the_way() {
+        let mut run = run();
+        let mut sheet = Sheet::default();
+        let halving = strategies::section_of(StrategyKind::Halving).expect("it has settings");
+        let context = egui::Context::default();
+        let is_wrong = |run: &Evolution, sheet: &mut Sheet, is_drawn: bool| {
+            for _ in 0..3 {
+                drop(context.run_ui(egui::RawInput::default(), |ui| {
+                    sheet.begin(ui, run);
+                    if is_drawn {
+                        sheet.section(ui, run, halving, &mut Vec::new());
+                    }
+                }));
+            }
+            sheet.has_problem()
+        };
+        assert!(!is_wrong(&run, &mut sheet, true));
+        sheet.keep_wrong("evolution.halving.parents", "x", "4");
+        assert!(is_wrong(&run, &mut sheet, true));
+        assert!(!is_wrong(&run, &mut sheet, false), "out of sight");
+        run.set_field("evolution.halving.parents", "5").expect("allowed");
+        assert!(!is_wrong(&run, &mut sheet, true), "out of date");
+    }
+
+    #[test]
+    fn at_every_width_nothing_is_wider_than_the_panel() {
+        use egui::accesskit::Role;
+        let run = run();
+        for width in [300.0, 459.0, 480.0, 900.0] {
+            let mut panel = EvolutionPanel::default();
+            let size = egui::vec2(width, 4000.0);
+            let mut harness = Harness::builder()
+                .with_size(size)
+                .build_ui_state(|ui, asked| panel.ui(ui, &run, asked), Vec::new());
+            for title in ["Other strategies", "Torques", "Waves and gaits", "Newborns"] {
+                harness.get_by_label(title).click();
+                harness.run();
+            }
+            for kind in &StrategyKind::ALL[1..5] {
+                harness.get_by_label(kind.title()).click();
+                harness.run();
+            }
+            let roles = [
+                Role::Label,
+                Role::Slider,
+                Role::TextInput,
+                Role::Button,
+                Role::CheckBox,
+                Role::ComboBox,
+            ];
+            for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
+                let rect = node.rect();
+                let is_inside = rect.left() >= 0.0 && rect.right() <= width;
+                assert!(is_inside, "{rect:?} of {width} points: {node:?}");
+            }
+            // The named of each section are there.
+            for label in ["Cooling", "First step of CMA-ES", "Columns and rows", "Neighbours"] {
+                assert!(harness.query_all_by_label(label).next().is_some(), "{label}");
+            }
+        }
+    }
 }

@@ -162,11 +162,12 @@ pub const GENOME: [&Section; 3] = [&SIGNALS, &WAVES, &NEWBORNS];
 
 /// Whether a kind of controller has anything to do with a section.
 pub fn concerns(controller: ControllerKind, section: &Section) -> bool {
-    let is_signal = controller == ControllerKind::Signal;
-    match section.title {
-        "Torques" => controller != ControllerKind::Gait,
-        "Waves and gaits" => !is_signal,
-        _ => true,
+    if section.title == SIGNALS.title {
+        controller != ControllerKind::Gait
+    } else if section.title == WAVES.title {
+        controller != ControllerKind::Signal
+    } else {
+        true
     }
 }
 

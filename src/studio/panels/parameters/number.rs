@@ -4,7 +4,7 @@ use bevy_egui::egui;
 
 use super::columns::{Columns, Part, VALUE_WIDTH};
 use super::entry::{Parts, Range};
-use super::sheet::{Changing, Sheet, Shown, Typed};
+use super::sheet::{Changing, Sheet, Shown};
 use super::values::{list_of, numbers, rounded};
 use crate::studio::look;
 
@@ -211,9 +211,7 @@ impl Sheet {
                 Some(text)
             }
             Err(problem) => {
-                let beside = control.value.to_owned();
-                let typed = Typed { text, problem: Some(problem), beside };
-                self.typed.insert(control.id.to_owned(), typed);
+                self.keep(control.id, text, Some(problem), control.value);
                 None
             }
         }
@@ -231,7 +229,11 @@ impl Sheet {
             // The value has changed meanwhile: by an undo, another preset, the slider.
             self.typed.remove(control.id);
         }
-        let typed = self.typed.get(control.id).map(|typed| typed.text.clone());
+        let seen_in = self.drawn_in;
+        let typed = self.typed.get_mut(control.id).map(|typed| {
+            typed.seen_in = seen_in;
+            typed.text.clone()
+        });
         let mut text = typed.unwrap_or_else(|| value.to_owned());
         let field = egui::TextEdit::singleline(&mut text)
             .id_salt(control.id)
@@ -246,8 +248,7 @@ impl Sheet {
         }
         if response.changed() {
             let problem = (control.check)(&text).err();
-            let typed = Typed { text, problem, beside: control.value.to_owned() };
-            self.typed.insert(control.id.to_owned(), typed);
+            self.keep(control.id, text, problem, control.value);
         }
         if !response.lost_focus() {
             return None;

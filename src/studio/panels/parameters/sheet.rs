@@ -28,7 +28,7 @@ pub struct Sheet {
     /// What is being typed, or was and is wrong, by control.
     pub(super) typed: BTreeMap<String, Typed>,
     /// The frame in which the panel was drawn last.
-    drawn_in: u64,
+    pub(super) drawn_in: u64,
 }
 
 /// A slider that is being moved.
@@ -50,6 +50,8 @@ pub(super) struct Typed {
     pub problem: Option<String>,
     /// The value beside which it was typed: with another it is out of date.
     pub beside: String,
+    /// The frame in which its control was drawn last.
+    pub seen_in: u64,
 }
 
 impl Sheet {
@@ -66,9 +68,22 @@ impl Sheet {
         }
     }
 
-    /// Whether something wrong stands in a field.
+    /// Whether something wrong stands in a field that is on show.
     pub fn has_problem(&self) -> bool {
-        self.typed.values().any(|typed| typed.problem.is_some())
+        let is_on_show = |typed: &Typed| typed.seen_in + 1 >= self.drawn_in;
+        self.typed.values().any(|typed| typed.problem.is_some() && is_on_show(typed))
+    }
+
+    /// Keeps a text that is not taken yet.
+    pub(super) fn keep(&mut self, id: &str, text: String, problem: Option<String>, beside: &str) {
+        let (beside, seen_in) = (beside.to_owned(), self.drawn_in);
+        self.typed.insert(id.to_owned(), Typed { text, problem, beside, seen_in });
+    }
+
+    /// Keeps a text that is wrong.
+    #[cfg(test)]
+    pub fn keep_wrong(&mut self, id: &str, text: &str, beside: &str) {
+        self.keep(id, text.to_owned(), Some("wrong".to_owned()), beside);
     }
 
     /// Draws a section's settings, and the way back for all of them.
