@@ -544,7 +544,7 @@ mod tests {
         let mut app = app();
         let wrong =
             Command::SetField { field: "trial.surface.friction".to_owned(), text: "-1".to_owned() };
-        friction_after(&mut app, &[wrong, Command::SetThreads(3)]);
+        friction_after(&mut app, &[wrong, Command::SetThreads(0)]);
         assert_eq!(app.world().resource::<History>().next(Way::Back), None);
         assert_eq!(app.world().resource::<Notices>().len(), 2);
     }
