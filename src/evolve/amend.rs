@@ -142,7 +142,9 @@ impl RunPlan {
     pub fn change(&mut self, change: &SettingChange) -> Result<(), Invalid> {
         let SettingChange { generation, field, value } = change;
         let latest = self.changes.made.last().map_or(1, |last| last.generation);
-        let last = self.settings.evolution.generations;
+        // A run may be made longer even when all its generations are finished.
+        let is_length = field == "evolution.generations";
+        let last = self.settings.evolution.generations + u32::from(is_length);
         within("generation", *generation, latest..=last.max(latest))?;
         within("changes", self.changes.made.len() + 1, 1..=MOST_CHANGES)?;
         allow(field, value, &self.settings)?;

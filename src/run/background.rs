@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -264,12 +264,17 @@ impl Worker {
         if experiment.finished() > 0 {
             self.tell(explored(&experiment));
         }
-        while !experiment.is_over() {
-            if self.take_up_wishes(&mut experiment, &mut keeper).is_err() {
-                return;
-            }
+        loop {
+            // Even one that is at its end can be made longer.
+            self.fulfil_wishes(&mut experiment, &mut keeper);
             if experiment.is_over() {
                 break;
+            }
+            control.start_generation();
+            match control.pass_unless(|| self.has_wishes()) {
+                Ok(true) => {}
+                Ok(false) => continue,
+                Err(Cancelled) => return,
             }
             let pool = Arc::clone(&self.pool.lock().unwrap_or_else(PoisonError::into_inner));
             let note = |generation, individual, evaluation: &_| {
@@ -298,31 +303,26 @@ impl Worker {
         self.tell(Event::Finished { run_hash: experiment.run_hash() });
     }
 
-    /// Changes what is to be changed before the next generation. While the run is held, that has not begun.
-    fn take_up_wishes(
-        &self,
-        experiment: &mut Experiment,
-        keeper: &mut Keeper,
-    ) -> Result<(), Cancelled> {
-        self.control.start_generation();
-        let wishes = || self.wishes.lock().unwrap_or_else(PoisonError::into_inner);
+    fn wishes(&self) -> MutexGuard<'_, VecDeque<(String, String)>> {
+        self.wishes.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn has_wishes(&self) -> bool {
+        !self.wishes().is_empty()
+    }
+
+    /// Changes what is to be changed before the next generation.
+    fn fulfil_wishes(&self, experiment: &mut Experiment, keeper: &mut Keeper) {
         loop {
-            loop {
-                let Some((field, text)) = wishes().pop_front() else { break };
-                match keeper.amend(experiment, &field, &text) {
-                    Ok(change) => {
-                        self.population.store(experiment.population(), Ordering::Relaxed);
-                        change.into_iter().for_each(|change| self.tell(Event::Changed(change)));
-                    }
-                    Err(error) => {
-                        self.tell(Event::NotChanged { field, reason: error.to_string() });
-                    }
-                }
-            }
             self.population.store(experiment.population(), Ordering::Relaxed);
-            if self.control.pass_unless(|| !wishes().is_empty())? {
-                return Ok(());
-            }
+            let Some((field, text)) = self.wishes().pop_front() else { return };
+            let event = match keeper.amend(experiment, &field, &text) {
+                Ok(None) => continue,
+                Ok(Some(change)) => Event::Changed(change),
+                Err(error) => Event::NotChanged { field, reason: error.to_string() },
+            };
+            self.population.store(experiment.population(), Ordering::Relaxed);
+            self.tell(event);
         }
     }
 }
@@ -518,6 +518,24 @@ mod tests {
         assert!(matches!(next(&again), Event::Opened(behind) if behind.len() == 4));
         assert!(matches!(next(&again), Event::WasChanged(changes) if changes.len() == 3));
         assert_eq!(next(&again), Event::Finished { run_hash });
+    }
+
+    #[test]
+    fn a_run_in_its_last_generation_can_be_made_longer() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let background = start(&folder);
+        for _ in 1..=2 {
+            background.run_single_generation();
+            assert!(matches!(next(&background), Event::Generation(_)));
+        }
+        background.amend([("evolution.generations".to_owned(), "5".to_owned())]);
+        background.resume();
+        let mut events = 0;
+        while !matches!(next(&background), Event::Finished { .. }) {
+            events += 1;
+        }
+        // The change, and generations 3 to 5.
+        assert_eq!(events, 1 + 3);
     }
 
     #[test]

@@ -490,6 +490,24 @@ mod tests {
     }
 
     #[test]
+    fn a_finished_run_can_be_made_longer() {
+        let saves = tempfile::tempdir().expect("a folder");
+        let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+        evolve(&mut run, 9);
+        assert!(run.experiment.is_over());
+        let field = "evolution.generations";
+        run.keeper.amend(&mut run.experiment, field, "8").expect("allowed").expect("a change");
+        assert!(!run.experiment.is_over());
+        drop(run);
+        let mut again = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
+        evolve(&mut again, 9);
+        assert_eq!(again.experiment.finished(), 8);
+        let mut plan = plan();
+        plan.settings.evolution.generations = 8;
+        assert_eq!(again.experiment.run_hash(), undisturbed(&plan).run_hash());
+    }
+
+    #[test]
     fn evaluations_from_before_a_change_are_not_taken_for_those_after_it() {
         let plan = changing_plan(StrategyKind::Halving);
         let saves = tempfile::tempdir().expect("a folder");

@@ -93,8 +93,8 @@ mod tests {
     #[test]
     fn what_could_not_have_been_changed_is_refused_with_the_file_and_the_reason() {
         for (changes, complaint) in [
-            (vec![change(7, "generations", "9")], "generation is 7; allowed: 1 to 6"),
-            (vec![change(0, "generations", "9")], "generation is 0; allowed: 1 to 6"),
+            (vec![change(8, "generations", "9")], "generation is 8; allowed: 1 to 7"),
+            (vec![change(0, "population", "9")], "generation is 0; allowed: 1 to 6"),
             (
                 vec![change(3, "halving.parents", "7"), change(2, "halving.parents", "8")],
                 "generation is 2; allowed: 3 to 6",

@@ -411,7 +411,7 @@ fn founders(all: &mut Collection, plan: &str) {
         )
     };
     for (what, name, genome) in [
-        ("of another length", "x", genome("10.0")),
+        ("of another length", "x", genome("1.8")),
         ("of another rate", "x", genome("3.0")),
         ("of a hostile name", "../\\u{1b}[2J", genome("10.0")),
         ("of an endless name", &*"x".repeat(5_000_000), genome("10.0")),

@@ -204,6 +204,8 @@ fn a_run_costs_what_its_generations_cost_whatever_their_size() {
     assert_eq!(begun.budget(), 24 * 6);
     let smaller = changed(&begun, &[(4, "population", "5")]);
     assert_eq!(smaller.budget(), 3 * 24 + 3 * 5);
+    let from_its_end = changed(&smaller, &[(7, "generations", "7")]);
+    assert_eq!(from_its_end.budget(), 3 * 24 + 4 * 5);
     let longer = changed(&smaller, &[(5, "generations", "10"), (6, "population", "8")]);
     assert_eq!(longer.budget(), 3 * 24 + 2 * 5 + 5 * 8);
 }
@@ -213,8 +215,10 @@ fn what_is_not_allowed_is_refused_and_changes_nothing() {
     let mut plan = changed(&plan(StrategyKind::Halving), &[(3, "generations", "8")]);
     let before = plan.clone();
     for (generation, field, value, complaint) in [
-        (2, "generations", "7", "generation is 2; allowed: 3 to 8"),
-        (9, "generations", "10", "generation is 9; allowed: 3 to 8"),
+        (2, "halving.parents", "7", "generation is 2; allowed: 3 to 8"),
+        (10, "generations", "20", "generation is 10; allowed: 3 to 9"),
+        (9, "generations", "8", "evolution.generations is 8; allowed: 9 to 10000"),
+        (9, "halving.parents", "2", "generation is 9; allowed: 3 to 8"),
         (4, "generations", "3", "evolution.generations is 3; allowed: 4 to 10000"),
         (4, "halving.parents", "0", "evolution.halving.parents is 0; allowed: 1 to 100000"),
         (4, "halving.parents", "x", "evolution.halving.parents is \"x\"; allowed: a whole"),

@@ -101,6 +101,8 @@ fn take_in(
             }
             Event::Finished { run_hash } => {
                 evolution.run_hash = Some(run_hash);
+                // What was asked for too late concerns the next run alone.
+                evolution.await_no_change();
                 evolution.engine.set_run_folder(None);
                 notices.news("The run is finished; \"New run\" begins another.".to_owned());
             }
