@@ -453,9 +453,14 @@ mod tests {
         for width in [300.0, 459.0, 480.0, 900.0] {
             let mut panel = EvolutionPanel::default();
             let size = egui::vec2(width, 4000.0);
-            let mut harness = Harness::builder()
-                .with_size(size)
-                .build_ui_state(|ui, asked| panel.ui(ui, &run, asked), Vec::new());
+            let mut harness = Harness::builder().with_size(size).build_ui_state(
+                |ui, asked| {
+                    look::apply(ui.ctx());
+                    panel.ui(ui, &run, asked);
+                },
+                Vec::new(),
+            );
+            harness.run();
             for title in ["Other strategies", "Torques", "Waves and gaits", "Newborns"] {
                 harness.get_by_label(title).click();
                 harness.run();

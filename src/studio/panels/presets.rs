@@ -87,6 +87,7 @@ fn name_field(
         let label = ui.label("Name");
         let field = egui::TextEdit::singleline(name)
             .desired_width(look::COMBO_WIDTH)
+            .margin(egui::Margin::symmetric(look::GAP as i8, look::GAP as i8 / 2))
             .hint_text("my-preset");
         let field = ui.add(field).labelled_by(label.id);
         let is_entered =

@@ -48,6 +48,7 @@ impl WorldPanel {
             let clear = if is_searching { look::GAP * 8.0 } else { 0.0 };
             let field = egui::TextEdit::singleline(&mut self.wanted)
                 .hint_text("Find a setting")
+                .margin(egui::Margin::symmetric(look::GAP as i8, look::GAP as i8 / 2))
                 .desired_width(ui.available_width() - clear - look::GAP);
             let response = ui.add(field);
             let is_on = ui.is_enabled();
@@ -179,9 +180,16 @@ mod tests {
     ) -> Vec<Command> {
         let mut panel = WorldPanel::default();
         let mut harness = Harness::builder()
-            .with_size(egui::vec2(width, 2000.0))
+            .with_size(egui::vec2(width, 4000.0))
             .with_step_dt(1.0 / 60.0)
-            .build_ui_state(|ui, asked| panel.ui(ui, run, history, asked), Vec::new());
+            .build_ui_state(
+                |ui, asked| {
+                    look::apply(ui.ctx());
+                    panel.ui(ui, run, history, asked);
+                },
+                Vec::new(),
+            );
+        harness.run();
         act(&mut harness);
         harness.run();
         harness.state().clone()

@@ -31,10 +31,15 @@ pub const RESET_WIDTH: f32 = 22.0;
 pub const VALUE_WIDTH: f32 = 76.0;
 
 impl Columns {
-    /// The columns for what is left of a panel's width.
-    pub fn of(ui: &egui::Ui) -> Self {
+    /// The columns for what is left of a panel's width; a control that needs no more than a field's width stands
+    /// beside its name even where there is little room.
+    pub fn of(ui: &egui::Ui, is_small: bool) -> Self {
         let all = ui.available_width();
         let gap = look::GAP;
+        if all < WIDE && is_small {
+            let label = (all - VALUE_WIDTH - RESET_WIDTH - 2.0 * gap).max(0.0);
+            return Self { is_wide: true, label, control: VALUE_WIDTH };
+        }
         if all < WIDE {
             return Self {
                 is_wide: false,
@@ -64,12 +69,15 @@ impl Columns {
     }
 }
 
-/// A part of exactly this width, whatever is in it.
+/// A part of exactly this width, whatever is in it: what is too wide for it moves no other column. What needs more
+/// lines makes the row higher.
 fn cell(ui: &mut egui::Ui, width: f32, show: impl FnOnce(&mut egui::Ui)) {
-    let size = egui::vec2(width, ui.spacing().interact_size.y);
+    let height = ui.spacing().interact_size.y;
+    let rect = egui::Rect::from_min_size(ui.cursor().min, egui::vec2(width, height));
     let layout = egui::Layout::left_to_right(egui::Align::Center);
-    ui.allocate_ui_with_layout(size, layout, |ui| {
-        ui.set_width(width);
-        show(ui);
-    });
+    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout));
+    inside.set_width(width);
+    show(&mut inside);
+    let height = inside.min_rect().height().max(height);
+    ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::hover());
 }

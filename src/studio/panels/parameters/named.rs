@@ -16,7 +16,7 @@ impl Sheet {
     ) -> Option<String> {
         let chosen = choices.iter().find(|choice| choice.name == shown.value);
         let title = chosen.map_or(shown.value, |choice| choice.title);
-        self.row(ui, shown, |_, ui, width, _| {
+        self.row(ui, shown, false, |_, ui, width, _| {
             let mut asked = None;
             let list = egui::ComboBox::from_id_salt(shown.field)
                 .selected_text(title)
@@ -43,7 +43,7 @@ impl Sheet {
 
     /// A box to tick. Returns what it is set to.
     pub(super) fn on_off(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
-        self.row(ui, shown, |_, ui, _, name| {
+        self.row(ui, shown, true, |_, ui, _, name| {
             let mut is_on = shown.value == "true";
             let ticked = ui.checkbox(&mut is_on, "").labelled_by(name).on_hover_text(&shown.hint);
             ticked.changed().then(|| is_on.to_string())
@@ -54,7 +54,7 @@ impl Sheet {
     pub(super) fn list(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let check = |text: &str| shown.check.typed(text);
         let plain = shown.value.trim_start_matches('[').trim_end_matches(']');
-        self.row(ui, shown, |sheet, ui, width, name| {
+        self.row(ui, shown, false, |sheet, ui, width, name| {
             let control = Control {
                 id: shown.field,
                 name,

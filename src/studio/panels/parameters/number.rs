@@ -11,7 +11,7 @@ use crate::studio::look;
 /// A slider that is held still for so long shows what it does, in seconds.
 const REST_S: f64 = 0.35;
 /// Width of the switch between one value for all parts and one for each, in points.
-const SWITCH_WIDTH: f32 = 44.0;
+const SWITCH_WIDTH: f32 = 52.0;
 
 /// A control for one text.
 pub(super) struct Control<'a> {
@@ -40,7 +40,8 @@ impl Sheet {
         let is_given = shown.value != "none";
         let mut name = ui.id();
         let mut new = None;
-        Columns::of(ui).row(ui, |ui, part, width| {
+        let is_small = range.slider.is_none() && range.begins_with.is_none();
+        Columns::of(ui, is_small).row(ui, |ui, part, width| {
             let asked = match part {
                 Part::Label => {
                     let (id, asked) = number_name(ui, shown, range, each.as_deref(), width);
@@ -110,7 +111,7 @@ impl Sheet {
         };
         let mut name = ui.id();
         let mut new = None;
-        Columns::of(ui).row(ui, |ui, place, width| match place {
+        Columns::of(ui, false).row(ui, |ui, place, width| match place {
             Part::Label => {
                 ui.add_space(look::GAP * 2.0);
                 name = ui.label(egui::RichText::new(&part).color(look::of(ui).text_weak)).id;
@@ -146,6 +147,9 @@ impl Sheet {
         if let Some(ends) = range.slider {
             ui.spacing_mut().slider_width = (width - VALUE_WIDTH - look::GAP).max(look::GAP * 4.0);
             slid = self.slider(ui, control, range, ends);
+        } else {
+            // In the column of the other fields.
+            ui.add_space(width - VALUE_WIDTH);
         }
         let value = match &self.changing {
             Some(changing) if changing.id == control.id => rounded(changing.so_far),

@@ -185,11 +185,12 @@ impl Sheet {
         &mut self,
         ui: &mut egui::Ui,
         shown: &Shown,
+        is_small: bool,
         mut control: impl FnMut(&mut Self, &mut egui::Ui, f32, egui::Id) -> Option<String>,
     ) -> Option<String> {
         let mut name = ui.id();
         let mut new = None;
-        Columns::of(ui).row(ui, |ui, part, width| match part {
+        Columns::of(ui, is_small).row(ui, |ui, part, width| match part {
             Part::Label => name = shown.name(ui, width).id,
             Part::Control => new = control(self, ui, width, name).or(new.take()),
             Part::Reset => new = self.reset(ui, shown).or(new.take()),
