@@ -143,8 +143,8 @@ pub const NEWBORNS: Section = Section {
             "The lightest material that a snake may be born with",
             [0.1, 20_000.0],
         )
-        .slider(0.5, 50.0)
-        .by_ratio_from(0.5),
+        .slider(0.1, 50.0)
+        .by_ratio_from(0.1),
         number(
             "density_max_kg_m3",
             "Greatest density",
@@ -152,8 +152,8 @@ pub const NEWBORNS: Section = Section {
             "The heaviest material that a snake may be born with",
             [0.1, 20_000.0],
         )
-        .slider(0.5, 50.0)
-        .by_ratio_from(0.5),
+        .slider(0.1, 50.0)
+        .by_ratio_from(0.1),
     ],
 };
 

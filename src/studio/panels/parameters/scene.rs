@@ -50,7 +50,7 @@ pub const STAIRS: Section = Section {
             "Depth of the landing behind the last step, on which a snake that has climbed stands",
             [0.0, 100.0],
         )
-        .slider(0.0, 30.0),
+        .slider(0.0, 60.0),
     ],
 };
 

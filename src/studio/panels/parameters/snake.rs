@@ -53,8 +53,8 @@ pub const BODY: Section = Section {
              Unticked, each snake has its own, and it evolves",
             [0.1, 20_000.0],
         )
-        .slider(0.5, 50.0)
-        .by_ratio_from(0.5)
+        .slider(0.1, 50.0)
+        .by_ratio_from(0.1)
         .for_each(Limbs)
         .unless_given("2.2"),
         number(
@@ -64,7 +64,8 @@ pub const BODY: Section = Section {
             "Share of its spin that a block loses per second, as in thick air",
             [0.0, 1000.0],
         )
-        .slider(0.0, 100.0),
+        .slider(0.0, 500.0)
+        .by_ratio_from(0.1),
     ],
 };
 

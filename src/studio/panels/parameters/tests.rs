@@ -287,3 +287,23 @@ fn what_may_have_a_value_for_each_part_is_what_the_settings_allow_a_list_for() {
         assert_eq!(listed.is_ok(), range.parts != Parts::One, "{full}");
     }
 }
+
+#[test]
+fn a_slider_shows_what_the_shipped_presets_have() {
+    let mut beyond = Vec::new();
+    for preset in crate::save::shipped_presets().expect("well formed") {
+        let values = fields(&preset.settings);
+        for (_, entry, full) in declared() {
+            let Kind::Number(Range { slider: Some([least, most]), .. }) = &entry.kind else {
+                continue;
+            };
+            let now = values.iter().find(|(field, _)| *field == full);
+            let Some(value) = now.and_then(|(_, text)| text.parse::<f32>().ok()) else { continue };
+            // Frictions as large as the engine manual's 150 all hold alike.
+            if !(*least..=*most).contains(&value) && entry.label != "Friction" {
+                beyond.push(format!("{full} = {value} of {}", preset.name));
+            }
+        }
+    }
+    assert!(beyond.is_empty(), "{beyond:?}");
+}
