@@ -7,7 +7,9 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use snakes_and_stairs::evolve::{RunPlan, Settings};
-use snakes_and_stairs::save::{fingerprint, parse_changes, parse_evaluations, parse_records};
+use snakes_and_stairs::save::{
+    fingerprint, parse_changes, parse_evaluations, parse_lineage, parse_records,
+};
 use xxhash_rust::xxh3::xxh3_64;
 
 static PLAN: LazyLock<(RunPlan, String)> = LazyLock::new(|| {
@@ -30,6 +32,7 @@ fuzz_target!(|input: (u8, Vec<u8>)| {
     let error = match how & 6 {
         0 => parse_records(path, &bytes, &PLAN.0).err(),
         2 => parse_evaluations(path, &bytes, 1, &PLAN.0).err(),
+        4 => parse_lineage(path, &bytes, &PLAN.0.settings).err(),
         _ => parse_changes(path, &bytes, &PLAN.0).err(),
     };
     assert!(!error.is_some_and(|error| error.to_string().contains('\n')));

@@ -4,11 +4,16 @@ use std::ops::RangeInclusive;
 
 use crate::evolve::StrategyKind;
 
+/// A legend names so many shades; of more it names none, they say what they mean by their order.
+const MOST_SHADES_LISTED: usize = 8;
+
 /// One chart, or several that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What it shows, in a line.
+    /// What it shows, in a few words.
     pub title: String,
+    /// What else there is to say of it, in a sentence or two; may be empty.
+    pub note: String,
     /// The charts, in reading order.
     pub charts: Vec<Chart>,
 }
@@ -53,7 +58,7 @@ pub struct Mark {
 /// Something that is drawn, and listed under its name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What it is. Empty, if the legend and the table have it under the name of another.
+    /// What it is. Empty for what only helps the eye: it is in no legend and no table.
     pub name: String,
     /// What it means, which says its colour.
     pub role: Role,
@@ -144,6 +149,16 @@ impl Shape {
         }
     }
 
+    /// Whether there is nothing to draw.
+    fn is_empty(&self) -> bool {
+        match self {
+            Self::Line(points) | Self::Dashed(points) | Self::Points(points) => points.is_empty(),
+            Self::Band(ends) => ends.is_empty(),
+            Self::Bars { bars, .. } => bars.is_empty(),
+            Self::Cells(cells) => cells.is_empty(),
+        }
+    }
+
     /// Its rows: x, and a value for each column.
     fn rows(&self) -> Vec<(f64, Vec<f64>)> {
         match self {
@@ -165,14 +180,28 @@ impl Shape {
 impl Figure {
     /// A figure of one chart.
     pub fn of(title: &str, chart: Chart) -> Self {
-        Self { title: title.to_owned(), charts: vec![chart] }
+        Self { title: title.to_owned(), note: String::new(), charts: vec![chart] }
     }
 
     /// Whether there is nothing in it to draw.
     pub fn is_empty(&self) -> bool {
-        self.charts
-            .iter()
-            .all(|chart| chart.series.iter().all(|series| series.shape.rows().is_empty()))
+        self.charts.iter().flat_map(|chart| &chart.series).all(|series| series.shape.is_empty())
+    }
+
+    /// What a legend names: every name once, and of shades no more than a legend can hold.
+    pub fn listed(&self) -> Vec<&Series> {
+        let is_shade = |series: &Series| matches!(series.role, Role::Share(_));
+        let all = || self.charts.iter().flat_map(|chart| &chart.series);
+        let are_many = all().filter(|series| is_shade(series)).count() > MOST_SHADES_LISTED;
+        let mut listed: Vec<&Series> = Vec::new();
+        for series in all().filter(|series| !series.name.is_empty()) {
+            let is_known = listed.iter().any(|known| known.name == series.name);
+            let is_too_much = are_many && is_shade(series);
+            if !is_known && !is_too_much {
+                listed.push(series);
+            }
+        }
+        listed
     }
 
     /// The figure as a table, its first record the head: a column for each series, with its unit. Of several charts
@@ -195,11 +224,8 @@ impl Figure {
                 Vec::new()
             };
             let x_column = column(chart.x.label(), &mut heads);
-            for (index, series) in chart.series.iter().enumerate() {
-                let name = match series.name.as_str() {
-                    "" => format!("{} {}", chart.y.name, index + 1),
-                    name => name.to_owned(),
-                };
+            for series in chart.series.iter().filter(|series| !series.name.is_empty()) {
+                let name = &series.name;
                 let heads_of_series: Vec<usize> = (series.shape.columns().iter())
                     .map(|end| column(with_unit(&(name.clone() + end), chart.y.unit), &mut heads))
                     .collect();
@@ -266,10 +292,11 @@ mod tests {
     }
 
     #[test]
-    fn a_table_has_a_column_for_each_series_and_its_unit() {
+    fn a_table_has_a_column_for_each_series_with_a_name_and_its_unit() {
         let band = Series::new("middle half", Role::Others, Shape::Band(vec![[1.0, -8.0, -7.0]]));
         let best = line("best", &[[1.0, -6.5], [2.0, 1.25]]);
-        let figure = Figure::of("Fitness", chart("", vec![band, best]));
+        let unnamed = line("", &[[3.0, 1.0]]);
+        let figure = Figure::of("Fitness", chart("", vec![band, unnamed, best]));
         let head =
             ["Generation", "middle half, lower end (m)", "middle half, upper end (m)", "best (m)"];
         let expected = [head, ["1", "-8", "-7", "-6.5"], ["2", "", "", "1.25"]];
@@ -287,7 +314,7 @@ mod tests {
             ),
             chart("joint 2", vec![line("best", &[[1.0, 8.0]])]),
         ];
-        let table = Figure { title: String::new(), charts }.table();
+        let table = Figure { title: String::new(), note: String::new(), charts }.table();
         let expected = [
             ["chart", "Generation", "others (m)", "best (m)"],
             ["joint 1", "1", "5", "9"],
@@ -296,6 +323,22 @@ mod tests {
             ["joint 2", "1", "", "8"],
         ];
         assert_eq!(table, expected.map(|row| row.map(str::to_owned).to_vec()));
+    }
+
+    #[test]
+    fn a_legend_names_everything_once_and_not_too_many_shades() {
+        let shades = |count| {
+            (0..count).map(|index| {
+                let shade = Role::Share(index as f32 / 20.0);
+                Series::new(&format!("parent {index}"), shade, Shape::Line(Vec::new()))
+            })
+        };
+        let others = [line("best", &[]), line("", &[]), line("best", &[])];
+        let names = |count| {
+            let series = shades(count).chain(others.clone()).collect();
+            Figure::of("", chart("", series)).listed().len()
+        };
+        assert_eq!((names(0), names(8), names(9)), (1, 9, 1));
     }
 
     #[test]

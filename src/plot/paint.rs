@@ -24,9 +24,9 @@ const SAMPLE: i32 = 34;
 /// So many of the parts of a dashed line are on and off, in pixels.
 const DASH: (i32, i32) = (10, 7);
 /// Room for names below a chart, in pixels; they stand upright.
-const NAMES_HEIGHT: u32 = 230;
+const NAMES_HEIGHT: u32 = 250;
 /// Names are cut after so many letters.
-const LONGEST_NAME: usize = 30;
+const LONGEST_NAME: usize = 32;
 
 /// The colour of a role, as red, green and blue: that of the light theme.
 pub fn role_color(role: Role) -> [u8; 3] {
@@ -76,11 +76,17 @@ pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
     draw(SIZE, |area| {
         let title = (FONT, TITLE_PIXELS).into_font().color(&INK);
         area.draw(&Text::new(figure.title.as_str(), (MARGIN, MARGIN), title))?;
-        let top = MARGIN + TITLE_PIXELS as i32 + 12;
+        let mut top = MARGIN + TITLE_PIXELS as i32 + 12;
+        if !figure.note.is_empty() {
+            let weak = color_of(Role::Others);
+            let style = (FONT, TEXT_PIXELS).into_font().color(&weak);
+            area.draw(&Text::new(figure.note.as_str(), (MARGIN, top), style))?;
+            top += LEGEND_LINE;
+        }
         let below = legend(area, figure, top)?;
         let (_, charts) = area.split_vertically(below);
-        // About as wide as high.
-        let columns = (1..=figure.charts.len()).find(|n| n * n * 2 >= figure.charts.len() * 3);
+        // As many beside as below each other: the picture is wide, and so are its charts.
+        let columns = (1..=figure.charts.len()).find(|n| n * n >= figure.charts.len());
         let columns = columns.unwrap_or(1).min(figure.charts.len().max(1));
         let rows = figure.charts.len().div_ceil(columns);
         for (part, chart) in charts.split_evenly((rows, columns)).iter().zip(&figure.charts) {
@@ -94,12 +100,8 @@ pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
 fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>> {
     let text = (FONT, TEXT_PIXELS).into_font().color(&INK);
     let (mut x, mut y) = (MARGIN, top);
-    let mut listed: Vec<&str> = Vec::new();
-    for series in figure.charts.iter().flat_map(|chart| &chart.series) {
-        if series.name.is_empty() || listed.contains(&series.name.as_str()) {
-            continue;
-        }
-        listed.push(&series.name);
+    let listed = figure.listed();
+    for series in &listed {
         let (width, _) = area.estimate_text_size(&series.name, &text)?;
         let needed = SAMPLE + 10 + width as i32 + 28;
         if x + needed > SIZE.0 as i32 && x > MARGIN {
@@ -303,7 +305,8 @@ mod tests {
             .map(|role| chart("joint", vec![line(role)]))
             .into();
         charts[0].x.names = vec![(1.0, "density (kg/m³)".to_owned())];
-        let figure = Figure { title: "Torques".to_owned(), charts };
+        let figure =
+            Figure { title: "Torques".to_owned(), note: "Lines and dashes".to_owned(), charts };
         let picture = super::figure(&figure).expect("drawn");
         for role in [Role::First, Role::Second, Role::Third, Role::Twist] {
             assert!(pixels(&picture, role) > 300, "{role:?}");
@@ -312,7 +315,8 @@ mod tests {
 
     #[test]
     fn an_empty_figure_is_a_picture_too() {
-        let figure = Figure { title: "Nothing".to_owned(), charts: Vec::new() };
+        let figure =
+            Figure { title: "Nothing".to_owned(), note: String::new(), charts: Vec::new() };
         assert!(super::figure(&figure).is_ok());
     }
 

@@ -10,7 +10,8 @@ use proptest::test_runner::FileFailurePersistence;
 use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
 use snakes_and_stairs::genome::ControllerKind;
 use snakes_and_stairs::save::{
-    fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_plan,
+    fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations,
+    parse_lineage, parse_plan,
     parse_preset, parse_records,
 };
 use xxhash_rust::xxh3::xxh3_64;
@@ -201,8 +202,12 @@ fn no_log_stops_the_program() {
     assert_eq!(evaluations(Path::new("x"), untouched).expect("allowed").len(), 2);
     let untouched = include_str!("../../fuzz/corpus/logs/changes");
     assert_eq!(changes(Path::new("x"), untouched).expect("allowed").len(), 4);
-    read_all("logs", records);
     read_all("logs", changes);
+    let lineage = |path: &Path, text: &str| parse_lineage(path, &lines(text), &plan.settings);
+    let untouched = include_str!("../../fuzz/corpus/logs/lineage");
+    assert_eq!(lineage(Path::new("x"), untouched).expect("allowed").len(), 2);
+    read_all("logs", records);
+    read_all("logs", lineage);
     read_all("logs", evaluations);
     read_all("logs", |path, text| parse_records(path, text.as_bytes(), &plan));
 }

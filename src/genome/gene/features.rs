@@ -43,7 +43,7 @@ impl GenomeSpace {
                 for (axis, torques) in [("bend", &signals.bend_nm), ("twist", &signals.twist_nm)] {
                     let sum: f32 = torques.iter().map(|torque| torque.abs()).sum();
                     let mean = sum / torques.len().max(1) as f32;
-                    let name = format!("joint {joint} {axis}, mean strength");
+                    let name = format!("joint {joint} {axis}, strength");
                     add(name, "N·m", mean, self.torque_range_nm);
                 }
             }
