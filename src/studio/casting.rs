@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use super::evolution::Evolution;
 use super::exhibit::{Exhibit, Source};
 use super::stage::{MOST_LANES, Programme, Show};
-use crate::evolve::{Champion, Settings, fields, with_field, with_fields};
+use crate::evolve::{Champion, Place, Settings, fields, with_field, with_fields};
 use crate::save::LoadedChampion;
 use crate::score::Trial;
 
@@ -25,6 +25,8 @@ pub(super) enum Pick {
     },
     /// The best of a cell of the archive.
     Elite(u32),
+    /// Somebody of the latest generation, a champion, or one of whom they descend.
+    Individual(Place),
 }
 
 /// A champion that the studio opened with, and what it is called.
@@ -85,6 +87,7 @@ pub(super) fn exhibit_of(pick: &Pick, evolution: &Evolution, opening: &Opening) 
             evolution.front_member(generation, individual).as_ref().map(found)
         }
         Pick::Elite(cell) => evolution.elite(cell).as_ref().map(found),
+        Pick::Individual(place) => evolution.individual(place).as_ref().map(found),
     }
 }
 

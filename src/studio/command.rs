@@ -11,6 +11,7 @@ use super::casting::{Pick, all_generations, dropped, exhibit_of, kept, leaders, 
 use super::desk::{Desk, Over};
 use super::evolution::{Evolution, Status};
 use super::exhibit::Exhibit;
+use super::export::Export;
 use super::hands::Hands;
 use super::lane::Lane;
 use super::lessons::Lessons;
@@ -86,6 +87,12 @@ pub(super) enum Command {
     ListStoppedRuns,
     /// Go on with the run in this folder.
     Continue(PathBuf),
+    /// Look for all runs in the folder of saves.
+    ListRuns,
+    /// Lay the run in this folder over the current one in a chart, or take it away again.
+    Compare(PathBuf),
+    /// Write a chart into a file.
+    Export(Export),
     /// Put somebody on the stage.
     Show(Pick),
     /// Put somebody beside those who are on the stage, or take them off again.
@@ -298,6 +305,11 @@ fn apply(
                 stage.settle();
                 evolution.go_on_with(folder)
             }
+            Command::ListRuns => evolution.list_runs(),
+            Command::Compare(folder) => evolution.compare_with(folder),
+            Command::Export(chart) => evolution.export(chart).map(|path| {
+                notices.news(format!("Chart saved to {}", path.display()));
+            }),
             Command::SetField { field, text } => {
                 stage.try_out(&mut evolution, &Change::Field { field, text })
             }

@@ -1,21 +1,26 @@
 //! The experiment behind the window: started, held, reset; its reports kept for the panels.
 
 mod amend;
+mod individuals;
+mod others;
 mod take_in;
 
 use std::collections::VecDeque;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bevy::prelude::*;
 
 use super::engine::Engine;
+use super::export::{self, Export};
 use super::presets::Presets;
 use crate::check::Invalid;
 use crate::evolve::{Champion, Origin, RunPlan, Settings, fields, with_field, with_fields};
 use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
 use crate::save::{Earlier, Preset, RunSummary, load_preset};
 use crate::score::evaluate;
+
+pub(super) use others::{MOST_COMPARED, Others};
 
 /// Of so many generations the best ten are remembered.
 const REMEMBERED_GENERATIONS: usize = 200;
@@ -55,6 +60,10 @@ pub(super) struct Evolution {
     reports: Vec<GenerationReport>,
     /// What the run has found besides, once a generation is finished.
     exploration: Option<Box<Exploration>>,
+    /// How often it was told what the run has found.
+    times_explored: u64,
+    /// Other runs, to be laid over this one.
+    others: Others,
     /// The best ten of each of the latest generations of this session, the earliest first.
     leaders: VecDeque<Vec<Champion>>,
     run_hash: Option<u64>,
@@ -90,6 +99,8 @@ impl Evolution {
             listing: None,
             reports: Vec::new(),
             exploration: None,
+            times_explored: 0,
+            others: Others::default(),
             leaders: VecDeque::new(),
             run_hash: None,
         }
@@ -167,6 +178,21 @@ impl Evolution {
         self.exploration.as_deref()
     }
 
+    /// Another value whenever something that charts show has changed.
+    pub fn version(&self) -> (u32, u64, usize, u64) {
+        (self.number, self.times_explored, self.reports.len(), self.others.version())
+    }
+
+    /// Other runs, to be laid over this one.
+    pub fn others(&self) -> &Others {
+        &self.others
+    }
+
+    /// The folder of the current run.
+    pub fn folder(&self) -> &Path {
+        &self.source.folder
+    }
+
     /// The best ten of a generation, or of the latest one, the best first; nobody of one that an earlier session has
     /// finished, or of long ago.
     pub fn leaders(&self, generation: Option<u32>) -> &[Champion] {
@@ -188,6 +214,7 @@ impl Evolution {
             self.leaders.pop_front();
         }
         self.exploration = Some(exploration);
+        self.times_explored += 1;
     }
 
     /// Finished evaluations of the current generation, and how many it has.
@@ -283,7 +310,8 @@ impl Evolution {
     fn replace(&mut self, source: RunSource) {
         let before = self.background.take().or(self.before.take());
         let (number, stopped) = (self.number + 1, self.stopped.take());
-        *self = Self { number, before, ..Self::prepared(source, self.engine.clone()) };
+        let others = std::mem::take(&mut self.others);
+        *self = Self { number, before, others, ..Self::prepared(source, self.engine.clone()) };
         if stopped.is_some() {
             // Somebody may be looking at the list: the run that was replaced belongs into it. What cannot
             // be listed now is listed when it is asked for again.
@@ -301,7 +329,23 @@ impl Evolution {
         Ok(())
     }
 
+    /// Looks for all runs in the folder of saves.
+    pub fn list_runs(&mut self) -> Result<(), String> {
+        self.others.list(self.engine.saves.clone())
+    }
+
+    /// Lays another run over the current one, or takes it away again.
+    pub fn compare_with(&mut self, folder: &Path) -> Result<(), String> {
+        self.others.toggle(folder)
+    }
+
+    /// Writes a chart into a file beside the runs. Returns the file's path.
+    pub fn export(&self, chart: &Export) -> Result<PathBuf, String> {
+        export::export(&self.engine.saves, chart)
+    }
+
     fn take_in_listing(&mut self) {
+        self.others.take_in();
         let Some(mut runs) = self.listing.as_ref().and_then(Listing::poll) else { return };
         runs.retain(|run| run.is_stopped() && run.folder != self.source.folder);
         self.stopped = Some(runs);
@@ -468,4 +512,4 @@ pub(super) use amend::news_of;
 #[cfg(test)]
 mod fixtures;
 #[cfg(test)]
-pub(super) use fixtures::{explored_run, prepared_run};
+pub(super) use fixtures::{compared_run, explored_run, prepared_run};

@@ -8,6 +8,7 @@ use bevy::prelude::Resource;
 use bevy_egui::egui::{self, Color32, CornerRadius};
 
 use crate::check::Invalid;
+use crate::plot;
 
 pub use palette::Palette;
 
@@ -126,6 +127,16 @@ pub const LEAST_CHART_HEIGHT: f32 = 80.0;
 pub const WITHOUT_CHART: f32 = 420.0;
 /// Height of the chart of distance and energy, and of learning curves, in points.
 pub const PLOT_HEIGHT: f32 = 150.0;
+/// Height of what stands over and under a chart in its panel, in points.
+pub const WITHOUT_PLOT: f32 = 120.0;
+/// Height of a chart that has the room, in points.
+pub const TALL_CHART_HEIGHT: f32 = 420.0;
+/// Least width of one of several charts side by side, in points.
+pub const MULTIPLE_WIDTH: f32 = 230.0;
+/// Least height of one of several charts below each other, in points.
+pub const MULTIPLE_HEIGHT: f32 = 120.0;
+/// Width of a sample in a legend, in points.
+pub const SAMPLE_WIDTH: f32 = 20.0;
 /// Height of a map, in points.
 pub const MAP_HEIGHT: f32 = 190.0;
 /// Least width of the numbers at the left of a chart, in points.
@@ -135,27 +146,10 @@ pub const SMALL_SIZE: f32 = 11.0;
 /// Corner radius of cards and buttons, in points.
 const CORNER: CornerRadius = CornerRadius::same(6);
 
-/// From the least to the most: viridis (van der Walt and Smith, 2015), whose brightness rises evenly, so that it
-/// reads in order without its hues too.
-const RAMP: [[u8; 3]; 9] = [
-    [0x44, 0x01, 0x54],
-    [0x47, 0x2d, 0x7b],
-    [0x3b, 0x52, 0x8b],
-    [0x2c, 0x72, 0x8e],
-    [0x21, 0x91, 0x8c],
-    [0x28, 0xae, 0x80],
-    [0x5e, 0xc9, 0x62],
-    [0xad, 0xdc, 0x30],
-    [0xfd, 0xe7, 0x25],
-];
-
-/// The colour of a value between the least, 0, and the most, 1.
+/// The colour of a value between the least, 0, and the most, 1: see [`plot::ramp`].
 pub fn ramp(share: f32) -> Color32 {
-    let last = RAMP.len() - 1;
-    let place = share.clamp(0.0, 1.0) * last as f32;
-    let below = (place as usize).min(last - 1);
-    let [from, to] = [RAMP[below], RAMP[below + 1]].map(|[r, g, b]| Color32::from_rgb(r, g, b));
-    from.lerp_to_gamma(to, place - below as f32)
+    let [red, green, blue] = plot::ramp(share);
+    Color32::from_rgb(red, green, blue)
 }
 
 /// Dresses egui, both its themes: which of them shows is [`show`]'s to say.

@@ -16,6 +16,7 @@ mod desk;
 mod engine;
 mod evolution;
 mod exhibit;
+mod export;
 pub mod figures;
 mod frame_times;
 mod graphics;

@@ -10,9 +10,8 @@ use proptest::test_runner::FileFailurePersistence;
 use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
 use snakes_and_stairs::genome::ControllerKind;
 use snakes_and_stairs::save::{
-    fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations,
-    parse_lineage, parse_plan,
-    parse_preset, parse_records,
+    fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_lineage,
+    parse_plan, parse_preset, parse_records,
 };
 use xxhash_rust::xxh3::xxh3_64;
 

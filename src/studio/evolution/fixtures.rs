@@ -4,7 +4,7 @@ use super::*;
 use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Control, Experiment, pool};
-use crate::save::SavesFolder;
+use crate::save::{SavesFolder, store_csv};
 use crate::studio::Options;
 
 /// A run of the report's settings that has not begun.
@@ -22,12 +22,56 @@ pub fn explored_run() -> Evolution {
     let plan = RunPlan::new("test", 1, settings);
     let mut experiment = Experiment::new(plan.clone());
     let pool = pool(1).expect("a pool");
-    for _ in 0..2 {
-        experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
-    }
     let mut run = run_of(plan);
+    for _ in 0..2 {
+        let report = experiment.run_generation(&pool, &Control::default());
+        run.reports.push(report.expect("not cancelled"));
+    }
     run.explore(Box::new(Exploration::of(&experiment)));
     run
+}
+
+/// The explored run, compared with another in this folder of saves, which has two generations behind it; or whose log
+/// is damaged.
+pub fn compared_run(saves: &Path, is_damaged: bool) -> Evolution {
+    let mut settings = Settings::default();
+    settings.evolution.population = 4;
+    settings.trial.duration_s = 0.5;
+    let plan = RunPlan::new("other", 7, settings);
+    let source = RunSource::in_saves(&SavesFolder::find(Some(saves)), plan, Earlier::Keep);
+    let folder = source.folder.clone();
+    let mut other = source.open("a test").expect("opened");
+    let pool = pool(1).expect("a pool");
+    for _ in 0..2 {
+        let report = other.experiment.run_generation(&pool, &Control::default());
+        other.keeper.keep(&other.experiment, &report.expect("not cancelled")).expect("kept");
+    }
+    if is_damaged {
+        let nonsense = [vec!["no log".to_owned()]];
+        store_csv(&folder.join("log.jsonl"), &nonsense).expect("written");
+    }
+    let mut run = explored_run();
+    run.compare_with(&folder).expect("a thread");
+    while run.others.compared().iter().any(|compared| compared.read.is_none()) {
+        run.take_in_listing();
+    }
+    run
+}
+
+#[test]
+fn another_run_is_laid_over_this_one_once_and_taken_away_again() {
+    let saves = tempfile::tempdir().expect("a folder");
+    let mut run = compared_run(saves.path(), false);
+    let version = run.version();
+    let folder = run.others.compared()[0].folder.clone();
+    for name in ["a", "b"] {
+        run.compare_with(&saves.path().join(name)).expect("a thread");
+    }
+    let refusal = run.compare_with(&saves.path().join("c")).expect_err("full");
+    assert!(refusal.contains("room for 3"), "{refusal}");
+    run.compare_with(&folder).expect("taken away");
+    assert_eq!(run.others.compared().len(), 2);
+    assert_ne!(run.version(), version);
 }
 
 fn run_of(plan: RunPlan) -> Evolution {

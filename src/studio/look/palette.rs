@@ -8,7 +8,7 @@ use bevy_egui::egui::{self, Color32, Frame, Margin, Stroke};
 
 use super::CORNER;
 use crate::evolve::StrategyKind;
-use crate::plot::strategy_color;
+use crate::plot::{Role, role_color, strategy_color};
 
 /// Every colour of a theme, and how strong its lights are.
 #[derive(Debug)]
@@ -170,7 +170,25 @@ impl Palette {
     /// The colour of a strategy, in all curves: its own, moved towards the text's as far as it takes to be read on
     /// the panel.
     pub fn strategy(&self, kind: StrategyKind) -> Color32 {
-        let [red, green, blue] = strategy_color(kind);
+        self.readable(strategy_color(kind))
+    }
+
+    /// The colour of what a series of a chart means.
+    pub fn role(&self, role: Role) -> Color32 {
+        match role {
+            Role::First => self.accent,
+            Role::Second => self.second,
+            Role::Third => self.readable(role_color(role)),
+            Role::Others => self.text_weak,
+            Role::Bend => self.bend,
+            Role::Twist => self.twist,
+            Role::Strategy(kind) => self.strategy(kind),
+            Role::Share(share) => super::ramp(share),
+        }
+    }
+
+    /// A colour, moved towards the text's as far as it takes to be read on the panel.
+    fn readable(&self, [red, green, blue]: [u8; 3]) -> Color32 {
         let own = Color32::from_rgb(red, green, blue);
         let mixed = (0..=20).map(|step| own.lerp_to_gamma(self.text, step as f32 / 20.0));
         let mut readable = mixed.filter(|color| contrast(*color, self.panel) >= READABLE);
@@ -259,6 +277,20 @@ mod tests {
             for kind in StrategyKind::ALL {
                 let found = contrast(of.strategy(kind), of.panel);
                 assert!(found >= READABLE, "{theme}: {kind:?} has {found:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_chart_in_the_light_theme_has_the_colours_of_its_picture() {
+        for role in [Role::First, Role::Second, Role::Third, Role::Others, Role::Bend, Role::Twist]
+        {
+            let [red, green, blue] = role_color(role);
+            assert_eq!(LIGHT.role(role), Color32::from_rgb(red, green, blue), "{role:?}");
+            for of in [&LIGHT, &DARK] {
+                let found = contrast(of.role(role), of.panel);
+                // What WCAG asks for of what is no text.
+                assert!(found >= 3.0, "{role:?} has {found:.2}");
             }
         }
     }

@@ -10,12 +10,13 @@ use crate::studio::casting::Pick;
 use crate::studio::command::Command;
 use crate::studio::look;
 
-/// Draws the archive and adds what was asked for. `unit` is the fitness'.
+/// Draws the archive, so many points high, and adds what was asked for. `unit` is the fitness'.
 pub(super) fn archive_map(
     ui: &mut egui::Ui,
     archive: &Archive,
     unit: &str,
     shown: Option<Shown>,
+    height: f32,
     asked: &mut Vec<Command>,
 ) {
     let cells = archive.cells * archive.cells;
@@ -32,7 +33,7 @@ pub(super) fn archive_map(
         return explain(ui, "Everybody so far was disqualified.");
     }
     ui.label(axis_name(ui, archive.y.label()));
-    let size = egui::vec2(ui.available_width(), look::MAP_HEIGHT);
+    let size = egui::vec2(ui.available_width(), height);
     let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
     let map = egui::Rect::from_min_max(egui::pos2(area.left() + GUTTER, area.top()), area.max);
     let response = ui.interact(map, ui.id().with("archive"), egui::Sense::click());
@@ -163,9 +164,10 @@ mod tests {
     /// What a click in the middle of a cell sends, and what stands beside the pointer.
     fn clicked(archive: &Archive, cell: u32) -> (Vec<Command>, bool) {
         let size = egui::vec2(look::PANEL_WIDTH, 500.0);
-        let mut harness = Harness::builder()
-            .with_size(size)
-            .build_ui_state(|ui, asked| archive_map(ui, archive, " m", None, asked), Vec::new());
+        let mut harness = Harness::builder().with_size(size).build_ui_state(
+            |ui, asked| archive_map(ui, archive, " m", None, look::MAP_HEIGHT, asked),
+            Vec::new(),
+        );
         harness.run();
         let map = harness.get_by_label("Map").rect();
         let at = cell_rect(map, archive, cell).center();

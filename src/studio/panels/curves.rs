@@ -1,12 +1,14 @@
 //! How methods compare: their learning curves, and a table that is the curves' legend too.
 
+use std::sync::Arc;
+
 use bevy_egui::egui;
 use egui_plot::{FilledArea, HoverPosition, Line, PlotPoints};
 
 use super::axes::{around, axis_name, bounds, number, still};
-use super::title;
 use crate::evolve::StrategyKind;
 use crate::genome::ControllerKind;
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::compare::{Quartiles, Row};
 use crate::save::{CURVE_POINTS, Comparison};
 use crate::studio::look;
@@ -22,6 +24,8 @@ pub(super) struct CurvesPanel {
     controllers: Vec<ControllerKind>,
     /// Whose curves are on show.
     controller: ControllerKind,
+    /// Those curves as data.
+    figure: Option<(ControllerKind, Arc<Figure>)>,
 }
 
 /// A method with one controller, over all seeds.
@@ -75,12 +79,55 @@ impl CurvesPanel {
             controller: controllers.last().copied().unwrap_or_default(),
             controllers,
             methods,
+            figure: None,
         }
     }
 
-    /// Draws the panel.
-    pub fn ui(&mut self, ui: &mut egui::Ui) {
-        title(ui, "Comparison");
+    /// The curves on show as data, worked out once.
+    pub fn figure(&mut self) -> Arc<Figure> {
+        if let Some((of, figure)) = &self.figure
+            && *of == self.controller
+        {
+            return Arc::clone(figure);
+        }
+        let figure = Arc::new(self.data());
+        self.figure = Some((self.controller, Arc::clone(&figure)));
+        figure
+    }
+
+    fn data(&self) -> Figure {
+        let x_of = |point: usize| self.evaluations * (point + 1) as f64 / CURVE_POINTS as f64;
+        let of_method = |method: &Method| {
+            let role = Role::Strategy(method.strategy);
+            let band = method.curve.iter().map(|(point, of)| [x_of(*point), of.low, of.high]);
+            let median = method.curve.iter().map(|(point, of)| [x_of(*point), of.median]);
+            let name = format!("{}, middle half", method.name());
+            [
+                Series::new(&name, role, Shape::Band(band.collect())),
+                Series::new(method.name(), role, Shape::Line(median.collect())),
+            ]
+        };
+        let mut series: Vec<Series> = self.on_show().flat_map(of_method).collect();
+        // Lines over all bands.
+        series.sort_by_key(|series| matches!(series.shape, Shape::Line(_)));
+        let ends = self.on_show().flat_map(|of| of.curve.iter());
+        let ends = ends.flat_map(|(_, quartiles)| [quartiles.low, quartiles.high]);
+        let chart = Chart {
+            name: String::new(),
+            x: Axis::new("Evaluations", "", 0.0..=self.evaluations),
+            y: Axis::new(
+                "Best fitness so far",
+                self.unit.trim(),
+                around(ends, 1.0).unwrap_or(0.0..=1.0),
+            ),
+            series,
+            marks: Vec::new(),
+        };
+        Figure::of(&format!("Comparison of methods, {}", self.controller), chart)
+    }
+
+    /// Draws the panel, its curves so many points high.
+    pub fn ui(&mut self, ui: &mut egui::Ui, height: f32) {
         ui.label(egui::RichText::new(&self.about).color(look::of(ui).text_weak));
         if self.methods.is_empty() {
             return super::explain(ui, "It has no finished runs.");
@@ -92,7 +139,7 @@ impl CurvesPanel {
                 choice.on_hover_text(kind.words());
             }
         });
-        self.plot(ui);
+        self.plot(ui, height);
         self.table(ui);
     }
 
@@ -100,7 +147,7 @@ impl CurvesPanel {
         self.methods.iter().filter(|of| of.controller == self.controller)
     }
 
-    fn plot(&self, ui: &mut egui::Ui) {
+    fn plot(&self, ui: &mut egui::Ui, height: f32) {
         let y_unit = if self.unit.is_empty() { "" } else { " (m)" };
         ui.label(axis_name(ui, &format!("Best fitness so far{y_unit}, over evaluations")))
             .on_hover_text("Line: median of the seeds; band: the half of them in the middle");
@@ -119,7 +166,7 @@ impl CurvesPanel {
             HoverPosition::Elsewhere { .. } => None,
         };
         let palette = look::of(ui);
-        still("curves", look::PLOT_HEIGHT).label_formatter(label).show(ui, |plot| {
+        still("curves", height).label_formatter(label).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&(0.0..=self.evaluations), &y_range));
             for method in self.on_show().filter(|of| !of.curve.is_empty()) {
                 let color = palette.strategy(method.strategy);
@@ -212,7 +259,8 @@ mod tests {
     fn the_table_shows_the_methods_of_the_chosen_controller() {
         let mut panel = CurvesPanel::new(&comparison());
         let size = egui::vec2(look::PANEL_WIDTH, 500.0);
-        let mut harness = Harness::builder().with_size(size).build_ui(|ui| panel.ui(ui));
+        let mut harness =
+            Harness::builder().with_size(size).build_ui(|ui| panel.ui(ui, look::PLOT_HEIGHT));
         harness.run();
         for text in ["Genetic algorithm", "2 of 3", "140", "never", "0 of 1", "24.5 m"] {
             assert!(harness.query_all_by_label(text).next().is_some(), "{text}");

@@ -12,6 +12,7 @@ use crate::evolve::StrategyKind;
 use crate::save::Comparison;
 use crate::studio::command::Command;
 use crate::studio::evolution::Evolution;
+use crate::studio::look;
 
 /// The panel, with the comparison that is open.
 #[derive(Debug)]
@@ -35,12 +36,15 @@ impl ExplorePanel {
     ) {
         // Whoever opened a comparison came for it.
         if let Some(curves) = &mut self.curves {
-            curves.ui(ui);
+            title(ui, "Comparison");
+            curves.ui(ui, look::PLOT_HEIGHT);
         }
         title(ui, "Distance and energy");
         let exploration = run.exploration();
         match exploration.map(|exploration| &exploration.front) {
-            Some(front) if front.members().len() > 0 => front_plot(ui, front, shown, asked),
+            Some(front) if front.members().len() > 0 => {
+                front_plot(ui, front, shown, look::PLOT_HEIGHT, asked)
+            }
             Some(_) => explain(ui, "Nobody has got ahead of the start yet."),
             None => explain(ui, "Who gets furthest for the least energy will appear here."),
         }
@@ -48,7 +52,7 @@ impl ExplorePanel {
         match exploration.and_then(|exploration| exploration.archive.as_ref()) {
             Some(archive) => {
                 let unit = run.settings().trial.fitness.unit();
-                archive_map(ui, archive, unit, shown, asked);
+                archive_map(ui, archive, unit, shown, look::MAP_HEIGHT, asked);
             }
             None if run.settings().evolution.strategy == StrategyKind::MapElites => {
                 explain(ui, "The best of every kind will appear here.");

@@ -12,11 +12,12 @@ use crate::studio::casting::Pick;
 use crate::studio::command::Command;
 use crate::studio::look;
 
-/// Draws the front, which has members, and adds what was asked for.
+/// Draws the front, which has members, so many points high, and adds what was asked for.
 pub(super) fn front_plot(
     ui: &mut egui::Ui,
     front: &Front,
     shown: Option<Shown>,
+    height: f32,
     asked: &mut Vec<Command>,
 ) {
     let members: Vec<&FrontMember> = front.members().collect();
@@ -31,7 +32,7 @@ pub(super) fn front_plot(
         HoverPosition::Elsewhere { .. } => None,
     };
     let palette = look::of(ui);
-    let plot = still("front", look::PLOT_HEIGHT).label_formatter(label).show(ui, |plot| {
+    let plot = still("front", height).label_formatter(label).show(ui, |plot| {
         plot.set_plot_bounds(bounds(&x_range, &y_range));
         let line = Line::new("line", PlotPoints::from(points.clone()));
         plot.line(line.color(palette.text_weak.gamma_multiply(0.6)).allow_hover(false));
@@ -96,9 +97,10 @@ mod tests {
     /// What a click at a place of the chart sends.
     fn sent(front: &Front, at: [f64; 2], off: egui::Vec2) -> Vec<Command> {
         let size = egui::vec2(look::PANEL_WIDTH, 400.0);
-        let mut harness = Harness::builder()
-            .with_size(size)
-            .build_ui_state(|ui, asked| front_plot(ui, front, None, asked), Vec::new());
+        let mut harness = Harness::builder().with_size(size).build_ui_state(
+            |ui, asked| front_plot(ui, front, None, look::PLOT_HEIGHT, asked),
+            Vec::new(),
+        );
         harness.run();
         let chart = harness.get_by_label("Front of distance and energy").rect();
         let points: Vec<[f64; 2]> = front.members().map(place).collect();

@@ -1,0 +1,66 @@
+//! Somebody of the current run, by its place in it.
+
+use std::sync::Arc;
+
+use super::Evolution;
+use crate::evolve::{Champion, Parents, Place};
+use crate::genome::Genome;
+use crate::run::{Ancestor, caught};
+use crate::score::{Evaluation, evaluate};
+
+impl Evolution {
+    /// Somebody of the latest generation, a champion, or one who has descendants; none if nobody remembers it. What
+    /// is not known of it besides its genes is found out anew.
+    pub fn individual(&self, place: Place) -> Option<Champion> {
+        let genome = self.genome_of(place)?;
+        let trial = self.settings().trial.clone();
+        let evaluation = match self.evaluation_of(place) {
+            Some(evaluation) => evaluation,
+            None => caught(|| evaluate(&genome, &trial)).ok()?,
+        };
+        let origin = self.origin(place.generation, place.individual);
+        Some(Champion { genome: (*genome).clone(), trial, evaluation, origin })
+    }
+
+    /// The genes of somebody, if anybody remembers them.
+    pub fn genome_of(&self, place: Place) -> Option<Arc<Genome>> {
+        let exploration = self.exploration()?;
+        let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
+        let of_latest = latest.and_then(|latest| latest.genomes.get(place.individual as usize));
+        let of_ancestor = || self.ancestor(place)?.genome.as_ref();
+        let of_champion = || {
+            let champion = self.champion_at(place)?;
+            Some(Arc::new(champion.genome.clone()))
+        };
+        of_latest.or_else(of_ancestor).cloned().or_else(of_champion)
+    }
+
+    /// Whom somebody comes from, if anybody remembers it.
+    pub fn parents_of(&self, place: Place) -> Option<Parents> {
+        let exploration = self.exploration()?;
+        let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
+        let of_latest = latest.and_then(|of| of.parents.get(place.individual as usize)).copied();
+        of_latest.or_else(|| Some(self.ancestor(place)?.parents))
+    }
+
+    /// Somebody who has descendants.
+    fn ancestor(&self, place: Place) -> Option<&Arc<Ancestor>> {
+        let exploration = self.exploration()?;
+        let descent = &exploration.descent;
+        let parents = exploration.parents.iter().map(|(parent, _)| parent);
+        let mut all = descent.line.iter().chain(&descent.others).chain(parents);
+        all.find(|ancestor| ancestor.place == place)
+    }
+
+    fn evaluation_of(&self, place: Place) -> Option<Evaluation> {
+        let latest = self.exploration()?.generation.as_ref();
+        let latest = latest.filter(|latest| latest.number == place.generation);
+        let of_latest = latest.and_then(|of| of.evaluations.get(place.individual as usize));
+        of_latest.copied().or_else(|| Some(self.champion_at(place)?.evaluation))
+    }
+
+    fn champion_at(&self, place: Place) -> Option<&Champion> {
+        let champion = self.champion_of(place.generation)?;
+        (champion.origin.individual == place.individual).then_some(champion)
+    }
+}

@@ -1,0 +1,67 @@
+//! The archive and the front as data, to be written as files; they are drawn by panels of their own.
+
+use crate::evolve::{Archive, Descriptor, Front};
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use crate::studio::panels::axes::around;
+
+/// The archive of the best of every kind. `unit` is the fitness'.
+pub(super) fn archive(archive: &Archive, unit: &str) -> Figure {
+    let fitness = archive.elites().map(|(_, elite)| elite.fitness);
+    let (least, most) = fitness.fold((f32::MAX, f32::MIN), |(l, m), x| (l.min(x), m.max(x)));
+    let ends = |descriptor: Descriptor, place: u32| {
+        [place, place + 1].map(|end| descriptor.at_share(f64::from(end) / f64::from(archive.cells)))
+    };
+    let cells = archive.elites().map(|(cell, elite)| {
+        let [left, right] = ends(archive.x, cell % archive.cells);
+        let [bottom, top] = ends(archive.y, cell / archive.cells);
+        let share = (elite.fitness - least) / (most - least).max(f32::MIN_POSITIVE);
+        ([left, right, bottom, top], share, f64::from(elite.fitness))
+    });
+    let axis = |descriptor: Descriptor| {
+        Axis::new(descriptor.label(), "", descriptor.at_share(0.0)..=descriptor.at_share(1.0))
+    };
+    let name = format!("fitness from {least:.2} to {most:.2}{unit}");
+    let chart = Chart {
+        name: String::new(),
+        x: axis(archive.x),
+        y: axis(archive.y),
+        series: vec![Series::new(&name, Role::Share(0.5), Shape::Cells(cells.collect()))],
+        marks: Vec::new(),
+    };
+    Figure::of("The best of every kind", chart)
+}
+
+/// The front of distance and energy.
+pub(super) fn front(front: &Front) -> Figure {
+    let points = front.members().map(|member| {
+        let energy_j = member.evaluation.effort.map_or(0.0, |effort| f64::from(effort.energy_j));
+        [f64::from(member.evaluation.centre_y_m), energy_j / 1000.0]
+    });
+    let points: Vec<[f64; 2]> = points.collect();
+    let range = |of: usize, least| around(points.iter().map(move |point| point[of]), least);
+    let chart = Chart {
+        name: String::new(),
+        x: Axis::new("Place at the end, y", "m", range(0, 2.0).unwrap_or(0.0..=1.0)),
+        y: Axis::new("Energy", "kJ", range(1, 0.01).unwrap_or(0.0..=1.0)),
+        series: vec![Series::new("beaten by nobody", Role::First, Shape::Line(points))],
+        marks: Vec::new(),
+    };
+    Figure::of("Distance and energy", chart)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::evolution::explored_run;
+
+    #[test]
+    fn every_elite_and_every_member_has_its_row_in_the_table() {
+        let run = explored_run();
+        let exploration = run.exploration().expect("explored");
+        let of_archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
+        assert_eq!(archive(of_archive, " m").table().len(), 1 + of_archive.elites().len());
+        let table = front(&exploration.front).table();
+        assert_eq!(table.len(), 1 + exploration.front.members().len());
+        assert_eq!(table[0], ["Place at the end, y (m)", "beaten by nobody (kJ)"]);
+    }
+}

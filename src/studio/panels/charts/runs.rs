@@ -1,0 +1,136 @@
+//! Two runs over each other: this one and others of the folder of saves.
+
+use bevy_egui::egui;
+
+use super::fitness::what;
+use super::view::{Hit, Target, View};
+use crate::evolve::RunPlan;
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use crate::run::Statistics;
+use crate::save::StatisticsRecord;
+use crate::studio::command::Command;
+use crate::studio::evolution::{Evolution, MOST_COMPARED};
+use crate::studio::look;
+use crate::studio::panels::axes::around;
+use crate::studio::panels::explain;
+
+/// The colours of the other runs, in the order in which they were chosen.
+const ROLES: [Role; MOST_COMPARED] = [Role::Second, Role::Third, Role::Others];
+
+/// A run's lines.
+struct Curves {
+    name: String,
+    role: Role,
+    /// Generation, best, median.
+    points: Vec<[f64; 3]>,
+}
+
+/// The chart of this run and those that are compared with it.
+pub(super) fn view(run: &Evolution) -> View {
+    let fitness = run.settings().trial.fitness;
+    let unit = fitness.unit();
+    let own = run.reports().iter().filter_map(|report| {
+        let Statistics { best, median, .. } = report.statistics?;
+        Some([f64::from(report.generation), best, median])
+    });
+    let name = format!("this run ({}, seed {})", run.preset(), run.seed());
+    let mut curves = vec![Curves { name, role: Role::First, points: own.collect() }];
+    let mut rewards_differ = false;
+    for (compared, role) in run.others().compared().iter().zip(ROLES) {
+        let Some(Ok(other)) = &compared.read else { continue };
+        rewards_differ |= other.plan.settings.trial.fitness != fitness;
+        let points = other.records.iter().filter_map(|record| {
+            let StatisticsRecord { best, median, .. } = record.statistics?;
+            Some([f64::from(record.generation), best, median])
+        });
+        let mut name = title(&other.plan);
+        if curves.iter().any(|known| known.name == name) {
+            // The same preset and seed with other settings.
+            name = format!("{name}, {}", compared.folder.file_name().unwrap_or_default().display());
+        }
+        curves.push(Curves { name, role, points: points.collect() });
+    }
+    let values =
+        curves.iter().flat_map(|of| &of.points).flat_map(|&[_, best, median]| [best, median]);
+    let y = around(values, 1.0).unwrap_or(0.0..=1.0);
+    let last = curves.iter().flat_map(|of| &of.points).map(|point| point[0]).fold(2.0, f64::max);
+    let aside = (last - 1.0) * 0.04;
+    let line = |of: &Curves, value: usize| -> Vec<[f64; 2]> {
+        of.points.iter().map(|point| [point[0], point[value]]).collect()
+    };
+    let series = curves.iter().flat_map(|of| {
+        let median =
+            Series::new(&format!("{}: median", of.name), of.role, Shape::Dashed(line(of, 2)));
+        let best = Series::new(&format!("{}: best", of.name), of.role, Shape::Line(line(of, 1)));
+        [median, best]
+    });
+    let hit = |of: &Curves, &[generation, best, median]: &[f64; 3]| {
+        let words = format!(
+            "{}\nGeneration {generation:.0}\nbest {best:.2}{unit}\nmedian {median:.2}{unit}",
+            of.name
+        );
+        Hit::new(Target::Point([generation, best]), words)
+    };
+    let hits = curves.iter().flat_map(|of| of.points.iter().map(move |point| hit(of, point)));
+    let hits = hits.collect();
+    let chart = Chart {
+        name: String::new(),
+        x: Axis::new("Generation", "", 1.0 - aside..=last + aside),
+        y: Axis::new(what(fitness), unit.trim(), y),
+        series: series.collect(),
+        marks: Vec::new(),
+    };
+    let note = if rewards_differ {
+        "Not all of them reward the same: their heights cannot be compared."
+    } else {
+        ""
+    };
+    let note = note.to_owned();
+    View::new(Figure { note, ..Figure::of("Runs over each other", chart) }, vec![hits])
+}
+
+fn title(plan: &RunPlan) -> String {
+    format!("{}, seed {}, {}", plan.preset, plan.seed, plan.settings.evolution.strategy)
+}
+
+/// The list of runs to choose from, and what is wrong with those that cannot be read.
+pub(super) fn choice(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+    let others = run.others();
+    for compared in others.compared() {
+        let name = compared.folder.file_name().unwrap_or_default().display();
+        match &compared.read {
+            None => explain(ui, &format!("Reading {name} ...")),
+            Some(Err(problem)) => {
+                ui.colored_label(look::of(ui).problem, format!("Not shown: {problem}"));
+            }
+            Some(Ok(other)) if other.records.is_empty() => {
+                explain(ui, &format!("{name} has no finished generation."));
+            }
+            Some(Ok(_)) => {}
+        }
+    }
+    let Some(runs) = others.runs() else { return explain(ui, "Looking for other runs ...") };
+    let mut choices = runs.iter().filter(|other| other.folder != run.folder()).peekable();
+    if choices.peek().is_none() {
+        return explain(ui, "There is no other run in the folder of saves yet.");
+    }
+    ui.horizontal(|ui| {
+        ui.label(format!("Lay over this run, up to {MOST_COMPARED}:"));
+        if ui.small_button("Look again").on_hover_text("Look for new runs").clicked() {
+            asked.push(Command::ListRuns);
+        }
+    });
+    egui::ScrollArea::vertical().id_salt("runs").max_height(look::PLOT_HEIGHT).show(ui, |ui| {
+        for other in choices {
+            let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
+            let finished = other.finished;
+            let name = format!("{}, {finished} generations", title(&other.plan));
+            let is_on = is_shown || others.compared().len() < MOST_COMPARED;
+            let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
+            let hint = format!("Show its lines too: {}", other.folder.display());
+            if response.on_hover_text(hint).clicked() {
+                asked.push(Command::Compare(other.folder.clone()));
+            }
+        }
+    });
+}

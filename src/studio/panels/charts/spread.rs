@@ -1,0 +1,165 @@
+//! How the fitness of the latest generation is spread: a bar for each range, to click and replay its best.
+
+use std::ops::RangeInclusive;
+
+use super::fitness::what;
+use super::view::{Hit, Target, View};
+use crate::evolve::{Place, Settings};
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use crate::run::Generation;
+use crate::score::Evaluation;
+use crate::studio::casting::Pick;
+use crate::studio::panels::axes::{around, number, step};
+use crate::world::Disqualification;
+
+/// Between so many bars the number is chosen, by how many snakes there are.
+const BARS: RangeInclusive<f64> = 6.0..=30.0;
+
+/// Those of a generation whose fitness is in a range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bin {
+    /// From there.
+    from: f64,
+    /// To there; only of the last bin it is within it.
+    to: f64,
+    count: u32,
+    /// The index of the best of them, and its fitness.
+    best: (u32, f32),
+}
+
+/// The chart of a generation.
+pub(super) fn view(settings: &Settings, generation: &Generation) -> View {
+    let unit = settings.trial.fitness.unit();
+    let bins = bins(&generation.evaluations);
+    let number_of = generation.number;
+    let bars = bins.iter().map(|bin| [(bin.from + bin.to) / 2.0, f64::from(bin.count)]);
+    let width = bins.first().map_or(1.0, |bin| bin.to - bin.from);
+    let bars = Shape::Bars { width, bars: bars.collect() };
+    let most = bins.iter().map(|bin| bin.count).max().unwrap_or(0);
+    let ends = bins.iter().flat_map(|bin| [bin.from, bin.to]);
+    let top = f64::from(most.max(1)) * 1.06;
+    let chart = Chart {
+        name: String::new(),
+        x: Axis::new(
+            what(settings.trial.fitness),
+            unit.trim(),
+            around(ends, 1.0).unwrap_or(0.0..=1.0),
+        ),
+        y: Axis::new("Snakes", "", 0.0..=top),
+        series: vec![Series::new("snakes", Role::First, bars)],
+        marks: Vec::new(),
+    };
+    let hits = bins.iter().map(|bin| {
+        let Bin { from, to, count, best: (individual, fitness) } = *bin;
+        let range = format!("from {} to {}{unit}", number(from), number(to));
+        let snakes = if count == 1 { "snake" } else { "snakes" };
+        let words = format!(
+            "{count} {snakes} {range}\nThe best of them: snake {}, {fitness:.2}{unit}",
+            individual + 1
+        );
+        let place = Place { generation: number_of, individual };
+        Hit::of(Target::Area([from, to, 0.0, top]), words, Pick::Individual(place), place)
+    });
+    let hits = hits.collect();
+    let title = format!("Fitness within generation {number_of}");
+    let note = disqualified(&generation.evaluations);
+    View::new(Figure { note, ..Figure::of(&title, chart) }, vec![hits])
+}
+
+/// Sorts the healthy ones into ranges of equal, round width; ranges in which nobody is are left out.
+fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
+    let healthy: Vec<(u32, f32)> = (0..)
+        .zip(evaluations)
+        .filter(|(_, evaluation)| evaluation.disqualified.is_none())
+        .map(|(index, evaluation)| (index, evaluation.fitness))
+        .collect();
+    let least = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MAX, f32::min);
+    let most = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MIN, f32::max);
+    let wanted = (healthy.len() as f64).sqrt().clamp(*BARS.start(), *BARS.end());
+    // A step divides a range into about six parts.
+    let width = step((f64::from(most) - f64::from(least)).max(1.0e-3) * 6.0 / wanted);
+    let place = |fitness: f32| libm::floor(f64::from(fitness) / width);
+    let mut bins: Vec<Bin> = Vec::new();
+    let mut sorted = healthy;
+    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
+    for (individual, fitness) in sorted {
+        let from = place(fitness) * width;
+        match bins.last_mut() {
+            Some(bin) if bin.from == from => {
+                bin.count += 1;
+                // Of equals the first is the best, as everywhere.
+                if fitness > bin.best.1 {
+                    bin.best = (individual, fitness);
+                }
+            }
+            _ => bins.push(Bin { from, to: from + width, count: 1, best: (individual, fitness) }),
+        }
+    }
+    bins
+}
+
+/// How many were disqualified, and why.
+fn disqualified(evaluations: &[Evaluation]) -> String {
+    use Disqualification as D;
+    let all = [D::NotFinite, D::JointBroke, D::TooFast, D::LeftArena, D::Crashed];
+    let count = |reason: D| evaluations.iter().filter(|of| of.disqualified == Some(reason)).count();
+    let reasons: Vec<String> = (all.into_iter())
+        .filter(|reason| count(*reason) > 0)
+        .map(|reason| format!("{} because {}", count(reason), reason.words()))
+        .collect();
+    let number: usize = all.into_iter().map(count).sum();
+    if number == 0 {
+        return format!("None of {} was disqualified.", evaluations.len());
+    }
+    format!("{number} of {} were disqualified: {}.", evaluations.len(), reasons.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn evaluation(fitness: f32, disqualified: Option<Disqualification>) -> Evaluation {
+        Evaluation {
+            fitness,
+            centre_y_m: fitness,
+            disqualified,
+            trace_hash: 0,
+            steps: 1,
+            effort: None,
+            behaviour: None,
+        }
+    }
+
+    #[test]
+    fn bars_count_everybody_healthy_once_and_know_their_best() {
+        let values = [-7.2, -7.1, -7.15, -6.0, -3.5, -3.6, 1.9];
+        let mut evaluations: Vec<Evaluation> =
+            values.iter().map(|value| evaluation(*value, None)).collect();
+        evaluations.push(evaluation(99.0, Some(Disqualification::TooFast)));
+        let bins = bins(&evaluations);
+        assert_eq!(bins.iter().map(|bin| bin.count).sum::<u32>(), 7);
+        for bin in &bins {
+            let within = |value: &&f32| (bin.from..bin.to).contains(&f64::from(**value));
+            assert_eq!(values.iter().filter(within).count() as u32, bin.count, "{bin:?}");
+            let best = values.iter().filter(within).copied().fold(f32::MIN, f32::max);
+            assert_eq!((values[bin.best.0 as usize], bin.best.1), (best, best));
+        }
+        assert!(bins.len() > 2);
+        assert_eq!(super::bins(&evaluations[7..]), []);
+        assert_eq!(super::bins(&[evaluation(2.0, None), evaluation(2.0, None)])[0].best, (0, 2.0));
+    }
+
+    #[test]
+    fn the_disqualified_are_counted_by_reason() {
+        let evaluations = [
+            evaluation(1.0, None),
+            evaluation(1.0, Some(Disqualification::TooFast)),
+            evaluation(1.0, Some(Disqualification::JointBroke)),
+            evaluation(1.0, Some(Disqualification::TooFast)),
+        ];
+        let words = disqualified(&evaluations);
+        assert!(words.starts_with("3 of 4 were disqualified: 1 because a joint"), "{words}");
+        assert!(words.ends_with("2 because it outran the speed limit."), "{words}");
+        assert_eq!(disqualified(&evaluations[..1]), "None of 1 was disqualified.");
+    }
+}

@@ -1,0 +1,175 @@
+//! The panel as a person uses it: choose, point, click, write.
+
+use super::*;
+use crate::studio::casting::Pick;
+use crate::studio::evolution::{compared_run, explored_run, prepared_run};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+/// What a person sees and sends who has a chart on show in a panel of this width.
+fn with<T>(
+    run: &Evolution,
+    kind: Kind,
+    width: f32,
+    act: impl FnOnce(&mut Harness<'_, Vec<Command>>) -> T,
+) -> (T, Vec<Command>) {
+    let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(width, 700.0))
+        .build_ui_state(|ui, asked| panel.ui(ui, run, None, asked), Vec::new());
+    harness.run();
+    // What it looks for by itself.
+    harness.state_mut().clear();
+    let seen = act(&mut harness);
+    harness.run();
+    let sent = harness.state().clone();
+    (seen, sent)
+}
+
+#[test]
+fn a_chart_is_chosen_by_its_name() {
+    let ((), sent) = with(&explored_run(), Kind::Fitness, 600.0, |harness| {
+        assert!(harness.query_by_label("Fitness by generation").is_some());
+        for (kind, title) in
+            [(Kind::Family, "Ancestors of the best"), (Kind::Runs, "Runs over each other")]
+        {
+            harness.get_by_label(kind.words().0).click();
+            harness.run();
+            assert!(harness.query_all_by_label(title).next().is_some(), "{title}");
+        }
+    });
+    assert_eq!(sent, [Command::ListRuns], "other runs are looked for once");
+}
+
+fn click(harness: &mut Harness<'_, Vec<Command>>, at: egui::Pos2) {
+    harness.drag_at(at);
+    harness.run();
+    harness.drop_at(at);
+    harness.run();
+}
+
+#[test]
+fn before_the_first_generation_every_chart_says_what_will_appear() {
+    let run = prepared_run();
+    for kind in Kind::ALL {
+        let ((), sent) = with(&run, kind, look::PANEL_WIDTH, |harness| {
+            let says = ["will appear here", "None is open", "MAP-Elites keeps one"];
+            let is_said =
+                says.iter().any(|text| harness.query_all_by_label_contains(text).next().is_some());
+            assert!(is_said, "{kind:?}");
+            assert!(harness.query_by_label("PNG").is_none(), "{kind:?}: nothing to write");
+        });
+        assert_eq!(sent, [], "{kind:?}");
+    }
+}
+
+#[test]
+fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_written() {
+    let run = explored_run();
+    for width in [300.0, 900.0] {
+        for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Methods) {
+            let ((), sent) = with(&run, kind, width, |harness| {
+                // The torques of waves are worked out on a thread.
+                for _ in 0..3000 {
+                    if harness.query_by_label("CSV").is_some() {
+                        break;
+                    }
+                    harness.run();
+                }
+                harness.get_by_label("CSV").click();
+                harness.run();
+            });
+            let [Command::Export(Export { figure, name, format })] = &sent[..] else {
+                panic!("{kind:?}: {sent:?}")
+            };
+            assert_eq!((*name, *format), (kind.file_name(), Format::Csv));
+            assert!(figure.table().len() > 1, "{kind:?} has rows");
+        }
+    }
+}
+
+#[test]
+fn a_click_on_a_generation_a_bar_an_ancestor_and_a_parent_replays_them() {
+    let run = explored_run();
+    for kind in [Kind::Fitness, Kind::Spread, Kind::Family, Kind::Parents] {
+        let view = view_of(kind, &run).expect("explored");
+        let chart = &view.figure.charts[0];
+        let hit = view.hits[0].last().expect("somebody").clone();
+        let at = match hit.target {
+            view::Target::Point(point) | view::Target::Column(point) => point,
+            view::Target::Area([left, right, ..]) => [(left + right) / 2.0, 0.5],
+        };
+        let (words, sent) = with(&run, kind, 600.0, |harness| {
+            let area = harness.get_by_label(&format!("Chart: {}", view.figure.title)).rect();
+            let place = draw::place_in(area, chart, at);
+            click(harness, place);
+            harness.hover_at(place + egui::vec2(0.5, 0.5));
+            harness.run();
+            let first = hit.words.lines().next().expect("words").to_owned();
+            harness.query_all_by_label_contains(&first).next().is_some()
+        });
+        assert_eq!(sent, [Command::Show(hit.pick.expect("somebody"))], "{kind:?}");
+        assert!(words, "{kind:?} is read out: {}", hit.words);
+    }
+}
+
+#[test]
+fn another_run_has_its_lines_and_a_damaged_one_is_named_with_what_is_wrong() {
+    let saves = tempfile::tempdir().expect("a folder");
+    let run = compared_run(saves.path(), false);
+    let view = view_of(Kind::Runs, &run).expect("there");
+    let names: Vec<&str> = view.figure.listed().iter().map(|series| &*series.name).collect();
+    let expected = [
+        "this run (test, seed 1): median",
+        "this run (test, seed 1): best",
+        "other, seed 7, halving: median",
+        "other, seed 7, halving: best",
+    ];
+    assert_eq!(names, expected);
+    assert_eq!(view.figure.table().len(), 1 + 2, "two generations of both");
+    assert_eq!(view.hits[0].len(), 4);
+
+    let saves = tempfile::tempdir().expect("a folder");
+    let run = compared_run(saves.path(), true);
+    with(&run, Kind::Runs, 400.0, |harness| {
+        assert!(harness.query_by_label_contains("log.jsonl: damaged").is_some());
+    });
+}
+
+#[test]
+fn the_torques_are_those_of_who_is_on_the_stage_and_its_parent() {
+    let run = explored_run();
+    let latest = run.exploration().expect("explored").generation.clone().expect("this session's");
+    let child = (0..).zip(&latest.parents).find(|(_, parents)| parents.places().next().is_some());
+    let (individual, parents) = child.expect("somebody has parents");
+    let place = Place { generation: latest.number, individual };
+    let mut torques = Torques::default();
+    torques.follow(&run, Some(place)).expect("known");
+    let trial = &run.settings().trial;
+    let note = loop {
+        if let Some(view) = torques.view(trial) {
+            break view.figure.note.clone();
+        }
+    };
+    let parent = parents.places().next().expect("a parent");
+    let name = |of: Place| format!("snake {} of generation {}", of.individual + 1, of.generation);
+    assert!(note.starts_with(&format!("Lines: {}.", name(place))), "{note}");
+    assert!(run.genome_of(parent).is_none() || note.contains(&name(parent)), "{note}");
+    torques.follow(&run, None).expect("the best");
+    assert!(torques.view(trial).is_none_or(|view| view.figure.note != note));
+}
+
+#[test]
+fn who_is_clicked_is_found_again_with_what_it_reached() {
+    let run = explored_run();
+    for kind in [Kind::Spread, Kind::Family, Kind::Parents] {
+        let view = view_of(kind, &run).expect("explored");
+        for hit in view.hits[0].iter().take(12) {
+            let Some(Pick::Individual(place)) = hit.pick else { panic!("{hit:?}") };
+            let champion = run.individual(place).expect("remembered");
+            let fitness = format!("{:.2} m", champion.evaluation.fitness);
+            assert!(hit.words.contains(&fitness), "{kind:?}: {fitness} in {}", hit.words);
+        }
+    }
+    assert!(run.individual(Place { generation: 99, individual: 0 }).is_none());
+}
