@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 
-use super::Frame;
-use super::panels::Layout;
+use super::panels::{Layout, PanelKind};
+use super::{Frame, Opened};
 use crate::save::UI_SCALES;
 
 /// Something that lies over the window until it is left.
@@ -86,15 +86,19 @@ impl Desk {
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<Desk>().add_systems(Update, open_tour.in_set(Frame::TakeIn));
+    app.init_resource::<Desk>().add_systems(Update, open_first.in_set(Frame::TakeIn));
 }
 
-/// Whoever opens the window for the first time is shown around.
-fn open_tour(mut desk: ResMut<Desk>, mut has_asked: Local<bool>) {
-    if !*has_asked && !desk.tour_is_over {
+/// Whoever opens the window for the first time is shown around; whoever opens it with a comparison came for that.
+fn open_first(mut desk: ResMut<Desk>, opened: Res<Opened>, mut is_done: Local<bool>) {
+    if std::mem::replace(&mut *is_done, true) {
+        return;
+    }
+    if opened.0.is_some() {
+        desk.layout.open(PanelKind::Charts);
+    } else if !desk.tour_is_over {
         desk.over = Some(Over::Tour(0));
     }
-    *has_asked = true;
 }
 
 #[cfg(test)]

@@ -123,8 +123,6 @@ pub const TAG_SIZE: f32 = 13.0;
 pub const CHART_HEIGHT: f32 = 170.0;
 /// Height of the chart in the lowest window, in points.
 pub const LEAST_CHART_HEIGHT: f32 = 80.0;
-/// Height of what stands over the chart, in points; chart and champions share the rest.
-pub const WITHOUT_CHART: f32 = 420.0;
 /// Height of the chart of distance and energy, and of learning curves, in points.
 pub const PLOT_HEIGHT: f32 = 150.0;
 /// Height of what stands over and under a chart in its panel, in points.
@@ -138,6 +136,7 @@ pub const MULTIPLE_HEIGHT: f32 = 120.0;
 /// Width of a sample in a legend, in points.
 pub const SAMPLE_WIDTH: f32 = 20.0;
 /// Height of a map, in points.
+#[cfg(test)]
 pub const MAP_HEIGHT: f32 = 190.0;
 /// Least width of the numbers at the left of a chart, in points.
 pub const AXIS_WIDTH: f32 = 24.0;

@@ -63,6 +63,8 @@ pub(in crate::studio) struct Layout {
     state: DockState<PanelKind>,
     /// Whether the panels shall be where they are at first, as soon as the window's size is known.
     is_to_be_laid_out: bool,
+    /// The panel to be brought to the front then.
+    first: Option<PanelKind>,
 }
 
 /// A window that is as wide has room for panels on both sides of the stage, in points.
@@ -74,7 +76,7 @@ const RIGHT: f32 = 420.0;
 
 impl Default for Layout {
     fn default() -> Self {
-        Self { state: DockState::new(vec![PanelKind::Stage]), is_to_be_laid_out: true }
+        Self { state: DockState::new(vec![PanelKind::Stage]), is_to_be_laid_out: true, first: None }
     }
 }
 
@@ -109,6 +111,7 @@ impl Layout {
         if self.is_to_be_laid_out {
             self.state = Self::at_first(size);
             self.is_to_be_laid_out = false;
+            self.first.take().into_iter().for_each(|kind| self.open(kind));
         }
         // The stage alone needs no tab to choose it by; with company it does.
         for (_, leaf) in self.state.iter_leaves_mut() {
@@ -125,7 +128,7 @@ impl Layout {
     /// Brings a panel to the front, back to where panels are if it was closed.
     pub fn open(&mut self, kind: PanelKind) {
         if self.is_to_be_laid_out {
-            // It is one of those that will be there.
+            self.first = Some(kind);
             return;
         }
         if !self.has(kind) {
@@ -189,7 +192,11 @@ impl Layout {
     /// The panels where a text says; where they are at first, if it does not make sense.
     pub fn from_text(text: &str) -> Self {
         let read = ron::from_str::<DockState<PanelKind>>(text).ok().filter(is_sound);
-        read.map_or_else(Self::default, |state| Self { state, is_to_be_laid_out: false })
+        read.map_or_else(Self::default, |state| Self {
+            state,
+            is_to_be_laid_out: false,
+            first: None,
+        })
     }
 }
 
@@ -278,6 +285,16 @@ mod tests {
             assert!(layout.has(kind));
         }
         assert!(is_sound(&layout.state));
+    }
+
+    #[test]
+    fn a_panel_asked_for_before_the_window_has_a_size_is_in_front_then() {
+        let mut layout = Layout::default();
+        layout.open(PanelKind::Charts);
+        layout.state_in(egui::vec2(1280.0, 720.0));
+        let path = layout.state.find_tab(&PanelKind::Charts).expect("there");
+        let leaf = layout.state.leaf(path.node_path()).expect("a leaf");
+        assert_eq!(leaf.active, path.tab);
     }
 
     #[test]

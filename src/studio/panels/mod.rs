@@ -7,10 +7,9 @@ mod archive_map;
 mod axes;
 mod board;
 mod champions;
-mod chart;
+mod charts;
 mod curves;
 mod evolution;
-mod explore;
 mod front_plot;
 mod icons;
 mod key_overlay;
@@ -54,9 +53,8 @@ use crate::evolve::Origin;
 
 use board::board;
 use champions::{ChampionsPanel, Shown};
-use chart::ChartPanel;
+use charts::{ChartsPanel, FitnessChart};
 use evolution::EvolutionPanel;
-use explore::ExplorePanel;
 use key_overlay::key_overlay;
 use layout::style;
 use lessons::lessons;
@@ -88,9 +86,9 @@ struct OnStage<'w, 's> {
 #[derive(Resource)]
 struct Panels {
     evolution: EvolutionPanel,
-    chart: ChartPanel,
+    fitness: FitnessChart,
+    charts: ChartsPanel,
     champions: ChampionsPanel,
-    explore: ExplorePanel,
     world: WorldPanel,
     timeline: TimelinePanel,
     palette: Palette,
@@ -104,9 +102,9 @@ impl FromWorld for Panels {
         let comparison = world.get_resource::<Opened>().and_then(|opened| opened.0.as_ref());
         Self {
             evolution: EvolutionPanel::default(),
-            chart: ChartPanel,
+            fitness: FitnessChart::default(),
+            charts: ChartsPanel::new(comparison),
             champions: ChampionsPanel,
-            explore: ExplorePanel::new(comparison),
             world: WorldPanel::default(),
             timeline: TimelinePanel::default(),
             palette: Palette::default(),
@@ -279,12 +277,12 @@ impl Viewer<'_, '_, '_> {
         let (panels, asked) = (&mut *self.panels, &mut *self.asked);
         match kind {
             PanelKind::Stage => {}
-            PanelKind::Run => panels.evolution.ui(ui, evolution, asked),
-            PanelKind::World => panels.world.ui(ui, evolution, &self.seen.on_stage.history, asked),
-            PanelKind::Charts => {
-                panels.chart.ui(ui, evolution.settings(), evolution.reports());
-                panels.explore.ui(ui, evolution, shown.first().copied(), asked);
+            PanelKind::Run => {
+                panels.evolution.ui(ui, evolution, asked);
+                panels.fitness.ui(ui, evolution, look::CHART_HEIGHT, shown.first().copied(), asked);
             }
+            PanelKind::World => panels.world.ui(ui, evolution, &self.seen.on_stage.history, asked),
+            PanelKind::Charts => panels.charts.ui(ui, evolution, shown.first().copied(), asked),
             PanelKind::Champions => {
                 let reports = evolution.reports();
                 let leaders = |generation| evolution.leaders(generation).len();
