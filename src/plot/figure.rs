@@ -16,6 +16,8 @@ pub struct Figure {
     pub note: String,
     /// The charts, in reading order.
     pub charts: Vec<Chart>,
+    /// Its table, where that is of other numbers than those that are drawn; the first record is the head.
+    pub numbers: Option<Vec<Vec<String>>>,
 }
 
 /// What is drawn within one pair of axes.
@@ -180,7 +182,12 @@ impl Shape {
 impl Figure {
     /// A figure of one chart.
     pub fn of(title: &str, chart: Chart) -> Self {
-        Self { title: title.to_owned(), note: String::new(), charts: vec![chart] }
+        Self::of_several(title, vec![chart])
+    }
+
+    /// A figure of several charts.
+    pub fn of_several(title: &str, charts: Vec<Chart>) -> Self {
+        Self { title: title.to_owned(), note: String::new(), charts, numbers: None }
     }
 
     /// Whether there is nothing in it to draw.
@@ -207,6 +214,9 @@ impl Figure {
     /// The figure as a table, its first record the head: a column for each series, with its unit. Of several charts
     /// the first column names the chart.
     pub fn table(&self) -> Vec<Vec<String>> {
+        if let Some(numbers) = &self.numbers {
+            return numbers.clone();
+        }
         let are_several = self.charts.len() > 1;
         let mut heads: Vec<String> = Vec::new();
         let mut rows: Vec<Vec<(usize, String)>> = Vec::new();
@@ -314,7 +324,7 @@ mod tests {
             ),
             chart("joint 2", vec![line("best", &[[1.0, 8.0]])]),
         ];
-        let table = Figure { title: String::new(), note: String::new(), charts }.table();
+        let table = Figure::of_several("", charts).table();
         let expected = [
             ["chart", "Generation", "others (m)", "best (m)"],
             ["joint 1", "1", "5", "9"],

@@ -306,7 +306,7 @@ mod tests {
             .into();
         charts[0].x.names = vec![(1.0, "density (kg/m³)".to_owned())];
         let figure =
-            Figure { title: "Torques".to_owned(), note: "Lines and dashes".to_owned(), charts };
+            Figure { note: "Lines and dashes".to_owned(), ..Figure::of_several("Torques", charts) };
         let picture = super::figure(&figure).expect("drawn");
         for role in [Role::First, Role::Second, Role::Third, Role::Twist] {
             assert!(pixels(&picture, role) > 300, "{role:?}");
@@ -315,8 +315,7 @@ mod tests {
 
     #[test]
     fn an_empty_figure_is_a_picture_too() {
-        let figure =
-            Figure { title: "Nothing".to_owned(), note: String::new(), charts: Vec::new() };
+        let figure = Figure::of_several("Nothing", Vec::new());
         assert!(super::figure(&figure).is_ok());
     }
 

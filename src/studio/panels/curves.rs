@@ -123,7 +123,8 @@ impl CurvesPanel {
             series,
             marks: Vec::new(),
         };
-        Figure::of(&format!("Comparison of methods, {}", self.controller), chart)
+        let note = format!("{}. Lines: median of the seeds.", self.about);
+        Figure { note, ..Figure::of(&format!("Methods, {}", self.controller), chart) }
     }
 
     /// Draws the panel, its curves so many points high.

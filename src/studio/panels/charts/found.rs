@@ -1,6 +1,6 @@
 //! The archive and the front as data, to be written as files; they are drawn by panels of their own.
 
-use crate::evolve::{Archive, Descriptor, Front};
+use crate::evolve::{Archive, Descriptor, Elite, Front};
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::studio::panels::axes::around;
 
@@ -28,7 +28,33 @@ pub(super) fn archive(archive: &Archive, unit: &str) -> Figure {
         series: vec![Series::new(&name, Role::Share(0.5), Shape::Cells(cells.collect()))],
         marks: Vec::new(),
     };
-    Figure::of("The best of every kind", chart)
+    let figure = Figure::of("The best of every kind", chart);
+    Figure { numbers: Some(rows(archive, unit)), ..figure }
+}
+
+/// A row for each elite: its cell, its fitness, and who it is.
+fn rows(archive: &Archive, unit: &str) -> Vec<Vec<String>> {
+    let [x, y] = [archive.x, archive.y].map(Descriptor::label);
+    let fitness =
+        if unit.is_empty() { "fitness".to_owned() } else { format!("fitness ({})", unit.trim()) };
+    let ends = [format!("{x}, from"), format!("{x}, to"), format!("{y}, from"), format!("{y}, to")];
+    let head = ends.into_iter().chain([fitness, "generation".to_owned(), "snake".to_owned()]);
+    let end = |descriptor: Descriptor, place: u32| {
+        descriptor.at_share(f64::from(place) / f64::from(archive.cells)).to_string()
+    };
+    let row = |(cell, elite): (u32, &Elite)| {
+        let (column, row) = (cell % archive.cells, cell / archive.cells);
+        vec![
+            end(archive.x, column),
+            end(archive.x, column + 1),
+            end(archive.y, row),
+            end(archive.y, row + 1),
+            elite.fitness.to_string(),
+            elite.generation.to_string(),
+            (elite.individual + 1).to_string(),
+        ]
+    };
+    [head.collect()].into_iter().chain(archive.elites().map(row)).collect()
 }
 
 /// The front of distance and energy.
@@ -59,7 +85,10 @@ mod tests {
         let run = explored_run();
         let exploration = run.exploration().expect("explored");
         let of_archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
-        assert_eq!(archive(of_archive, " m").table().len(), 1 + of_archive.elites().len());
+        let table = archive(of_archive, " m").table();
+        assert_eq!(table.len(), 1 + of_archive.elites().len());
+        let (_, first) = of_archive.elites().next().expect("an elite");
+        assert_eq!((&*table[0][4], &table[1][4]), ("fitness (m)", &first.fitness.to_string()));
         let table = front(&exploration.front).table();
         assert_eq!(table.len(), 1 + exploration.front.members().len());
         assert_eq!(table[0], ["Place at the end, y (m)", "beaten by nobody (kJ)"]);

@@ -31,6 +31,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     let mut names = Vec::new();
     let mut series = Vec::new();
     let mut hits = Vec::new();
+    let mut values: Vec<Vec<f32>> = Vec::new();
     for (parent, genome, children) in known {
         let features = settings.genome.features(genome);
         let at = parent.place;
@@ -54,6 +55,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
             );
             hits.push(Hit::of(Target::Point(*point), words, Pick::Individual(at), at));
         }
+        values.push(features.iter().map(|feature| feature.value).collect());
         if names.is_empty() {
             let name = |feature: &crate::genome::Feature| match feature.unit {
                 "" => feature.name.clone(),
@@ -71,7 +73,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     }
     let last = (names.len() - 1) as f64;
     let aside = (last * 0.03).max(0.3);
-    let x = Axis { names, ..Axis::new("what can differ", "", -aside..=last + aside) };
+    let x = Axis { names, ..Axis::new("Value", "", -aside..=last + aside) };
     let y = Axis::new("Place in its range, 0 least and 1 greatest", "", -0.05..=1.05);
     let chart = Chart { name: String::new(), x, y, series, marks: Vec::new() };
     let left_out = match surplus {
@@ -80,14 +82,27 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     };
     let note = if least < most {
         format!(
-            "A line is a parent; the brighter, the fitter: from {least:.2} to {most:.2}{unit}.{left_out} \
-             Point at a value to read it."
+            "A line is a parent; the brighter, the fitter: from {least:.2} to {most:.2}{unit}.{left_out}"
         )
     } else {
-        format!("A line is a parent.{left_out} Point at a value to read it.")
+        format!("A line is a parent.{left_out}")
     };
-    let figure = Figure { note, ..Figure::of("The parents' values", chart) };
+    // Whoever takes the numbers away wants the values, not their places.
+    let numbers = Some(columns(&chart, &values));
+    let figure = Figure { note, numbers, ..Figure::of("The parents' values", chart) };
     Some(View::new(figure, vec![hits]))
+}
+
+/// A row for each value with its unit, a column for each parent.
+fn columns(chart: &Chart, values: &[Vec<f32>]) -> Vec<Vec<String>> {
+    let parents = chart.series.iter().map(|series| series.name.clone());
+    let head = [chart.x.name.clone()].into_iter().chain(parents).collect();
+    let row = |(index, (_, name)): (usize, &(f64, String))| {
+        let of_parents =
+            values.iter().map(|of| of.get(index).map_or(String::new(), f32::to_string));
+        [name.clone()].into_iter().chain(of_parents).collect()
+    };
+    [head].into_iter().chain(chart.x.names.iter().enumerate().map(row)).collect()
 }
 
 #[cfg(test)]
@@ -116,6 +131,12 @@ mod tests {
         let table = view.figure.table();
         assert_eq!((table.len(), table[0].len()), (1 + dimension, 1 + parents.len()));
         assert_eq!(table[3][0], "density (kg/m³)");
+        let best = parents.iter().max_by(|(a, _), (b, _)| {
+            let fitness = |of: &Ancestor| of.fitness.unwrap_or(f32::MIN);
+            fitness(a).total_cmp(&fitness(b))
+        });
+        let genome = best.expect("somebody").0.genome.as_ref().expect("known");
+        assert_eq!(table[3].last(), Some(&genome.density_kg_m3.to_string()), "the value itself");
         let nobody: Vec<_> = parents
             .iter()
             .map(|(parent, children)| {

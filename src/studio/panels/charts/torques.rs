@@ -203,10 +203,10 @@ fn figure(child: &Subject, parent: Option<&Subject>, trial: &Trial) -> View {
         }
         None => format!("Lines: {}. No parent of it is known.", name(child.place)),
     };
-    let title = "Torques, child and parent".to_owned();
+    let figure = Figure::of_several("Torques, child and parent", charts);
     let hits = of_child.iter().enumerate().map(|(index, lines)| hits(lines, of_parent.get(index)));
     let hits = hits.collect();
-    View::new(Figure { title, note, charts }, hits)
+    View::new(Figure { note, ..figure }, hits)
 }
 
 /// What there is to read of a joint's torques, moment by moment.
