@@ -1,7 +1,9 @@
-//! What a step and an evaluation cost. Compare with `cargo bench -- --save-baseline before` and
+//! What a step and an evaluation cost, and what listing a large folder of saves does. Compare with `cargo bench -- --save-baseline before` and
 //! `cargo bench -- --baseline before`; `snakes bench` gives the ratio to bare rapier.
 
 #![expect(clippy::expect_used, reason = "a benchmark that cannot begin has nothing to say")]
+
+mod library;
 
 use std::hint::black_box;
 
@@ -55,5 +57,5 @@ fn seeking(criterion: &mut Criterion) {
     group.bench_function("a whole history", |bencher| bencher.iter(look_through));
 }
 
-criterion_group!(benches, one_step, one_evaluation, seeking);
+criterion_group!(benches, one_step, one_evaluation, seeking, library::listing);
 criterion_main!(benches);

@@ -13,9 +13,9 @@ type Read = Result<(RunPlan, Vec<GenerationRecord>), String>;
 
 /// The log of a run that is on its way.
 #[derive(Debug)]
-pub struct Reading(Mutex<Receiver<Read>>);
+pub struct LogReading(Mutex<Receiver<Read>>);
 
-impl Reading {
+impl LogReading {
     /// Begins to read the log in a run's folder.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ mod tests {
     use std::time::Duration;
 
     fn read(folder: PathBuf) -> Read {
-        let reading = Reading::start(folder).expect("a thread");
+        let reading = LogReading::start(folder).expect("a thread");
         let read = std::iter::repeat_with(|| {
             thread::sleep(Duration::from_millis(2));
             reading.poll()

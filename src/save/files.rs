@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use ron::ser::PrettyConfig;
 use serde::{Deserialize, Serialize};
+use tempfile::{NamedTempFile, PersistError};
 
 use crate::check::Invalid;
 
@@ -209,6 +210,19 @@ impl Header {
 /// Writes a file so that at every instant either the old or the whole new one is there: into a
 /// temporary file beside it, flushed to the disk, then renamed.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
+    write_and(path, contents, |file| file.persist(path))
+}
+
+/// The same for a file that must not be there yet: what has taken its name meanwhile stays.
+pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
+    write_and(path, contents, |file| file.persist_noclobber(path))
+}
+
+fn write_and(
+    path: &Path,
+    contents: &[u8],
+    put: impl FnOnce(NamedTempFile) -> Result<File, PersistError>,
+) -> Result<(), SaveError> {
     let write = || -> std::io::Result<()> {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.unwrap_or(Path::new("."));
@@ -220,7 +234,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
         let mut file = builder.tempfile_in(folder)?;
         file.write_all(contents)?;
         file.as_file().sync_all()?;
-        file.persist(path).map_err(|error| error.error)?;
+        put(file).map_err(|error| error.error)?;
         // The file is there by now; that its name survives a power cut too is up to the platform.
         #[cfg(unix)]
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
@@ -260,7 +274,7 @@ pub fn store_ron(path: &Path, file: &impl Serialize) -> Result<(), SaveError> {
 }
 
 /// How the name of a file begins that is not whole yet.
-const UNFINISHED: &str = ".unfinished-";
+pub const UNFINISHED: &str = ".unfinished-";
 
 /// Removes what a kill left half written in a folder into which nobody else writes.
 pub fn remove_unfinished(folder: &Path) {

@@ -10,7 +10,7 @@ use super::change::read_changes;
 use super::files::{numbered, prepare_folder, refuse_link};
 use super::plan::load_plan;
 use super::record::{count_records, read_records};
-use super::{LoadedChampion, SaveError, load_champion};
+use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
 use crate::ENGINE_VERSION;
 use crate::evolve::{RunPlan, SettingChange, StrategyKind};
 
@@ -90,12 +90,8 @@ impl SavesFolder {
             let finished = count_records(&folder).ok()?;
             let evolution = &plan.settings.evolution;
             let mut is_stopped = finished < evolution.generations;
-            // Restarts make larger generations, which may use the budget up before.
             if is_stopped && finished > 0 && evolution.strategy == StrategyKind::CmaEs {
-                let records = read_records(&folder, &plan).ok()?;
-                let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
-                let next = records.last().map_or(0, |last| u64::from(last.evaluations));
-                is_stopped = spent + next <= plan.budget();
+                is_stopped = goes_on(&plan, &read_records(&folder, &plan).ok()?);
             }
             Some(RunSummary { folder, plan, finished, is_stopped })
         };
@@ -106,6 +102,20 @@ impl SavesFolder {
     pub fn prepare(&self) -> Result<(), SaveError> {
         prepare_folder(&self.0)
     }
+}
+
+/// Whether a run with these generations behind it has evaluations left for another.
+pub fn goes_on(plan: &RunPlan, records: &[GenerationRecord]) -> bool {
+    let evolution = &plan.settings.evolution;
+    if evolution.strategy == StrategyKind::CmaEs && !records.is_empty() {
+        // Restarts make larger generations, which may use the budget up before.
+        let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
+        let next = records.last().map_or(0, |last| u64::from(last.evaluations));
+        if spent + next > plan.budget() {
+            return false;
+        }
+    }
+    (records.len() as u64) < u64::from(evolution.generations)
 }
 
 /// A run that is in a folder of saves.
@@ -174,13 +184,18 @@ pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> 
         let source = std::io::Error::other(missing);
         return Err(SaveError::Unreadable { path: folder.to_owned(), source });
     }
-    let load = |number| {
-        let path = folder.join(champion_file_name(number));
-        refuse_link(&path)
-            .map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
-        Ok((number, load_champion(&path)?))
-    };
+    let load = |number| Ok((number, load_generation(folder, number)?));
     generations.into_iter().map(load).collect()
+}
+
+/// The champion of a generation of a run's folder; the first generation is 1.
+///
+/// # Errors
+/// It has none, or one that is damaged.
+pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion, SaveError> {
+    let path = folder.join(champion_file_name(generation));
+    refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
+    load_champion(&path)
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod checkpoint;
 mod comparison;
 mod files;
 mod folder;
+pub mod library;
 mod lineage;
 mod lock;
 mod log;
@@ -39,7 +40,9 @@ pub use comparison::{
     store_comparison,
 };
 pub use files::SaveError;
-pub use folder::{RunSummary, SavesFolder, fingerprint, load_run, run_name, settings_fingerprint};
+pub use folder::{
+    RunSummary, SavesFolder, fingerprint, load_generation, load_run, run_name, settings_fingerprint,
+};
 pub use lineage::{BornRecord, LineageRecord, MOST_SPREAD, parse_lineage};
 pub use own_preset::{OwnPreset, check_own_name};
 pub use picture::{Picture, store_csv, store_picture, store_text};

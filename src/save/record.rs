@@ -95,7 +95,8 @@ pub fn read_records(folder: &Path, plan: &RunPlan) -> Result<Vec<GenerationRecor
     parse_records(&path, &read_log_bytes(&path)?, plan)
 }
 
-/// What run a folder holds, and its finished generations: its log alone, without champions.
+/// What run a folder holds, with what was changed on its way, and its finished generations: its log alone, without
+/// champions.
 ///
 /// # Errors
 /// There is no run in it, it was recorded by another engine, or something in it is damaged.
@@ -109,7 +110,7 @@ pub fn load_log(folder: &Path) -> Result<(RunPlan, Vec<GenerationRecord>), SaveE
     let path = folder.join(LOG_FILE);
     refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
     let records = read_records(folder, &changed)?;
-    Ok((plan, records))
+    Ok((changed, records))
 }
 
 /// Reads finished generations from the bytes of a log; `path` is what errors call it. The plan is that after all

@@ -305,7 +305,7 @@ impl Progress {
     }
 
     /// Reads what a folder has of a run.
-    fn read(folder: &Path, plan: &RunPlan) -> Result<Self, SaveError> {
+    pub fn read(folder: &Path, plan: &RunPlan) -> Result<Self, SaveError> {
         let changes = read_changes(folder, plan)?;
         let plan_in =
             |generation| in_generation(plan, generation, &changes, || folder.join(CHANGES_FILE));

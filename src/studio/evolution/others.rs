@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::evolve::RunPlan;
-use crate::run::{Listing, Reading};
+use crate::run::{Listing, LogReading};
 use crate::save::{GenerationRecord, RunSummary, SavesFolder};
 
 /// The other runs that are known, and those that are compared with the current one.
@@ -22,7 +22,7 @@ pub(in crate::studio) struct Others {
 pub(in crate::studio) struct Compared {
     /// Its folder.
     pub folder: PathBuf,
-    reading: Option<Reading>,
+    reading: Option<LogReading>,
     /// What was read, once it is there; or what is wrong with it.
     pub read: Option<Result<Other, String>>,
 }
@@ -58,7 +58,7 @@ impl Others {
         if self.compared.len() >= MOST_COMPARED {
             return Err(format!("The chart has room for {MOST_COMPARED} other runs."));
         }
-        let reading = Reading::start(folder.to_owned());
+        let reading = LogReading::start(folder.to_owned());
         let reading = reading.map_err(|error| format!("The run cannot be read: {error}"))?;
         let folder = folder.to_owned();
         self.compared.push(Compared { folder, reading: Some(reading), read: None });
@@ -72,7 +72,7 @@ impl Others {
             self.version += 1;
         }
         for run in &mut self.compared {
-            if let Some(read) = run.reading.as_ref().and_then(Reading::poll) {
+            if let Some(read) = run.reading.as_ref().and_then(LogReading::poll) {
                 run.read = Some(read.map(|(plan, records)| Other { plan, records }));
                 run.reading = None;
                 self.version += 1;

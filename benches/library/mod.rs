@@ -1,0 +1,23 @@
+//! What listing a large folder of saves costs, and reading one entry of it.
+
+use criterion::Criterion;
+use snakes_and_stairs::save::SavesFolder;
+use snakes_and_stairs::save::library::{Place, list, read_entry};
+
+/// Ten thousand files of a few bytes: their contents are not looked at.
+pub fn listing(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a folder");
+    for number in 0..10_000 {
+        let path = folder.path().join(format!("champion {number}.ron"));
+        std::fs::write(path, "()").expect("written");
+    }
+    let saves = SavesFolder::find(Some(folder.path()));
+    let mut group = criterion.benchmark_group("library");
+    group.sample_size(20);
+    group.bench_function("list 10 000", |bencher| {
+        bencher.iter(|| list(&saves).expect("readable"));
+    });
+    group.bench_function("read one", |bencher| {
+        bencher.iter(|| read_entry(&Place::Shipped("climber")).expect("whole"));
+    });
+}

@@ -1,0 +1,17 @@
+//! The champions that are part of the program.
+
+/// Lists champions by the names of their files.
+macro_rules! shipped {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../../saves/", $name, ".ron")))),*]
+    };
+}
+
+/// Their names, and their files' texts.
+pub const SHIPPED: &[(&str, &str)] =
+    shipped!["climber", "fast", "first-climber", "rearer", "robust", "thrifty", "twister"];
+
+/// The text of one of them.
+pub fn shipped_text(name: &str) -> Option<&'static str> {
+    SHIPPED.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}

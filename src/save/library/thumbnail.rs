@@ -1,0 +1,123 @@
+//! A small picture of what a champion does, from the side: as plain numbers, for whoever draws it.
+
+use crate::score::{Recording, Trial};
+use crate::world::{Pose, Vector};
+
+/// What a champion does, seen from the side. All points are y and z, in metres.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Thumbnail {
+    /// The outline of the stairs, from the first riser's foot to the end of the landing.
+    pub stairs_m: Vec<[f32; 2]>,
+    /// The middle limb's way. Empty, if it is not on record.
+    pub way_m: Vec<[f32; 2]>,
+    /// The limbs at the end, head first, with their corners in order. Empty, if they are not on record.
+    pub limbs_m: Vec<[[f32; 2]; 4]>,
+}
+
+/// So many points of the way.
+const WAY_POINTS: usize = 20;
+
+impl Thumbnail {
+    /// That of a champion's trial and what was recorded of it.
+    pub fn new(trial: &Trial, recording: Option<&Recording>) -> Self {
+        let stairs_m = stairs(trial);
+        let Some(recording) = recording else { return Self { stairs_m, ..Self::default() } };
+        let middle = recording.limbs() / 2;
+        let last = recording.frames().len().saturating_sub(1);
+        let mut frames: Vec<usize> = (0..WAY_POINTS).map(|i| i * last / (WAY_POINTS - 1)).collect();
+        frames.dedup();
+        let mut wanted = frames.into_iter().peekable();
+        let mut way_m = Vec::with_capacity(WAY_POINTS);
+        let mut limbs_m = Vec::new();
+        for (index, frame) in recording.frames().enumerate() {
+            if wanted.next_if_eq(&index).is_some() {
+                way_m.extend(frame.get(middle).map(|pose| side(pose.translation)));
+            }
+            if index == last {
+                let limbs = frame.iter().enumerate();
+                limbs_m.extend(limbs.map(|(limb, pose)| quad(pose, trial.agent.limb_size_m(limb))));
+            }
+        }
+        Self { stairs_m, way_m, limbs_m }
+    }
+}
+
+fn stairs(trial: &Trial) -> Vec<[f32; 2]> {
+    let stairs = &trial.stairs;
+    let mut outline = vec![[stairs.first_riser_y_m, 0.0]];
+    for step in stairs.boxes() {
+        let ([_, front_y_m, _], [_, back_y_m, top_z_m]) = (step.min_m, step.max_m);
+        outline.extend([[front_y_m, top_z_m], [back_y_m, top_z_m]]);
+    }
+    outline.push([stairs.end_y_m(), 0.0]);
+    outline
+}
+
+fn side(at_m: Vector) -> [f32; 2] {
+    [at_m.y, at_m.z]
+}
+
+/// A limb from the side: the cut through its middle that shows most of it.
+fn quad(pose: &Pose, [width_m, length_m, height_m]: [f32; 3]) -> [[f32; 2]; 4] {
+    let half = |x, y, z| side(pose.rotation * Vector::new(x, y, z) / 2.0);
+    let across = half(width_m, 0.0, 0.0);
+    let along = half(0.0, length_m, 0.0);
+    let up = half(0.0, 0.0, height_m);
+    let area = |[a, b]: [[f32; 2]; 2]| (a[0] * b[1] - a[1] * b[0]).abs();
+    let cuts = [[along, up], [along, across], [across, up]];
+    let [a, b] = cuts.into_iter().fold(cuts[0], |best, cut| {
+        // Only a clear gain, so that a limb that lies straight is not cut at random.
+        if area(cut) > area(best) * 1.01 { cut } else { best }
+    });
+    let [y, z] = side(pose.translation);
+    [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)]
+        .map(|(of_a, of_b)| [y + of_a * a[0] + of_b * b[0], z + of_a * a[1] + of_b * b[1]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::world::Rotation;
+
+    #[test]
+    fn the_shipped_champions_goes_from_its_start_onto_the_landing() {
+        let loaded = shipped_champion().expect("well formed");
+        let trial = &loaded.champion.trial;
+        let Thumbnail { stairs_m, way_m, limbs_m } =
+            Thumbnail::new(trial, loaded.recording.as_ref());
+        assert_eq!(stairs_m.len(), 22);
+        assert_eq!((stairs_m[0], stairs_m[21]), ([3.0, 0.0], [trial.stairs.end_y_m(), 0.0]));
+        assert_eq!(way_m.len(), 20);
+        assert!((way_m[0][0] - trial.start_y_m).abs() < 0.01, "{way_m:?}");
+        assert!((way_m[19][0] - loaded.champion.evaluation.centre_y_m).abs() < 0.01);
+        assert_eq!(limbs_m.len(), 5);
+        let middle = limbs_m[2].iter().fold([0.0, 0.0], |[y, z], at| [y + at[0], z + at[1]]);
+        assert!((middle[0] / 4.0 - way_m[19][0]).abs() < 0.01, "about its centre");
+        let without = Thumbnail::new(trial, None);
+        assert_eq!((without.way_m.len(), without.limbs_m.len()), (0, 0), "nothing is simulated");
+    }
+
+    #[test]
+    fn a_limb_is_as_long_as_it_looks_from_the_side() {
+        let size = [1.0, 2.0, 0.5];
+        let extent = |rotation| {
+            let corners = quad(&Pose::from_parts(Vector::new(9.0, 3.0, 1.0), rotation), size);
+            [0, 1].map(|axis| {
+                let of = corners.map(|corner| corner[axis]);
+                of.into_iter().fold(f32::MIN, f32::max) - of.into_iter().fold(f32::MAX, f32::min)
+            })
+        };
+        let quarter = std::f32::consts::FRAC_PI_2;
+        for (rotation, expected) in [
+            (Rotation::IDENTITY, [2.0, 0.5]),
+            (Rotation::from_rotation_x(quarter), [0.5, 2.0]),
+            (Rotation::from_rotation_y(quarter), [2.0, 1.0]),
+            (Rotation::from_rotation_z(quarter), [1.0, 0.5]),
+        ] {
+            let found = extent(rotation);
+            let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1.0e-5);
+            assert!(is_near, "{found:?} instead of {expected:?}");
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! Out of the folder of saves and into it: copies that write over nothing.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::EXPORTS;
+use super::change::{Step, move_new, taken};
+use super::details::{text_of_file, text_of_shipped};
+use super::list::Place;
+use super::name::{ENDING, free_path, plain_name};
+use crate::save::files::{UNFINISHED, prepare_folder, read_bytes, write_new};
+use crate::save::lock::{LOCK_FILE, Lock};
+use crate::save::plan::load_plan;
+use crate::save::{Progress, SaveError, SavesFolder, parse_champion, run_name};
+
+/// The largest file of a run that is copied, in MiB: checkpoints are the largest, and stay below.
+const LARGEST_MIB: u64 = 64;
+/// A run has its files in one folder, and figures in one below.
+const DEEPEST: u32 = 1;
+
+/// Copies an entry out: a run as a whole. `to` is a folder, which is made if need be, or for a champion a file
+/// that ends in ".ron"; without it, it is a folder within that of saves.
+///
+/// # Errors
+/// A program writes into the run's folder; a file cannot be read or written; the name of the file is taken.
+pub fn export(saves: &SavesFolder, place: &Place, to: Option<&Path>) -> Result<Step, SaveError> {
+    let exports = saves.path().join(EXPORTS);
+    let to = to.unwrap_or(&exports);
+    let text = match place {
+        Place::Run(run) => return export_run(run, to),
+        Place::Champion(path) => text_of_file(path)?,
+        Place::Shipped(name) => text_of_shipped(name)?.to_owned(),
+    };
+    let is_file = !to.is_dir() && to.extension().is_some_and(|ending| ending == ENDING);
+    let path = if is_file {
+        if to.symlink_metadata().is_ok() {
+            return Err(taken(to));
+        }
+        to.to_owned()
+    } else {
+        prepare_folder(to)?;
+        free_path(to, &place.name(), Some(ENDING))
+    };
+    write_new(&path, text.as_bytes())?;
+    Ok(Step::Added { path })
+}
+
+fn export_run(run: &Path, to: &Path) -> Result<Step, SaveError> {
+    // Where nobody may write, nobody does; who writes there now is named.
+    let lock = match Lock::take(run, "the library") {
+        Err(error @ SaveError::InUse { .. }) => return Err(error),
+        other => other.ok(),
+    };
+    prepare_folder(to)?;
+    let name = run.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let copied = copy_folder(run, to)?;
+    drop(lock);
+    let path = free_path(to, &name, None);
+    settle(copied, &path)
+}
+
+/// Copies a champion or a run in from anywhere, once it has been read and checked completely.
+///
+/// # Errors
+/// It is unreadable, damaged, a link or of another kind; the run is there already; it cannot be written.
+pub fn import(saves: &SavesFolder, from: &Path) -> Result<Step, SaveError> {
+    let unreadable = |source| SaveError::Unreadable { path: from.to_owned(), source };
+    if fs::symlink_metadata(from).map_err(unreadable)?.is_dir() {
+        return import_run(saves, from);
+    }
+    let text = text_of_file(from)?;
+    parse_champion(from, &text)?;
+    saves.prepare()?;
+    let name = from.file_stem().unwrap_or_default().to_string_lossy();
+    let path = free_path(saves.path(), &plain_name(&name), Some(ENDING));
+    write_new(&path, text.as_bytes())?;
+    Ok(Step::Added { path })
+}
+
+fn import_run(saves: &SavesFolder, from: &Path) -> Result<Step, SaveError> {
+    // Said before anything is copied: most folders that are dropped by mistake are no runs.
+    let path = saves.path().join(run_name(&load_plan(from)?));
+    if path.symlink_metadata().is_ok() {
+        return Err(taken(&path));
+    }
+    saves.prepare()?;
+    let copied = copy_folder(from, saves.path())?;
+    // The copy is what is checked: the original may change meanwhile.
+    let plan = load_plan(copied.path())?;
+    Progress::read(copied.path(), &plan)?;
+    settle(copied, &path)
+}
+
+/// Gives a folder that has been copied completely its name.
+fn settle(copied: tempfile::TempDir, path: &Path) -> Result<Step, SaveError> {
+    move_new(copied.path(), path)?;
+    // There is nothing left to remove where it was.
+    drop(copied);
+    Ok(Step::Added { path: path.to_owned() })
+}
+
+/// Copies a run's folder into another folder under a name for what is not whole; dropped, it goes. Links are
+/// left out, and the lock, which is the original's.
+fn copy_folder(from: &Path, into: &Path) -> Result<tempfile::TempDir, SaveError> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(UNFINISHED);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+    let unwritable = |source| SaveError::Unwritable { path: into.to_owned(), source };
+    let copy = builder.tempdir_in(into).map_err(unwritable)?;
+    copy_files(from, copy.path(), DEEPEST)?;
+    Ok(copy)
+}
+
+fn copy_files(from: &Path, to: &Path, deeper: u32) -> Result<(), SaveError> {
+    let unreadable = |source| SaveError::Unreadable { path: from.to_owned(), source };
+    for found in fs::read_dir(from).map_err(unreadable)? {
+        let found = found.map_err(unreadable)?;
+        let (kind, name) = (found.file_type().map_err(unreadable)?, found.file_name());
+        let copy: PathBuf = to.join(&name);
+        let unwritable = |source| SaveError::Unwritable { path: copy.clone(), source };
+        if name == LOCK_FILE || name.as_encoded_bytes().starts_with(b".") {
+            continue;
+        }
+        if kind.is_file() {
+            let bytes = read_bytes(&found.path(), LARGEST_MIB)?;
+            fs::write(&copy, bytes).map_err(unwritable)?;
+        } else if kind.is_dir() && deeper > 0 {
+            fs::create_dir(&copy).map_err(unwritable)?;
+            copy_files(&found.path(), &copy, deeper - 1)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::library::fixtures::{champion_in, names, run_in, saves};
+    use crate::save::library::{list, read_entry};
+
+    fn own(saves: &SavesFolder) -> Vec<String> {
+        names(&list(saves).expect("readable"), |place| place.path().is_some())
+    }
+
+    /// Names in a folder, those that are hidden too.
+    fn files(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("a folder");
+        let names = entries.map(|entry| entry.expect("an entry").file_name());
+        let mut names: Vec<String> =
+            names.map(|name| name.to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_champion_goes_to_the_folder_of_exports_or_where_one_says() {
+        let (folder, saves) = saves();
+        let place = champion_in(&saves, "a");
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let new = elsewhere.path().join("new/folder");
+        let file = elsewhere.path().join("mine.ron");
+        for (to, expected) in [
+            (None, folder.path().join("exports/a.ron")),
+            (None, folder.path().join("exports/a 2.ron")),
+            (Some(new.as_path()), new.join("a.ron")),
+            (Some(file.as_path()), file.clone()),
+        ] {
+            let step = export(&saves, &place, to).expect("exported");
+            assert_eq!(step, Step::Added { path: expected });
+        }
+        let refusal = export(&saves, &place, Some(&file)).expect_err("taken").to_string();
+        assert!(refusal.contains("not taken yet"), "{refusal}");
+        export(&saves, &Place::Shipped("fast"), Some(&new)).expect("exported");
+        assert_eq!(files(&new), ["a.ron", "fast.ron"]);
+        assert_eq!(own(&saves), ["a"], "copies are not listed");
+        let in_a_file = file.join("below");
+        let refusal = export(&saves, &place, Some(&in_a_file)).expect_err("no folder").to_string();
+        assert!(refusal.contains("below: cannot be written"), "{refusal}");
+    }
+
+    #[test]
+    fn a_run_is_exported_and_imported_as_a_whole_but_not_while_it_is_in_use() {
+        let (_folder, saves) = saves();
+        let run = run_in(&saves, 1);
+        let path = run.path().expect("a folder");
+        fs::create_dir(path.join("figures")).expect("created");
+        fs::write(path.join("figures/one.csv"), "1").expect("written");
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let lock = Lock::take(path, "the studio").expect("free");
+        let refusal = export(&saves, &run, Some(elsewhere.path())).expect_err("in use");
+        assert!(refusal.to_string().contains("in use by"), "{refusal}");
+        drop(lock);
+        let Step::Added { path: copy } =
+            export(&saves, &run, Some(elsewhere.path())).expect("exported")
+        else {
+            panic!("something else");
+        };
+        assert!(!copy.join(LOCK_FILE).exists());
+        assert_eq!(fs::read_to_string(copy.join("figures/one.csv")).expect("there"), "1");
+        let again = import(&saves, &copy).expect_err("it is there already").to_string();
+        assert!(again.contains("not taken yet"), "{again}");
+        let (_other, others) = super::super::fixtures::saves();
+        let step = import(&others, &copy).expect("imported");
+        let imported = step.place().expect("there");
+        assert_eq!(imported.name(), run.name());
+        assert_eq!(read_entry(&imported).expect("whole"), read_entry(&run).expect("whole"));
+        assert_eq!(files(others.path()).len(), 1, "nothing unfinished is left");
+    }
+
+    #[test]
+    fn what_is_damaged_is_not_imported_and_leaves_nothing() {
+        let (_folder, saves) = saves();
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let bad = elsewhere.path().join("bad.ron");
+        fs::write(&bad, "(kind: \"snakes-and-stairs champion\", format: 4").expect("written");
+        let error = import(&saves, &bad).expect_err("damaged").to_string();
+        assert!(error.contains("bad.ron: damaged or incomplete"), "{error}");
+        let error = import(&saves, elsewhere.path()).expect_err("no run").to_string();
+        assert!(error.contains("no run.ron in it"), "{error}");
+        let other = SavesFolder::find(Some(&elsewhere.path().join("runs")));
+        let run = run_in(&other, 1);
+        let champion = run.path().expect("a folder").join("generation-1.ron");
+        fs::write(champion, "(").expect("written");
+        let error = import(&saves, run.path().expect("a folder")).expect_err("damaged").to_string();
+        assert!(error.contains("generation-1.ron: damaged or incomplete"), "{error}");
+        assert!(files(saves.path()).is_empty());
+    }
+
+    #[test]
+    fn a_file_of_any_name_is_imported_beside_what_has_its_name() {
+        let (_folder, saves) = saves();
+        let (elsewhere, others) = super::super::fixtures::saves();
+        champion_in(&others, "a");
+        let file = elsewhere.path().join("a.ron");
+        fs::rename(&file, elsewhere.path().join("a.txt")).expect("renamed");
+        let file = elsewhere.path().join("a.txt");
+        for _ in 0..2 {
+            import(&saves, &file).expect("imported");
+        }
+        assert_eq!(own(&saves), ["a 2", "a"]);
+        let step = import(&saves, &file).expect("imported");
+        step.undo(&saves).expect("undone");
+        assert_eq!(own(&saves), ["a 2", "a"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_not_followed_in_or_out() {
+        use std::os::unix::fs::symlink;
+        let (folder, saves) = saves();
+        let (elsewhere, others) = super::super::fixtures::saves();
+        champion_in(&others, "secret");
+        let secret = elsewhere.path().join("secret.ron");
+        let link = folder.path().join("link.ron");
+        symlink(&secret, &link).expect("linked");
+        let place = Place::Champion(link.clone());
+        for result in [import(&saves, &link), export(&saves, &place, None)] {
+            let message = result.expect_err("refused").to_string();
+            assert!(message.contains("it is a link"), "{message}");
+        }
+        let run = run_in(&others, 1);
+        symlink(&secret, run.path().expect("a folder").join("link.ron")).expect("linked");
+        let imported = import(&saves, run.path().expect("a folder")).expect("imported");
+        let copy = imported.place().expect("there");
+        assert!(!copy.path().expect("a folder").join("link.ron").is_symlink());
+    }
+}
