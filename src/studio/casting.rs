@@ -124,8 +124,13 @@ pub(super) fn all_generations(evolution: &Evolution) -> Result<Vec<Exhibit>, Str
         return Err("A race of generations needs two with a champion; let it evolve.".to_owned());
     }
     let number = evolution.number();
-    let chosen = evenly(champions.len(), MOST_LANES, CHOSEN_GENERATIONS);
+    let chosen = evenly_chosen(champions.len());
     Ok(chosen.map(|index| Exhibit::found(champions[index], number)).collect())
+}
+
+/// The indices of those of `count` that race: all, or of many some at equal distances.
+pub(super) fn evenly_chosen(count: usize) -> impl Iterator<Item = usize> {
+    evenly(count, MOST_LANES, CHOSEN_GENERATIONS)
 }
 
 /// All of `count` indices if they are at most `most`, else `few` of them, evenly spread from the first to the last.

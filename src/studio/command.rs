@@ -15,6 +15,7 @@ use super::export::Export;
 use super::hands::Hands;
 use super::lane::Lane;
 use super::lessons::Lessons;
+use super::library::{Ask, Library, found_run};
 use super::look::Theme;
 use super::notice::Notices;
 use super::overlay::{Overlay, Overlays};
@@ -93,6 +94,8 @@ pub(super) enum Command {
     Compare(PathBuf),
     /// Write a chart into a file.
     Export(Export),
+    /// Do something with the saves.
+    Library(Ask),
     /// Put somebody on the stage.
     Show(Pick),
     /// Put somebody beside those who are on the stage, or take them off again.
@@ -173,6 +176,9 @@ pub(super) enum Command {
     /// Close the window.
     Quit,
 }
+
+/// Who leaves a change by the way has not dropped it.
+const CHANGE_STAYS: &str = "The next run keeps the change: see the World tab.";
 
 pub(super) fn plugin(app: &mut App) {
     app.add_message::<Command>().add_systems(Update, apply.in_set(Frame::Apply));
@@ -281,6 +287,7 @@ fn apply(
     opening: Res<Opening>,
     mut desk: ResMut<Desk>,
     mut lessons: ResMut<Lessons>,
+    mut library: ResMut<Library>,
     mut stage: StageParams,
 ) {
     for command in asked.read() {
@@ -340,6 +347,16 @@ fn apply(
                 notices.news(said);
                 step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
             }
+            Command::Library(Ask::FoundRun(place)) => {
+                stage.settle();
+                found_run(&mut evolution, place)
+            }
+            Command::Library(ask) => library.apply(ask, &mut notices).map(|show| {
+                if show.is_some() && stage.leaves_change(command) {
+                    notices.news(CHANGE_STAYS.to_owned());
+                }
+                stage.present(show);
+            }),
             Command::DropChange => dropped(&mut evolution, &stage.exhibits(), &stage.programme)
                 .map(|show| stage.present(show)),
             Command::BeginLesson(index) => {
@@ -367,7 +384,7 @@ fn apply(
             command => {
                 let shown = on_stage(command, &mut stage, &evolution, &opening);
                 if shown == Ok(true) && stage.leaves_change(command) {
-                    notices.news("The next run keeps the change: see the World tab.".to_owned());
+                    notices.news(CHANGE_STAYS.to_owned());
                 }
                 shown.map(drop)
             }
@@ -473,6 +490,7 @@ fn on_stage(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::save::library::Place;
     use crate::save::shipped_champion;
     use crate::studio::casting::Saved;
     use crate::studio::evolution::prepared_run;
@@ -487,6 +505,7 @@ mod tests {
             .add_message::<AppExit>()
             .insert_resource(prepared_run())
             .insert_resource(Opening(vec![Saved { name: "climber".to_owned(), loaded }]))
+            .insert_resource(Library::new(crate::save::SavesFolder::find(None)))
             .init_resource::<Notices>()
             .init_resource::<Programme>()
             .init_resource::<Playback>()
@@ -569,5 +588,19 @@ mod tests {
         app.update();
         assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "somebody is shown");
         assert!(!app.world().resource::<Playback>().is_playing(), "and held");
+    }
+
+    #[test]
+    fn a_save_of_the_library_takes_the_stage_and_one_that_is_gone_is_said() {
+        let mut app = app();
+        let gone = Place::Champion("nowhere.ron".into());
+        for place in [Place::Shipped("fast"), gone] {
+            app.world_mut().write_message(Command::Library(Ask::Replay(place)));
+        }
+        app.update();
+        let shown: Vec<Show> = app.world_mut().resource_mut::<Messages<Show>>().drain().collect();
+        assert_eq!(shown.len(), 1);
+        assert_eq!(shown[0].exhibits[0].name(), "fast");
+        assert_eq!(app.world().resource::<Notices>().len(), 1, "the other is not there");
     }
 }

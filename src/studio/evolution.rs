@@ -126,6 +126,11 @@ impl Evolution {
         &self.source.plan.preset
     }
 
+    /// Where the current run is saved.
+    pub fn folder(&self) -> &Path {
+        &self.source.folder
+    }
+
     /// Seed of the current run.
     pub fn seed(&self) -> u64 {
         self.source.plan.seed

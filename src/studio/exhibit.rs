@@ -23,6 +23,8 @@ pub(super) struct Exhibit {
 pub(super) enum Source {
     /// A save the studio opened with; the first is 0.
     Opening(usize),
+    /// An entry of the library, by a number that stands for its place.
+    Library(u64),
     /// A run of this session; the first is 0. The generation is the champion's origin's.
     Run(u32),
     /// A lesson.
@@ -51,6 +53,11 @@ impl Exhibit {
             elsewhere: (!loaded.is_of_this_engine()).then_some((loaded.engine, recording)),
             manner: Manner::Found,
         }
+    }
+
+    /// A champion of the library: the number that stands for its place, and its name.
+    pub fn of_library(loaded: &LoadedChampion, place: u64, name: &str) -> Self {
+        Self { source: Source::Library(place), ..Self::saved(loaded, 0, name) }
     }
 
     /// Somebody that a run of this session found.

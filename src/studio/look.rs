@@ -4,7 +4,8 @@ mod palette;
 
 use std::str::FromStr;
 
-use bevy::prelude::Resource;
+use bevy::color::ColorToPacked;
+use bevy::prelude::{Color, Resource};
 use bevy_egui::egui::{self, Color32, CornerRadius};
 
 use crate::check::Invalid;
@@ -142,8 +143,28 @@ pub const MAP_HEIGHT: f32 = 190.0;
 pub const AXIS_WIDTH: f32 = 24.0;
 /// Size of the letters in and at charts, in points.
 pub const SMALL_SIZE: f32 = 11.0;
+/// Height of a row in the library, in points.
+pub const SAVE_HEIGHT: f32 = 44.0;
+/// Size of the little picture in a row of the library, in points.
+pub const THUMBNAIL_SIZE: egui::Vec2 = egui::vec2(76.0, 36.0);
+/// Height of the picture of the save that is chosen, in points.
+pub const PICTURE_HEIGHT: f32 = 64.0;
+/// From this width on the library has columns, in points.
+pub const COLUMNS_WIDTH: f32 = 560.0;
+/// Widths of the library's columns after the name: fitness, preset, generation, date, in points.
+pub const COLUMN_WIDTHS: [f32; 4] = [84.0, 84.0, 150.0, 136.0];
+/// Height of the library's list where the panel has no height of its own, and at least, in points.
+pub const LIST_HEIGHTS: [f32; 2] = [360.0, 140.0];
+/// Height of the list of a run's champions, in points.
+pub const CHAMPIONS_HEIGHT: f32 = 130.0;
 /// Corner radius of cards and buttons, in points.
 const CORNER: CornerRadius = CornerRadius::same(6);
+
+/// A colour of the scene, for a panel.
+pub fn flat(color: Color) -> Color32 {
+    let [red, green, blue, alpha] = color.to_srgba().to_u8_array();
+    Color32::from_rgba_unmultiplied(red, green, blue, alpha)
+}
 
 /// The colour of a value between the least, 0, and the most, 1: see [`plot::ramp`].
 pub fn ramp(share: f32) -> Color32 {

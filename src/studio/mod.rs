@@ -26,6 +26,7 @@ mod keys;
 mod lane;
 mod lessons;
 mod lettering;
+mod library;
 mod limb;
 mod look;
 mod marks;
@@ -221,7 +222,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .configure_sets(Update, (Frame::TakeIn, Frame::Apply, Frame::Advance, Frame::Draw).chain())
         .add_plugins((
             (command::plugin, undo::plugin),
-            evolution::plugin,
+            (evolution::plugin, library::plugin),
             stage::plugin,
             scene::plugin,
             snake::plugin,

@@ -33,7 +33,7 @@ fn update(
         (programme, Some(lane)) => {
             let generation = lane.exhibit().generation();
             let what = match lane.exhibit().source() {
-                Source::Opening(_) => "saved champion".to_owned(),
+                Source::Opening(_) | Source::Library(_) => "saved champion".to_owned(),
                 Source::Lesson => "a lesson".to_owned(),
                 Source::Run(run) if run == evolution.number() => format!("generation {generation}"),
                 Source::Run(_) => format!("generation {generation} of an earlier run"),

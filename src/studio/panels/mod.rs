@@ -15,6 +15,7 @@ mod icons;
 mod key_overlay;
 mod layout;
 mod lessons;
+mod library;
 mod limb_card;
 mod menu;
 mod number_field;
@@ -123,7 +124,7 @@ impl Shown {
                 let Origin { generation, individual, .. } = exhibit.champion().origin;
                 Some(Self::Found { generation, individual })
             }
-            Source::Run(_) | Source::Lesson => None,
+            Source::Library(_) | Source::Run(_) | Source::Lesson => None,
         }
     }
 
