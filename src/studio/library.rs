@@ -2,6 +2,7 @@
 //!
 //! Whatever changes files can be undone. Several things that were done at once are undone at once.
 
+mod cast;
 mod history;
 mod item;
 mod take_in;
@@ -9,21 +10,17 @@ mod take_in;
 use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
-use xxhash_rust::xxh3::xxh3_64;
 
 use super::casting::evenly_chosen;
 use super::engine::Engine;
-use super::evolution::Evolution;
-use super::exhibit::Exhibit;
 use super::notice::Notices;
 use super::stage::{MOST_LANES, Show};
-use crate::evolve::Champion;
-use crate::run::{Errand, Librarian, Reading};
-use crate::save::library::{
-    Entry, Place, Step, delete, duplicate, export, import, load_entry, rename,
-};
-use crate::save::{LoadedChampion, SaveError, SavesFolder, load_generation};
+use crate::run::{Errand, Librarian};
+use crate::save::library::{Place, Step, delete, duplicate, export, import, rename};
+use crate::save::{SaveError, SavesFolder};
 
+pub(super) use cast::found_run;
+use cast::{exhibit_of, generation_of};
 use history::{Change, History};
 pub(super) use item::{Item, fitness_text};
 pub(super) use take_in::plugin;
@@ -114,11 +111,6 @@ struct Outstanding {
     verb: &'static str,
     errand: Errand<Vec<Result<Step, SaveError>>>,
 }
-
-/// So many readings are taken in within a frame: some tenths of a millisecond.
-const MOST_READINGS: usize = 100;
-/// A name on the stage is cut off after so many characters.
-const LONGEST_LABEL: usize = 40;
 
 impl FromWorld for Library {
     fn from_world(world: &mut World) -> Self {
@@ -384,106 +376,9 @@ impl Library {
         Ok(())
     }
 
-    /// Takes in what was read and copied meanwhile.
-    fn take_in(&mut self, notices: &mut Notices) {
-        let errands = std::mem::take(&mut self.errands);
-        for outstanding in errands {
-            match outstanding.errand.poll() {
-                None => self.errands.push(outstanding),
-                Some(result) => self.take_back(outstanding.verb, result, notices),
-            }
-        }
-        let Some(librarian) = &self.librarian else { return };
-        for reading in librarian.poll(MOST_READINGS) {
-            self.learn(reading);
-        }
-    }
-
-    /// Takes in what came of copies.
-    fn take_back(
-        &mut self,
-        verb: &str,
-        result: Result<Vec<Result<Step, SaveError>>, String>,
-        notices: &mut Notices,
-    ) {
-        let results = match result {
-            Ok(results) => results,
-            Err(problem) => return notices.problem(format!("Nothing was {verb}: {problem}")),
-        };
-        let mut steps = Vec::new();
-        for result in results {
-            match result {
-                Ok(step) => steps.push(step),
-                Err(error) => notices.problem(error.to_string()),
-            }
-        }
-        let places = steps.iter().filter_map(Step::place);
-        let names: Vec<String> = places.map(|place| place.name()).collect();
-        let Some(first) = steps.first().and_then(Step::place) else { return };
-        let words = format!("{verb} {}", listed(&names));
-        let folder = first.path().and_then(Path::parent).unwrap_or(Path::new("."));
-        notices.news(format!("{} to {}", capital(&words), folder.display()));
-        self.keep(Change { words, steps });
-    }
-
-    fn learn(&mut self, reading: Reading) {
-        match reading {
-            Reading::Done => self.unread = 0,
-            Reading::NotListed(problem) => {
-                self.problem = Some(problem);
-                self.is_listed = true;
-                self.items.clear();
-                self.listings += 1;
-                self.revision += 1;
-            }
-            Reading::Listed(entries) => self.list(entries),
-            Reading::Read(place, read) => {
-                let found = self.items.binary_search_by(|item| item.place().cmp(&place));
-                let Ok(index) = found else { return };
-                self.unread = self.unread.saturating_sub(1);
-                let item = &mut self.items[index];
-                item.learn(read);
-                self.revision += 1;
-            }
-        }
-    }
-
-    /// Takes in what there is by name; what was known of entries of before stays known until it is read anew.
-    fn list(&mut self, entries: Vec<Entry>) {
-        let is_same = self.is_listed && self.problem.is_none();
-        let known = self.items.iter().map(Item::entry);
-        if is_same && entries.len() == self.items.len() && known.eq(entries.iter()) {
-            return;
-        }
-        let mut before = std::mem::take(&mut self.items).into_iter().peekable();
-        self.unread = 0;
-        for entry in entries {
-            while before.next_if(|item| item.place() < &entry.place).is_some() {}
-            let item = match before.next_if(|item| item.place() == &entry.place) {
-                Some(item) if *item.entry() == entry => {
-                    self.unread += usize::from(!item.is_read());
-                    item
-                }
-                Some(item) => {
-                    self.unread += 1;
-                    item.changed(entry)
-                }
-                None => {
-                    self.unread += 1;
-                    Item::new(entry)
-                }
-            };
-            self.items.push(item);
-        }
-        self.is_listed = true;
-        self.problem = None;
-        self.listings += 1;
-        self.revision += 1;
-    }
-
     /// That of entries that were read without a folder, for tests.
     #[cfg(test)]
-    pub fn of(readings: Vec<Reading>) -> Self {
+    pub fn of(readings: Vec<crate::run::Reading>) -> Self {
         let mut library = Self::new(SavesFolder::find(Some(Path::new("saves"))));
         readings.into_iter().for_each(|reading| library.learn(reading));
         library
@@ -496,48 +391,6 @@ impl Library {
         let readings = self.librarian.as_ref().expect("started").wait();
         readings.into_iter().for_each(|reading| self.learn(reading));
     }
-}
-
-/// Begins a run of which the champion of an entry is a parent.
-///
-/// # Errors
-/// The champion cannot be read, or a run cannot begin with it.
-pub(super) fn found_run(evolution: &mut Evolution, place: &Place) -> Result<(), String> {
-    let (loaded, _) = load_entry(place).map_err(|error| error.to_string())?;
-    begin_from(evolution, &loaded.champion)
-}
-
-/// The place where a run is founded on a champion: `evolution.found_run(champion)`.
-fn begin_from(_evolution: &mut Evolution, _champion: &Champion) -> Result<(), String> {
-    Err("A run cannot begin with a saved champion yet.".to_owned())
-}
-
-/// The champion of an entry, to be shown; of a run its best.
-fn exhibit_of(place: &Place) -> Result<Exhibit, String> {
-    let (loaded, generation) = load_entry(place).map_err(|error| error.to_string())?;
-    let name = match generation {
-        None => place.name(),
-        Some(generation) => {
-            let origin = &loaded.champion.origin;
-            format!("{}, seed {}, generation {generation}", origin.preset, origin.seed)
-        }
-    };
-    Ok(shown(&loaded, &name, &format!("{place:?}{generation:?}")))
-}
-
-/// The champion of a run's generation, to be shown.
-fn generation_of(run: &Path, generation: u32) -> Result<Exhibit, String> {
-    let loaded = load_generation(run, generation).map_err(|error| error.to_string())?;
-    let identity = format!("{:?}{:?}", Place::Run(run.to_owned()), Some(generation));
-    Ok(shown(&loaded, &format!("Generation {generation}"), &identity))
-}
-
-fn shown(loaded: &LoadedChampion, name: &str, identity: &str) -> Exhibit {
-    let mut label: String = name.chars().take(LONGEST_LABEL).collect();
-    if label.len() < name.len() {
-        label.push('…');
-    }
-    Exhibit::of_library(loaded, xxh3_64(identity.as_bytes()), &label)
 }
 
 fn name_of(path: &Path) -> String {
@@ -562,6 +415,7 @@ fn capital(words: &str) -> String {
 mod tests {
     use super::*;
     use crate::save::{shipped_champion, store_champion};
+    use crate::studio::exhibit::Exhibit;
     use tempfile::TempDir;
 
     fn library(names: &[&str]) -> (TempDir, Library) {

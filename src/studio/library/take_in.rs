@@ -1,9 +1,15 @@
 //! What happens to the library by itself: it is read, follows the run, and takes files that are dropped.
 
+use std::path::Path;
+
 use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
 
-use super::{Ask, Library};
+use super::history::Change;
+use super::{Ask, Item, Library, capital, listed};
+use crate::run::Reading;
+use crate::save::SaveError;
+use crate::save::library::{Entry, Step};
 use crate::studio::Frame;
 use crate::studio::command::Command;
 use crate::studio::evolution::{Evolution, Status};
@@ -14,6 +20,8 @@ pub(in crate::studio) fn plugin(app: &mut App) {
         .add_systems(Update, (take_drops, follow, take_in).chain().in_set(Frame::TakeIn));
 }
 
+/// So many readings are taken in within a frame: some tenths of a millisecond.
+const MOST_READINGS: usize = 100;
 /// A folder that changes with every generation is looked at again after so many seconds at the earliest.
 const EARLIEST_LOOK_S: f32 = 2.0;
 
@@ -58,6 +66,105 @@ fn follow(
     if *seen != now && library.is_open() && now_s - *looked_s > EARLIEST_LOOK_S {
         (*seen, *looked_s) = (now, now_s);
         library.look_again();
+    }
+}
+
+impl Library {
+    /// Takes in what was read and copied meanwhile.
+    pub(super) fn take_in(&mut self, notices: &mut Notices) {
+        let errands = std::mem::take(&mut self.errands);
+        for outstanding in errands {
+            match outstanding.errand.poll() {
+                None => self.errands.push(outstanding),
+                Some(result) => self.take_back(outstanding.verb, result, notices),
+            }
+        }
+        let Some(librarian) = &self.librarian else { return };
+        for reading in librarian.poll(MOST_READINGS) {
+            self.learn(reading);
+        }
+    }
+
+    /// Takes in what came of copies.
+    fn take_back(
+        &mut self,
+        verb: &str,
+        result: Result<Vec<Result<Step, SaveError>>, String>,
+        notices: &mut Notices,
+    ) {
+        let results = match result {
+            Ok(results) => results,
+            Err(problem) => return notices.problem(format!("Nothing was {verb}: {problem}")),
+        };
+        let mut steps = Vec::new();
+        for result in results {
+            match result {
+                Ok(step) => steps.push(step),
+                Err(error) => notices.problem(error.to_string()),
+            }
+        }
+        let places = steps.iter().filter_map(Step::place);
+        let names: Vec<String> = places.map(|place| place.name()).collect();
+        let Some(first) = steps.first().and_then(Step::place) else { return };
+        let words = format!("{verb} {}", listed(&names));
+        let folder = first.path().and_then(Path::parent).unwrap_or(Path::new("."));
+        notices.news(format!("{} to {}", capital(&words), folder.display()));
+        self.keep(Change { words, steps });
+    }
+
+    pub(super) fn learn(&mut self, reading: Reading) {
+        match reading {
+            Reading::Done => self.unread = 0,
+            Reading::NotListed(problem) => {
+                self.problem = Some(problem);
+                self.is_listed = true;
+                self.items.clear();
+                self.listings += 1;
+                self.revision += 1;
+            }
+            Reading::Listed(entries) => self.list(entries),
+            Reading::Read(place, read) => {
+                let found = self.items.binary_search_by(|item| item.place().cmp(&place));
+                let Ok(index) = found else { return };
+                self.unread = self.unread.saturating_sub(1);
+                let item = &mut self.items[index];
+                item.learn(read);
+                self.revision += 1;
+            }
+        }
+    }
+
+    /// Takes in what there is by name; what was known of entries of before stays known until it is read anew.
+    fn list(&mut self, entries: Vec<Entry>) {
+        let is_same = self.is_listed && self.problem.is_none();
+        let known = self.items.iter().map(Item::entry);
+        if is_same && entries.len() == self.items.len() && known.eq(entries.iter()) {
+            return;
+        }
+        let mut before = std::mem::take(&mut self.items).into_iter().peekable();
+        self.unread = 0;
+        for entry in entries {
+            while before.next_if(|item| item.place() < &entry.place).is_some() {}
+            let item = match before.next_if(|item| item.place() == &entry.place) {
+                Some(item) if *item.entry() == entry => {
+                    self.unread += usize::from(!item.is_read());
+                    item
+                }
+                Some(item) => {
+                    self.unread += 1;
+                    item.changed(entry)
+                }
+                None => {
+                    self.unread += 1;
+                    Item::new(entry)
+                }
+            };
+            self.items.push(item);
+        }
+        self.is_listed = true;
+        self.problem = None;
+        self.listings += 1;
+        self.revision += 1;
     }
 }
 

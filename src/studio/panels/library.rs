@@ -5,6 +5,9 @@
 
 mod actions;
 mod details;
+mod fields;
+mod header;
+mod keyboard;
 mod order;
 mod row;
 mod selection;
@@ -14,17 +17,18 @@ mod thumbnail;
 
 use std::path::PathBuf;
 
-use bevy_egui::egui::{self, EventFilter, Key as Press, Modifiers, Sense, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, EventFilter, Sense, WidgetInfo, WidgetType};
 
-use super::{explain, title_and};
+use super::explain;
 use crate::save::library::{EXPORTS, Place, check_entry_name};
 use crate::studio::command::Command;
 use crate::studio::library::{Ask, Item, Library};
 use crate::studio::look;
 
 use actions::{Act, Action, actions};
-use order::{Key, Order, Sort};
-use row::{Manner, column, name_rect, row};
+use fields::{Asking, Naming, Wanted};
+use order::{Order, Sort};
+use row::{Manner, name_rect, row};
 use selection::Selection;
 
 /// The panel, with what it remembers between frames.
@@ -57,32 +61,6 @@ pub(super) struct LibraryPanel {
     /// Heights over and under the list in the last frame, in points.
     around: [f32; 2],
 }
-
-/// A name that is being edited.
-#[derive(Debug)]
-struct Naming {
-    place: Place,
-    text: String,
-    has_begun: bool,
-}
-
-/// A path that is being typed.
-#[derive(Debug)]
-struct Asking {
-    what: Wanted,
-    text: String,
-    has_begun: bool,
-}
-
-/// What a path is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Wanted {
-    Export,
-    Import,
-}
-
-/// How many rows a page is, for the keys that turn pages.
-const PAGE: usize = 10;
 
 impl LibraryPanel {
     /// Draws the panel and adds what was asked for.
@@ -119,95 +97,6 @@ impl LibraryPanel {
         self.list(ui, library, list_height, asked);
         let under = ui.scope(|ui| self.under(ui, library, asked)).response.rect.height();
         self.around = [over + gaps, under];
-    }
-
-    /// Title, search and what it is sorted by.
-    fn over(&mut self, ui: &mut egui::Ui, library: &Library, asked: &mut Vec<Command>) {
-        title_and(ui, "Library", |ui| {
-            let hint = format!("Look at the folder again: {}", library.folder().display());
-            let refresh = egui::Button::new("Refresh").small();
-            if ui.add(refresh).on_hover_text(hint).clicked() {
-                send(asked, Ask::Look);
-            }
-            let import = egui::Button::new("Import").small();
-            let hint = "Copy a champion or a run in from anywhere; or drop files into the window";
-            if ui.add(import).on_hover_text(hint).clicked() {
-                self.ask_for(Wanted::Import, String::new());
-            }
-            for (name, keys, last, ask) in [
-                ("Redo", "Ctrl Shift Z", library.redoable(), Ask::Redo),
-                ("Undo", "Ctrl Z", library.undoable(), Ask::Undo),
-            ] {
-                let Some(last) = last else { continue };
-                let button = egui::Button::new(name).small();
-                let hint = format!("{name}: {last} ({keys})");
-                if ui.add(button).on_hover_text(hint).clicked() {
-                    send(asked, ask);
-                }
-            }
-        });
-        let field = egui::TextEdit::singleline(&mut self.search)
-            .hint_text("Search name, preset, controller, \"damaged\"")
-            .desired_width(f32::INFINITY)
-            .margin(egui::Margin::symmetric(8, 4));
-        let response = ui.add(field);
-        label(ui, &response, "Search the library");
-        // From the field straight into the list.
-        let pressed = |key| ui.input(|input| input.key_pressed(key));
-        let is_entered = response.lost_focus() && pressed(Press::Enter);
-        self.wants_keyboard |= is_entered || (response.has_focus() && pressed(Press::ArrowDown));
-        if ui.available_width() < look::COLUMNS_WIDTH {
-            self.sort_by(ui);
-        } else {
-            self.columns(ui);
-        }
-    }
-
-    fn sort_by(&mut self, ui: &mut egui::Ui) {
-        ui.horizontal(|ui| {
-            let name = ui.label("Sort by");
-            let choice = egui::ComboBox::from_id_salt("sort").selected_text(self.sort.key.name());
-            let list = choice.width(look::FIELD_WIDTH).show_ui(ui, |ui| {
-                for key in Key::ALL {
-                    if ui.selectable_label(self.sort.key == key, key.name()).clicked() {
-                        self.sort = Sort::by(key);
-                    }
-                }
-            });
-            list.response.labelled_by(name.id);
-            let direction = if self.sort.is_descending { "Descending" } else { "Ascending" };
-            if ui.button(direction).on_hover_text("The other way round").clicked() {
-                self.sort = self.sort.reversed();
-            }
-        });
-    }
-
-    fn columns(&mut self, ui: &mut egui::Ui) {
-        let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
-        let (line, _) = ui.allocate_exact_size(size, Sense::hover());
-        for key in Key::ALL {
-            let is_key = self.sort.key == key;
-            // Room for the sign of the direction, which no font has for certain.
-            let name = if is_key { format!("{}    ", key.name()) } else { key.name().to_owned() };
-            let button = egui::Button::new(name).selected(is_key).small();
-            let place = column(line.expand2(egui::vec2(0.0, 4.0)), key);
-            let builder = egui::UiBuilder::new()
-                .max_rect(place)
-                .layout(egui::Layout::left_to_right(egui::Align::Center));
-            let response = ui.new_child(builder).add(button);
-            if is_key {
-                let right = response.rect.right_center() - egui::vec2(look::GAP * 1.75, 0.0);
-                let (wide, high) = if self.sort.is_descending { (4.0, 3.0) } else { (-4.0, -3.0) };
-                let corners = [[-wide, -high], [wide, -high], [0.0, high]];
-                let points = corners.map(|[x, y]| right + egui::vec2(x, y)).to_vec();
-                let color = look::of(ui).text;
-                ui.painter().add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));
-            }
-            label(ui, &response, &format!("Sort by {}", key.name().to_lowercase()));
-            if response.on_hover_text("Sort by it; again for the other way round").clicked() {
-                self.sort = self.sort.clicked(key);
-            }
-        }
     }
 
     /// Keeps to what there is: what is gone is no longer chosen, what is new is pointed out.
@@ -367,75 +256,6 @@ impl LibraryPanel {
         }
     }
 
-    /// What keys ask for while the list has the keyboard.
-    fn keys(&mut self, ui: &egui::Ui, library: &Library, asked: &mut Vec<Command>) {
-        let (held, pressed) = ui.input(|input| {
-            let of = |event: &egui::Event| match event {
-                egui::Event::Key { key, pressed: true, .. } => Some(*key),
-                _ => None,
-            };
-            (input.modifiers, input.events.iter().filter_map(of).collect::<Vec<Press>>())
-        });
-        for key in pressed {
-            self.update_offers(library);
-            let acts = |is_it: fn(&Act) -> bool| {
-                let possible = self.offers.1.iter().filter(|action| action.refusal.is_none());
-                possible.map(|action| &action.act).find(|act| is_it(act)).cloned()
-            };
-            let wanted = match key {
-                Press::Enter => acts(|act| {
-                    matches!(act, Act::Send(Command::Library(Ask::Replay(_) | Ask::Race(_))))
-                }),
-                Press::F2 => acts(|act| matches!(act, Act::Rename(_))),
-                Press::Delete => acts(Act::deletes),
-                Press::D if held.command => {
-                    acts(|act| matches!(act, Act::Send(Command::Library(Ask::Duplicate(_)))))
-                }
-                Press::Z if held.command && held.shift => Some(of(Ask::Redo)),
-                Press::Z if held.command => Some(of(Ask::Undo)),
-                Press::Y if held.command => Some(of(Ask::Redo)),
-                Press::A if held.command => {
-                    let rows = self.order.rows();
-                    self.selection.all(rows.iter().map(|row| library.items()[*row].place()));
-                    None
-                }
-                _ => {
-                    self.walk(key, held, library);
-                    None
-                }
-            };
-            self.act(wanted, library, asked);
-        }
-    }
-
-    /// Moves the row at which keys begin; with Shift the range grows.
-    fn walk(&mut self, key: Press, held: Modifiers, library: &Library) {
-        let rows = self.order.rows();
-        let Some(last) = rows.len().checked_sub(1) else { return };
-        let place_of = |row: usize| library.items()[rows[row]].place();
-        let now = self
-            .selection
-            .cursor()
-            .and_then(|cursor| (0..rows.len()).find(|row| place_of(*row) == cursor));
-        let next = match (key, now) {
-            (Press::Home, _) => 0,
-            (Press::End, _) => last,
-            (Press::ArrowDown | Press::ArrowUp | Press::PageDown | Press::PageUp, None) => 0,
-            (Press::ArrowDown, Some(now)) => now + 1,
-            (Press::ArrowUp, Some(now)) => now.saturating_sub(1),
-            (Press::PageDown, Some(now)) => now + PAGE,
-            (Press::PageUp, Some(now)) => now.saturating_sub(PAGE),
-            _ => return,
-        };
-        let place = place_of(next.min(last)).clone();
-        if held.shift {
-            self.selection.extend(&place, rows.iter().map(|row| library.items()[*row].place()));
-        } else {
-            self.selection.only(&place);
-        }
-        self.scroll_to = Some(place);
-    }
-
     fn act(&mut self, wanted: Option<Act>, library: &Library, asked: &mut Vec<Command>) {
         match wanted {
             None => {}
@@ -454,37 +274,6 @@ impl LibraryPanel {
                 self.listed_run = (!is_listed).then_some(run);
             }
         }
-    }
-
-    /// A field over the name of a row: Enter takes it, Escape leaves it as it was.
-    fn edit_name(&mut self, ui: &mut egui::Ui, rect: egui::Rect, asked: &mut Vec<Command>) {
-        let Some(naming) = &mut self.naming else { return };
-        let field = egui::TextEdit::singleline(&mut naming.text);
-        let response = ui.put(rect, field);
-        label(ui, &response, "New name");
-        if !naming.has_begun {
-            response.request_focus();
-            naming.has_begun = true;
-            return;
-        }
-        if !response.lost_focus() {
-            return;
-        }
-        let name = naming.text.trim().to_owned();
-        let is_good = check_entry_name(&name).is_ok();
-        if ui.input(|input| input.key_pressed(Press::Escape)) || name == naming.place.name() {
-            self.naming = None;
-        } else if is_good {
-            send(asked, Ask::Rename { place: naming.place.clone(), name });
-            self.naming = None;
-        } else if ui.input(|input| input.key_pressed(Press::Enter)) {
-            // What is wrong with it is said below.
-            naming.has_begun = false;
-            return;
-        } else {
-            self.naming = None;
-        }
-        self.wants_keyboard = true;
     }
 
     /// What is chosen, and what can be done with it.
@@ -516,66 +305,8 @@ impl LibraryPanel {
         }
         self.act(wanted, library, asked);
     }
-
-    fn ask_for(&mut self, what: Wanted, text: String) {
-        let is_open = self.asking.as_ref().is_some_and(|asking| asking.what == what);
-        self.asking = (!is_open).then_some(Asking { what, text, has_begun: false });
-    }
-
-    /// A field for a path, while one is asked for.
-    fn path_field(&mut self, ui: &mut egui::Ui, asked: &mut Vec<Command>) {
-        let Some(asking) = &mut self.asking else { return };
-        let (label, hint) = match asking.what {
-            Wanted::Export => ("Export to", "A folder, which is made if need be"),
-            Wanted::Import => ("Import from", "A champion's file, or the folder of a run"),
-        };
-        let mut is_done = false;
-        ui.horizontal(|ui| {
-            let name = ui.label(label);
-            // The width of the two buttons beside it.
-            let width = ui.available_width() - look::COLUMN_WIDTHS[2];
-            let field = egui::TextEdit::singleline(&mut asking.text).desired_width(width);
-            let response = ui.add(field).labelled_by(name.id).on_hover_text(hint);
-            if !asking.has_begun {
-                response.request_focus();
-                asking.has_begun = true;
-            }
-            let is_entered =
-                response.lost_focus() && ui.input(|input| input.key_pressed(Press::Enter));
-            let is_there = !asking.text.trim().is_empty();
-            let go = ui.add_enabled(is_there, egui::Button::new("OK").small());
-            if (is_entered || go.clicked()) && is_there {
-                let path = PathBuf::from(asking.text.trim());
-                let places = self.selection.places().cloned().collect();
-                send(
-                    asked,
-                    match asking.what {
-                        Wanted::Export => Ask::Export { places, to: Some(path) },
-                        Wanted::Import => Ask::Import(vec![path]),
-                    },
-                );
-                is_done = true;
-            }
-            let is_left =
-                response.lost_focus() && ui.input(|input| input.key_pressed(Press::Escape));
-            is_done |= is_left || ui.add(egui::Button::new("Cancel").small()).clicked();
-        });
-        if is_done {
-            self.asking = None;
-            self.wants_keyboard = true;
-        }
-    }
 }
 
 fn send(asked: &mut Vec<Command>, ask: Ask) {
     asked.push(Command::Library(ask));
-}
-
-fn of(ask: Ask) -> Act {
-    Act::Send(Command::Library(ask))
-}
-
-/// Names a field for who does not see it.
-fn label(ui: &egui::Ui, response: &egui::Response, name: &str) {
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
 }

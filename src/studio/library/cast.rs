@@ -1,0 +1,56 @@
+//! From a save to the stage, or to a run that begins with it.
+
+use std::path::Path;
+
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::evolve::Champion;
+use crate::save::library::{Place, load_entry};
+use crate::save::{LoadedChampion, load_generation};
+use crate::studio::evolution::Evolution;
+use crate::studio::exhibit::Exhibit;
+
+/// A name on the stage is cut off after so many characters.
+const LONGEST_LABEL: usize = 40;
+
+/// Begins a run of which the champion of an entry is a parent.
+///
+/// # Errors
+/// The champion cannot be read, or a run cannot begin with it.
+pub fn found_run(evolution: &mut Evolution, place: &Place) -> Result<(), String> {
+    let (loaded, _) = load_entry(place).map_err(|error| error.to_string())?;
+    begin_from(evolution, &loaded.champion)
+}
+
+/// The place where a run is founded on a champion: `evolution.found_run(champion)`.
+fn begin_from(_evolution: &mut Evolution, _champion: &Champion) -> Result<(), String> {
+    Err("A run cannot begin with a saved champion yet.".to_owned())
+}
+
+/// The champion of an entry, to be shown; of a run its best.
+pub fn exhibit_of(place: &Place) -> Result<Exhibit, String> {
+    let (loaded, generation) = load_entry(place).map_err(|error| error.to_string())?;
+    let name = match generation {
+        None => place.name(),
+        Some(generation) => {
+            let origin = &loaded.champion.origin;
+            format!("{}, seed {}, generation {generation}", origin.preset, origin.seed)
+        }
+    };
+    Ok(shown(&loaded, &name, &format!("{place:?}{generation:?}")))
+}
+
+/// The champion of a run's generation, to be shown.
+pub fn generation_of(run: &Path, generation: u32) -> Result<Exhibit, String> {
+    let loaded = load_generation(run, generation).map_err(|error| error.to_string())?;
+    let identity = format!("{:?}{:?}", Place::Run(run.to_owned()), Some(generation));
+    Ok(shown(&loaded, &format!("Generation {generation}"), &identity))
+}
+
+fn shown(loaded: &LoadedChampion, name: &str, identity: &str) -> Exhibit {
+    let mut label: String = name.chars().take(LONGEST_LABEL).collect();
+    if label.len() < name.len() {
+        label.push('…');
+    }
+    Exhibit::of_library(loaded, xxh3_64(identity.as_bytes()), &label)
+}
