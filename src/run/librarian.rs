@@ -21,8 +21,8 @@ pub enum Reading {
     NotListed(String),
     /// What stands in an entry, or what is wrong with it.
     Read(Place, Result<Details, String>),
-    /// There is nothing left to read for now.
-    Done,
+    /// There is nothing left to read for now; since the start the folder was looked at so often.
+    Done(u64),
 }
 
 /// Somebody who reads the library, and reads it again when asked to. Dropping it ends that.
@@ -44,9 +44,18 @@ struct Desk {
 struct Wishes {
     /// List the folder, for it may have changed.
     look_again: bool,
+    /// How often that was asked for.
+    looks: u64,
     /// Read these before all others, the last first.
     urgent: Vec<Place>,
     is_closed: bool,
+}
+
+impl Wishes {
+    fn look(&mut self) {
+        self.look_again = true;
+        self.looks += 1;
+    }
 }
 
 impl Desk {
@@ -62,7 +71,7 @@ impl Librarian {
     /// The thread could not be started.
     pub fn start(saves: SavesFolder) -> std::io::Result<Self> {
         let desk = Arc::new(Desk::default());
-        desk.wishes().look_again = true;
+        desk.wishes().look();
         let (sender, readings) = channel();
         let worker = Worker {
             desk: Arc::clone(&desk),
@@ -70,6 +79,7 @@ impl Librarian {
             sender,
             known: BTreeMap::new(),
             unread: Vec::new(),
+            looks: 0,
         };
         thread::Builder::new().name("librarian".to_owned()).spawn(move || worker.work())?;
         Ok(Self { desk, readings: Mutex::new(readings) })
@@ -84,7 +94,7 @@ impl Librarian {
 
     /// Asks for the folder to be looked at again.
     pub fn look_again(&self) {
-        self.desk.wishes().look_again = true;
+        self.desk.wishes().look();
         self.desk.has_wishes.notify_one();
     }
 
@@ -99,7 +109,8 @@ impl Librarian {
         let readings = self.readings.lock().unwrap_or_else(PoisonError::into_inner);
         let mut found = Vec::new();
         while let Ok(reading) = readings.recv() {
-            let is_last = reading == Reading::Done;
+            // Whoever asked for another look meanwhile waits for that one.
+            let is_last = reading == Reading::Done(self.desk.wishes().looks);
             found.push(reading);
             if is_last {
                 break;
@@ -125,6 +136,8 @@ struct Worker {
     known: BTreeMap<Place, (Entry, bool)>,
     /// What is left to read, the last first.
     unread: Vec<Place>,
+    /// Of how many wishes to look at the folder it has heard.
+    looks: u64,
 }
 
 /// What is to be done next.
@@ -156,7 +169,7 @@ impl Worker {
                 }
                 Next::Rest => {
                     has_told = true;
-                    Some(Reading::Done)
+                    Some(Reading::Done(self.looks))
                 }
             };
             // Nobody may be waiting any more.
@@ -172,6 +185,7 @@ impl Worker {
             return Next::Close;
         }
         if std::mem::take(&mut wishes.look_again) {
+            self.looks = wishes.looks;
             return Next::List;
         }
         let is_unread = |place: &Place| self.known.get(place).is_some_and(|(_, is_read)| !is_read);

@@ -272,6 +272,8 @@ impl StageParams<'_, '_> {
                 let show = followed(&self.exhibits(), &self.programme, &now, next)?;
                 self.present(show);
             }
+            // No matter of the stage.
+            Step::Library { .. } => {}
         }
         Ok(())
     }
@@ -343,13 +345,26 @@ fn apply(
             Command::Undo | Command::Redo => {
                 let way = if *command == Command::Undo { Way::Back } else { Way::Forth };
                 let step = history.take(way);
-                let said = step.as_ref().map_or(way.nothing().to_owned(), |step| way.taken(step));
-                notices.news(said);
-                step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
+                match step {
+                    Some(Step::Library { .. }) => undo_in(&mut library, way, &mut notices),
+                    step => {
+                        let said =
+                            step.as_ref().map_or(way.nothing().to_owned(), |step| way.taken(step));
+                        notices.news(said);
+                        step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
+                    }
+                }
+            }
+            Command::Library(ask @ (Ask::Undo | Ask::Redo)) => {
+                let way = if *ask == Ask::Undo { Way::Back } else { Way::Forth };
+                history.take_of_library(way);
+                undo_in(&mut library, way, &mut notices)
             }
             Command::Library(Ask::FoundRun(place)) => {
                 stage.settle();
                 found_run(&mut evolution, place)
+                    .and_then(|()| evolution.begin_next())
+                    .map(|()| notices.news(format!("A run begins from {}.", place.name())))
             }
             Command::Library(ask) => library.apply(ask, &mut notices).map(|show| {
                 if show.is_some() && stage.leaves_change(command) {
@@ -392,6 +407,20 @@ fn apply(
         history.note(command, before, evolution.next_plan());
         notices.problems(done.err());
     }
+    // An import or an export is done some time after it was asked for.
+    for label in library.take_done() {
+        history.push(Step::Library { label });
+    }
+}
+
+/// Takes back what was done with saves, or does it again.
+fn undo_in(library: &mut Library, way: Way, notices: &mut Notices) -> Result<(), String> {
+    let said = match way {
+        Way::Back => library.undo()?,
+        Way::Forth => library.redo()?,
+    };
+    notices.news(said.unwrap_or_else(|| way.nothing().to_owned()));
+    Ok(())
 }
 
 /// Does what concerns how the window is arranged. Says whether it was that.

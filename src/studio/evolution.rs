@@ -193,11 +193,6 @@ impl Evolution {
         &self.others
     }
 
-    /// The folder of the current run.
-    pub fn folder(&self) -> &Path {
-        &self.source.folder
-    }
-
     /// The best ten of a generation, or of the latest one, the best first; nobody of one that an earlier session has
     /// finished, or of long ago.
     pub fn leaders(&self, generation: Option<u32>) -> &[Champion] {
@@ -291,6 +286,14 @@ impl Evolution {
         }
         self.background()?.run_single_generation();
         Ok(())
+    }
+
+    /// Begins the next run now; the current one can be gone on with later.
+    pub fn begin_next(&mut self) -> Result<(), String> {
+        if self.next_run_differs() {
+            self.prepare_next();
+        }
+        self.start()
     }
 
     /// Prepares the next run. The same run is thrown away, and begins anew; another, which was stopped at
@@ -468,15 +471,6 @@ impl Evolution {
         if next.check_founder().is_err() {
             next.founder = None;
         }
-        self.take_over_if_ready()
-    }
-
-    /// Gives the next run back what it had.
-    pub fn restore_next(&mut self, plan: RunPlan) -> Result<(), String> {
-        if self.engine.next == plan {
-            return Ok(());
-        }
-        self.engine.next = plan;
         self.take_over_if_ready()
     }
 

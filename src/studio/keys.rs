@@ -8,19 +8,20 @@ use super::Frame;
 use super::actions::{Situation, of_keys};
 use super::command::Command;
 use super::now::Now;
+use super::stage_area::StageArea;
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, read.in_set(Frame::TakeIn));
 }
 
-/// Turns the presses of this frame into commands, in their order, unless a text field has the keyboard.
+/// Turns the presses of this frame into commands, in their order, unless a panel has use for them.
 ///
 /// It reads what is printed on the key, not where the key is: on a French keyboard Q is elsewhere.
 fn read(
     mut presses: MessageReader<KeyboardInput>,
     mut held: Local<Held>,
     now: Now,
-    egui: Res<EguiWantsInput>,
+    (egui, area): (Res<EguiWantsInput>, Res<StageArea>),
     mut send: MessageWriter<Command>,
 ) {
     for press in presses.read() {
@@ -35,9 +36,15 @@ fn read(
             continue;
         }
         let situation = now.situation();
-        // Whoever types, types; but Escape leaves what lies over the window, and Control is no letter.
         let leaves = press.logical_key == Key::Escape && situation.is_covered;
-        if egui.wants_any_keyboard_input() && !leaves && !held.is_command(&press.logical_key) {
+        let is_taken = match &press.logical_key {
+            // Whoever types, types; but with Control it is no letter.
+            key if area.has_text_cursor() => !held.is_command(key),
+            // A button or a list that has the keyboard is steered by what is no letter.
+            Key::Character(_) => false,
+            _ => egui.wants_any_keyboard_input(),
+        };
+        if is_taken && !leaves {
             continue;
         }
         send.write_batch(command(&press.logical_key, *held, situation));

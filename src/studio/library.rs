@@ -96,6 +96,8 @@ pub(super) struct Library {
     /// Counts the changes of what there is.
     listings: u64,
     history: History,
+    /// What was done lately: see [`Self::take_done`].
+    done: Vec<String>,
     errands: Vec<Outstanding>,
     /// What there is new, to be pointed out, and how often there was.
     newest: (u64, Option<Place>),
@@ -131,6 +133,7 @@ impl Library {
             revision: 0,
             listings: 0,
             history: History::default(),
+            done: Vec::new(),
             errands: Vec::new(),
             newest: (0, None),
             current: None,
@@ -356,7 +359,15 @@ impl Library {
     fn keep(&mut self, change: Change) {
         self.look_again();
         self.point_out(change.steps.iter().find_map(Step::place));
+        if !change.steps.is_empty() {
+            self.done.push(change.words.clone());
+        }
         self.history.keep(change);
+    }
+
+    /// What was done since this was asked last, in a few words each, to be undone in its order with everything else.
+    pub fn take_done(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.done)
     }
 
     fn point_out(&mut self, place: Option<Place>) {

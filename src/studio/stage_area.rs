@@ -53,6 +53,11 @@ impl StageArea {
             && !self.context.egui_is_using_pointer()
     }
 
+    /// Whether something is being typed in a panel.
+    pub fn has_text_cursor(&self) -> bool {
+        self.context.text_edit_focused()
+    }
+
     /// Width over height.
     pub fn aspect(&self) -> f32 {
         let size = self.rect.size();

@@ -34,13 +34,18 @@ pub(super) enum Step {
         /// What was changed, by its name: further changes of it within one drag belong to this step.
         subject: String,
     },
+    /// Something was done with saves; the library knows what.
+    Library {
+        /// What it was, in a few words: "deleted climber".
+        label: String,
+    },
 }
 
 impl Step {
     /// What was changed, in a few words.
     pub fn label(&self) -> &str {
         match self {
-            Self::Plan { label, .. } => label,
+            Self::Plan { label, .. } | Self::Library { label } => label,
         }
     }
 }
@@ -139,6 +144,23 @@ impl History {
             Way::Forth => self.done.push_back(step.clone()),
         }
         Some(step)
+    }
+
+    /// Takes the next step one way that is about saves, whatever else was done after it.
+    pub fn take_of_library(&mut self, way: Way) {
+        let is_one = |step: &Step| matches!(step, Step::Library { .. });
+        match way {
+            Way::Back => {
+                let place = self.done.iter().rposition(is_one);
+                let step = place.and_then(|place| self.done.remove(place));
+                self.undone.extend(step);
+            }
+            Way::Forth => {
+                if let Some(place) = self.undone.iter().rposition(is_one) {
+                    self.done.push_back(self.undone.remove(place));
+                }
+            }
+        }
     }
 
     /// What the next step one way would undo or redo, in a few words.

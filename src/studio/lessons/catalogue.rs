@@ -22,10 +22,12 @@ pub(in crate::studio) struct Lesson {
 /// Something a lesson shows.
 #[derive(Debug)]
 pub(in crate::studio) enum Scene {
-    /// The saved champion in several worlds, on the stage.
+    /// A champion in several worlds, on the stage.
     Lanes {
         /// What its button says.
         label: &'static str,
+        /// Which of those that come with the program.
+        champion: &'static str,
         /// The worlds.
         lanes: &'static [Side],
     },
@@ -74,38 +76,43 @@ const fn run(
 }
 
 /// The champion alone, as it was found.
-const AS_FOUND: Scene =
-    Scene::Lanes { label: "The champion as it was found", lanes: &[lane("as found", &[])] };
+const AS_FOUND: Scene = Scene::Lanes {
+    label: "The champion as it was found",
+    champion: "climber",
+    lanes: &[lane("as found", &[])],
+};
 
 /// All lessons.
 pub(in crate::studio) const LESSONS: [Lesson; 5] = [
     Lesson {
         title: "Friction: too little, and too much",
         question: "Why did tuning the ground take them so long?",
-        story: "The first stair climbers were tuned by eye. On ice nothing pushes off, so more grip looked \
-                better; with far too much, blocks stuck to the edge of a step instead of sliding over it. \
-                On the stage: one and the same snake on ice, as it was found, and on glue.",
+        story: "The ground of the first stair climbers was tuned by eye, with no help. On ice nothing pushes off. \
+                So is more grip always better? On the stage: one and the same snake on ice, as it was found, \
+                and on something like glue.",
         to_try: "Open the World panel and drag Friction; the same snake begins again beside itself. Or \
                  let these show it.",
         look_for: "Where each one ends. The torques are the same in all lanes; only the ground differs.",
-        answer: "What evolved for one ground fits that ground. Too little friction slips, too much sticks, and \
-                 neither end is \"better\". So a surface has its numbers here, and each of them shows at once \
-                 what it does.",
+        answer: "Where too little slips, too much sticks: a block that cannot slide over the edge of a step pulls \
+                 the others back. And what evolved for one ground fits that ground; a little more or less it can \
+                 bear. So a surface has its numbers here, and each of them shows at once what it does.",
         scenes: &[
             Scene::Lanes {
                 label: "Ice, as found, glue",
+                champion: "robust",
                 lanes: &[
                     lane("friction 0.1", &[("surface.friction", "0.1")]),
                     lane("as found", &[]),
-                    lane("friction 20", &[("surface.friction", "20")]),
+                    lane("friction 5", &[("surface.friction", "5")]),
                 ],
             },
             Scene::Lanes {
                 label: "A little less, a little more",
+                champion: "robust",
                 lanes: &[
-                    lane("friction 0.5", &[("surface.friction", "0.5")]),
+                    lane("friction 0.7", &[("surface.friction", "0.7")]),
                     lane("as found", &[]),
-                    lane("friction 2", &[("surface.friction", "2")]),
+                    lane("friction 1.3", &[("surface.friction", "1.3")]),
                 ],
             },
         ],
@@ -125,6 +132,7 @@ pub(in crate::studio) const LESSONS: [Lesson; 5] = [
         scenes: &[
             Scene::Lanes {
                 label: "As found, slower, faster pictures",
+                champion: "climber",
                 lanes: &[
                     lane("as found", &[]),
                     lane("45 steps a second", &[("physics.steps_per_s", "45")]),

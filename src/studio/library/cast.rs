@@ -4,7 +4,6 @@ use std::path::Path;
 
 use xxhash_rust::xxh3::xxh3_64;
 
-use crate::evolve::Champion;
 use crate::save::library::{Place, load_entry};
 use crate::save::{LoadedChampion, load_generation};
 use crate::studio::evolution::Evolution;
@@ -19,12 +18,7 @@ const LONGEST_LABEL: usize = 40;
 /// The champion cannot be read, or a run cannot begin with it.
 pub fn found_run(evolution: &mut Evolution, place: &Place) -> Result<(), String> {
     let (loaded, _) = load_entry(place).map_err(|error| error.to_string())?;
-    begin_from(evolution, &loaded.champion)
-}
-
-/// The place where a run is founded on a champion: `evolution.found_run(champion)`.
-fn begin_from(_evolution: &mut Evolution, _champion: &Champion) -> Result<(), String> {
-    Err("A run cannot begin with a saved champion yet.".to_owned())
+    evolution.found_run(&loaded.champion, &place.name())
 }
 
 /// The champion of an entry, to be shown; of a run its best.

@@ -114,7 +114,7 @@ impl Library {
 
     pub(super) fn learn(&mut self, reading: Reading) {
         match reading {
-            Reading::Done => self.unread = 0,
+            Reading::Done(_) => self.unread = 0,
             Reading::NotListed(problem) => {
                 self.problem = Some(problem);
                 self.is_listed = true;

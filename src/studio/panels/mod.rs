@@ -44,6 +44,7 @@ use super::exhibit::{Exhibit, Source};
 use super::hands::Hands;
 use super::lane::Lane;
 use super::lessons::{LESSONS, Lessons};
+use super::library::Library;
 use super::overlay::Overlays;
 use super::playback::Playback;
 use super::stage::{Programme, end_s};
@@ -59,6 +60,7 @@ use evolution::EvolutionPanel;
 use key_overlay::key_overlay;
 use layout::style;
 use lessons::lessons;
+use library::LibraryPanel;
 use limb_card::limb_card;
 use menu::menu;
 use palette::Palette;
@@ -90,6 +92,7 @@ struct Panels {
     fitness: FitnessChart,
     charts: ChartsPanel,
     champions: ChampionsPanel,
+    library: LibraryPanel,
     world: WorldPanel,
     timeline: TimelinePanel,
     palette: Palette,
@@ -106,6 +109,7 @@ impl FromWorld for Panels {
             fitness: FitnessChart::default(),
             charts: ChartsPanel::new(comparison),
             champions: ChampionsPanel,
+            library: LibraryPanel::default(),
             world: WorldPanel::default(),
             timeline: TimelinePanel::default(),
             palette: Palette::default(),
@@ -148,6 +152,7 @@ struct Seen<'w, 's> {
     on_stage: OnStage<'w, 's>,
     theme: Res<'w, look::Theme>,
     lessons: Res<'w, Lessons>,
+    library: Res<'w, Library>,
 }
 
 fn draw(
@@ -290,7 +295,7 @@ impl Viewer<'_, '_, '_> {
                 panels.champions.ui(ui, &opening.0, reports, &shown, leaders, asked);
             }
             PanelKind::Lessons => lessons(ui, self.seen.lessons.view(), asked),
-            PanelKind::Library => {}
+            PanelKind::Library => panels.library.ui(ui, &self.seen.library, asked),
         }
     }
 }
@@ -311,7 +316,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
         self.panels.places.push((*kind, ui.clip_rect()));
         if *kind == PanelKind::Stage {
             self.stage(ui);
-        } else if *kind == PanelKind::Champions {
+        } else if [PanelKind::Champions, PanelKind::Library].contains(kind) {
             self.panel(ui, *kind);
         } else {
             egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.panel(ui, *kind));

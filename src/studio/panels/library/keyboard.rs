@@ -35,9 +35,6 @@ impl LibraryPanel {
                 Press::D if held.command => {
                     acts(|act| matches!(act, Act::Send(Command::Library(Ask::Duplicate(_)))))
                 }
-                Press::Z if held.command && held.shift => Some(of(Ask::Redo)),
-                Press::Z if held.command => Some(of(Ask::Undo)),
-                Press::Y if held.command => Some(of(Ask::Redo)),
                 Press::A if held.command => {
                     let rows = self.order.rows();
                     self.selection.all(rows.iter().map(|row| library.items()[*row].place()));
@@ -79,8 +76,4 @@ impl LibraryPanel {
         }
         self.scroll_to = Some(place);
     }
-}
-
-fn of(ask: Ask) -> Act {
-    Act::Send(Command::Library(ask))
 }

@@ -63,7 +63,7 @@ fn library() -> Library {
         Reading::Read(file("beta"), champion),
         Reading::Read(file("broken"), Err("cut off at line 3".to_owned())),
         Reading::Read(run, Ok(stopped_run())),
-        Reading::Done,
+        Reading::Done(_),
     ])
 }
 
@@ -217,8 +217,6 @@ fn keys_alone_do_all_that_the_mouse_does() {
         press(harness, none, Press::Home);
         press(harness, Modifiers::COMMAND, Press::D);
         press(harness, none, Press::Delete);
-        press(harness, Modifiers::COMMAND, Press::Z);
-        press(harness, Modifiers::COMMAND | Modifiers::SHIFT, Press::Z);
         press(harness, none, Press::End);
         press(harness, none, Press::F2);
     });
@@ -227,8 +225,6 @@ fn keys_alone_do_all_that_the_mouse_does() {
         Ask::Race(vec![file("alpha"), file("beta")]),
         Ask::Duplicate(vec![file("alpha")]),
         Ask::Delete(vec![file("alpha")]),
-        Ask::Undo,
-        Ask::Redo,
     ];
     assert_eq!(found, expected, "what comes with the program is last, and keeps its name");
 }
