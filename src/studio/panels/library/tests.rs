@@ -63,7 +63,7 @@ fn library() -> Library {
         Reading::Read(file("beta"), champion),
         Reading::Read(file("broken"), Err("cut off at line 3".to_owned())),
         Reading::Read(run, Ok(stopped_run())),
-        Reading::Done(_),
+        Reading::Done(1),
     ])
 }
 
