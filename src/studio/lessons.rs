@@ -257,7 +257,9 @@ fn exhibits(champion: &'static str, lanes: &[Side]) -> Result<Vec<Exhibit>, Stri
             let settings = Settings { trial: original.trial().clone(), ..Settings::default() };
             let settings = with_fields(&settings, changes.iter().copied())
                 .map_err(|error| error.to_string())?;
-            let exhibit = original.in_world(&settings.trial, (*name).to_owned());
+            let same = original.clone().named("The same snake".to_owned());
+            let changed = same.in_world(&settings.trial, (*name).to_owned());
+            let exhibit = if changed.is_changed() { changed } else { original.clone() };
             exhibit.check().map_err(|error| error.to_string())?;
             Ok(exhibit)
         })

@@ -69,8 +69,10 @@ pub(in crate::studio) struct Layout {
 
 /// A window that is as wide has room for panels on both sides of the stage, in points.
 const WIDE: f32 = 1500.0;
-/// Width of the panels at the left, in points.
-const LEFT: f32 = 348.0;
+/// A window that is as high has room for the champions below the other panels, in points.
+const HIGH: f32 = 800.0;
+/// Width of the panels at the left, in points: all their names fit.
+const LEFT: f32 = 384.0;
 /// Width of the panels at the right of a wide window, in points.
 const RIGHT: f32 = 420.0;
 
@@ -85,9 +87,8 @@ impl Layout {
     fn at_first(size: egui::Vec2) -> DockState<PanelKind> {
         let mut state = DockState::new(vec![PanelKind::Stage]);
         let surface = state.main_surface_mut();
-        let is_wide = size.x >= WIDE;
-        let mut left = vec![PanelKind::Run, PanelKind::World, PanelKind::Charts];
-        left.extend([PanelKind::Library, PanelKind::Lessons]);
+        let (is_wide, is_high) = (size.x >= WIDE, size.y >= HIGH);
+        let mut left = PanelKind::ALL.to_vec();
         let mut stage = NodeIndex::root();
         if is_wide {
             left.retain(|kind| ![PanelKind::Charts, PanelKind::Library].contains(kind));
@@ -96,8 +97,11 @@ impl Layout {
         }
         let room = if is_wide { size.x - RIGHT } else { size.x };
         let share = (LEFT / room.max(1.0)).min(0.5);
-        let [_, left] = surface.split_left(stage, share, left);
-        let _ = surface.split_below(left, 0.68, vec![PanelKind::Champions]);
+        left.retain(|kind| !is_high || *kind != PanelKind::Champions);
+        let [_, node] = surface.split_left(stage, share, left);
+        if is_high {
+            let _ = surface.split_below(node, 0.68, vec![PanelKind::Champions]);
+        }
         state
     }
 
@@ -258,7 +262,7 @@ mod tests {
 
     fn laid_out(width: f32) -> Layout {
         let mut layout = Layout::default();
-        layout.state_in(egui::vec2(width, 720.0));
+        layout.state_in(egui::vec2(width, width * 9.0 / 16.0));
         layout
     }
 
