@@ -1,7 +1,7 @@
 //! Where the panels are: beside the stage, stacked, folded up, floating, as a person has put them.
 
 use bevy_egui::egui;
-use egui_dock::{DockState, NodeIndex, Style, SurfaceIndex, TabPath};
+use egui_dock::{DockState, Node, NodeIndex, Style, SurfaceIndex, TabPath};
 use serde::{Deserialize, Serialize};
 
 use crate::studio::look;
@@ -73,6 +73,8 @@ const WIDE: f32 = 1500.0;
 const HIGH: f32 = 800.0;
 /// Width of the panels at the left, in points: all their names fit.
 const LEFT: f32 = 384.0;
+/// The stage has at least this share of what it divides with the panels beside it.
+const LEAST_STAGE: f32 = 0.4;
 /// Width of the panels at the right of a wide window, in points.
 const RIGHT: f32 = 420.0;
 
@@ -96,7 +98,7 @@ impl Layout {
             [stage, _] = surface.split_right(stage, 1.0 - RIGHT / size.x, right);
         }
         let room = if is_wide { size.x - RIGHT } else { size.x };
-        let share = (LEFT / room.max(1.0)).min(0.5);
+        let share = (LEFT / room.max(1.0)).min(1.0 - LEAST_STAGE);
         left.retain(|kind| !is_high || *kind != PanelKind::Champions);
         let [_, node] = surface.split_left(stage, share, left);
         if is_high {
@@ -117,11 +119,38 @@ impl Layout {
             self.is_to_be_laid_out = false;
             self.first.take().into_iter().for_each(|kind| self.open(kind));
         }
+        self.keep_widths(size.x);
         // The stage alone needs no tab to choose it by; with company it does.
         for (_, leaf) in self.state.iter_leaves_mut() {
             leaf.tab_bar_hidden = leaf.tabs == [PanelKind::Stage];
         }
         &mut self.state
+    }
+
+    /// In a window of another width than before the panels beside the stage stay as wide as they were, in points.
+    fn keep_widths(&mut self, width: f32) {
+        let Some((stage, _)) = self.state.find_main_surface_tab(&PanelKind::Stage) else { return };
+        let tree = self.state.main_surface_mut();
+        let before = tree.root_node().and_then(Node::rect).map_or(0.0, |rect| rect.width());
+        if !before.is_finite() || before <= 0.0 || (before - width).abs() < 1.0 {
+            return;
+        }
+        // From the root to the stage.
+        let up = std::iter::successors(Some(stage), |node| node.parent());
+        let mut way: Vec<NodeIndex> = up.collect();
+        way.reverse();
+        let (mut before, mut now) = (before, width);
+        for pair in way.windows(2) {
+            let is_first = pair[1].is_left();
+            if let Node::Horizontal(split) = &mut tree[pair[0]] {
+                let of_stage = |fraction: f32| if is_first { fraction } else { 1.0 - fraction };
+                let share = of_stage(split.fraction);
+                let beside = before * (1.0 - share);
+                let next = (1.0 - beside / now.max(1.0)).clamp(LEAST_STAGE, 0.97);
+                split.fraction = of_stage(next);
+                (before, now) = (before * share, now * next);
+            }
+        }
     }
 
     /// Whether a panel is to be seen, or could be by a click on its name.
@@ -289,6 +318,24 @@ mod tests {
             assert!(layout.has(kind));
         }
         assert!(is_sound(&layout.state));
+    }
+
+    #[test]
+    fn in_a_wider_window_the_stage_grows_and_the_panels_stay() {
+        let left = |layout: &Layout| {
+            let path = layout.state.find_tab(&PanelKind::Run).expect("there");
+            let root = layout.state.main_surface().root_node().expect("a root");
+            let Node::Horizontal(split) = root else { panic!("split") };
+            assert_eq!(path.node, NodeIndex(1));
+            split.fraction
+        };
+        let mut layout = laid_out(1280.0);
+        assert!((left(&layout) * 1280.0 - LEFT).abs() < 1.0);
+        // Drawing says where it was drawn.
+        let drawn = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 700.0));
+        layout.state.main_surface_mut().root_node_mut().expect("a root").set_rect(drawn);
+        layout.state_in(egui::vec2(1920.0, 1080.0));
+        assert!((left(&layout) * 1920.0 - LEFT).abs() < 1.0);
     }
 
     #[test]

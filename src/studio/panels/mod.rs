@@ -199,7 +199,8 @@ fn draw(
             },
         );
         let style = style(&root);
-        let size = root.available_size();
+        // Another size of the panels takes effect in the next frame.
+        let size = root.available_size() * (context.zoom_factor() / desk.scale);
         DockArea::new(desk.layout.state_in(size))
             .style(style)
             .hidable_tab_bars(true)
