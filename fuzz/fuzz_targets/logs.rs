@@ -32,7 +32,7 @@ fuzz_target!(|input: (u8, Vec<u8>)| {
     let error = match how & 6 {
         0 => parse_records(path, &bytes, &PLAN.0).err(),
         2 => parse_evaluations(path, &bytes, 1, &PLAN.0).err(),
-        4 => parse_lineage(path, &bytes, &PLAN.0.settings).err(),
+        4 => parse_lineage(path, &bytes, &PLAN.0).err(),
         _ => parse_changes(path, &bytes, &PLAN.0).err(),
     };
     assert!(!error.is_some_and(|error| error.to_string().contains('\n')));

@@ -166,11 +166,12 @@ impl Experiment {
 
     /// Makes the changes that were written down for the next generation.
     fn take_up_changes(&mut self) {
-        let next = self.next_plan();
-        if let Cow::Owned(plan) = next {
-            self.plan = plan;
+        let next = self.finished + 1;
+        // One by one, as they were made: there and back is not the same as never.
+        while let Some(change) = self.ahead.pop_front_if(|change| change.generation <= next) {
+            // All were found to be allowed before.
+            let _ = self.plan.change(&change);
             self.strategy.amend(&self.plan);
-            self.ahead.retain(|change| change.generation > self.finished + 1);
         }
     }
 

@@ -423,6 +423,29 @@ mod tests {
     }
 
     #[test]
+    fn a_setting_changed_there_and_back_counts_the_same_after_a_resume() {
+        let plan = changing_plan(StrategyKind::Halving);
+        let hash = |is_stopped: bool| {
+            let saves = tempfile::tempdir().expect("a folder");
+            let folder = SavesFolder::find(Some(saves.path()));
+            let source = RunSource::in_saves(&folder, plan.clone(), Earlier::Keep);
+            let mut run = source.clone().open("a test").expect("opened");
+            evolve(&mut run, 1);
+            for parents in ["1", "4"] {
+                let field = "evolution.halving.parents";
+                run.keeper.amend(&mut run.experiment, field, parents).expect("allowed");
+            }
+            if is_stopped {
+                drop(run);
+                run = source.open("a test").expect("opened");
+            }
+            evolve(&mut run, u32::MAX);
+            run.experiment.run_hash()
+        };
+        assert_eq!(hash(true), hash(false));
+    }
+
+    #[test]
     fn a_changed_run_that_is_stopped_after_any_generation_goes_on_bit_for_bit() {
         for (strategy, changes) in CHANGES {
             let plan = changing_plan(strategy);

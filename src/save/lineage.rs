@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::SaveError;
 use super::log::{parse_log, read_log_bytes};
 use crate::check::{Invalid, within};
-use crate::evolve::{Parents, Place, Settings};
+use crate::evolve::{Parents, Place, RunPlan};
 use crate::score::FITNESS_RANGE;
 
 pub const LINEAGE_FILE: &str = "lineage.jsonl";
@@ -80,9 +80,9 @@ impl From<ParentsRecord> for Parents {
 }
 
 /// What is known of the first `finished` generations of a run's folder; nothing, if it is damaged.
-pub fn read_lineage(folder: &Path, finished: u32, settings: &Settings) -> Vec<LineageRecord> {
+pub fn read_lineage(folder: &Path, finished: u32, plan: &RunPlan) -> Vec<LineageRecord> {
     let path = folder.join(LINEAGE_FILE);
-    let read = read_log_bytes(&path).and_then(|bytes| parse_lineage(&path, &bytes, settings));
+    let read = read_log_bytes(&path).and_then(|bytes| parse_lineage(&path, &bytes, plan));
     let mut records = read.unwrap_or_default();
     records.retain(|record| record.generation <= finished);
     records
@@ -95,14 +95,14 @@ pub fn read_lineage(folder: &Path, finished: u32, settings: &Settings) -> Vec<Li
 pub fn parse_lineage(
     path: &Path,
     bytes: &[u8],
-    settings: &Settings,
+    plan: &RunPlan,
 ) -> Result<Vec<LineageRecord>, SaveError> {
     let records: Vec<LineageRecord> = parse_log(path, bytes)?;
-    let last = settings.evolution.budget().saturating_sub(1);
+    let last = plan.budget().saturating_sub(1);
     let mut next = 1;
     let mut check = |record: &LineageRecord| -> Result<(), Invalid> {
         let generation = record.generation;
-        within("generation", generation, next..=settings.evolution.generations)?;
+        within("generation", generation, next..=plan.settings.evolution.generations)?;
         next = generation + 1;
         within("spread", record.spread.len(), 0..=MOST_SPREAD)?;
         record.spread.iter().try_for_each(|&x| within("spread", x, FITNESS_RANGE))?;
@@ -110,7 +110,9 @@ pub fn parse_lineage(
             within("individual", u64::from(*individual), 0..=last)?;
             fitness.map_or(Ok(()), |fitness| within("fitness", fitness, FITNESS_RANGE))?;
             for parent in Parents::from(*parents).places() {
-                within("parent's generation", parent.generation, 1..=generation.max(2) - 1)?;
+                // Nobody comes from a generation of its own, or a line of descent would have no end.
+                let earlier = 1..=generation.saturating_sub(1);
+                within("parent's generation", parent.generation, earlier)?;
                 within("parent", u64::from(parent.individual), 0..=last)?;
             }
         }
@@ -124,12 +126,17 @@ pub fn parse_lineage(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::Settings;
     use crate::save::log::Log;
 
     fn record(generation: u32, parents: Parents) -> LineageRecord {
         let born =
             vec![BornRecord(3, Some(-7.1), parents.into()), BornRecord(0, None, parents.into())];
         LineageRecord { generation, spread: vec![-8.0, -7.1], born }
+    }
+
+    fn plan() -> RunPlan {
+        RunPlan::new("test", 1, Settings::default())
     }
 
     fn place(generation: u32) -> Place {
@@ -139,8 +146,8 @@ mod tests {
     #[test]
     fn it_comes_back_as_far_as_the_run_has_come() {
         let folder = tempfile::tempdir().expect("a folder");
-        let settings = Settings::default();
-        assert_eq!(read_lineage(folder.path(), 9, &settings), []);
+        let plan = plan();
+        assert_eq!(read_lineage(folder.path(), 9, &plan), []);
         let records = [
             record(1, Parents::Newborn),
             record(2, Parents::One(place(1))),
@@ -150,21 +157,22 @@ mod tests {
         ];
         let mut log = Log::open(&folder.path().join(LINEAGE_FILE), 0).expect("opened");
         records.iter().for_each(|record| log.append_lightly(record).expect("written"));
-        assert_eq!(read_lineage(folder.path(), 6, &settings), records);
-        assert_eq!(read_lineage(folder.path(), 4, &settings), records[..3]);
+        assert_eq!(read_lineage(folder.path(), 6, &plan), records);
+        assert_eq!(read_lineage(folder.path(), 4, &plan), records[..3]);
     }
 
     #[test]
     fn what_makes_no_sense_is_left_out() {
-        let settings = Settings::default();
+        let plan = plan();
         let whole = |record: &LineageRecord| {
             let folder = tempfile::tempdir().expect("a folder");
             let mut log = Log::open(&folder.path().join(LINEAGE_FILE), 0).expect("opened");
             log.append_lightly(record).expect("written");
-            read_lineage(folder.path(), 9, &settings).len()
+            read_lineage(folder.path(), 9, &plan).len()
         };
         assert_eq!(whole(&record(2, Parents::One(place(1)))), 1);
         assert_eq!(whole(&record(2, Parents::One(place(2)))), 0, "its own parent");
+        assert_eq!(whole(&record(1, Parents::One(place(1)))), 0, "a line without an end");
         assert_eq!(whole(&record(7, Parents::Newborn)), 0, "a run of six generations");
         let spread = vec![0.0; MOST_SPREAD + 1];
         assert_eq!(whole(&LineageRecord { spread, ..record(1, Parents::Newborn) }), 0);

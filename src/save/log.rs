@@ -66,9 +66,12 @@ impl Log {
             return Err(SaveError::TooLarge { path, limit_mib });
         }
         self.file.seek(SeekFrom::Start(self.end)).map_err(unwritable)?;
-        self.file.write_all(line.as_bytes()).map_err(unwritable)?;
-        if to_disk {
-            self.file.sync_data().map_err(unwritable)?;
+        let written = self.file.write_all(line.as_bytes());
+        let written = written.and_then(|()| if to_disk { self.file.sync_data() } else { Ok(()) });
+        if let Err(error) = written {
+            // What was said not to be written shall not count later.
+            let _ = self.file.set_len(self.end);
+            return Err(unwritable(error));
         }
         self.end = end;
         Ok(())

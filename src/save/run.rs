@@ -330,7 +330,7 @@ impl Progress {
                 let next = records.len() as u32 + 1;
                 read_evaluations(folder, next, &plan_in(next)?)?
             },
-            lineage: read_lineage(folder, records.len() as u32, &plan_in(u32::MAX)?.settings),
+            lineage: read_lineage(folder, records.len() as u32, &plan_in(u32::MAX)?),
             records,
             changes,
         })

@@ -202,7 +202,7 @@ fn no_log_stops_the_program() {
     let untouched = include_str!("../../fuzz/corpus/logs/changes");
     assert_eq!(changes(Path::new("x"), untouched).expect("allowed").len(), 4);
     read_all("logs", changes);
-    let lineage = |path: &Path, text: &str| parse_lineage(path, &lines(text), &plan.settings);
+    let lineage = |path: &Path, text: &str| parse_lineage(path, &lines(text), &plan);
     let untouched = include_str!("../../fuzz/corpus/logs/lineage");
     assert_eq!(lineage(Path::new("x"), untouched).expect("allowed").len(), 2);
     read_all("logs", records);
