@@ -168,6 +168,11 @@ impl Background {
         self.control.resume();
     }
 
+    /// Whether it will pause after the current generation.
+    pub fn is_single_generation(&self) -> bool {
+        self.pause_after_generation.load(Ordering::SeqCst)
+    }
+
     /// Holds the workers.
     pub fn pause(&self) {
         self.control.pause();

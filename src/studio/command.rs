@@ -295,6 +295,9 @@ fn apply(
     for command in asked.read() {
         let before = evolution.next_plan().clone();
         let done = match command {
+            command if lessons.view().is_some() && begins_something(command) => {
+                Err(LESSON.to_owned())
+            }
             Command::Start => {
                 if evolution.status() == Status::Finished {
                     stage.settle();
@@ -344,21 +347,27 @@ fn apply(
             }
             Command::Undo | Command::Redo => {
                 let way = if *command == Command::Undo { Way::Back } else { Way::Forth };
-                let step = history.take(way);
-                match step {
-                    Some(Step::Library { .. }) => undo_in(&mut library, way, &mut notices),
-                    step => {
-                        let said =
-                            step.as_ref().map_or(way.nothing().to_owned(), |step| way.taken(step));
-                        notices.news(said);
-                        step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
+                if history.next_is_of_library(way) {
+                    let done = undo_in(&mut library, way, &mut notices);
+                    if done.is_ok() {
+                        history.take(way);
                     }
+                    done
+                } else {
+                    let step = history.take(way);
+                    let said =
+                        step.as_ref().map_or(way.nothing().to_owned(), |step| way.taken(step));
+                    notices.news(said);
+                    step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
                 }
             }
             Command::Library(ask @ (Ask::Undo | Ask::Redo)) => {
                 let way = if *ask == Ask::Undo { Way::Back } else { Way::Forth };
-                history.take_of_library(way);
-                undo_in(&mut library, way, &mut notices)
+                let done = undo_in(&mut library, way, &mut notices);
+                if done.is_ok() {
+                    history.take_of_library(way);
+                }
+                done
             }
             Command::Library(Ask::FoundRun(place)) => {
                 stage.settle();
@@ -379,7 +388,7 @@ fn apply(
                 desk.layout.open(PanelKind::Lessons);
                 let programme = stage.programme.clone();
                 let on_show = Show { exhibits: stage.exhibits(), programme };
-                let shown = lessons.begin(*index, &mut evolution, on_show, &history);
+                let shown = lessons.begin(*index, &mut evolution, on_show, &mut history);
                 shown.map(|show| stage.present(show))
             }
             Command::TryLesson(scene) => lessons.try_out(*scene).map(|show| stage.present(show)),
@@ -411,6 +420,31 @@ fn apply(
     for label in library.take_done() {
         history.push(Step::Library { label });
     }
+    let (undoable, redoable) = library.steps();
+    if history.agree_with_library(undoable, redoable) > 0 {
+        // Something else was done since: it cannot be done again in its place.
+        library.forget_undone();
+    }
+}
+
+/// Why nothing is evolved meanwhile.
+const LESSON: &str =
+    "A lesson is going on, and your own run waits: \"Back to my own run\" ends it.";
+
+/// Whether a command would make something else of one's own run.
+fn begins_something(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Start
+            | Command::SingleGeneration
+            | Command::Reset
+            | Command::Continue(_)
+            | Command::Found(_)
+            | Command::ForgetFounder
+            | Command::SetSeed(_)
+            | Command::ChangeRun { .. }
+            | Command::Library(Ask::FoundRun(_))
+    )
 }
 
 /// Takes back what was done with saves, or does it again.
@@ -607,6 +641,27 @@ mod tests {
         friction_after(&mut app, &[wrong, Command::SetThreads(0)]);
         assert_eq!(app.world().resource::<History>().next(Way::Back), None);
         assert_eq!(app.world().resource::<Notices>().len(), 2);
+    }
+
+    #[test]
+    fn within_a_lesson_nothing_is_made_of_ones_own_run_and_it_is_given_back() {
+        let mut app = app();
+        let friction = friction_after(&mut app, &[]);
+        let plan = |app: &App| app.world().resource::<Evolution>().next_plan().clone();
+        let number = |app: &App| app.world().resource::<Evolution>().number();
+        let set = |text: &str| Command::SetField {
+            field: "trial.surface.friction".to_owned(),
+            text: text.to_owned(),
+        };
+        friction_after(&mut app, &[set("0.5")]);
+        let (own, run) = (plan(&app), number(&app));
+        friction_after(&mut app, &[Command::BeginLesson(0), Command::Reset, Command::Start]);
+        assert_eq!(number(&app), run, "refused, in a sentence");
+        assert!(app.world().resource::<Notices>().len() > 0);
+        friction_after(&mut app, &[set("0.2"), Command::Undo, Command::Undo, set("0.3")]);
+        friction_after(&mut app, &[Command::LeaveLesson]);
+        assert_eq!(plan(&app), own);
+        assert_eq!(friction_after(&mut app, &[Command::Undo]), friction, "one's own step");
     }
 
     #[test]

@@ -15,7 +15,7 @@ use super::engine::Engine;
 use super::export::{self, Export};
 use super::presets::Presets;
 use crate::check::Invalid;
-use crate::evolve::{Champion, Origin, RunPlan, Settings, fields, with_field, with_fields};
+use crate::evolve::{Champion, Origin, RunPlan, Settings, fields, with_fields};
 use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
 use crate::save::{Earlier, Preset, RunSummary, load_preset};
 use crate::score::evaluate;
@@ -67,6 +67,8 @@ pub(super) struct Evolution {
     /// The best ten of each of the latest generations of this session, the earliest first.
     leaders: VecDeque<Vec<Champion>>,
     run_hash: Option<u64>,
+    /// Whether a lesson has the stage and the settings: see [`Self::lend`].
+    is_lent: bool,
 }
 
 pub(super) fn plugin(app: &mut App) {
@@ -103,6 +105,7 @@ impl Evolution {
             others: Others::default(),
             leaders: VecDeque::new(),
             run_hash: None,
+            is_lent: false,
         }
     }
 
@@ -319,7 +322,13 @@ impl Evolution {
         let before = self.background.take().or(self.before.take());
         let (number, stopped) = (self.number + 1, self.stopped.take());
         let others = std::mem::take(&mut self.others);
-        *self = Self { number, before, others, ..Self::prepared(source, self.engine.clone()) };
+        *self = Self {
+            number,
+            before,
+            others,
+            is_lent: self.is_lent,
+            ..Self::prepared(source, self.engine.clone())
+        };
         if stopped.is_some() {
             // Somebody may be looking at the list: the run that was replaced belongs into it. What cannot
             // be listed now is listed when it is asked for again.
@@ -381,37 +390,49 @@ impl Evolution {
     }
 
     /// Sets one setting of the next run, by its name; a run that has not begun takes it at once, and one that is under
-    /// way from its next generation on, if that setting may change.
+    /// way from its next generation on, if it may.
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
+        self.set_fields(&[(field.to_owned(), text.to_owned())])
+    }
+
+    /// Sets several settings of the next run at once, as [`Self::set_field`] does.
+    pub fn set_fields(&mut self, changes: &[(String, String)]) -> Result<(), String> {
+        let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
         let next = &self.engine.next;
         let settings =
-            with_field(&next.settings, field, text).map_err(|e: Invalid| e.to_string())?;
-        let plan = RunPlan { settings, ..next.clone() };
+            with_fields(&next.settings, changes).map_err(|error: Invalid| error.to_string())?;
+        self.set_next_plan(RunPlan { settings, ..next.clone() })
+    }
+
+    /// Gives the next run another plan; a run that has not begun takes it at once. What may change in a run under way
+    /// changes there too, unless the plan is that of another preset.
+    pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
         plan.check_founder().map_err(|error| {
             format!("The next run begins from a champion, whom this does not suit: {error}")
         })?;
-        self.engine.next = plan;
-        // A name may be typed in short.
-        let is_it = |name: &String| name == field || name.ends_with(&format!(".{field}"));
-        let full = fields(self.settings()).into_iter().map(|(name, _)| name).find(is_it);
-        if let Some(field) = full {
-            self.change_running_too(&field, text)?;
+        let before = std::mem::replace(&mut self.engine.next, plan);
+        let next = &self.engine.next;
+        if before == *next {
+            return Ok(());
+        }
+        if before.preset == next.preset && !self.is_lent {
+            let known = fields(&before.settings);
+            let changed = fields(&next.settings).into_iter().filter(|field| !known.contains(field));
+            for (field, text) in changed.collect::<Vec<_>>() {
+                self.change_running_too(&field, &text)?;
+            }
         }
         self.take_over_if_ready()
     }
 
-    /// Sets several settings of the next run at once, checked after the last.
-    pub fn set_fields(&mut self, changes: &[(String, String)]) -> Result<(), String> {
-        let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
-        self.engine.next.settings = with_fields(&self.engine.next.settings, changes)
-            .map_err(|error: Invalid| error.to_string())?;
-        self.take_over_if_ready()
+    /// Lends stage and settings to a lesson, or takes them back: meanwhile the run under way is changed by nothing.
+    pub fn lend(&mut self, is_lent: bool) {
+        self.is_lent = is_lent;
     }
 
-    /// Gives the next run another plan; a run that has not begun takes it at once.
-    pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
-        self.engine.next = plan;
-        self.take_over_if_ready()
+    /// Whether the run under way will hold after its current generation.
+    pub fn is_single_generation(&self) -> bool {
+        self.background.as_ref().is_some_and(Background::is_single_generation)
     }
 
     /// The presets that can be chosen.

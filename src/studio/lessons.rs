@@ -60,7 +60,15 @@ struct Own {
     exhibits: Vec<Exhibit>,
     programme: Programme,
     history: History,
-    was_running: bool,
+    pace: Pace,
+}
+
+/// How one's own run was going on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pace {
+    Running,
+    OneGeneration,
+    Held,
 }
 
 /// A lesson as a panel sees it.
@@ -99,7 +107,7 @@ impl Lessons {
         index: usize,
         evolution: &mut Evolution,
         Show { exhibits, programme }: Show,
-        history: &History,
+        history: &mut History,
     ) -> Result<Option<Show>, String> {
         if index >= LESSONS.len() {
             return Err(format!("There are {} lessons.", LESSONS.len()));
@@ -108,10 +116,15 @@ impl Lessons {
             // From one lesson to the next: one's own is still that of before the first.
             Some(before) => before.own,
             None => {
-                let was_running = evolution.status() == Status::Running;
+                let pace = match evolution.status() {
+                    Status::Running if evolution.is_single_generation() => Pace::OneGeneration,
+                    Status::Running => Pace::Running,
+                    Status::Ready | Status::Paused | Status::Finished => Pace::Held,
+                };
                 evolution.pause()?;
-                let (next, history) = (evolution.next_plan().clone(), history.clone());
-                Own { next, exhibits, programme, history, was_running }
+                evolution.lend(true);
+                let (next, history) = (evolution.next_plan().clone(), history.lend());
+                Own { next, exhibits, programme, history, pace }
             }
         };
         evolution.set_next_plan(own.next.clone())?;
@@ -150,9 +163,14 @@ impl Lessons {
     ) -> Result<Option<Show>, String> {
         let Some(Current { own, .. }) = self.current.take() else { return Ok(None) };
         evolution.set_next_plan(own.next)?;
-        *history = own.history;
-        if own.was_running && evolution.status() == Status::Paused {
-            evolution.start()?;
+        evolution.lend(false);
+        history.give_back(own.history);
+        match own.pace {
+            Pace::Running if evolution.status() == Status::Paused => evolution.start()?,
+            Pace::OneGeneration if evolution.status() == Status::Paused => {
+                evolution.single_generation()?;
+            }
+            Pace::Running | Pace::OneGeneration | Pace::Held => {}
         }
         Ok(Some(Show { exhibits: own.exhibits, programme: own.programme }))
     }
@@ -387,10 +405,10 @@ mod tests {
         let mut lessons = Lessons::default();
         let stage = |exhibits: Vec<Exhibit>| Show { exhibits, programme: Programme::Solo };
         let mut history = History::default();
-        let shown = lessons.begin(0, &mut evolution, stage(own.clone()), &history);
+        let shown = lessons.begin(0, &mut evolution, stage(own.clone()), &mut history);
         assert_eq!(shown.expect("allowed").expect("a scene").exhibits.len(), 3);
         evolution.set_field("surface.friction", "0.2").expect("allowed");
-        lessons.begin(1, &mut evolution, stage(Vec::new()), &history).expect("allowed");
+        lessons.begin(1, &mut evolution, stage(Vec::new()), &mut history).expect("allowed");
         assert_eq!(*evolution.next_plan(), next, "the next lesson begins with one's own, too");
         evolution.set_field("surface.friction", "0.3").expect("allowed");
         let back =

@@ -202,6 +202,16 @@ impl Library {
         self.saves.path()
     }
 
+    /// How many changes can be undone, and how many done again.
+    pub fn steps(&self) -> (usize, usize) {
+        self.history.steps()
+    }
+
+    /// Forgets what could be done again.
+    pub fn forget_undone(&mut self) {
+        self.history.forget_undone();
+    }
+
     /// What undoing would undo, in a few words: "deleted climber".
     pub fn undoable(&self) -> Option<&str> {
         self.history.undoable()

@@ -191,7 +191,11 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     if saved.is_empty() {
         saved.push(Saved::from((SHIPPED.to_owned(), shipped_champion()?)));
     }
-    let remembered = Remembered::read(&options.preferences);
+    let mut remembered = Remembered::read(&options.preferences);
+    if options.exit_after_frames.is_some() {
+        // Nobody sits before it who chooses anything.
+        remembered = remembered.only_read();
+    }
     let chosen = remembered.chosen().clone();
     let theme = options.theme.unwrap_or_else(|| chosen.theme.parse().unwrap_or_default());
     let size = options.window_size.or(chosen.window_size).unwrap_or(WINDOW_SIZE);

@@ -50,6 +50,12 @@ impl Remembered {
         Self { file, seen: stored.clone(), stored, problem, looked_s: 0.0, was_smooth: None }
     }
 
+    /// Writes nothing from now on.
+    pub fn only_read(mut self) -> Self {
+        self.file = PreferencesFile::nowhere();
+        self
+    }
+
     /// What was chosen before.
     pub fn chosen(&self) -> &Preferences {
         &self.stored

@@ -12,6 +12,7 @@ use bevy::prelude::*;
 use super::Frame;
 use super::casting::changes_in_words;
 use super::command::Command;
+use super::library::Ask;
 use crate::evolve::RunPlan;
 
 pub(super) use follow::followed;
@@ -42,6 +43,11 @@ pub(super) enum Step {
 }
 
 impl Step {
+    /// Whether it is about saves.
+    fn is_of_library(&self) -> bool {
+        matches!(self, Self::Library { .. })
+    }
+
     /// What was changed, in a few words.
     pub fn label(&self) -> &str {
         match self {
@@ -73,7 +79,7 @@ impl Way {
 }
 
 /// The steps that were done, and those that were undone.
-#[derive(Resource, Debug, Clone, Default)]
+#[derive(Resource, Debug, Default)]
 pub(super) struct History {
     /// The latest last.
     done: VecDeque<Step>,
@@ -146,21 +152,62 @@ impl History {
         Some(step)
     }
 
-    /// Takes the next step one way that is about saves, whatever else was done after it.
-    pub fn take_of_library(&mut self, way: Way) {
-        let is_one = |step: &Step| matches!(step, Step::Library { .. });
+    /// Takes the next step one way that is about saves, whatever else was done after it. Says whether there was one.
+    pub fn take_of_library(&mut self, way: Way) -> bool {
         match way {
             Way::Back => {
-                let place = self.done.iter().rposition(is_one);
+                let place = self.done.iter().rposition(Step::is_of_library);
                 let step = place.and_then(|place| self.done.remove(place));
                 self.undone.extend(step);
+                place.is_some()
             }
             Way::Forth => {
-                if let Some(place) = self.undone.iter().rposition(is_one) {
-                    self.done.push_back(self.undone.remove(place));
-                }
+                let place = self.undone.iter().rposition(Step::is_of_library);
+                let step = place.map(|place| self.undone.remove(place));
+                self.done.extend(step);
+                place.is_some()
             }
         }
+    }
+
+    /// Whether the next step one way is about saves.
+    pub fn next_is_of_library(&self, way: Way) -> bool {
+        let next = match way {
+            Way::Back => self.done.back(),
+            Way::Forth => self.undone.last(),
+        };
+        next.is_some_and(Step::is_of_library)
+    }
+
+    /// Forgets steps about saves that the library knows nothing of any more: it can undo so many, and redo so many.
+    /// Says how many it can redo that are no steps here.
+    pub fn agree_with_library(&mut self, undoable: usize, redoable: usize) -> usize {
+        let count = |steps: &mut dyn Iterator<Item = &Step>| {
+            steps.filter(|step| step.is_of_library()).count()
+        };
+        while count(&mut self.done.iter()) > undoable {
+            let place = self.done.iter().rposition(Step::is_of_library);
+            place.and_then(|place| self.done.remove(place));
+        }
+        while count(&mut self.undone.iter()) > redoable {
+            let place = self.undone.iter().position(Step::is_of_library);
+            place.map(|place| self.undone.remove(place));
+        }
+        redoable - count(&mut self.undone.iter())
+    }
+
+    /// Takes all steps away while a lesson goes on, which has steps of its own.
+    pub fn lend(&mut self) -> Self {
+        std::mem::take(self)
+    }
+
+    /// Gives back the steps of before a lesson; of the lesson's own those stay that are about saves.
+    pub fn give_back(&mut self, own: Self) {
+        let lesson = std::mem::replace(self, own);
+        let of_library = lesson.done.into_iter().filter(Step::is_of_library);
+        self.done.extend(of_library);
+        self.undone.extend(lesson.undone.into_iter().filter(Step::is_of_library));
+        self.is_settled = true;
     }
 
     /// What the next step one way would undo or redo, in a few words.
@@ -184,6 +231,13 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
         Command::SetPreset(name) => ("preset".to_owned(), format!("preset {name}")),
         Command::StorePreset(name) => ("preset".to_owned(), format!("preset {name}")),
         Command::DropChange => ("drop".to_owned(), "changes dropped".to_owned()),
+        Command::Found(_) | Command::Library(Ask::FoundRun(_)) => {
+            let name = after.founder.as_ref().map_or("a champion", |founder| founder.name());
+            ("founder".to_owned(), format!("the next run begins from {name}"))
+        }
+        Command::ForgetFounder => {
+            ("founder".to_owned(), "the next run begins from nothing".to_owned())
+        }
         Command::Continue(_) => {
             let RunPlan { preset, seed, .. } = after;
             ("continue".to_owned(), format!("the settings of {preset}, seed {seed}"))
@@ -218,6 +272,38 @@ fn settle_on_press(
 mod tests {
     use super::*;
     use crate::evolve::{Settings, with_field};
+
+    fn of_library(label: &str) -> Step {
+        Step::Library { label: label.to_owned() }
+    }
+
+    #[test]
+    fn steps_about_saves_that_the_library_has_forgotten_are_forgotten() {
+        let mut history = History::default();
+        history.push(of_library("deleted a"));
+        history.push(of_library("deleted b"));
+        assert_eq!(history.agree_with_library(1, 0), 0);
+        assert_eq!(history.next(Way::Back), Some("deleted a"));
+        assert!(history.take_of_library(Way::Back));
+        assert!(!history.take_of_library(Way::Back));
+        assert_eq!(history.agree_with_library(0, 1), 0);
+        history.push(of_library("deleted c"));
+        assert_eq!(history.agree_with_library(1, 1), 1, "to be forgotten there");
+    }
+
+    #[test]
+    fn after_a_lesson_its_steps_about_saves_stay_and_its_others_do_not() {
+        let mut history = History::default();
+        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        let own = history.lend();
+        assert_eq!(history.next(Way::Back), None);
+        history.note(&set("0.3"), plan("0.5"), &plan("0.3"));
+        history.push(of_library("deleted a"));
+        history.give_back(own);
+        assert_eq!(history.take(Way::Back), Some(of_library("deleted a")));
+        assert!(matches!(history.take(Way::Back), Some(Step::Plan { .. })));
+        assert_eq!(history.take(Way::Back), None);
+    }
 
     /// A plan with this friction.
     fn plan(friction: &str) -> RunPlan {

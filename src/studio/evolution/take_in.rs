@@ -46,7 +46,8 @@ fn take_in(
     let mut to_beat = rivals.map(Exhibit::fitness).chain(known).fold(f32::MIN, f32::max);
     // Who holds the stage, has several on it, or tries out another world than the run's, is looking at something.
     let is_tried = |lane: &Lane| lane.exhibit().is_changed() && lane.trial() != world;
-    let is_looked_at = *programme != Programme::Solo || lanes.iter().any(Lane::is_disturbed);
+    let is_looked_at =
+        evolution.is_lent || *programme != Programme::Solo || lanes.iter().any(Lane::is_disturbed);
     let is_held = is_looked_at || !playback.is_playing() || lanes.iter().any(is_tried);
     let mut present = |champion: &Champion, number, notices: &mut Notices| {
         if champion.evaluation.fitness <= to_beat {

@@ -148,18 +148,19 @@ pub(in crate::studio) const LESSONS: [Lesson; 5] = [
         story: "Signals alone made agents that shook themselves to pieces: a joint that may turn all the way round \
                 folds the snake into itself. With a largest angle for each joint, drawn anew for each genome, \
                 evolution had fewer bad ideas to try.",
-        to_try: "Evolve twice, with the report's limits and without: six generations of 120 snakes each.",
+        to_try: "Evolve twice, with the report's limits and with 3 radians, which is hardly any limit: six generations of \
+                 120 snakes each.",
         look_for: "How many were disqualified, and how far the best has come.",
-        answer: "A limit takes more useless movements away than useful ones. Without limits nearly all newborns are \
+        answer: "A limit takes more useless movements away than useful ones. With hardly any nearly all newborns are \
                  out before they have moved, and little is left to breed from.",
         scenes: &[
             AS_FOUND,
             Scene::Runs {
-                label: "Evolve with limits and without",
+                label: "Evolve with limits and with hardly any",
                 runs: &[
                     run("with limits", 1, 1, &[("population", "120"), ("generations", "6")]),
                     run(
-                        "without limits",
+                        "hardly any limits",
                         1,
                         1,
                         &[

@@ -35,6 +35,16 @@ impl History {
         }
     }
 
+    /// How many changes can be undone, and how many done again.
+    pub fn steps(&self) -> (usize, usize) {
+        (self.done.len(), self.undone.len())
+    }
+
+    /// Forgets what could be done again.
+    pub fn forget_undone(&mut self) {
+        self.undone.clear();
+    }
+
     /// What undoing would undo.
     pub fn undoable(&self) -> Option<&str> {
         self.done.last().map(|change| change.words.as_str())

@@ -60,7 +60,7 @@ impl EvolutionPanel {
         let reset = if is_wrong {
             "Correct the value below first"
         } else {
-            "Throw this run away and prepare it anew; or, with another seed or population, prepare that"
+            "Throw this run away and prepare it anew; or, if settings were changed, prepare a run with those"
         };
         ui.horizontal(|ui| {
             for (is_on, button, hint, command) in [

@@ -206,7 +206,7 @@ mod tests {
         let mut evolution = prepared_run();
         let mut of = Lessons::default();
         let on_show = Show { exhibits: Vec::new(), programme: Programme::Solo };
-        of.begin(0, &mut evolution, on_show, &History::default()).expect("allowed");
+        of.begin(0, &mut evolution, on_show, &mut History::default()).expect("allowed");
         let second = LESSONS[0].scenes[1].label();
         assert_eq!(sent(&of, second), [Command::TryLesson(1)]);
         assert_eq!(sent(&of, "Tell me"), [Command::TellLesson]);

@@ -130,10 +130,13 @@ fn own_ground(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
 fn next_run(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
     // Always there, so that nothing moves under the pointer when a slider is let go.
     let differs = run.next_run_differs();
-    let (text, color) = if differs {
-        ("The run under way keeps its own world.", look::of(ui).second)
+    let palette = look::of(ui);
+    let (text, color) = if !run.is_under_way() {
+        ("The next run is in this world.", palette.text_weak)
+    } else if run.settings().trial != run.next_settings().trial {
+        ("The run under way keeps its own world.", palette.second)
     } else {
-        ("The run under way is in this world.", look::of(ui).text_weak)
+        ("The run under way is in this world.", palette.text_weak)
     };
     ui.label(egui::RichText::new(text).color(color));
     if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
