@@ -1,10 +1,11 @@
 //! A person's own presets: files in the folder `presets` within the saves, named after their presets.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::files::{prepare_folder, read_bytes, refuse_link, text_of};
-use super::preset::{Preset, parse_preset, shipped_presets, store_preset};
+use super::preset::{Preset, parse_preset, shipped_presets, store_new_preset};
 use super::{SaveError, SavesFolder};
 use crate::check::{self, Invalid};
 
@@ -55,12 +56,15 @@ impl SavesFolder {
         let path = self.own_preset_path(&preset.name);
         let invalid = |source| SaveError::Invalid { path: self.presets(), source };
         check_own_name(&preset.name).map_err(invalid)?;
-        if path.symlink_metadata().is_ok() {
-            let source = std::io::Error::other("there is a preset of that name already");
-            return Err(SaveError::Unwritable { path, source });
-        }
         prepare_folder(&self.presets())?;
-        store_preset(&path, preset)?;
+        // Whether the name is free is asked by the writing itself: another program may take it at any time.
+        store_new_preset(&path, preset).map_err(|error| match error {
+            SaveError::Unwritable { path, source } if source.kind() == ErrorKind::AlreadyExists => {
+                let source = std::io::Error::other("there is a preset of that name already");
+                SaveError::Unwritable { path, source }
+            }
+            other => other,
+        })?;
         Ok(path)
     }
 
@@ -118,6 +122,17 @@ mod tests {
         assert_eq!(listed[0].preset.as_ref().expect("well formed"), &own("my-ice"));
         let taken = saves.store_own_preset(&own("my-ice")).expect_err("taken").to_string();
         assert!(taken.contains("there is a preset of that name already"), "{taken}");
+    }
+
+    #[test]
+    fn what_took_a_presets_name_a_moment_before_stays() {
+        let (folder, _saves) = saves();
+        let path = folder.path().join("mine.ron");
+        fs::write(&path, "somebody else's").expect("written");
+        let refused = store_new_preset(&path, &own("mine")).expect_err("taken");
+        assert!(refused.to_string().contains("cannot be written"), "{refused}");
+        assert_eq!(fs::read_to_string(&path).expect("there"), "somebody else's");
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 use super::SaveError;
-use super::files::{parse, read_text, store_ron};
+use super::files::{parse, pretty, read_text, store_ron, write_new};
 use super::settings::{SettingsV1, SettingsV2};
 use crate::check::{self, Invalid, within};
 use crate::evolve::Settings;
@@ -95,9 +95,20 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
 /// # Errors
 /// The file cannot be written.
 pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
+    store_ron(path, &file_of(preset))
+}
+
+/// The same where there is no file of that name yet: what has taken the name meanwhile stays.
+///
+/// # Errors
+/// There is one, or the file cannot be written.
+pub fn store_new_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
+    write_new(path, pretty(path, &file_of(preset))?.as_bytes())
+}
+
+fn file_of(preset: &Preset) -> PresetFile<SettingsV2> {
     let Preset { name, about, settings } = preset.clone();
-    let settings = SettingsV2::from(settings);
-    store_ron(path, &PresetFile { format: FORMAT, name, about, settings })
+    PresetFile { format: FORMAT, name, about, settings: SettingsV2::from(settings) }
 }
 
 /// Reads a preset from a text; `path` is what errors call it.
