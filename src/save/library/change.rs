@@ -97,14 +97,18 @@ pub fn duplicate(saves: &SavesFolder, place: &Place) -> Result<Step, SaveError> 
         Place::Champion(path) => text_of_file(path)?,
         Place::Run(_) => return Err(refused(place, "only a champion's file can be duplicated")),
     };
-    saves.prepare()?;
+    // Of ten thousand copies one would try out ten thousand times whether files can be written there.
+    if !saves.path().is_dir() {
+        saves.prepare()?;
+    }
     let name = shortened(&place.name(), " copy");
     let path = free_path(saves.path(), &name, Some(ENDING));
     write_new(&path, text.as_bytes())?;
     Ok(Step::Added { path })
 }
 
-/// Deletes an entry: moves it into a hidden folder beside, from where undoing brings it back.
+/// Deletes an entry: moves it into a hidden folder of the saves, or of where it is if that is on another disk, from
+/// where undoing brings it back.
 ///
 /// # Errors
 /// A program writes into the run's folder; it is part of the program; it cannot be moved.
@@ -114,11 +118,25 @@ pub fn delete(saves: &SavesFolder, place: &Place) -> Result<Step, SaveError> {
 }
 
 fn put_away(saves: &SavesFolder, path: &Path) -> Result<Step, SaveError> {
+    match put_into_bin(saves.path(), path) {
+        // Nothing can be moved from one disk to another, only copied; what was exported stays where it went.
+        Err(SaveError::Unwritable { source, .. }) if source.kind() == ErrorKind::CrossesDevices => {
+            put_into_bin(path.parent().unwrap_or(Path::new(".")), path)
+        }
+        other => other,
+    }
+}
+
+/// Moves something into the hidden folder within another.
+fn put_into_bin(folder: &Path, path: &Path) -> Result<Step, SaveError> {
     let unreadable = |source| SaveError::Unreadable { path: path.to_owned(), source };
     let is_folder = fs::symlink_metadata(path).map_err(unreadable)?.is_dir();
     let lock = if is_folder { Some(Lock::take(path, "the library")?) } else { None };
-    let bin = SavesFolder::within_run(saves.path(), DELETED)?;
-    prepare_folder(bin.path())?;
+    let bin = SavesFolder::within_run(folder, DELETED)?;
+    // Whether files can be written there is tried out once; the move itself tells it afterwards.
+    if !bin.path().is_dir() {
+        prepare_folder(bin.path())?;
+    }
     let name = path.file_stem().filter(|_| !is_folder).or(path.file_name()).unwrap_or_default();
     let ending = path.extension().filter(|_| !is_folder).map(|ending| ending.to_string_lossy());
     let kept = free_path(bin.path(), &name.to_string_lossy(), ending.as_deref());
@@ -286,6 +304,42 @@ mod tests {
         let once_more = champion_in(&saves, "a");
         delete(&saves, &once_more).expect("deleted");
         assert_eq!(fs::read_dir(folder.path().join(DELETED)).expect("there").count(), 2);
+    }
+
+    /// A folder on another disk than that of saves, where there is one.
+    #[cfg(target_os = "linux")]
+    fn on_another_disk(saves: &SavesFolder) -> Option<tempfile::TempDir> {
+        use std::os::unix::fs::MetadataExt;
+        let disk = |path: &Path| fs::metadata(path).map(|about| about.dev()).ok();
+        let elsewhere = tempfile::tempdir_in("/dev/shm").ok()?;
+        (disk(elsewhere.path()) != disk(saves.path())).then_some(elsewhere)
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_was_exported_to_another_disk_is_put_away_there_and_comes_back() {
+        use crate::save::library::export;
+        let (_folder, saves) = saves();
+        let (champion, run) = (champion_in(&saves, "a"), run_in(&saves, 1));
+        let Some(elsewhere) = on_another_disk(&saves) else { return };
+        for place in [champion, run] {
+            let exported = export(&saves, &place, Some(elsewhere.path())).expect("exported");
+            let copy = exported.place().expect("there");
+            let before = read_entry(&copy).expect("whole");
+            let deleted = exported.undo(&saves).expect("undone");
+            assert!(!copy.path().expect("a path").exists());
+            assert!(
+                elsewhere
+                    .path()
+                    .join(DELETED)
+                    .join(copy.path().expect("a path").file_name().expect("a name"))
+                    .exists()
+            );
+            let restored = deleted.undo(&saves).expect("done again");
+            assert_eq!(restored.place(), Some(copy.clone()));
+            assert_eq!(read_entry(&copy).expect("whole"), before);
+        }
+        assert!(!saves.path().join(DELETED).join("a.ron").exists(), "no reservation is left");
     }
 
     #[test]
