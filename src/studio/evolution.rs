@@ -7,7 +7,7 @@ mod take_in;
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use bevy::prelude::*;
 
@@ -20,6 +20,7 @@ use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, 
 use crate::save::{Earlier, Preset, RunSummary, load_preset};
 use crate::score::evaluate;
 
+use individuals::Ancestors;
 pub(super) use others::{MOST_COMPARED, Others};
 
 /// Of so many generations the best ten are remembered.
@@ -60,6 +61,8 @@ pub(super) struct Evolution {
     reports: Vec<GenerationReport>,
     /// What the run has found besides, once a generation is finished.
     exploration: Option<Box<Exploration>>,
+    /// Everybody in it who has descendants, by place, once somebody is looked for.
+    ancestors: OnceLock<Ancestors>,
     /// How often it was told what the run has found.
     times_explored: u64,
     /// Other runs, to be laid over this one.
@@ -101,6 +104,7 @@ impl Evolution {
             listing: None,
             reports: Vec::new(),
             exploration: None,
+            ancestors: OnceLock::new(),
             times_explored: 0,
             others: Others::default(),
             leaders: VecDeque::new(),
@@ -217,6 +221,7 @@ impl Evolution {
             self.leaders.pop_front();
         }
         self.exploration = Some(exploration);
+        self.ancestors = OnceLock::new();
         self.times_explored += 1;
     }
 

@@ -1,5 +1,6 @@
 //! Somebody of the current run, by its place in it.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Evolution;
@@ -7,6 +8,9 @@ use crate::evolve::{Champion, Parents, Place};
 use crate::genome::Genome;
 use crate::run::{Ancestor, caught};
 use crate::score::{Evaluation, evaluate};
+
+/// Those who have descendants, by their places in the run.
+pub(super) type Ancestors = BTreeMap<Place, Arc<Ancestor>>;
 
 impl Evolution {
     /// Somebody of the latest generation, a champion, or one who has descendants; none if nobody remembers it. What
@@ -46,10 +50,16 @@ impl Evolution {
     /// Somebody who has descendants.
     fn ancestor(&self, place: Place) -> Option<&Arc<Ancestor>> {
         let exploration = self.exploration()?;
-        let descent = &exploration.descent;
-        let parents = exploration.parents.iter().map(|(parent, _)| parent);
-        let mut all = descent.line.iter().chain(&descent.others).chain(parents);
-        all.find(|ancestor| ancestor.place == place)
+        // A line may be ten thousand generations long, and who follows it looks somebody up at every step.
+        let ancestors = self.ancestors.get_or_init(|| {
+            let descent = &exploration.descent;
+            let parents = exploration.parents.iter().map(|(parent, _)| parent);
+            let all = parents.rev().chain(descent.others.iter().rev());
+            let all = all.chain(descent.line.iter().rev());
+            // Of several at one place the first of the line counts.
+            all.map(|ancestor| (ancestor.place, Arc::clone(ancestor))).collect()
+        });
+        ancestors.get(&place)
     }
 
     fn evaluation_of(&self, place: Place) -> Option<Evaluation> {
