@@ -24,7 +24,29 @@ pub(super) enum Shown {
 
 /// The list.
 #[derive(Debug, Default)]
-pub(super) struct ChampionsPanel;
+pub(super) struct ChampionsPanel {
+    /// What it knows of the reports, and of which these are: how many, and the hash of the latest.
+    known: Option<((usize, u64), Known)>,
+}
+
+/// What is found out once for each new report, not in every frame.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    /// How many generations have a champion.
+    champions: usize,
+    /// The generation of the best of all.
+    best: Option<u32>,
+}
+
+impl Known {
+    fn of(reports: &[GenerationReport]) -> Self {
+        let known = reports.iter().filter_map(|report| report.champion.as_ref());
+        let fitness = |champion: &Champion| champion.evaluation.fitness;
+        // Of equals, the first that was found.
+        let best = known.clone().rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
+        Self { champions: known.count(), best: best.map(|champion| champion.origin.generation) }
+    }
+}
 
 impl ChampionsPanel {
     /// Draws the list and adds what was asked for.
@@ -37,7 +59,7 @@ impl ChampionsPanel {
         leaders: impl Fn(Option<u32>) -> usize,
         asked: &mut Vec<Command>,
     ) {
-        let champions = reports.iter().filter(|report| report.champion.is_some()).count();
+        let Known { champions, best } = self.follow(reports);
         ui.horizontal(|ui| {
             for (name, hint, is_on, command) in [
                 (
@@ -64,11 +86,6 @@ impl ChampionsPanel {
         if reports.is_empty() {
             explain(ui, "The best of each generation will appear here.");
         }
-        let fitness = |champion: &Champion| champion.evaluation.fitness;
-        let known = reports.iter().filter_map(|report| report.champion.as_ref());
-        // Of equals, the first that was found.
-        let best = known.rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
-        let best = best.map(|champion| champion.origin.generation);
         let height = ui.spacing().interact_size.y;
         let rows = opening.len() + reports.len();
         let area = egui::ScrollArea::vertical().auto_shrink(false);
@@ -101,6 +118,16 @@ impl ChampionsPanel {
                 entry(ui, is_shown, &name, &champion.reached(), pick, race, asked);
             }
         });
+    }
+}
+
+impl ChampionsPanel {
+    fn follow(&mut self, reports: &[GenerationReport]) -> Known {
+        let now = (reports.len(), reports.last().map_or(0, |report| report.hash));
+        match self.known {
+            Some((then, known)) if then == now => known,
+            _ => self.known.insert((now, Known::of(reports))).1,
+        }
     }
 }
 
@@ -147,6 +174,27 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     #[test]
+    fn the_best_is_found_anew_when_there_is_another_report_and_in_another_run() {
+        let mut settings = Settings::default();
+        settings.evolution.population = 4;
+        settings.trial.duration_s = 0.5;
+        let pool = pool(1).expect("a pool");
+        let run = |seed| {
+            let mut experiment = Experiment::new(RunPlan::new("test", seed, settings.clone()));
+            let mut report =
+                || experiment.run_generation(&pool, &Control::default()).expect("done");
+            [report(), report(), report()]
+        };
+        let (first, second) = (run(1), run(2));
+        let mut panel = ChampionsPanel::default();
+        for reports in [&first[..0], &first[..1], &first[..], &second[..], &first[..2]] {
+            let known = panel.follow(reports);
+            let expected = Known::of(reports);
+            assert_eq!((known.champions, known.best), (expected.champions, expected.best));
+        }
+    }
+
+    #[test]
     fn a_click_on_a_generation_shows_its_champion() {
         let mut settings = Settings::default();
         settings.evolution.population = 4;
@@ -157,9 +205,10 @@ mod tests {
         let reports = [report(), report()];
         let loaded = shipped_champion().expect("well formed");
         let opening = [Saved { name: "climber".to_owned(), loaded }];
+        let mut panel = ChampionsPanel::default();
         let mut harness = Harness::new_ui_state(
             |ui, asked| {
-                ChampionsPanel.ui(ui, &opening, &reports, &[Shown::Opening(0)], |_| 2, asked)
+                panel.ui(ui, &opening, &reports, &[Shown::Opening(0)], |_| 2, asked);
             },
             Vec::new(),
         );

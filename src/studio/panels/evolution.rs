@@ -180,16 +180,19 @@ fn founder(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
 
 /// What was changed of the current run on its way.
 fn changes(ui: &mut egui::Ui, run: &Evolution) {
-    let lines: Vec<String> = run.changes().iter().map(news_of).collect();
-    let text = match lines.len() {
+    let changes = run.changes();
+    let text = match changes.len() {
         0 => return,
         1 => "1 setting changed on the way".to_owned(),
         several => format!("{several} settings changed on the way"),
     };
     let label = ui.label(egui::RichText::new(text).color(look::of(ui).second));
-    // The latest are what is remembered.
-    let latest = lines[lines.len().saturating_sub(MOST_LISTED)..].join("\n");
-    label.on_hover_text(latest);
+    label.on_hover_ui(|ui| {
+        // The latest are what is remembered.
+        let latest = &changes[changes.len().saturating_sub(MOST_LISTED)..];
+        let lines: Vec<String> = latest.iter().map(news_of).collect();
+        ui.label(lines.join("\n"));
+    });
 }
 
 /// So many changes are listed; more would not fit into a hint.

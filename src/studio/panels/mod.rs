@@ -108,7 +108,7 @@ impl FromWorld for Panels {
             evolution: EvolutionPanel::default(),
             fitness: FitnessChart::default(),
             charts: ChartsPanel::new(comparison),
-            champions: ChampionsPanel,
+            champions: ChampionsPanel::default(),
             library: LibraryPanel::default(),
             world: WorldPanel::default(),
             timeline: TimelinePanel::default(),
