@@ -8,6 +8,7 @@ mod found;
 mod parents;
 mod runs;
 mod spread;
+mod thin;
 mod torques;
 mod view;
 

@@ -6,6 +6,7 @@ use egui_plot::{
     PlotUi, Points, Polygon, Text,
 };
 
+use super::thin::Drawn;
 use super::view::{Hit, Target, View};
 use crate::evolve::Place;
 use crate::plot::{Chart, Figure, Role, Series, Shape};
@@ -48,7 +49,9 @@ pub(super) fn draw(
                 let hits = view.hits.get(index).map_or(&[][..], Vec::as_slice);
                 ui.vertical(|ui| {
                     ui.set_width(size.x);
-                    let part = Part { id: format!("{id} {index}"), title: &figure.title, chart };
+                    let drawn = view.drawn.get(index).map_or(&[][..], Vec::as_slice);
+                    let (id, title) = (format!("{id} {index}"), figure.title.as_str());
+                    let part = Part { id, title, chart, drawn };
                     part.ui(ui, hits, size.y, shown, asked);
                 });
             }
@@ -64,6 +67,8 @@ struct Part<'a> {
     id: String,
     title: &'a str,
     chart: &'a Chart,
+    /// Its series as they go to the screen.
+    drawn: &'a [Drawn],
 }
 
 impl Part<'_> {
@@ -93,7 +98,8 @@ impl Part<'_> {
                 let line = Line::new("", upright).color(palette.field_hovered);
                 plot.line(line.width(1.0).allow_hover(false));
             }
-            chart.series.iter().for_each(|series| add(plot, series, palette));
+            let series = chart.series.iter().zip(self.drawn);
+            series.for_each(|(series, drawn)| add(plot, series, drawn, palette));
             for mark in &chart.marks {
                 let line = HLine::new(&mark.name, mark.y).color(palette.text_weak);
                 plot.hline(line.allow_hover(false).style(LineStyle::dashed_dense()));
@@ -126,7 +132,7 @@ impl Part<'_> {
         }
         let replay =
             if hit.pick.is_some() { "\nClick to replay; with Shift, beside others" } else { "" };
-        response.on_hover_text_at_pointer(format!("{}{replay}", hit.words));
+        response.on_hover_text_at_pointer(hit.words() + replay);
     }
 }
 
@@ -142,33 +148,37 @@ fn axis_text(text: &str, color: Color32) -> egui::RichText {
     egui::RichText::new(text).color(color).small()
 }
 
-/// Adds a series to a chart.
-fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, palette: &Palette) {
+/// Adds a series to a chart. Its points are borrowed: there may be many, and this happens in every frame.
+fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a Drawn, palette: &Palette) {
     let color = palette.role(series.role);
+    let borrowed = || match drawn {
+        Drawn::Points(points) => PlotPoints::from(points.as_slice()),
+        Drawn::Band(_) | Drawn::AsItIs => PlotPoints::default(),
+    };
     match &series.shape {
         Shape::Line(points) => {
-            let line = Line::new(&series.name, PlotPoints::from(points.clone())).color(color);
+            let line = Line::new(&series.name, borrowed()).color(color);
             plot.line(line.width(2.0).allow_hover(false));
             if points.len() <= MOST_MARKED {
-                let dots = Points::new(&series.name, points.clone()).color(color);
+                let dots = Points::new(&series.name, borrowed()).color(color);
                 plot.points(dots.radius(3.0).allow_hover(false));
             }
         }
-        Shape::Dashed(points) => {
-            let line = Line::new(&series.name, PlotPoints::from(points.clone())).color(color);
+        Shape::Dashed(_) => {
+            let line = Line::new(&series.name, borrowed()).color(color);
             let line = line.style(LineStyle::dashed_dense()).width(1.5);
             plot.line(line.allow_hover(false));
         }
-        Shape::Points(points) => {
+        Shape::Points(_) => {
             let is_crowd = series.role == Role::Others;
             let (radius, color) =
                 if is_crowd { (1.5, color.gamma_multiply(0.45)) } else { (3.5, color) };
-            let dots = Points::new(&series.name, points.clone()).color(color);
+            let dots = Points::new(&series.name, borrowed()).color(color);
             plot.points(dots.radius(radius).allow_hover(false));
         }
-        Shape::Band(ends) => {
-            let along = |of: usize| ends.iter().map(|end| end[of]).collect::<Vec<f64>>();
-            let band = FilledArea::new(&series.name, &along(0), &along(1), &along(2));
+        Shape::Band(_) => {
+            let Drawn::Band([along, low, high]) = drawn else { return };
+            let band = FilledArea::new(&series.name, along, low, high);
             plot.add(band.fill_color(color.gamma_multiply(0.2)).allow_hover(false));
         }
         Shape::Bars { width, bars } => {

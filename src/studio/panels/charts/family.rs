@@ -69,12 +69,15 @@ pub(super) fn view(settings: &Settings, descent: &Descent) -> View {
     let hit = |ancestor: &Ancestor| {
         let at = ancestor.place;
         let fitness = ancestor.fitness?;
-        let words = format!(
-            "Generation {}, snake {}\nfitness {fitness:.2}{unit}\n{}",
-            at.generation,
-            at.individual + 1,
-            origin(ancestor.parents)
-        );
+        let parents = ancestor.parents;
+        let words = move || {
+            format!(
+                "Generation {}, snake {}\nfitness {fitness:.2}{unit}\n{}",
+                at.generation,
+                at.individual + 1,
+                origin(parents)
+            )
+        };
         let target = Target::Point(place(ancestor)?);
         Some(Hit::of(target, words, Pick::Individual(at), at))
     };
@@ -157,11 +160,11 @@ mod tests {
         let hits = &view.hits[0];
         assert_eq!(hits.len() as u32, generation, "one in each generation");
         let last = hits.last().expect("the first ancestor");
-        assert!(last.words.contains("Drawn from nothing"), "{}", last.words);
+        assert!(last.words().contains("Drawn from nothing"), "{}", last.words());
         assert!(view.figure.note.contains("begins in generation 1"), "{}", view.figure.note);
         let place = last.place.expect("somebody");
         assert_eq!((place.generation, last.pick), (1, Some(Pick::Individual(place))));
-        assert!(hits[..hits.len() - 1].iter().all(|hit| hit.words.contains("Child of")));
+        assert!(hits[..hits.len() - 1].iter().all(|hit| hit.words().contains("Child of")));
     }
 
     #[test]

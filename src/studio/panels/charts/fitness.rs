@@ -53,15 +53,19 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> View {
 }
 
 /// What there is to say of a generation.
-fn hit(report: &GenerationReport, unit: &str) -> Option<Hit> {
+fn hit(report: &GenerationReport, unit: &'static str) -> Option<Hit> {
     let Statistics { mean, best, median, std, worst, quartiles, .. } = report.statistics?;
-    let quarters = quartiles
-        .map_or(String::new(), |(low, high)| format!("middle half {low:.2} to {high:.2}{unit}\n"));
-    let words = format!(
-        "Generation {}\nbest {best:.2}{unit}\n{quarters}median {median:.2}{unit}\n\
-         mean {mean:.2}{unit}, std.dev. {std:.2}{unit}\nworst {worst:.2}{unit}\n{} of {} disqualified",
-        report.generation, report.disqualified, report.evaluations
-    );
+    let GenerationReport { generation, disqualified, evaluations, .. } = *report;
+    let words = move || {
+        let quarters = quartiles.map_or(String::new(), |(low, high)| {
+            format!("middle half {low:.2} to {high:.2}{unit}\n")
+        });
+        format!(
+            "Generation {generation}\nbest {best:.2}{unit}\n{quarters}median {median:.2}{unit}\n\
+             mean {mean:.2}{unit}, std.dev. {std:.2}{unit}\nworst {worst:.2}{unit}\n\
+             {disqualified} of {evaluations} disqualified"
+        )
+    };
     let target = Target::Column([f64::from(report.generation), best]);
     let Some(champion) = &report.champion else { return Some(Hit::new(target, words)) };
     let (generation, individual) = (report.generation, champion.origin.individual);
@@ -150,7 +154,7 @@ mod tests {
         let [hit] = &view.hits[0][..] else { panic!("one generation") };
         assert_eq!(hit.pick, Some(Pick::Generation(1)));
         for word in ["Generation 1", "best", "middle half", "median", "mean", "worst"] {
-            assert!(hit.words.contains(word), "{word} in {}", hit.words);
+            assert!(hit.words().contains(word), "{word} in {}", hit.words());
         }
         let head = view.figure.table()[0].join(";");
         let expected = "Generation;middle half, lower end (m);middle half, upper end (m);mean (m);\
@@ -162,6 +166,6 @@ mod tests {
             statistics.quartiles = None;
         }
         let view = super::view(&settings, &[old]);
-        assert!(!view.hits[0][0].words.contains("middle half"));
+        assert!(!view.hits[0][0].words().contains("middle half"));
     }
 }

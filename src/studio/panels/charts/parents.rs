@@ -53,7 +53,8 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
                 at.generation,
                 at.individual + 1,
             );
-            hits.push(Hit::of(Target::Point(*point), words, Pick::Individual(at), at));
+            let target = Target::Point(*point);
+            hits.push(Hit::of(target, move || words.clone(), Pick::Individual(at), at));
         }
         values.push(features.iter().map(|feature| feature.value).collect());
         if names.is_empty() {
@@ -126,8 +127,8 @@ mod tests {
         let view = view(&settings, &parents).expect("their genes are known");
         let dimension = settings.genome.dimension(settings.trial.descent());
         assert_eq!(view.hits[0].len(), parents.len() * dimension);
-        let frequency = view.hits[0].iter().find(|hit| hit.words.starts_with("frequency: "));
-        assert!(frequency.expect("a gene").words.contains(" Hz\nGeneration 1, snake "));
+        let frequency = view.hits[0].iter().find(|hit| hit.words().starts_with("frequency: "));
+        assert!(frequency.expect("a gene").words().contains(" Hz\nGeneration 1, snake "));
         let table = view.figure.table();
         assert_eq!((table.len(), table[0].len()), (1 + dimension, 1 + parents.len()));
         assert_eq!(table[3][0], "density (kg/m³)");

@@ -1,5 +1,7 @@
 //! Two runs over each other: this one and others of the folder of saves.
 
+use std::sync::Arc;
+
 use bevy_egui::egui;
 
 use super::fitness::what;
@@ -19,7 +21,7 @@ const ROLES: [Role; MOST_COMPARED] = [Role::Second, Role::Third, Role::Others];
 
 /// A run's lines.
 struct Curves {
-    name: String,
+    name: Arc<str>,
     role: Role,
     /// Generation, best, median.
     points: Vec<[f64; 3]>,
@@ -34,7 +36,7 @@ pub(super) fn view(run: &Evolution) -> View {
         Some([f64::from(report.generation), best, median])
     });
     let name = format!("this run ({}, seed {})", run.preset(), run.seed());
-    let mut curves = vec![Curves { name, role: Role::First, points: own.collect() }];
+    let mut curves = vec![Curves { name: name.into(), role: Role::First, points: own.collect() }];
     let mut rewards_differ = false;
     for (compared, role) in run.others().compared().iter().zip(ROLES) {
         let Some(Ok(other)) = &compared.read else { continue };
@@ -44,11 +46,11 @@ pub(super) fn view(run: &Evolution) -> View {
             Some([f64::from(record.generation), best, median])
         });
         let mut name = title(&other.plan);
-        if curves.iter().any(|known| known.name == name) {
+        if curves.iter().any(|known| *known.name == *name) {
             // The same preset and seed with other settings.
             name = format!("{name}, {}", compared.folder.file_name().unwrap_or_default().display());
         }
-        curves.push(Curves { name, role, points: points.collect() });
+        curves.push(Curves { name: name.into(), role, points: points.collect() });
     }
     let values =
         curves.iter().flat_map(|of| &of.points).flat_map(|&[_, best, median]| [best, median]);
@@ -65,10 +67,12 @@ pub(super) fn view(run: &Evolution) -> View {
         [median, best]
     });
     let hit = |of: &Curves, &[generation, best, median]: &[f64; 3]| {
-        let words = format!(
-            "{}\nGeneration {generation:.0}\nbest {best:.2}{unit}\nmedian {median:.2}{unit}",
-            of.name
-        );
+        let name = Arc::clone(&of.name);
+        let words = move || {
+            format!(
+                "{name}\nGeneration {generation:.0}\nbest {best:.2}{unit}\nmedian {median:.2}{unit}"
+            )
+        };
         Hit::new(Target::Point([generation, best]), words)
     };
     let hits = curves.iter().flat_map(|of| of.points.iter().map(move |point| hit(of, point)));

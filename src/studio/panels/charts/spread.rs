@@ -58,7 +58,8 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> View {
             individual + 1
         );
         let place = Place { generation: number_of, individual };
-        Hit::of(Target::Area([from, to, 0.0, top]), words, Pick::Individual(place), place)
+        let area = Target::Area([from, to, 0.0, top]);
+        Hit::of(area, move || words.clone(), Pick::Individual(place), place)
     });
     let hits = hits.collect();
     let title = format!("Fitness within generation {number_of}");

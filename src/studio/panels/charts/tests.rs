@@ -1,6 +1,7 @@
 //! The panel as a person uses it: choose, point, click, write.
 
 use super::*;
+use crate::evolve::Settings;
 use crate::studio::casting::Pick;
 use crate::studio::evolution::{compared_run, explored_run, prepared_run};
 use egui_kittest::Harness;
@@ -105,11 +106,11 @@ fn a_click_on_a_generation_a_bar_an_ancestor_and_a_parent_replays_them() {
             click(harness, place);
             harness.hover_at(place + egui::vec2(0.5, 0.5));
             harness.run();
-            let first = hit.words.lines().next().expect("words").to_owned();
+            let first = hit.words().lines().next().expect("words").to_owned();
             harness.query_all_by_label_contains(&first).next().is_some()
         });
         assert_eq!(sent, [Command::Show(hit.pick.expect("somebody"))], "{kind:?}");
-        assert!(words, "{kind:?} is read out: {}", hit.words);
+        assert!(words, "{kind:?} is read out: {}", hit.words());
     }
 }
 
@@ -168,8 +169,46 @@ fn who_is_clicked_is_found_again_with_what_it_reached() {
             let Some(Pick::Individual(place)) = hit.pick else { panic!("{hit:?}") };
             let champion = run.individual(place).expect("remembered");
             let fitness = format!("{:.2} m", champion.evaluation.fitness);
-            assert!(hit.words.contains(&fitness), "{kind:?}: {fitness} in {}", hit.words);
+            assert!(hit.words().contains(&fitness), "{kind:?}: {fitness} in {}", hit.words());
         }
     }
     assert!(run.individual(Place { generation: 99, individual: 0 }).is_none());
+}
+
+/// A run of so many generations, each with what a run of two has found in its second.
+fn long_reports(generations: u32) -> Vec<crate::run::GenerationReport> {
+    let run = explored_run();
+    let last = run.reports().last().expect("explored");
+    let of = |generation| {
+        let mut report = crate::run::GenerationReport { generation, ..last.clone() };
+        if let Some(statistics) = &mut report.statistics {
+            statistics.best += f64::from(generation % 100) * 0.01;
+        }
+        report
+    };
+    (1..=generations).map(of).collect()
+}
+
+#[test]
+fn of_ten_thousand_generations_the_window_draws_a_few_and_the_table_has_all() {
+    let reports = long_reports(10_000);
+    let began = std::time::Instant::now();
+    let view = fitness::view(&Settings::default(), &reports);
+    println!("worked out in {:?}", began.elapsed());
+    assert_eq!(view.figure.table().len(), 10_001);
+    let points = view.drawn[0].iter().map(|drawn| match drawn {
+        thin::Drawn::Points(points) => points.len(),
+        thin::Drawn::Band([along, ..]) => along.len(),
+        thin::Drawn::AsItIs => 0,
+    });
+    assert!(points.max().expect("series") <= thin::MOST_POINTS + 2);
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(600.0, 700.0))
+        .build_ui_state(|ui, asked| draw::draw(ui, "long", &view, 400.0, None, asked), Vec::new());
+    harness.run();
+    let began = std::time::Instant::now();
+    for _ in 0..20 {
+        harness.step();
+    }
+    println!("a frame takes {:?}", began.elapsed() / 20);
 }

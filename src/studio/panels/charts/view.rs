@@ -1,7 +1,9 @@
 //! A chart as it is drawn: its data, and who is where in it.
 
+use std::fmt;
 use std::sync::Arc;
 
+use super::thin::{Drawn, drawn};
 use crate::evolve::Place;
 use crate::plot::Figure;
 use crate::studio::casting::Pick;
@@ -9,8 +11,10 @@ use crate::studio::casting::Pick;
 /// A chart, worked out once for as long as what it shows stays the same.
 #[derive(Debug, Clone)]
 pub(super) struct View {
-    /// What is drawn, and can be written as a file.
+    /// What is shown, and can be written as a file.
     pub figure: Arc<Figure>,
+    /// The series of each of its charts, as they go to the screen.
+    pub drawn: Vec<Vec<Drawn>>,
     /// What can be pointed at in each of its charts.
     pub hits: Vec<Vec<Hit>>,
 }
@@ -18,21 +22,31 @@ pub(super) struct View {
 impl View {
     /// A view of one chart or several.
     pub fn new(figure: Figure, hits: Vec<Vec<Hit>>) -> Self {
-        Self { figure: Arc::new(figure), hits }
+        let drawn = figure.charts.iter().map(drawn).collect();
+        Self { figure: Arc::new(figure), drawn, hits }
     }
 }
 
 /// Something in a chart that can be pointed at.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) struct Hit {
     /// Where it is.
     pub target: Target,
-    /// What stands beside the pointer.
-    pub words: String,
+    words: Words,
     /// Whom a click puts on the stage.
     pub pick: Option<Pick>,
     /// Who that is, if it is somebody of the current run.
     pub place: Option<Place>,
+}
+
+/// What there is to say of something: worked out when somebody points at it, since there may be ten thousand.
+#[derive(Clone)]
+struct Words(Arc<dyn Fn() -> String + Send + Sync>);
+
+impl fmt::Debug for Words {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&(self.0)(), f)
+    }
 }
 
 /// Where something is that can be pointed at.
@@ -48,12 +62,22 @@ pub(super) enum Target {
 
 impl Hit {
     /// Something to read.
-    pub fn new(target: Target, words: String) -> Self {
-        Self { target, words, pick: None, place: None }
+    pub fn new(target: Target, words: impl Fn() -> String + Send + Sync + 'static) -> Self {
+        Self { target, words: Words(Arc::new(words)), pick: None, place: None }
     }
 
     /// Somebody to replay.
-    pub fn of(target: Target, words: String, pick: Pick, place: Place) -> Self {
-        Self { target, words, pick: Some(pick), place: Some(place) }
+    pub fn of(
+        target: Target,
+        words: impl Fn() -> String + Send + Sync + 'static,
+        pick: Pick,
+        place: Place,
+    ) -> Self {
+        Self { pick: Some(pick), place: Some(place), ..Self::new(target, words) }
+    }
+
+    /// What stands beside the pointer.
+    pub fn words(&self) -> String {
+        (self.words.0)()
     }
 }
