@@ -1,6 +1,7 @@
 //! An experiment going on: worker threads, pause and cancel, statistics, and the headless mode.
 
 mod background;
+mod batch;
 pub mod bench;
 pub mod calibrate;
 pub mod compare;
@@ -23,6 +24,7 @@ mod threads;
 pub mod verify;
 
 pub use background::{Background, Event, Exploration};
+pub use batch::Batch;
 pub use control::{Cancelled, Control};
 pub use errand::Errand;
 pub use experiment::Experiment;

@@ -345,6 +345,12 @@ fn apply(
                 evolution.list_presets();
                 Ok(())
             }
+            // What is being done is no step yet that could be undone, and what comes after it is not meant.
+            Command::Undo | Command::Redo | Command::Library(Ask::Undo | Ask::Redo)
+                if library.busy().is_some() =>
+            {
+                library.busy().map_or(Ok(()), Err)
+            }
             Command::Undo | Command::Redo => {
                 let way = if *command == Command::Undo { Way::Back } else { Way::Forth };
                 if history.next_is_of_library(way) {
@@ -371,7 +377,7 @@ fn apply(
             }
             Command::Library(Ask::FoundRun(place)) => {
                 stage.settle();
-                found_run(&mut evolution, place)
+                found_run(&mut evolution, place, library.best_of(place))
                     .and_then(|()| evolution.begin_next())
                     .map(|()| notices.news(format!("A run begins from {}.", place.name())))
             }

@@ -6,6 +6,7 @@ mod cast;
 mod history;
 mod item;
 mod take_in;
+mod under_way;
 
 use std::path::{Path, PathBuf};
 
@@ -15,6 +16,7 @@ use super::casting::evenly_chosen;
 use super::engine::Engine;
 use super::notice::Notices;
 use super::stage::{MOST_LANES, Show};
+use super::undo::Way;
 use crate::run::{Errand, Librarian};
 use crate::save::library::{Place, Step, delete, duplicate, export, import, rename};
 use crate::save::{SaveError, SavesFolder};
@@ -24,6 +26,9 @@ use cast::{exhibit_of, generation_of};
 use history::{Change, History};
 pub(super) use item::{Item, fitness_text};
 pub(super) use take_in::plugin;
+use under_way::{
+    DELETED, DUPLICATED, EXPORTED, IMPORTED, MOST_AT_ONCE, Outcome, Task, UnderWay, Verb,
+};
 
 /// Something a person asks of the library.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +81,10 @@ pub(super) enum Ask {
     Undo,
     /// Do again what was undone last.
     Redo,
+    /// End what is being done with many after the file that it is about.
+    Cancel,
+    /// Put on the stage what was read for it meanwhile.
+    Present,
 }
 
 /// What is in the folder of saves, as far as it is read, and what was done with it.
@@ -95,23 +104,22 @@ pub(super) struct Library {
     revision: u64,
     /// Counts the changes of what there is.
     listings: u64,
+    /// Counts the changes of what entries are sorted and found by.
+    sortings: u64,
     history: History,
     /// What was done lately: see [`Self::take_done`].
     done: Vec<String>,
-    errands: Vec<Outstanding>,
+    errands: Vec<UnderWay>,
+    /// Who is being read to take the stage.
+    loading: Option<Errand<Result<Show, String>>>,
+    /// Who is to take the stage, once read.
+    loaded: Option<Result<Show, String>>,
     /// What there is new, to be pointed out, and how often there was.
     newest: (u64, Option<Place>),
     /// The folder of the run that goes on now.
     current: Option<PathBuf>,
     /// Whether files are held over the window.
     is_drop_near: bool,
-}
-
-/// Copies that are under way.
-#[derive(Debug)]
-struct Outstanding {
-    verb: &'static str,
-    errand: Errand<Vec<Result<Step, SaveError>>>,
 }
 
 impl FromWorld for Library {
@@ -132,9 +140,12 @@ impl Library {
             problem: None,
             revision: 0,
             listings: 0,
+            sortings: 0,
             history: History::default(),
             done: Vec::new(),
             errands: Vec::new(),
+            loading: None,
+            loaded: None,
             newest: (0, None),
             current: None,
             is_drop_near: false,
@@ -182,6 +193,19 @@ impl Library {
         self.listings
     }
 
+    /// Changes whenever something that entries are sorted or found by has changed.
+    pub fn sortings(&self) -> u64 {
+        self.sortings
+    }
+
+    /// The generation of a run's best, as far as that has been read.
+    pub fn best_of(&self, place: &Place) -> Option<u32> {
+        let run = self.item(place)?.run()?;
+        let best = run.best.map(|(generation, _)| generation);
+        let there = best.filter(|best| run.champions.binary_search(best).is_ok());
+        there.or(run.champions.last().copied())
+    }
+
     /// What was made, renamed or brought back last, and how often that has happened.
     pub fn newest(&self) -> (u64, Option<&Place>) {
         (self.newest.0, self.newest.1.as_ref())
@@ -227,8 +251,7 @@ impl Library {
     /// # Errors
     /// A file cannot be moved back.
     pub fn undo(&mut self) -> Result<Option<String>, String> {
-        let undone = self.history.undo(&self.saves);
-        self.after_undoing(undone, "Undone")
+        self.step(Way::Back)
     }
 
     /// Does again what was undone last. Returns what to say of it; nothing, if there is nothing.
@@ -236,16 +259,25 @@ impl Library {
     /// # Errors
     /// A file cannot be moved.
     pub fn redo(&mut self) -> Result<Option<String>, String> {
-        let redone = self.history.redo(&self.saves);
-        self.after_undoing(redone, "Done again")
+        self.step(Way::Forth)
+    }
+
+    fn step(&mut self, way: Way) -> Result<Option<String>, String> {
+        self.refuse_while_busy()?;
+        if self.history.steps(way) > MOST_AT_ONCE {
+            return self.send_out_undo(way);
+        }
+        let stepped = self.history.step(way, &self.saves);
+        self.after_undoing(stepped, way)
     }
 
     fn after_undoing(
         &mut self,
         result: Result<Option<Change>, String>,
-        verb: &str,
+        way: Way,
     ) -> Result<Option<String>, String> {
         self.look_again();
+        let verb = if way == Way::Back { "Undone" } else { "Done again" };
         let Some(change) = result? else { return Ok(None) };
         let elsewhere = change.steps.iter().filter_map(|step| match step {
             Step::Restored { wanted, to } if wanted != to => {
@@ -254,7 +286,13 @@ impl Library {
             }
             _ => None,
         });
-        let elsewhere: String = elsewhere.collect();
+        let mut elsewhere: Vec<String> = elsewhere.collect();
+        if elsewhere.len() > MOST_AT_ONCE {
+            let count = elsewhere.len();
+            elsewhere =
+                vec![format!(" {count} names are taken by now: those have a number added.")];
+        }
+        let elsewhere = elsewhere.concat();
         self.point_out(change.steps.iter().find_map(Step::place));
         Ok(Some(format!("{verb}: {}.{elsewhere}", change.words)))
     }
@@ -271,13 +309,26 @@ impl Library {
                     librarian.hurry(places.clone());
                 }
             }
-            Ask::Replay(place) => return exhibit_of(place).map(Show::solo).map(Some),
-            Ask::Race(places) => {
-                let exhibits = places.iter().take(MOST_LANES).map(exhibit_of);
-                return Ok(Some(Show::race(exhibits.collect::<Result<_, _>>()?)));
+            Ask::Replay(place) => {
+                let (place, best) = (place.clone(), self.best_of(place));
+                let is_quick = place.run().is_none() || best.is_some();
+                return self.load(is_quick, move || exhibit_of(&place, best).map(Show::solo));
             }
+            Ask::Race(places) => {
+                let places = places.iter().take(MOST_LANES);
+                let racers: Vec<(Place, Option<u32>)> =
+                    places.map(|place| (place.clone(), self.best_of(place))).collect();
+                let is_quick =
+                    racers.iter().all(|(place, best)| place.run().is_none() || best.is_some());
+                return self.load(is_quick, move || {
+                    let exhibits = racers.iter().map(|(place, best)| exhibit_of(place, *best));
+                    Ok(Show::race(exhibits.collect::<Result<_, _>>()?))
+                });
+            }
+            Ask::Present => return self.loaded.take().transpose(),
             Ask::ReplayGeneration { run, generation } => {
-                return generation_of(run, *generation).map(Show::solo).map(Some);
+                let (run, generation) = (run.clone(), *generation);
+                return self.load(true, move || generation_of(&run, generation).map(Show::solo));
             }
             Ask::RaceGenerations { run, generations } => {
                 let chosen = evenly_chosen(generations.len()).map(|index| generations[index]);
@@ -287,30 +338,33 @@ impl Library {
             // It needs the evolution: see [`found_run`].
             Ask::FoundRun(_) => {}
             Ask::Rename { place, name } => {
+                self.refuse_while_busy()?;
                 let step = rename(place, name.trim()).map_err(|error| error.to_string())?;
                 self.keep(Change { words: format!("renamed {}", place.name()), steps: vec![step] });
             }
             Ask::Duplicate(places) => {
-                self.each("duplicated", places, duplicate)?;
+                self.each(DUPLICATED, places, duplicate)?;
             }
             Ask::Delete(places) => {
-                let words = self.each("deleted", places, delete)?;
-                notices.news(format!("{}. Ctrl Z brings it back", capital(&words)));
+                if let Some(words) = self.each(DELETED, places, delete)? {
+                    notices.news(format!("{}. Ctrl Z brings it back", capital(&words)));
+                }
             }
             Ask::Export { places, to } => {
-                let (saves, places, to) = (self.saves.clone(), places.clone(), to.clone());
-                self.send_out("exported", move || {
-                    places.iter().map(|place| export(&saves, place, to.as_deref())).collect()
-                })?;
+                self.refuse_while_busy()?;
+                let (saves, to) = (self.saves.clone(), to.clone());
+                let act = move |place: Place| export(&saves, &place, to.as_deref()).into();
+                self.send_out(Task::Act(EXPORTED), places.clone(), act, |_| Outcome::Left(None))?;
             }
             Ask::Import(paths) => {
                 // What is dropped into a window nobody has looked into is to be seen too.
                 self.look()?;
-                let (saves, paths) = (self.saves.clone(), paths.clone());
-                self.send_out("imported", move || {
-                    paths.iter().map(|path| import(&saves, path)).collect()
-                })?;
+                self.refuse_while_busy()?;
+                let saves = self.saves.clone();
+                let act = move |path: PathBuf| import(&saves, &path).into();
+                self.send_out(Task::Act(IMPORTED), paths.clone(), act, |_| Outcome::Left(None))?;
             }
+            Ask::Cancel => self.cancel(),
             Ask::Undo => notices.news(self.undo()?.unwrap_or("There is nothing to undo".into())),
             Ask::Redo => {
                 notices.news(self.redo()?.unwrap_or("There is nothing to do again".into()));
@@ -338,13 +392,37 @@ impl Library {
         }
     }
 
-    /// Does something with each of several entries. What was done before one fails is kept, and can be undone.
+    /// Reads who is to take the stage: now, if that is quick, and else beside the window; see [`Ask::Present`].
+    fn load(
+        &mut self,
+        is_quick: bool,
+        load: impl FnOnce() -> Result<Show, String> + Send + 'static,
+    ) -> Result<Option<Show>, String> {
+        // Whoever was asked for before would come too late.
+        (self.loading, self.loaded) = (None, None);
+        if is_quick {
+            return load().map(Some);
+        }
+        let errand = Errand::start(load).map_err(|error| format!("Nothing was read: {error}"))?;
+        self.loading = Some(errand);
+        Ok(None)
+    }
+
+    /// Does something with each of several entries, with many of them beside the window: then nothing is returned.
+    /// What was done before one fails is kept, and can be undone.
     fn each(
         &mut self,
-        verb: &str,
+        verb: Verb,
         places: &[Place],
-        act: impl Fn(&SavesFolder, &Place) -> Result<Step, SaveError>,
-    ) -> Result<String, String> {
+        act: impl Fn(&SavesFolder, &Place) -> Result<Step, SaveError> + Send + 'static,
+    ) -> Result<Option<String>, String> {
+        self.refuse_while_busy()?;
+        if places.len() > MOST_AT_ONCE {
+            let saves = self.saves.clone();
+            let act = move |place: Place| act(&saves, &place).into();
+            self.send_out(Task::Act(verb), places.to_vec(), act, |_| Outcome::Left(None))?;
+            return Ok(None);
+        }
         let mut steps = Vec::new();
         let mut done = Vec::new();
         let mut problem = None;
@@ -360,9 +438,9 @@ impl Library {
                 }
             }
         }
-        let words = format!("{verb} {}", listed(&done));
+        let words = format!("{} {}", verb.done, listed(&done));
         self.keep(Change { words: words.clone(), steps });
-        problem.map_or(Ok(words), Err)
+        problem.map_or(Ok(Some(words)), Err)
     }
 
     /// Keeps what was done, to be undone.
@@ -384,17 +462,6 @@ impl Library {
         if place.is_some() {
             self.newest = (self.newest.0 + 1, place);
         }
-    }
-
-    /// Begins something that may take its time.
-    fn send_out(
-        &mut self,
-        verb: &'static str,
-        work: impl FnOnce() -> Vec<Result<Step, SaveError>> + Send + 'static,
-    ) -> Result<(), String> {
-        let errand = Errand::start(work).map_err(|error| format!("Nothing was {verb}: {error}"))?;
-        self.errands.push(Outstanding { verb, errand });
-        Ok(())
     }
 
     /// That of entries that were read without a folder, for tests.
@@ -439,7 +506,7 @@ mod tests {
     use crate::studio::exhibit::Exhibit;
     use tempfile::TempDir;
 
-    fn library(names: &[&str]) -> (TempDir, Library) {
+    pub fn library(names: &[&str]) -> (TempDir, Library) {
         let folder = tempfile::tempdir().expect("a folder");
         let loaded = shipped_champion().expect("well formed");
         for name in names {
@@ -452,13 +519,13 @@ mod tests {
     }
 
     /// The names of what is in the folder.
-    fn own(library: &mut Library) -> Vec<String> {
+    pub fn own(library: &mut Library) -> Vec<String> {
         library.read_all();
         let own = library.items().iter().filter(|item| item.place().path().is_some());
         own.map(|item| item.name().to_owned()).collect()
     }
 
-    fn place(library: &Library, name: &str) -> Place {
+    pub fn place(library: &Library, name: &str) -> Place {
         let item = library.items().iter().find(|item| item.name() == name);
         item.expect("listed").place().clone()
     }
@@ -530,6 +597,21 @@ mod tests {
         assert_eq!(own(&mut library), ["a 2", "a"]);
         assert_eq!(library.undoable(), Some("imported a 2"));
         assert_eq!(notices.len(), 2);
+    }
+
+    #[test]
+    fn a_run_that_is_not_read_yet_takes_the_stage_once_it_is() {
+        let (folder, mut library) = library(&["mine"]);
+        let gone = Place::Run(folder.path().join("gone"));
+        let mut notices = Notices::default();
+        let ask = Ask::Replay(gone);
+        assert!(library.apply(&ask, &mut notices).expect("begun").is_none());
+        while library.loading.is_some() {
+            library.take_in(&mut notices);
+        }
+        assert!(library.has_loaded());
+        assert!(library.apply(&Ask::Present, &mut notices).expect_err("gone").contains("gone"));
+        assert!(library.apply(&Ask::Present, &mut notices).expect("nothing").is_none());
     }
 
     #[test]

@@ -12,18 +12,32 @@ use crate::studio::exhibit::Exhibit;
 /// A name on the stage is cut off after so many characters.
 const LONGEST_LABEL: usize = 40;
 
-/// Begins a run of which the champion of an entry is a parent.
+/// Begins a run of which the champion of an entry is a parent; `best` as in [`exhibit_of`].
 ///
 /// # Errors
 /// The champion cannot be read, or a run cannot begin with it.
-pub fn found_run(evolution: &mut Evolution, place: &Place) -> Result<(), String> {
-    let (loaded, _) = load_entry(place).map_err(|error| error.to_string())?;
+pub fn found_run(
+    evolution: &mut Evolution,
+    place: &Place,
+    best: Option<u32>,
+) -> Result<(), String> {
+    let (loaded, _) = load(place, best)?;
     evolution.found_run(&loaded.champion, &place.name())
 }
 
-/// The champion of an entry, to be shown; of a run its best.
-pub fn exhibit_of(place: &Place) -> Result<Exhibit, String> {
-    let (loaded, generation) = load_entry(place).map_err(|error| error.to_string())?;
+/// The champion of an entry and, of a run's best, its generation. Where that is known already, the run's log, which
+/// may be long, need not be read.
+fn load(place: &Place, best: Option<u32>) -> Result<(LoadedChampion, Option<u32>), String> {
+    let loaded = match (place, best) {
+        (Place::Run(run), Some(best)) => load_generation(run, best).map(|it| (it, Some(best))),
+        _ => load_entry(place),
+    };
+    loaded.map_err(|error| error.to_string())
+}
+
+/// The champion of an entry, to be shown; of a run its best, whose generation is `best` if that is known.
+pub fn exhibit_of(place: &Place, best: Option<u32>) -> Result<Exhibit, String> {
+    let (loaded, generation) = load(place, best)?;
     let name = match generation {
         None => place.name(),
         Some(generation) => {

@@ -2,6 +2,7 @@
 
 use crate::save::library::Step;
 use crate::save::{SaveError, SavesFolder};
+use crate::studio::undo::Way;
 
 /// Something a person did at once.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,14 +56,44 @@ impl History {
         self.undone.last().map(|change| change.words.as_str())
     }
 
-    /// Undoes what was done last, and returns it with the steps that were taken.
-    pub fn undo(&mut self, saves: &SavesFolder) -> Result<Option<Change>, String> {
-        step_back(&mut self.done, &mut self.undone, saves)
+    /// Undoes what was done last, or does again what was undone last; returns it with the steps that were taken.
+    pub fn step(&mut self, way: Way, saves: &SavesFolder) -> Result<Option<Change>, String> {
+        let (from, to) = self.both_ways(way);
+        step_back(from, to, saves)
     }
 
-    /// Does again what was undone last, and returns it with the steps that were taken.
-    pub fn redo(&mut self, saves: &SavesFolder) -> Result<Option<Change>, String> {
-        step_back(&mut self.undone, &mut self.done, saves)
+    /// Of how many steps the next change one way is.
+    pub fn steps(&self, way: Way) -> usize {
+        let from = if way == Way::Back { &self.done } else { &self.undone };
+        from.last().map_or(0, |change| change.steps.len())
+    }
+
+    /// Takes the next change one way out, to be undone step by step by somebody who has time. [`Self::settle`] takes in
+    /// what came of it.
+    pub fn take(&mut self, way: Way) -> Option<Change> {
+        self.both_ways(way).0.pop()
+    }
+
+    /// Takes in what came of a change that was taken out: the steps that were taken, and those of it that are left.
+    /// Returns the former.
+    pub fn settle(&mut self, way: Way, words: String, taken: Vec<Step>, left: Vec<Step>) -> Change {
+        let (from, to) = self.both_ways(way);
+        if !left.is_empty() {
+            from.push(Change { words: words.clone(), steps: left });
+        }
+        let change = Change { words, steps: taken };
+        if !change.steps.is_empty() {
+            to.push(change.clone());
+        }
+        change
+    }
+
+    /// Where changes come from that are taken one way, and where they go.
+    fn both_ways(&mut self, way: Way) -> (&mut Vec<Change>, &mut Vec<Change>) {
+        match way {
+            Way::Back => (&mut self.done, &mut self.undone),
+            Way::Forth => (&mut self.undone, &mut self.done),
+        }
     }
 }
 

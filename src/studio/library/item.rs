@@ -10,6 +10,8 @@ use crate::score::Fitness;
 #[derive(Debug)]
 pub struct Item {
     entry: Entry,
+    /// What its file is like by now, if it has changed since it was read.
+    awaited: Option<Entry>,
     name: String,
     /// What stands in it, or what is wrong with it.
     read: Option<Result<Details, String>>,
@@ -24,20 +26,36 @@ impl Item {
     pub fn new(entry: Entry) -> Self {
         let name = entry.place.name();
         let sorted_as = name.to_lowercase();
-        let mut item = Self { entry, name, read: None, words: String::new(), sorted_as };
+        let (awaited, words) = (None, String::new());
+        let mut item = Self { entry, awaited, name, read: None, words, sorted_as };
         item.describe();
         item
     }
 
-    /// The same after its file has changed: what is known of it may be of before.
-    pub fn changed(self, entry: Entry) -> Self {
-        Self { entry, ..self }
+    /// Takes in what its file is like by now. If that has changed, what is known of it, its date too, is of before
+    /// until it is read: so its row moves once, not twice.
+    pub fn follow(&mut self, entry: Entry) {
+        if *self.awaited.as_ref().unwrap_or(&self.entry) != entry {
+            self.awaited = Some(entry);
+        }
     }
 
-    /// Takes in what stands in it.
-    pub fn learn(&mut self, read: Result<Details, String>) {
+    /// Whether it is to be read, for the first time or anew.
+    pub fn is_to_be_read(&self) -> bool {
+        self.read.is_none() || self.awaited.is_some()
+    }
+
+    /// Takes in what stands in it. Returns whether anything that it is sorted or found by is different now.
+    pub fn learn(&mut self, read: Result<Details, String>) -> bool {
+        let date = self.entry.modified;
+        let before = (date, self.fitness().map(f32::to_bits), self.generation());
+        // Presets and whether it is damaged are among the words.
+        let words = std::mem::take(&mut self.words);
+        self.entry = self.awaited.take().unwrap_or_else(|| self.entry.clone());
         self.read = Some(read);
         self.describe();
+        let date = self.entry.modified;
+        before != (date, self.fitness().map(f32::to_bits), self.generation()) || words != self.words
     }
 
     fn describe(&mut self) {

@@ -1,15 +1,11 @@
 //! What happens to the library by itself: it is read, follows the run, and takes files that are dropped.
 
-use std::path::Path;
-
 use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
 
-use super::history::Change;
-use super::{Ask, Item, Library, capital, listed};
-use crate::run::Reading;
-use crate::save::SaveError;
-use crate::save::library::{Entry, Step};
+use super::{Ask, Item, Library};
+use crate::run::{Errand, Reading};
+use crate::save::library::Entry;
 use crate::studio::Frame;
 use crate::studio::command::Command;
 use crate::studio::evolution::{Evolution, Status};
@@ -25,8 +21,15 @@ const MOST_READINGS: usize = 100;
 /// A folder that changes with every generation is looked at again after so many seconds at the earliest.
 const EARLIEST_LOOK_S: f32 = 2.0;
 
-fn take_in(mut library: ResMut<Library>, mut notices: ResMut<Notices>) {
+fn take_in(
+    mut library: ResMut<Library>,
+    mut notices: ResMut<Notices>,
+    mut send: MessageWriter<Command>,
+) {
     library.take_in(&mut notices);
+    if library.has_loaded() {
+        send.write(Command::Library(Ask::Present));
+    }
 }
 
 /// Files that are dropped into the window are imported, all of a frame at once.
@@ -70,14 +73,12 @@ fn follow(
 }
 
 impl Library {
-    /// Takes in what was read and copied meanwhile.
+    /// Takes in what was read and done meanwhile.
     pub(super) fn take_in(&mut self, notices: &mut Notices) {
-        let errands = std::mem::take(&mut self.errands);
-        for outstanding in errands {
-            match outstanding.errand.poll() {
-                None => self.errands.push(outstanding),
-                Some(result) => self.take_back(outstanding.verb, result, notices),
-            }
+        self.take_in_errands(notices);
+        if let Some(loaded) = self.loading.as_ref().and_then(Errand::poll) {
+            self.loading = None;
+            self.loaded = Some(loaded.flatten());
         }
         let Some(librarian) = &self.librarian else { return };
         for reading in librarian.poll(MOST_READINGS) {
@@ -85,31 +86,9 @@ impl Library {
         }
     }
 
-    /// Takes in what came of copies.
-    fn take_back(
-        &mut self,
-        verb: &str,
-        result: Result<Vec<Result<Step, SaveError>>, String>,
-        notices: &mut Notices,
-    ) {
-        let results = match result {
-            Ok(results) => results,
-            Err(problem) => return notices.problem(format!("Nothing was {verb}: {problem}")),
-        };
-        let mut steps = Vec::new();
-        for result in results {
-            match result {
-                Ok(step) => steps.push(step),
-                Err(error) => notices.problem(error.to_string()),
-            }
-        }
-        let places = steps.iter().filter_map(Step::place);
-        let names: Vec<String> = places.map(|place| place.name()).collect();
-        let Some(first) = steps.first().and_then(Step::place) else { return };
-        let words = format!("{verb} {}", listed(&names));
-        let folder = first.path().and_then(Path::parent).unwrap_or(Path::new("."));
-        notices.news(format!("{} to {}", capital(&words), folder.display()));
-        self.keep(Change { words, steps });
+    /// Whether somebody has been read who is to take the stage: see [`Ask::Present`].
+    pub(super) fn has_loaded(&self) -> bool {
+        self.loaded.is_some()
     }
 
     pub(super) fn learn(&mut self, reading: Reading) {
@@ -127,52 +106,80 @@ impl Library {
                 let found = self.items.binary_search_by(|item| item.place().cmp(&place));
                 let Ok(index) = found else { return };
                 self.unread = self.unread.saturating_sub(1);
-                let item = &mut self.items[index];
-                item.learn(read);
+                let is_sorted_anew = self.items[index].learn(read);
+                self.sortings += u64::from(is_sorted_anew);
                 self.revision += 1;
             }
         }
     }
 
-    /// Takes in what there is by name; what was known of entries of before stays known until it is read anew.
+    /// Takes in what there is by name; what was known of entries of before stays known until it is read anew. While a
+    /// run goes on, only its entry changes, every few seconds: then all the others are left as they are.
     fn list(&mut self, entries: Vec<Entry>) {
-        let is_same = self.is_listed && self.problem.is_none();
-        let known = self.items.iter().map(Item::entry);
-        if is_same && entries.len() == self.items.len() && known.eq(entries.iter()) {
-            return;
+        let is_known = self.is_listed && self.problem.is_none();
+        let places = self.items.iter().map(Item::place);
+        if is_known && places.eq(entries.iter().map(|entry| &entry.place)) {
+            self.items.iter_mut().zip(entries).for_each(|(item, entry)| item.follow(entry));
+        } else {
+            let mut before = std::mem::take(&mut self.items).into_iter().peekable();
+            for entry in entries {
+                while before.next_if(|item| item.place() < &entry.place).is_some() {}
+                let item = match before.next_if(|item| item.place() == &entry.place) {
+                    Some(mut item) => {
+                        item.follow(entry);
+                        item
+                    }
+                    None => Item::new(entry),
+                };
+                self.items.push(item);
+            }
+            self.is_listed = true;
+            self.problem = None;
+            self.listings += 1;
+            self.revision += 1;
         }
-        let mut before = std::mem::take(&mut self.items).into_iter().peekable();
-        self.unread = 0;
-        for entry in entries {
-            while before.next_if(|item| item.place() < &entry.place).is_some() {}
-            let item = match before.next_if(|item| item.place() == &entry.place) {
-                Some(item) if *item.entry() == entry => {
-                    self.unread += usize::from(!item.is_read());
-                    item
-                }
-                Some(item) => {
-                    self.unread += 1;
-                    item.changed(entry)
-                }
-                None => {
-                    self.unread += 1;
-                    Item::new(entry)
-                }
-            };
-            self.items.push(item);
-        }
-        self.is_listed = true;
-        self.problem = None;
-        self.listings += 1;
-        self.revision += 1;
+        self.unread = self.items.iter().filter(|item| item.is_to_be_read()).count();
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
     use crate::save::SavesFolder;
+    use crate::save::library::Place;
     use crate::studio::evolution::prepared_run;
+
+    #[test]
+    fn while_a_run_goes_on_its_entry_alone_is_sorted_anew_and_only_once_it_is_read() {
+        let place = |name: &str| Place::Champion(format!("saves/{name}.ron").into());
+        let entry = |name: &str, day: u64| Entry {
+            place: place(name),
+            bytes: 1,
+            modified: Duration::from_secs(day * 86_400),
+        };
+        let read = |name: &str| Reading::Read(place(name), Err("cut off".to_owned()));
+        let listed = |day| Reading::Listed(vec![entry("a", 1), entry("b", day)]);
+        let mut library = Library::of(vec![listed(2), read("a"), read("b")]);
+        let state = |library: &Library| {
+            (library.listings(), library.sortings(), library.revision(), library.unread())
+        };
+        let (listings, sortings, revision, unread) = state(&library);
+        assert_eq!(unread, 0);
+        library.learn(listed(3));
+        assert_eq!(state(&library), (listings, sortings, revision, 1), "nothing to be seen yet");
+        library.learn(read("b"));
+        assert_eq!(state(&library), (listings, sortings + 1, revision + 1, 0));
+        let date = library.item(&place("b")).expect("there").entry().modified;
+        assert_eq!(date.as_secs(), 3 * 86_400);
+        library.learn(listed(3));
+        library.learn(read("a"));
+        let now = (listings, sortings + 1, revision + 2, 0);
+        assert_eq!(state(&library), now, "read anew, it is what it was");
+        library.learn(Reading::Listed(vec![entry("b", 3)]));
+        assert_eq!(library.listings(), listings + 1);
+    }
 
     #[test]
     fn files_that_are_dropped_are_imported_together() {

@@ -37,6 +37,7 @@ impl LibraryPanel {
                 }
             }
         });
+        under_way(ui, library, asked);
         let field = egui::TextEdit::singleline(&mut self.search)
             .hint_text("Search name, preset, controller, \"damaged\"")
             .desired_width(f32::INFINITY)
@@ -99,5 +100,18 @@ impl LibraryPanel {
                 self.sort = self.sort.clicked(key);
             }
         }
+    }
+}
+
+/// What is being done with many saves, how far that is, and a button that ends it.
+fn under_way(ui: &mut egui::Ui, library: &Library, asked: &mut Vec<Command>) {
+    for (words, share) in library.under_way() {
+        ui.horizontal(|ui| {
+            let hint = "Stop after the file that is being worked on; what is done stays, and can be undone";
+            if ui.button("Cancel").on_hover_text(hint).clicked() {
+                send(asked, Ask::Cancel);
+            }
+            ui.add(egui::ProgressBar::new(share).text(words));
+        });
     }
 }

@@ -105,7 +105,7 @@ pub struct Order {
 #[derive(Debug, PartialEq)]
 struct MadeFor {
     listings: u64,
-    revision: u64,
+    sortings: u64,
     search: String,
     sort: Sort,
 }
@@ -118,12 +118,12 @@ impl Order {
     pub fn update(&mut self, library: &Library, search: &str, sort: Sort, now_s: f64) {
         let wanted = MadeFor {
             listings: library.listings(),
-            revision: library.revision(),
+            sortings: library.sortings(),
             search: search.to_lowercase(),
             sort,
         };
         let is_good = self.made_for.as_ref().is_some_and(|made_for| {
-            let only_read_on = MadeFor { revision: wanted.revision, ..made_for.copy() } == wanted;
+            let only_read_on = MadeFor { sortings: wanted.sortings, ..made_for.copy() } == wanted;
             let is_young = library.unread() > 0 && now_s - self.made_at_s < LEAST_AGE_S;
             *made_for == wanted || (only_read_on && is_young)
         });
@@ -132,8 +132,15 @@ impl Order {
         }
         let sought: Vec<&str> = wanted.search.split_whitespace().collect();
         let items = library.items();
-        let found = (0..items.len()).filter(|index| items[*index].has_all(&sought));
-        let mut rows: Vec<usize> = found.collect();
+        // Where the places are the same and few entries have changed, the rows are nearly in order already, and
+        // sorting them takes no longer than looking at each once.
+        let are_same = self.made_for.as_ref().is_some_and(|of| of.listings == wanted.listings);
+        let mut rows: Vec<usize> = if are_same && self.rows.len() == items.len() {
+            self.rows.to_vec()
+        } else {
+            (0..items.len()).collect()
+        };
+        rows.retain(|index| items[*index].has_all(&sought));
         rows.sort_by(|a, b| sort.compare(&items[*a], &items[*b]));
         self.rows = rows.into();
         (self.made_for, self.made_at_s) = (Some(wanted), now_s);

@@ -10,6 +10,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use super::*;
 use crate::run::Reading;
 use crate::save::library::{Details, Entry, RunDetails, read_entry};
+use crate::studio::notice::Notices;
 
 fn entry(place: Place, day: u64) -> Entry {
     Entry { place, bytes: 1, modified: Duration::from_secs(day * 86_400) }
@@ -323,6 +324,13 @@ fn nothing_sticks_out_of_a_narrow_or_a_low_panel() {
 fn of_ten_thousand_saves_only_the_rows_in_sight_are_laid_out() {
     let entries = (0..10_000).map(|number| entry(file(&format!("save {number:05}")), number + 1));
     let library = Library::of(vec![Reading::Listed(entries.collect())]);
+    let mut order = Order::default();
+    for turn in ["from nothing", "again", "with a new search"] {
+        let search = if turn == "with a new search" { "save" } else { "" };
+        let began = std::time::Instant::now();
+        order.update(&library, search, Sort::default(), 0.0);
+        println!("sorted {turn} in {:?}", began.elapsed());
+    }
     let mut harness = harness(&library, [420.0, 600.0]);
     let rows = |harness: &Test<'_>| {
         let is_row = |label: String| label.starts_with("save 0");
@@ -342,4 +350,21 @@ fn of_ten_thousand_saves_only_the_rows_in_sight_are_laid_out() {
         _ => None,
     });
     assert!(hurried.expect("asked for").contains(&file("save 00000")));
+}
+
+#[test]
+fn what_is_done_with_many_can_be_cancelled_and_with_a_few_shows_nothing() {
+    for (count, shown) in [(50, true), (2, false)] {
+        let mut library = library();
+        let gone = (0..count).map(|number| file(&format!("gone {number}"))).collect();
+        // They are not there: whatever is done, nothing is changed.
+        let _ = library.apply(&Ask::Delete(gone), &mut Notices::default());
+        let found = asked(&library, |harness| {
+            assert_eq!(harness.query_by_label("Cancel").is_some(), shown);
+            if shown {
+                click(harness, "Cancel");
+            }
+        });
+        assert_eq!(found.first(), shown.then_some(&Ask::Cancel));
+    }
 }
