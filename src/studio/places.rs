@@ -1,10 +1,11 @@
-//! Where everything is that the panels show, for scripts and tests: role, label and place of each control, as a screen
-//! reader gets them, in a file.
+//! Where everything is that the panels show, for scripts and tests: role, label, place and value of each control, as a
+//! screen reader gets them, in a file.
 
-use std::fmt::Write;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use bevy::prelude::*;
+use bevy_egui::egui::accesskit::{Node, NodeId, Role, Toggled};
 use bevy_egui::{EguiContext, EguiOutput, EguiPostUpdateSet, PrimaryEguiContext};
 
 use super::notice::Notices;
@@ -23,7 +24,7 @@ pub(super) fn plugin(app: &mut App) {
     );
 }
 
-/// Writes a line for each control: role, left, top, right, bottom in logical pixels, label.
+/// Writes a line for each control, with tabs between: role; left, top, right, bottom in logical pixels; label; value.
 fn describe(
     mut places: ResMut<Places>,
     mut contexts: Query<(&mut EguiContext, &EguiOutput), With<PrimaryEguiContext>>,
@@ -35,17 +36,7 @@ fn describe(
         let context = context.get_mut();
         context.enable_accesskit();
         let Some(update) = &output.platform_output.accesskit_update else { continue };
-        let scale = f64::from(context.zoom_factor());
-        let mut text = String::new();
-        for (_, node) in &update.nodes {
-            let label = node.label().or(node.value()).unwrap_or_default().replace('\n', " ");
-            let Some(place) = node.bounds().filter(|_| !label.is_empty()) else { continue };
-            let ends = [place.x0, place.y0, place.x1, place.y1].map(|end| (end * scale).round());
-            let [left, top, right, bottom] = ends;
-            let role = node.role();
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{role:?}\t{left}\t{top}\t{right}\t{bottom}\t{label}");
-        }
+        let text = listed(&update.nodes, f64::from(context.zoom_factor()));
         if text != *written {
             if let Err(error) = store_text(path, &text) {
                 notices.problem(error.to_string());
@@ -54,5 +45,79 @@ fn describe(
             }
             *written = text;
         }
+    }
+}
+
+/// A line for each of these that has a name or a value; so many logical pixels are a point.
+fn listed(nodes: &[(NodeId, Node)], scale: f64) -> String {
+    let by_id: BTreeMap<NodeId, &Node> = nodes.iter().map(|(id, node)| (*id, node)).collect();
+    let mut lines = Vec::new();
+    for (_, node) in nodes {
+        let (role, label, value) = (node.role(), label_of(node, &by_id), value_of(node));
+        // What stands in a label or a field is said of that already.
+        let is_named = !(label.is_empty() && value.is_empty()) && role != Role::TextRun;
+        let Some(place) = node.bounds().filter(|_| is_named) else { continue };
+        let ends = [place.x0, place.y0, place.x1, place.y1].map(|end| (end * scale).round() as i64);
+        let [left, top, right, bottom] = ends;
+        let line = format!("{role:?}\t{left}\t{top}\t{right}\t{bottom}\t{label}\t{value}\n");
+        lines.push(([top, left], line));
+    }
+    // In the order of reading: that of the nodes is anyhow.
+    lines.sort();
+    lines.into_iter().map(|(_, line)| line).collect()
+}
+
+/// What it is called: by itself, or by the words beside it.
+fn label_of(node: &Node, by_id: &BTreeMap<NodeId, &Node>) -> String {
+    let beside = || node.labelled_by().iter().find_map(|id| by_id.get(id)?.value());
+    // Words that name nothing are a label's value.
+    let label = node.label().or_else(beside).or(node.value());
+    in_one_line(label.unwrap_or_default())
+}
+
+/// What stands in it, or whether it is on.
+fn value_of(node: &Node) -> String {
+    match (node.numeric_value(), node.toggled()) {
+        (Some(number), _) => number.to_string(),
+        (None, Some(Toggled::True)) => "on".to_owned(),
+        (None, Some(_)) => "off".to_owned(),
+        (None, None) => in_one_line(node.value().unwrap_or_default()),
+    }
+}
+
+fn in_one_line(text: &str) -> String {
+    text.replace(['\n', '\t'], " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy_egui::egui::accesskit::Rect;
+
+    #[test]
+    fn a_control_is_listed_by_its_own_name_or_by_the_words_beside_it_and_with_its_value() {
+        let node = |role: Role, left: f64| {
+            let mut node = Node::new(role);
+            node.set_bounds(Rect::new(left, 0.0, left + 10.0, 10.0));
+            node
+        };
+        let mut words = node(Role::Label, 0.0);
+        words.set_value("Friction");
+        let mut slider = node(Role::Slider, 20.0);
+        slider.push_labelled_by(NodeId(1));
+        slider.set_numeric_value(0.5);
+        let mut tick = node(Role::CheckBox, 40.0);
+        tick.set_label("Two\nlines");
+        tick.set_toggled(Toggled::True);
+        let nodes = [
+            (NodeId(1), words),
+            (NodeId(2), slider),
+            (NodeId(3), tick),
+            (NodeId(4), node(Role::Pane, 0.0)),
+        ];
+        let expected = "Label\t0\t0\t15\t15\tFriction\tFriction\n\
+                        Slider\t30\t0\t45\t15\tFriction\t0.5\n\
+                        CheckBox\t60\t0\t75\t15\tTwo lines\ton\n";
+        assert_eq!(listed(&nodes, 1.5), expected);
     }
 }

@@ -6,35 +6,21 @@
 #![expect(clippy::panic, reason = "a helper of a test fails by panicking, as tests do")]
 
 mod display;
+mod guidance;
+mod input;
+mod library;
+mod panels;
+mod picture;
+mod places;
 mod screenshots;
+mod settings;
 mod stage;
 
 use super::program::{folder, json_lines, run, stdout_of};
-use display::{Picture, Studio};
+use display::Studio;
+use picture::{Picture, difference, is_blue, is_red};
+use places::Area;
 use std::time::Duration;
-
-/// Where the panel ends and the stage begins, in pixels.
-const STAGE_LEFT: u32 = 320;
-
-/// How many pixels of the stage, without the caption below and the messages above, look like `is`.
-fn count_on_stage(picture: &Picture, is: fn(&[u8; 3]) -> bool) -> usize {
-    let pixels = picture.region(STAGE_LEFT, 130, 480, 310);
-    pixels.iter().filter(|pixel| is(pixel)).count()
-}
-
-fn is_red(&[red, green, blue]: &[u8; 3]) -> bool {
-    red > 90 && u32::from(red) > 2 * u32::from(green) && u32::from(red) > 2 * u32::from(blue)
-}
-
-fn is_blue(&[red, green, blue]: &[u8; 3]) -> bool {
-    blue > 90 && u32::from(blue) * 2 > 3 * u32::from(green) && u32::from(blue) > 2 * u32::from(red)
-}
-
-/// How many pixels of the middle of the stage differ between two pictures.
-fn difference(before: &Picture, after: &Picture) -> usize {
-    let region = |picture: &Picture| picture.region(STAGE_LEFT, 130, 480, 310);
-    region(before).iter().zip(region(after)).filter(|(a, b)| **a != *b).count()
-}
 
 /// A champion of the report's world.
 const REPORTS_CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
@@ -43,9 +29,8 @@ const REPORTS_CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-
 fn it_opens_on_a_red_and_blue_snake_that_moves_while_a_run_evolves() {
     let Some(studio) = Studio::open("opens", "--preset quick") else { return };
     studio.wait_for_title("showing saved champion");
-    let first = studio.picture_with(|picture| {
-        count_on_stage(picture, is_red) > 300 && count_on_stage(picture, is_blue) > 300
-    });
+    let first =
+        studio.picture_with(|picture| picture.count(is_red) > 300 && picture.count(is_blue) > 300);
     studio.picture_with(|picture| difference(&first, picture) > 500);
     studio.wait_for_title("4 of 4 generations, finished");
 }
@@ -88,18 +73,18 @@ fn the_keys_of_evolution_start_pause_and_single_step_it() {
 fn the_buttons_and_the_list_do_what_they_say() {
     let Some(studio) = Studio::open("buttons", "--preset quick --generations 1000") else { return };
     studio.wait_for_title("running");
-    studio.click_button("Pause");
+    studio.click_label("Pause");
     studio.wait_for_title("paused");
     let before = studio.generations();
-    studio.click_button("One generation");
+    studio.click_label("One generation");
     studio.wait_for_title(&format!("{} of 1000 generations, paused", before + 1));
     studio.click_champion(1);
     studio.wait_for_title("showing generation 1");
     studio.click_champion(0);
     studio.wait_for_title("showing saved champion");
-    studio.click_button("Reset");
+    studio.click_label("Reset");
     studio.wait_for_title("0 of 1000 generations, ready");
-    studio.click_button("Start");
+    studio.click_label("Start");
     studio.wait_for_title("running");
 }
 
@@ -128,17 +113,17 @@ fn a_typed_seed_begins_another_run() {
     let arguments = format!("replay {REPORTS_CLIMBER} --preset quick");
     let Some(studio) = Studio::open("seed", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
-    studio.type_seed("77");
-    studio.click_button("Reset");
+    studio.type_into("Seed", "77");
+    studio.click_label("Reset");
     studio.wait_for_title("seed 77 - 0 of 4 generations, ready");
     assert!(studio.title().ends_with("showing saved champion"), "{}", studio.title());
     // The keys of the stage must not react to what is typed into a field: generation 1 is there to be
     // shown by the key, and is not.
-    studio.click_button("Start");
+    studio.click_label("Start");
     studio.wait_for_title("4 of 4 generations, finished");
     studio.key("0");
     studio.wait_for_title("showing saved champion");
-    studio.type_seed("1");
+    studio.type_into("Seed", "1");
     assert!(studio.title().ends_with("showing saved champion"), "{}", studio.title());
 }
 
@@ -149,17 +134,19 @@ fn the_mouse_moves_the_camera_and_home_puts_it_back() {
     studio.key("space");
     studio.wait_for_title(", held");
     let home = studio.still_picture();
-    studio.drag(1, (600, 300), (700, 340));
+    let (x, y) = studio.stage().at(0.58, 0.64);
+    studio.drag(1, (x, y), (x + 100, y + 40));
     let turned = studio.still_picture();
     assert!(difference(&home, &turned) > 2000, "a drag turns the camera");
-    studio.drag(3, (600, 300), (640, 340));
+    studio.drag(3, (x, y), (x + 40, y + 40));
     let moved = studio.still_picture();
     assert!(difference(&turned, &moved) > 2000, "a drag with the right button moves it");
-    studio.wheel_up((160, 400));
-    studio.drag(1, (250, 60), (500, 200));
+    let title = studio.place_of("Label", "Evolution").area.middle();
+    studio.wheel(true, title);
+    studio.drag(1, title, (x, y));
     let unmoved = studio.still_picture();
     assert_eq!(difference(&moved, &unmoved), 0, "wheel and drag on the panel are the panel's");
-    studio.wheel_up((600, 300));
+    studio.wheel(true, (x, y));
     let zoomed = studio.still_picture();
     assert!(difference(&moved, &zoomed) > 2000, "the wheel zooms");
     studio.key("Home");
@@ -187,7 +174,10 @@ fn r_plays_from_the_start_and_f_lets_the_snake_go() {
     studio.picture_with(|picture| difference(&held, picture) > 1000);
     // Without following, what the snake has left stays where it is: the stairs do not move. The sky
     // and the far ground at the top of the stage show it.
-    let far = |picture: &Picture| picture.region(STAGE_LEFT, 100, 480, 30);
+    let far = |picture: &Picture| {
+        let scene = picture.scene();
+        picture.region(Area { bottom: scene.top + 30, ..scene })
+    };
     let before = far(&studio.picture());
     std::thread::sleep(Duration::from_secs(2));
     assert!(far(&studio.picture()) == before, "the camera stands still");
@@ -227,9 +217,9 @@ fn what_another_engine_found_is_shown_as_recorded_and_can_be_simulated_here() {
     let Some(studio) = Studio::open("recorded", &arguments) else { return };
     studio.wait_for_title("showing saved champion as recorded");
     studio.pause_evolution();
-    studio.click_button("Simulate here");
+    studio.click_label("Simulate here");
     studio.wait_for_title_without("as recorded");
-    studio.click_button("As recorded");
+    studio.click_label("As recorded");
     studio.wait_for_title("showing saved champion as recorded");
 }
 
@@ -281,7 +271,7 @@ fn a_headless_run_in_the_studios_folder_is_refused_and_the_studio_named_and_the_
     studio.wait_for_title("generations, ready");
     headless.kill().expect("killed");
     headless.wait().expect("ended");
-    studio.click_button("Start");
+    studio.click_label("Start");
     studio.wait_for_title("running");
 }
 
@@ -299,9 +289,8 @@ fn a_run_that_was_stopped_goes_on_from_the_list() {
     std::fs::write(&log, two).expect("written");
     let Some(studio) = Studio::open("continue", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
-    studio.click_button("Continue a stopped run");
-    std::thread::sleep(Duration::from_secs(2));
-    studio.click_button("the first stopped run");
+    studio.click_label("Continue a stopped run");
+    studio.click_starting("quick, seed 7");
     studio.wait_for_title("seed 7 - 4 of 4 generations, finished");
     assert_eq!(std::fs::read_to_string(&log).expect("a log").lines().count(), 4);
 }

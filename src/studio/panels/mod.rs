@@ -269,7 +269,11 @@ impl Viewer<'_, '_, '_> {
                     self.panels.timeline.ui(ui, lane, playback, ends_s, run, self.asked);
                 });
         }
-        self.stage = Some(ui.available_rect_before_wrap());
+        let stage = ui.available_rect_before_wrap();
+        // No control of egui's, but a place with a name, for those who look for it.
+        let place = ui.interact(stage, ui.id().with("the stage"), egui::Sense::hover());
+        place.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "The stage"));
+        self.stage = Some(stage);
     }
 
     /// What of the champions' list is on the stage.

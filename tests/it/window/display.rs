@@ -2,12 +2,14 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use super::input::A_FRAME;
+use super::picture::Picture;
 use crate::program::{folder, snakes};
 
 /// The program in a window on a display of its own.
@@ -16,16 +18,10 @@ pub struct Studio {
     xvfb: Child,
     display: String,
     window: String,
-    screen: PathBuf,
+    size: (i32, i32),
     folder: tempfile::TempDir,
     /// Software rendering takes every core there is: one window at a time.
     _turn: MutexGuard<'static, ()>,
-}
-
-/// What is on the display.
-pub struct Picture {
-    width: u32,
-    pixels: Vec<[u8; 3]>,
 }
 
 static TURN: Mutex<()> = Mutex::new(());
@@ -33,8 +29,8 @@ static SKIPPED: AtomicU32 = AtomicU32::new(0);
 /// Software rendering on a busy machine draws a few frames a second; nothing here takes minutes.
 const PATIENCE: Duration = Duration::from_secs(120);
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
-/// Longer than a frame takes: between a press and the next move, egui and Bevy must have drawn one.
-const A_FRAME: Duration = Duration::from_millis(700);
+/// Wide enough for all cards over the stage, and not slower to draw than need be.
+const SIZE: (i32, i32) = (1000, 700);
 
 /// Skips a test, or fails where skipping is not allowed.
 fn skip(test: &str, reason: &str) {
@@ -63,20 +59,26 @@ fn is_installed(tool: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(tool).is_file())
 }
 
+/// The text of a file of preferences with these fields.
+pub fn preferences(fields: &str) -> String {
+    format!("(kind: \"snakes-and-stairs preferences\", format: 1, preferences: ({fields}))")
+}
+
 impl Studio {
-    /// Opens the program at 800x600 with the keyboard on it; none where that is not possible.
+    /// Opens the program with the keyboard on it, and the tour taken; none where that is not possible.
     pub fn open(test: &str, arguments: &str) -> Option<Self> {
-        Self::open_sized(test, arguments, (800, 600))
+        Self::open_sized(test, arguments, SIZE)
     }
 
-    /// Opens the program in a window of this size.
-    pub fn open_sized(test: &str, arguments: &str, (width, height): (u32, u32)) -> Option<Self> {
+    /// Opens the program in a window of this size. Unless the arguments say where preferences are, the tour was taken.
+    pub fn open_sized(test: &str, arguments: &str, size: (i32, i32)) -> Option<Self> {
         if let Some(missing) = ["Xvfb", "xdotool"].into_iter().find(|tool| !is_installed(tool)) {
             skip(test, &format!("{missing} is not installed"));
             return None;
         }
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let folder = folder();
+        let (width, height) = size;
         let mut xvfb = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", &format!("{width}x{height}x24")])
             .args(["-nolisten", "tcp", "-fbdir"])
@@ -89,22 +91,20 @@ impl Studio {
         let stdout = xvfb.stdout.as_mut().expect("piped");
         BufReader::new(stdout).read_line(&mut number).expect("Xvfb says its display");
         let display = format!(":{}", number.trim());
-        let program = snakes(folder.path(), &format!("{arguments} --window-size {width}x{height}"))
+        let mut arguments = format!("{arguments} --window-size {width}x{height} --places {PLACES}");
+        if !arguments.contains("--preferences") {
+            let path = folder.path().join(PREFERENCES);
+            fs::write(path, preferences("tour_is_over: true")).expect("written");
+            arguments += &format!(" --preferences {PREFERENCES}");
+        }
+        let program = snakes(folder.path(), &arguments)
             .env("DISPLAY", &display)
             .env("XDG_RUNTIME_DIR", folder.path())
             .stderr(Stdio::piped())
             .spawn()
             .expect("the program starts");
-        let screen = folder.path().join("Xvfb_screen0");
-        let mut studio = Self {
-            program: Mutex::new(program),
-            xvfb,
-            display,
-            window: String::new(),
-            screen,
-            folder,
-            _turn: turn,
-        };
+        let (program, window) = (Mutex::new(program), String::new());
+        let mut studio = Self { program, xvfb, display, window, size, folder, _turn: turn };
         if let Err(reason) = studio.find_window() {
             assert!(reason.contains("no graphics driver"), "{test}: {reason}");
             skip(test, "no Vulkan driver is installed");
@@ -112,12 +112,18 @@ impl Studio {
         }
         studio.xdotool(&["windowfocus", "--sync", &studio.window]);
         studio.wait_for_title("showing");
+        studio.place("The stage");
         Some(studio)
     }
 
     /// The program's process.
     pub fn process(&self) -> u32 {
         self.program.lock().expect("no panic").id()
+    }
+
+    /// The window's width and height.
+    pub fn size(&self) -> (i32, i32) {
+        self.size
     }
 
     /// Waits for the window; the error is what the program said when it ended instead.
@@ -182,94 +188,6 @@ impl Studio {
         self.wait_for_title("showing saved champion");
     }
 
-    /// Presses and releases a key.
-    pub fn key(&self, key: &str) {
-        self.xdotool(&["key", key]);
-        std::thread::sleep(A_FRAME);
-    }
-
-    /// Clicks a button of the evolution panel.
-    pub fn click_button(&self, label: &str) {
-        let x = match label {
-            "Start" | "Pause" => "56",
-            "One generation" => "159",
-            "Reset" => "249",
-            // Not a button: a place in the panel where there is nothing.
-            "the empty panel" => return self.click("300", "60"),
-            "Continue a stopped run" => return self.click("100", "277"),
-            "the first stopped run" => return self.click("100", "308"),
-            "Simulate here" => return self.click("735", "468"),
-            "World" => return self.click("163", "59"),
-            "The ground has a surface of its own" => return self.click("41", "285"),
-            "As recorded" => return self.click("735", "468"),
-            "Keep" => return self.click("369", "157"),
-            "Drop" => return self.click("427", "157"),
-            "From the start" => return self.click("350", PLAYER_Y),
-            "Step back" => return self.click("382", PLAYER_Y),
-            "Hold" => return self.click("414", PLAYER_Y),
-            "Step forward" => return self.click("446", PLAYER_Y),
-            "Side" => return self.click("421", "30"),
-            "Top" => return self.click("466", "30"),
-            "Free" => return self.click("511", "30"),
-            "Follow" => return self.click("366", "30"),
-            "the middle of the torques" => return self.click("560", "545"),
-            "the start of the torques" => return self.click("336", "545"),
-            other => panic!("no button {other}"),
-        };
-        self.click(x, BUTTONS_Y);
-    }
-
-    /// Clicks a row of the list of champions: 0 is the saved one, 1 the first generation's.
-    pub fn click_champion(&self, row: u32) {
-        self.click("100", &(CHAMPIONS_Y + ROW_HEIGHT * row).to_string());
-    }
-
-    /// Replaces the seed by `text` and leaves the field.
-    pub fn type_seed(&self, text: &str) {
-        self.xdotool(&["mousemove", "90", SEED_Y]);
-        std::thread::sleep(A_FRAME);
-        // A double click selects the number that stands there.
-        self.xdotool(&["click", "--repeat", "2", "--delay", "60", "1"]);
-        std::thread::sleep(A_FRAME);
-        self.xdotool(&["type", "--delay", "200", text]);
-        self.key("Return");
-    }
-
-    /// Clicks a row of the list of champions with Shift held down.
-    pub fn shift_click_champion(&self, row: u32) {
-        self.xdotool(&["keydown", "shift"]);
-        std::thread::sleep(A_FRAME);
-        self.click_champion(row);
-        self.xdotool(&["keyup", "shift"]);
-        std::thread::sleep(A_FRAME);
-    }
-
-    /// Clicks a point of the window.
-    pub fn click_at(&self, (x, y): (u32, u32)) {
-        self.click(&x.to_string(), &y.to_string());
-    }
-
-    /// Clicks a point of the window twice.
-    pub fn double_click_at(&self, at: (u32, u32)) {
-        self.move_to(at);
-        self.xdotool(&["click", "1"]);
-        // In frames of their own, and yet near each other.
-        std::thread::sleep(std::time::Duration::from_millis(250));
-        self.xdotool(&["click", "1"]);
-        std::thread::sleep(A_FRAME);
-    }
-
-    /// Drags with the left button and holds on at the end until `then` has happened.
-    pub fn drag_and_hold(&self, from: (u32, u32), to: (u32, u32), then: impl FnOnce()) {
-        self.move_to(from);
-        self.xdotool(&["mousedown", "1"]);
-        std::thread::sleep(A_FRAME);
-        self.move_to(to);
-        then();
-        self.xdotool(&["mouseup", "1"]);
-        std::thread::sleep(A_FRAME);
-    }
-
     /// The moment at which the stage is held, in simulated seconds, as the title has it.
     pub fn held_at_s(&self) -> f64 {
         let title = self.title();
@@ -278,45 +196,19 @@ impl Studio {
     }
 
     /// Where the program keeps what it saves, unless told otherwise.
-    pub fn folder(&self) -> &std::path::Path {
+    pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    fn click(&self, x: &str, y: &str) {
-        self.xdotool(&["mousemove", x, y]);
-        std::thread::sleep(A_FRAME);
-        // Press and release at once: egui takes a button held for longer for something else.
-        self.xdotool(&["click", "1"]);
-        std::thread::sleep(A_FRAME);
-    }
-
-    /// Drags with a mouse button from one point of the window to another.
-    pub fn drag(&self, button: u32, from: (u32, u32), to: (u32, u32)) {
-        let button = button.to_string();
-        self.move_to(from);
-        self.xdotool(&["mousedown", &button]);
-        std::thread::sleep(A_FRAME);
-        self.move_to(to);
-        self.xdotool(&["mouseup", &button]);
-        std::thread::sleep(A_FRAME);
-    }
-
-    /// Turns the wheel away from the person, over a point of the window.
-    pub fn wheel_up(&self, at: (u32, u32)) {
-        self.move_to(at);
-        self.xdotool(&["click", "--repeat", "3", "--delay", "50", "4"]);
-        std::thread::sleep(A_FRAME);
-    }
-
-    /// Moves the pointer.
-    pub fn move_to(&self, (x, y): (u32, u32)) {
-        self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
-        std::thread::sleep(A_FRAME);
+    /// Where the program says where everything is.
+    pub fn places_file(&self) -> PathBuf {
+        self.folder.path().join(PLACES)
     }
 
     /// What is on the display now.
     pub fn picture(&self) -> Picture {
-        Picture::of_xwd(&fs::read(&self.screen).expect("Xvfb's screen"))
+        let screen = self.folder.path().join("Xvfb_screen0");
+        Picture::of_xwd(&fs::read(screen).expect("Xvfb's screen"), self.scene())
     }
 
     /// Waits for a picture that `is_it`.
@@ -334,8 +226,7 @@ impl Studio {
 
     /// Waits until the stage has stopped changing, with the pointer, which is part of the picture, away.
     pub fn still_picture(&self) -> Picture {
-        self.move_to((5, 595));
-        let region = |picture: &Picture| picture.region(320, 130, 480, 310);
+        self.step_aside();
         let mut before = self.picture();
         let mut equal = 0;
         let started = Instant::now();
@@ -343,11 +234,16 @@ impl Studio {
         while equal < 3 {
             std::thread::sleep(A_FRAME);
             let now = self.picture();
-            equal = if region(&before) == region(&now) { equal + 1 } else { 0 };
+            equal = if before.scene_pixels() == now.scene_pixels() { equal + 1 } else { 0 };
             assert!(started.elapsed() < PATIENCE, "the picture never came to rest");
             before = now;
         }
         before
+    }
+
+    /// Moves the pointer to where it shows no hint.
+    pub fn step_aside(&self) {
+        self.move_to((1, self.size.1 - 2));
     }
 
     /// Quits by the keyboard; the program's exit code.
@@ -364,7 +260,8 @@ impl Studio {
         }
     }
 
-    fn wait(&self, is_it: impl Fn() -> bool, what: impl Fn() -> String) {
+    /// Waits for something; `what` says who waits in vain.
+    pub fn wait(&self, is_it: impl Fn() -> bool, what: impl Fn() -> String) {
         let started = Instant::now();
         while !is_it() {
             assert!(started.elapsed() < PATIENCE, "waited in vain for {}", what());
@@ -372,7 +269,8 @@ impl Studio {
         }
     }
 
-    fn xdotool(&self, arguments: &[&str]) {
+    /// Presses keys, moves the mouse.
+    pub fn xdotool(&self, arguments: &[&str]) {
         let status = self.xdotool_command(arguments).status().expect("xdotool starts");
         assert!(status.success(), "xdotool {arguments:?}: {status}");
     }
@@ -389,12 +287,10 @@ impl Studio {
     }
 }
 
-/// Where things are in the panel, in pixels at a scale of 1.
-const BUTTONS_Y: &str = "133";
-const SEED_Y: &str = "215";
-const PLAYER_Y: &str = "500";
-const CHAMPIONS_Y: u32 = 496;
-const ROW_HEIGHT: u32 = 31;
+/// The file in which the program says where everything is.
+const PLACES: &str = "places.txt";
+/// The file of what was chosen for the window.
+const PREFERENCES: &str = "studio.ron";
 
 impl Drop for Studio {
     fn drop(&mut self) {
@@ -404,53 +300,5 @@ impl Drop for Studio {
         let _ = program.wait();
         let _ = self.xvfb.kill();
         let _ = self.xvfb.wait();
-    }
-}
-
-impl Picture {
-    /// Reads the XWD file that Xvfb keeps its screen in: a header of big-endian words, a colour map,
-    /// rows of 32-bit pixels with blue in the lowest byte.
-    fn of_xwd(file: &[u8]) -> Self {
-        let word = |index: usize| {
-            let bytes = file[index * 4..index * 4 + 4].try_into().expect("four bytes");
-            u32::from_be_bytes(bytes)
-        };
-        let (header, width, height) = (word(0) as usize, word(4), word(5));
-        let (bits, row_bytes, colours) = (word(11), word(12) as usize, word(19) as usize);
-        assert_eq!(bits, 32, "Xvfb at depth 24 has pixels of 32 bits");
-        let rows = &file[header + colours * 12..];
-        let pixels = rows
-            .chunks_exact(row_bytes)
-            .take(height as usize)
-            .flat_map(|row| row.chunks_exact(4).take(width as usize))
-            .map(|pixel| [pixel[2], pixel[1], pixel[0]])
-            .collect();
-        Self { width, pixels }
-    }
-
-    /// The middle of a square of the stage all of whose pixels look like `is`.
-    pub fn find(&self, is: fn(&[u8; 3]) -> bool) -> Option<(u32, u32)> {
-        const SIDE: u32 = 9;
-        let corners =
-            (130..430).step_by(3).flat_map(|y| (540..780).step_by(3).map(move |x| (x, y)));
-        let mut squares = corners.filter(|&(x, y)| self.region(x, y, SIDE, SIDE).iter().all(is));
-        squares.next().map(|(x, y)| (x + SIDE / 2, y + SIDE / 2))
-    }
-
-    /// Writes it as PNG.
-    pub fn store(&self, path: &std::path::Path) {
-        let height = self.pixels.len() as u32 / self.width;
-        let rgb = self.pixels.iter().flatten().copied().collect();
-        let picture = snakes_and_stairs::save::Picture { width: self.width, height, rgb };
-        snakes_and_stairs::save::store_picture(path, &picture).expect("written");
-    }
-
-    /// The pixels of a rectangle, row by row, as red, green, blue.
-    pub fn region(&self, left: u32, top: u32, width: u32, height: u32) -> Vec<[u8; 3]> {
-        let row = |y: u32| {
-            let start = (y * self.width + left) as usize;
-            &self.pixels[start..start + width as usize]
-        };
-        (top..top + height).flat_map(row).copied().collect()
     }
 }

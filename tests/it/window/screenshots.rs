@@ -1,101 +1,161 @@
 //! The pictures of the studio that the README shows, taken from the real window.
 //!
-//! `cargo test --test it screenshots -- --ignored` writes them into `assets/screenshots`. Another size, and then another
-//! folder, are named by the environment: `SNAKES_SCREENSHOTS_SIZE=2560x1440 SNAKES_SCREENSHOTS=target/screenshots`.
+//! `cargo test --test it screenshots -- --ignored` writes them into `assets/screenshots`. Another size, another scale
+//! of the panels, and then another folder, are named by the environment:
+//! `SNAKES_SCREENSHOTS_SIZE=2560x1440 SNAKES_SCREENSHOTS_SCALE=1.5 SNAKES_SCREENSHOTS=target/screenshots`.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::display::Studio;
+use super::display::{Studio, preferences};
 
 /// A run that has learned something, quickly.
-const RUN: &str = "--preset climb --generations 30 --threads 2 --saves saves";
+const RUN: &str = "--preset climb --generations 30 --threads 2";
 
+/// Where pictures go, and how large they and the panels are.
 struct Album {
-    studio: Studio,
     folder: PathBuf,
-    theme: &'static str,
-    size: (u32, u32),
+    size: (i32, i32),
+    scale: String,
+    /// What the program saves and remembers meanwhile.
+    scratch: tempfile::TempDir,
 }
 
 impl Album {
-    fn keep(&self, name: &str) {
-        // What is new in a frame is complete in one of the next; the camera glides for a second.
-        std::thread::sleep(Duration::from_secs(6));
-        let path = self.folder.join(format!("{name}-{}.png", self.theme));
-        self.studio.picture().store(&path);
+    fn from_environment() -> Self {
+        let size = std::env::var("SNAKES_SCREENSHOTS_SIZE").unwrap_or("1280x720".to_owned());
+        let (width, height) = size.split_once('x').expect("WIDTHxHEIGHT");
+        let size = (width.parse().expect("a width"), height.parse().expect("a height"));
+        let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/screenshots").to_owned();
+        let folder = PathBuf::from(std::env::var("SNAKES_SCREENSHOTS").unwrap_or(shipped));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let scale = std::env::var("SNAKES_SCREENSHOTS_SCALE").unwrap_or("1.0".to_owned());
+        Self { folder, size, scale, scratch: super::folder() }
     }
 
-    /// Holds the stage at this share of the time.
-    fn seek(&self, share: f64) {
-        let (width, height) = self.size;
-        let (left, right) = (336.0, f64::from(width) - 16.0);
-        self.studio.click_at(((left + (right - left) * share) as u32, height - 50));
+    /// Opens the program; none where that is not possible. Saves are the same each time, the rest is as new.
+    fn open(&self, arguments: &str, theme: &str, tour_is_over: bool) -> Option<Studio> {
+        let path = self.scratch.path().join("studio.ron");
+        let fields = format!("ui_scale: {}, tour_is_over: {tour_is_over}", self.scale);
+        std::fs::write(&path, preferences(&fields)).expect("written");
+        let saves = self.scratch.path().join("saves");
+        let arguments = format!(
+            "{arguments} --theme {theme} --preferences {} --saves {}",
+            path.display(),
+            saves.display()
+        );
+        let studio = Studio::open_sized("screenshots", &arguments, self.size)?;
+        studio.wait_for_title("finished");
+        Some(studio)
     }
 
-    /// Moves the pointer to where it shows no hint.
-    fn step_aside(&self) {
-        self.studio.move_to((5, self.size.1 - 5));
+    /// Writes what is on the display once it has come to rest.
+    fn keep(&self, studio: &Studio, name: &str, theme: &str) {
+        studio.step_aside();
+        // Messages go after eight seconds; a camera glides for one, and a large picture takes one.
+        std::thread::sleep(Duration::from_secs(9));
+        let path = self.folder.join(format!("{name}-{theme}.png"));
+        studio.still_picture().store(&path);
+    }
+
+    /// The stage in a theme: alone, in a race, in another world, from near.
+    fn stage(&self, theme: &str) -> Option<()> {
+        let studio = self.open(RUN, theme, true)?;
+        studio.key("a");
+        studio.key("0");
+        studio.key("space");
+        studio.wait_for_title(", held");
+        studio.seek(0.42);
+        self.keep(&studio, "single", theme);
+
+        studio.key("n");
+        studio.wait_for_title("showing a race of 6");
+        studio.key("space");
+        studio.wait_for_title(", held");
+        studio.seek(0.55);
+        self.keep(&studio, "race", theme);
+
+        studio.key("0");
+        studio.wait_for_title("showing saved champion");
+        studio.open_panel("World");
+        studio.drag_slider("Friction", 0.3);
+        studio.wait_for_title("what if");
+        studio.key("space");
+        studio.wait_for_title(", held");
+        studio.seek(0.5);
+        self.keep(&studio, "what-if", theme);
+        drop(studio);
+
+        // One that often touches something, from near, at a moment at which it does.
+        let robust =
+            concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/robust.ron --preset quick");
+        let studio = self.open(robust, theme, true)?;
+        for key in ["a", "0", "space", "v", "j", "b"] {
+            studio.key(key);
+        }
+        studio.wait_for_title(", held");
+        studio.seek(0.3);
+        let limb = studio.still_picture().find(super::is_red).expect("a red limb");
+        studio.double_click_at(limb);
+        self.keep(&studio, "contacts", theme);
+        Some(())
+    }
+
+    /// The panels, and what lies over the window.
+    fn panels(&self, theme: &str) -> Option<()> {
+        let studio = self.open(RUN, theme, true)?;
+        studio.key("a");
+        studio.key("0");
+        studio.key("space");
+        studio.wait_for_title(", held");
+        studio.seek(0.42);
+        studio.open_panel("Charts");
+        studio.place("Chart: Fitness by generation");
+        self.keep(&studio, "charts", theme);
+
+        studio.open_panel("Library");
+        let is_read = || {
+            let places = studio.places();
+            let has = |part: &str| places.iter().any(|place| place.label.contains(part));
+            has(" saves") && !has("not read yet")
+        };
+        studio.wait(is_read, || "a library that is read".to_owned());
+        studio.click_at(studio.button_starting("robust, ").area.middle());
+        studio.place("Replay");
+        self.keep(&studio, "library", theme);
+
+        studio.key("question");
+        studio.place("Keys and mouse");
+        self.keep(&studio, "keys", theme);
+        studio.key("Escape");
+        studio.wait_for_no("Keys and mouse");
+
+        studio.open_panel("Lessons");
+        studio.click_label("Begin lesson 1");
+        studio.wait_for_title("showing a race of 3");
+        studio.key("space");
+        studio.wait_for_title(", held");
+        studio.seek(0.6);
+        self.keep(&studio, "lesson", theme);
+        drop(studio);
+
+        let studio = self.open(RUN, theme, false)?;
+        studio.place("1 of 5");
+        studio.click_label("Next");
+        studio.place("2 of 5");
+        self.keep(&studio, "tour", theme);
+        Some(())
     }
 }
 
 #[test]
 #[ignore = "takes minutes, and writes into the repository; for whoever has changed what is drawn"]
 fn screenshots() {
-    let size = std::env::var("SNAKES_SCREENSHOTS_SIZE").unwrap_or("1280x720".to_owned());
-    let (width, height) = size.split_once('x').expect("WIDTHxHEIGHT");
-    let size = (width.parse().expect("a width"), height.parse().expect("a height"));
-    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/screenshots");
-    let folder = PathBuf::from(std::env::var("SNAKES_SCREENSHOTS").unwrap_or(shipped.to_owned()));
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let album = Album::from_environment();
     for theme in ["light", "dark"] {
-        let arguments = format!("{RUN} --theme {theme}");
-        let Some(studio) = Studio::open_sized("screenshots", &arguments, size) else { return };
-        studio.wait_for_title("finished");
-        let album = Album { studio, folder: folder.clone(), theme, size };
-        let studio = &album.studio;
-        studio.key("a");
-        studio.key("0");
-        studio.key("space");
-        album.seek(0.42);
-        album.step_aside();
-        album.keep("single");
-
-        studio.key("n");
-        studio.wait_for_title("showing a race of 6");
-        studio.key("space");
-        album.seek(0.55);
-        album.step_aside();
-        album.keep("race");
-
-        studio.key("0");
-        studio.wait_for_title("showing saved champion");
-        studio.click_button("World");
-        // The slider of the friction, from 1 down to a third.
-        studio.drag(1, (77, 336), (52, 336));
-        studio.wait_for_title("what if");
-        studio.key("space");
-        album.seek(0.5);
-        album.step_aside();
-        album.keep("what-if");
-        drop(album);
-
-        // One that often touches something, from near, at a moment at which it does.
-        let robust =
-            concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/robust.ron --preset quick");
-        let arguments = format!("{robust} --saves others --theme {theme}");
-        let Some(studio) = Studio::open_sized("screenshots", &arguments, size) else { return };
-        let album = Album { studio, folder: folder.clone(), theme, size };
-        let studio = &album.studio;
-        studio.wait_for_title("finished");
-        for key in ["a", "0", "space", "v", "j", "b"] {
-            studio.key(key);
+        if album.stage(theme).is_none() {
+            return;
         }
-        album.seek(0.3);
-        std::thread::sleep(Duration::from_secs(3));
-        let limb = studio.picture().find(super::is_red).expect("a red limb");
-        studio.double_click_at(limb);
-        album.step_aside();
-        album.keep("contacts");
     }
+    album.panels("light");
 }

@@ -1,7 +1,8 @@
 //! The stage with real mouse and keys: play, step, seek, race, what-if, hands, cameras, overlays, pictures.
 
-use super::display::{Picture, Studio};
-use super::{count_on_stage, difference, is_blue, is_red};
+use super::display::Studio;
+use super::picture::{Picture, difference, is_blue, is_red};
+use super::places::Area;
 
 /// A studio that has the saved champion on its stage, held at the start, and evolves nothing.
 fn held_at_start(test: &str) -> Option<Studio> {
@@ -9,7 +10,7 @@ fn held_at_start(test: &str) -> Option<Studio> {
     studio.pause_evolution();
     studio.key("space");
     studio.wait_for_title(", held at ");
-    studio.click_button("the start of the torques");
+    studio.seek(0.0);
     studio.wait_for_title("held at 0.00 s");
     Some(studio)
 }
@@ -18,28 +19,28 @@ fn held_at_start(test: &str) -> Option<Studio> {
 fn the_player_holds_steps_back_and_on_and_seeks() {
     let Some(studio) = Studio::open("player", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.click_button("Hold");
+    studio.click_label("Hold");
     studio.wait_for_title(", held at ");
-    studio.click_button("the middle of the torques");
+    studio.seek(0.5);
     studio.wait_for_title("held at 7.5");
     let middle = studio.held_at_s();
     let picture = studio.still_picture();
-    studio.click_button("Step back");
-    studio.click_button("Step back");
+    studio.click_label("Step back");
+    studio.click_label("Step back");
     let before = studio.held_at_s();
     assert!((0.015..0.035).contains(&(middle - before)), "{middle} to {before}");
     studio.key("Right");
     studio.key("Left");
-    studio.click_button("Step forward");
-    studio.click_button("Step forward");
+    studio.click_label("Step forward");
+    studio.click_label("Step forward");
     let again = studio.held_at_s();
     assert!((again - middle).abs() < 0.018, "{middle} and {again}");
-    studio.click_button("the middle of the torques");
+    studio.seek(0.5);
     assert!((studio.held_at_s() - middle).abs() < 0.001);
     studio.picture_with(|now| difference(&picture, now) < 50);
     studio.key("End");
     studio.wait_for_title("held at 15.00 s");
-    studio.click_button("From the start");
+    studio.click_label("From the start");
     studio.wait_for_title_without("held");
     // Four times as fast, and staying at the end.
     studio.key("o");
@@ -55,9 +56,7 @@ fn a_race_is_begun_by_key_and_by_clicks_and_left_again() {
     studio.wait_for_title("4 of 4 generations, finished");
     studio.key("n");
     studio.wait_for_title("showing a race of 4");
-    studio.picture_with(|picture| {
-        count_on_stage(picture, is_red) > 300 && count_on_stage(picture, is_blue) > 300
-    });
+    studio.picture_with(|picture| picture.count(is_red) > 300 && picture.count(is_blue) > 300);
     studio.key("Escape");
     studio.wait_for_title("showing generation 1");
     studio.click_champion(0);
@@ -74,16 +73,16 @@ fn a_race_is_begun_by_key_and_by_clicks_and_left_again() {
 fn a_change_in_the_world_tab_is_shown_beside_the_original_and_kept_or_dropped() {
     let Some(studio) = Studio::open("what-if", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.click_button("World");
-    studio.click_button("The ground has a surface of its own");
+    studio.open_panel("World");
+    studio.click_label("The ground has a surface of its own");
     studio.wait_for_title("showing saved champion and what if");
-    studio.click_button("Drop");
+    studio.click_label("Drop");
     studio.wait_for_title_without("what if");
-    studio.click_button("The ground has a surface of its own");
+    studio.click_label("The ground has a surface of its own");
     studio.wait_for_title("showing saved champion and what if");
-    studio.click_button("Keep");
+    studio.click_label("Keep");
     studio.wait_for_title("showing saved champion in another world");
-    studio.click_button("The ground has a surface of its own");
+    studio.click_label("The ground has a surface of its own");
     studio.wait_for_title("what if");
     studio.key("Escape");
     studio.wait_for_title("showing saved champion in another world");
@@ -92,14 +91,17 @@ fn a_change_in_the_world_tab_is_shown_beside_the_original_and_kept_or_dropped() 
 #[test]
 fn a_limb_that_is_clicked_shows_its_numbers_and_one_that_is_dragged_is_disturbed() {
     let Some(studio) = held_at_start("hands") else { return };
-    let card = |picture: &Picture| picture.region(620, 220, 160, 200);
+    let card = |picture: &Picture| {
+        let scene = picture.scene();
+        picture.region(Area { left: scene.right - 160, top: scene.bottom - 200, ..scene })
+    };
     let before = studio.still_picture();
     let limb = before.find(is_red).expect("a red limb");
     studio.click_at(limb);
     let with_card = studio.still_picture();
     assert!(card(&before) != card(&with_card), "its numbers are shown");
     // It is taken while it cannot run away, and pulled once it moves.
-    studio.drag_and_hold(limb, (limb.0 - 60, limb.1 - 90), || {
+    studio.drag_and_hold(1, limb, (limb.0 - 60, limb.1 - 90), || {
         studio.key("space");
         studio.wait_for_title(", disturbed");
     });
@@ -113,14 +115,15 @@ fn every_camera_shows_something_else_and_follow_comes_back() {
     let follow = studio.still_picture();
     let mut before = studio.still_picture();
     for button in ["Side", "Top"] {
-        studio.click_button(button);
+        studio.click_label(button);
         let now = studio.still_picture();
         assert!(difference(&before, &now) > 3000, "{button}");
-        assert!(count_on_stage(&now, is_red) > 100, "{button} shows the snake");
+        assert!(now.count(is_red) > 100, "{button} shows the snake");
         before = now;
     }
-    studio.click_button("Free");
-    studio.drag(1, (600, 400), (700, 380));
+    studio.click_label("Free");
+    let (x, y) = studio.stage().at(0.58, 0.8);
+    studio.drag(1, (x, y), (x + 100, y - 20));
     let free = studio.still_picture();
     assert!(difference(&before, &free) > 2000, "a drag turns the free camera");
     studio.key("f");
@@ -130,14 +133,14 @@ fn every_camera_shows_something_else_and_follow_comes_back() {
     studio.key("Home");
     studio.picture_with(|now| difference(&follow, now) < 200);
     // A double click on the ground goes there; from near, the snake is large or out of the picture.
-    studio.double_click_at((640, 250));
+    studio.double_click_at(studio.stage().at(0.67, 0.55));
     studio.picture_with(|now| difference(&follow, now) > 20_000);
 }
 
 #[test]
 fn each_overlay_is_drawn_and_taken_away_again() {
     let Some(studio) = held_at_start("overlays") else { return };
-    studio.click_button("the middle of the torques");
+    studio.seek(0.5);
     let bare = studio.still_picture();
     for key in ["v", "j", "b", "l", "d"] {
         studio.key(key);
@@ -150,13 +153,13 @@ fn each_overlay_is_drawn_and_taken_away_again() {
 #[test]
 fn the_theme_changes_panels_and_scene_and_pictures_are_saved() {
     let Some(studio) = held_at_start("theme") else { return };
-    let is_dark = |picture: &Picture, left: u32, top: u32| {
-        let pixels = picture.region(left, top, 20, 6);
-        let sum: u32 = pixels.iter().flatten().map(|part| u32::from(*part)).sum();
-        sum < 90 * 3 * pixels.len() as u32
-    };
+    let stage = studio.stage();
+    let panel = Area { left: 2, top: 2, right: 22, bottom: 6 };
+    let sky = Area { left: stage.right - 60, top: stage.top + 100, ..stage };
+    let sky = Area { right: sky.left + 20, bottom: sky.top + 6, ..sky };
     let both_are = |dark: bool| {
-        studio.picture_with(|now| is_dark(now, 290, 5) == dark && is_dark(now, 740, 100) == dark);
+        let is_so = |now: &Picture, area: Area| (now.brightness(area) < 90) == dark;
+        studio.picture_with(|now| is_so(now, panel) && is_so(now, sky));
     };
     both_are(false);
     studio.key("t");

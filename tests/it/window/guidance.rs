@@ -1,0 +1,89 @@
+//! Lessons, the tour, the keys and the palette of commands, with real mouse and keys.
+
+use super::display::Studio;
+
+#[test]
+fn a_lesson_is_taken_from_its_beginning_to_its_end_and_ones_own_run_is_untouched() {
+    let Some(studio) = Studio::open("lesson", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.open_panel("World");
+    let friction = studio.value_of("TextInput", "Friction");
+    let title = studio.title();
+    studio.open_panel("Lessons");
+    studio.click_label("Begin lesson 1");
+    studio.wait_for_title("showing a race of 3");
+    assert!(studio.find(|place| place.label.contains("too much sticks")).is_none());
+    let second = studio.scrolled_to("Button", "A little less, a little more");
+    studio.click_at(second.area.middle());
+    studio.place_with("friction 0.7");
+    studio.place_with("too much sticks");
+    let back = studio.scrolled_to("Button", "Back to my own run");
+    studio.click_at(back.area.middle());
+    studio.wait_for_title(&title);
+    studio.open_panel("World");
+    assert_eq!(studio.value_of("TextInput", "Friction"), friction);
+}
+
+#[test]
+fn the_run_that_the_fifth_lesson_repeats_has_the_same_bits() {
+    let Some(studio) = Studio::open("lesson-5", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.open_panel("Lessons");
+    let begin = studio.scrolled_to("Button", "Begin lesson 5");
+    studio.click_at(begin.area.middle());
+    studio.wait_for_title("showing a lesson");
+    let twice = studio.scrolled_to("Button", "The same run twice");
+    studio.click_at(twice.area.middle());
+    let hashes = || -> Vec<String> {
+        let is_hash =
+            |text: &str| text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let places = studio.places().into_iter();
+        places
+            .filter(|place| place.role == "Label" && is_hash(&place.label))
+            .map(|place| place.label)
+            .collect()
+    };
+    studio.wait(|| hashes().len() == 2, || format!("two hashes: {:?}", hashes()));
+    let hashes = hashes();
+    assert_eq!(hashes[0], hashes[1]);
+    studio.wait_for_title("showing a race of 2");
+}
+
+#[test]
+fn the_tour_is_taken_once() {
+    let folder = super::folder();
+    let arguments =
+        format!("--preset quick --preferences {}", folder.path().join("studio.ron").display());
+    let Some(studio) = Studio::open("tour", &arguments) else { return };
+    for step in 1..=5 {
+        studio.place(&format!("{step} of 5"));
+        studio.click_label(if step < 5 { "Next" } else { "Begin" });
+    }
+    studio.wait_for_no("5 of 5");
+    assert_eq!(studio.quit(), Some(0));
+    let studio = Studio::open("tour-again", &arguments).expect("it opened before");
+    studio.wait_for_title("4 of 4 generations, finished");
+    assert!(studio.find(|place| place.label == "Skip the tour").is_none());
+}
+
+#[test]
+fn all_keys_are_shown_and_any_command_is_found_by_its_name() {
+    let Some(studio) = Studio::open("keys", "--preset quick") else { return };
+    studio.wait_for_title("4 of 4 generations, finished");
+    studio.key("question");
+    studio.place("Keys and mouse");
+    studio.key("Escape");
+    studio.wait_for_no("Keys and mouse");
+    studio.key("ctrl+k");
+    studio.place("Find a command");
+    studio.type_text("dark");
+    studio.key("Return");
+    // What lay over the window is gone, and the button offers the other theme.
+    studio.wait_for_no("Find a command");
+    studio.place_of("Button", "Light");
+    studio.key("ctrl+k");
+    studio.place("Find a command");
+    studio.type_text("race the generations");
+    studio.key("Return");
+    studio.wait_for_title("showing a race of ");
+}

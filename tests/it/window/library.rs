@@ -1,0 +1,102 @@
+//! The library with real mouse and keys, and what becomes of the files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::display::Studio;
+use super::places::Place;
+
+/// A folder of saves with two champions and a file that is damaged.
+fn saves(folder: &Path) -> PathBuf {
+    let saves = folder.join("saves");
+    fs::create_dir(&saves).expect("created");
+    let shipped = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/saves"));
+    for (from, to) in [("climber", "zebra-one"), ("robust", "zebra-two")] {
+        let to = saves.join(format!("{to}.ron"));
+        fs::copy(shipped.join(format!("{from}.ron")), to).expect("copied");
+    }
+    fs::write(saves.join("zebra-broken.ron"), "(kind: \"nothing\"").expect("written");
+    saves
+}
+
+/// A studio that shows these three in its library and nothing else.
+fn with_zebras(test: &str, saves: &Path) -> Option<Studio> {
+    let arguments = format!("--preset quick --saves {}", saves.display());
+    let studio = Studio::open(test, &arguments)?;
+    studio.pause_evolution();
+    studio.open_panel("Library");
+    studio.place_of("TextInput", "Search the library");
+    studio.type_into("Search the library", "zebra");
+    wait_for_count(&studio, "3 of ");
+    Some(studio)
+}
+
+/// Waits until it says that so many saves are listed.
+fn wait_for_count(studio: &Studio, count: &str) {
+    studio.place_where(count, |place| {
+        place.label.starts_with(count) && place.label.contains(" saves")
+    });
+}
+
+/// The row of the save with this name, once it is read.
+fn row(studio: &Studio, name: &str) -> Place {
+    let start = format!("{name}, ");
+    studio.place_where(name, |place| {
+        place.role == "Button"
+            && place.label.starts_with(&start)
+            && !place.label.contains("not read yet")
+    })
+}
+
+/// Waits until the caption under the stage says this.
+fn wait_for_caption(studio: &Studio, name: &str) {
+    let left = studio.stage().left;
+    studio.place_where(name, |place| {
+        place.role == "Label" && place.label.contains(name) && place.area.left >= left
+    });
+}
+
+#[test]
+fn saves_are_searched_replayed_and_raced() {
+    let folder = super::folder();
+    let Some(studio) = with_zebras("library", &saves(folder.path())) else { return };
+    let broken = row(&studio, "zebra-broken");
+    assert!(broken.label.contains("damaged"), "{}", broken.label);
+    studio.double_click_at(row(&studio, "zebra-two").area.middle());
+    wait_for_caption(&studio, "zebra-two");
+    studio.click_at(row(&studio, "zebra-one").area.middle());
+    studio.click_with("ctrl", &row(&studio, "zebra-two"));
+    studio.place_with("2 chosen");
+    studio.key("Return");
+    studio.wait_for_title("showing a race of 2");
+    studio.type_into("Search the library", "zebra damaged");
+    wait_for_count(&studio, "1 of ");
+    assert!(studio.find(|place| place.label.starts_with("zebra-one,")).is_none());
+}
+
+#[test]
+fn a_save_is_renamed_deleted_and_brought_back() {
+    let folder = super::folder();
+    let saves = saves(folder.path());
+    let Some(studio) = with_zebras("library-files", &saves) else { return };
+    let is_there = |name: &str| saves.join(format!("{name}.ron")).is_file();
+    let wait_for = |name: &str, is: bool| {
+        studio.wait(|| is_there(name) == is, || format!("{name} to be there: {is}"));
+    };
+    studio.click_at(row(&studio, "zebra-one").area.middle());
+    studio.key("F2");
+    studio.place_of("TextInput", "New name");
+    studio.retype("zebra-best");
+    studio.key("Return");
+    wait_for("zebra-best", true);
+    assert!(!is_there("zebra-one"));
+    studio.click_at(row(&studio, "zebra-best").area.middle());
+    studio.key("Delete");
+    wait_for("zebra-best", false);
+    wait_for_count(&studio, "2 of ");
+    studio.key("ctrl+z");
+    wait_for("zebra-best", true);
+    studio.key("ctrl+z");
+    wait_for("zebra-one", true);
+    assert!(!is_there("zebra-best"));
+}

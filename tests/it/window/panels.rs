@@ -1,0 +1,91 @@
+//! Menus, settings and charts with real mouse and keys.
+
+use super::display::Studio;
+
+#[test]
+fn a_run_is_started_and_paused_by_its_button_and_from_the_menu() {
+    let Some(studio) = Studio::open("menu", "--preset quick --generations 1000") else { return };
+    studio.wait_for_title("running");
+    studio.click_label("Pause");
+    studio.wait_for_title("paused");
+    studio.choose("Run", "Start or pause evolution");
+    studio.wait_for_title("running");
+    studio.choose("Run", "Start or pause evolution");
+    studio.wait_for_title("paused");
+    studio.click_label("Start");
+    studio.wait_for_title("running");
+}
+
+#[test]
+fn a_slider_shows_at_once_what_it_does_and_is_undone_and_redone() {
+    let Some(studio) = Studio::open("slider", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.open_panel("World");
+    let before = studio.value_of("TextInput", "Friction");
+    studio.drag_slider("Friction", 0.25);
+    studio.wait_for_title("showing saved champion and what if");
+    let after = studio.value_of("TextInput", "Friction");
+    assert_ne!(before, after);
+    studio.step_aside();
+    studio.key("ctrl+z");
+    studio.wait_for_value("TextInput", "Friction", &before);
+    studio.wait_for_title_without("what if");
+    studio.key("ctrl+shift+z");
+    studio.wait_for_value("TextInput", "Friction", &after);
+    studio.wait_for_title("showing saved champion and what if");
+}
+
+#[test]
+fn whatever_is_a_point_or_a_bar_in_a_chart_is_replayed_by_a_click() {
+    let Some(studio) = Studio::open("charts", "--preset quick") else { return };
+    studio.wait_for_title("4 of 4 generations, finished");
+    studio.open_panel("Charts");
+    let chart = studio.place("Chart: Fitness by generation").area;
+    for generation in [3, 2] {
+        // The axis reaches over six generations, with a margin.
+        let share = (f64::from(generation) - 0.8) / 5.4;
+        studio.click_at(chart.at(share, 0.4));
+        studio.wait_for_title(&format!("showing generation {generation}"));
+    }
+    studio.click_label("Spread");
+    let chart = studio.place_where("the spread", |place| {
+        place.label.starts_with("Chart: ") && !place.label.contains("Fitness by generation")
+    });
+    // Along its foot there is a bar somewhere; all are of the latest generation.
+    let is_shown = (1..24).any(|column| {
+        studio.click_at(chart.area.at(f64::from(column) / 24.0, 0.985));
+        studio.title().contains("showing generation 4")
+    });
+    assert!(is_shown, "no bar was met: {}", studio.title());
+    studio.click_label("Ancestors");
+    studio.place_with("Chart: Ancestors");
+}
+
+#[test]
+fn settings_of_the_search_are_changed_while_the_run_goes_on() {
+    let Some(studio) = Studio::open("during-run", "--preset quick --generations 1000") else {
+        return;
+    };
+    studio.wait_for_title("running");
+    studio.type_into("Generations", "2000");
+    studio.wait_for_title("of 2000 generations, running");
+    studio.place("1 setting changed on the way");
+    studio.type_into("Mutation range, N·m", "50");
+    studio.place("2 settings changed on the way");
+    let now = studio.generations();
+    studio.wait_for_generations(now + 2);
+}
+
+#[test]
+fn the_stage_is_there_alone_and_the_panels_come_back() {
+    let Some(studio) = Studio::open("bare", "--preset quick") else { return };
+    studio.pause_evolution();
+    let beside = studio.stage();
+    studio.key("h");
+    studio.wait_for_no("Panel Run");
+    let alone = studio.stage();
+    assert!(alone.left == 0 && alone.width() > beside.width(), "{alone:?}");
+    studio.key("h");
+    studio.place("Panel Run");
+    assert_eq!(studio.stage(), beside);
+}

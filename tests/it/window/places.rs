@@ -1,0 +1,244 @@
+//! Where everything is in the window, by its name, as the program itself describes it.
+
+use super::display::Studio;
+use super::input::A_FRAME;
+
+/// A rectangle of the window, in pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Area {
+    pub left: i32,
+    pub top: i32,
+    pub right: i32,
+    pub bottom: i32,
+}
+
+impl Area {
+    /// How wide it is.
+    pub fn width(self) -> i32 {
+        self.right - self.left
+    }
+
+    /// How high it is.
+    pub fn height(self) -> i32 {
+        self.bottom - self.top
+    }
+
+    /// The point at these shares of its width and its height.
+    pub fn at(self, x: f64, y: f64) -> (i32, i32) {
+        let along = |from: i32, length: i32, share: f64| from + (f64::from(length) * share) as i32;
+        (along(self.left, self.width(), x), along(self.top, self.height(), y))
+    }
+
+    /// Its middle.
+    pub fn middle(self) -> (i32, i32) {
+        self.at(0.5, 0.5)
+    }
+}
+
+/// A control, or words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// What it is: `Button`, `Slider`, `Label` and so on.
+    pub role: String,
+    /// What it is called.
+    pub label: String,
+    /// What stands in it; `on` or `off` of what can be either.
+    pub value: String,
+    /// Where it is.
+    pub area: Area,
+}
+
+impl Place {
+    fn of_line(line: &str) -> Option<Self> {
+        let mut parts = line.split('\t');
+        let role = parts.next()?.to_owned();
+        let mut end = || parts.next()?.parse().ok();
+        let area = Area { left: end()?, top: end()?, right: end()?, bottom: end()? };
+        let [label, value] = [parts.next()?, parts.next()?].map(ToOwned::to_owned);
+        Some(Self { role, label, value, area })
+    }
+
+    fn is_words(&self) -> bool {
+        self.role == "Label"
+    }
+}
+
+impl Studio {
+    /// All that is described now; what is scrolled out of sight too.
+    pub fn places(&self) -> Vec<Place> {
+        // It is written whole or not at all; before the first frame there is none.
+        let text = std::fs::read_to_string(self.places_file()).unwrap_or_default();
+        text.lines().filter_map(Place::of_line).collect()
+    }
+
+    /// The first that `is` it.
+    pub fn find(&self, is: impl Fn(&Place) -> bool) -> Option<Place> {
+        self.places().into_iter().find(is)
+    }
+
+    /// Waits for one that `is` it and has come to rest; `what` it is says who waits in vain.
+    pub fn place_where(&self, what: &str, is: impl Fn(&Place) -> bool) -> Place {
+        let listed = || {
+            let places = self.places().into_iter();
+            let lines = places.map(|place| format!("{} {:?}", place.role, place.label));
+            format!("{what} among\n{}\n{:?}", lines.collect::<Vec<_>>().join("\n"), self.title())
+        };
+        loop {
+            self.wait(|| self.find(&is).is_some(), listed);
+            // What has just been opened moves to its place in the next frame.
+            let area = |place: Option<Place>| place.map(|place| place.area);
+            let before = area(self.find(&is));
+            std::thread::sleep(A_FRAME / 2);
+            let now = self.find(&is);
+            if before.is_some()
+                && area(now.clone()) == before
+                && let Some(place) = now
+            {
+                return place;
+            }
+        }
+    }
+
+    /// Waits for what is called exactly so: a control, if there is one, before words.
+    pub fn place(&self, label: &str) -> Place {
+        let place = self.place_where(label, |place| place.label == label);
+        let control = self.find(|place| place.label == label && !place.is_words());
+        control.unwrap_or(place)
+    }
+
+    /// Waits for what has this role and is called exactly so.
+    pub fn place_of(&self, role: &str, label: &str) -> Place {
+        let what = format!("{role} {label:?}");
+        self.place_where(&what, |place| place.role == role && place.label == label)
+    }
+
+    /// Waits for a button whose name begins so.
+    pub fn button_starting(&self, start: &str) -> Place {
+        self.place_where(start, |place| place.role == "Button" && place.label.starts_with(start))
+    }
+
+    /// Waits for anything whose name has this in it.
+    pub fn place_with(&self, part: &str) -> Place {
+        self.place_where(part, |place| place.label.contains(part))
+    }
+
+    /// Waits until nothing has this in its name.
+    pub fn wait_for_no(&self, part: &str) {
+        let is_gone = || self.find(|place| place.label.contains(part)).is_none();
+        self.wait(is_gone, || format!("no {part:?}"));
+    }
+
+    /// What stands in the control of this role and name.
+    pub fn value_of(&self, role: &str, label: &str) -> String {
+        self.place_of(role, label).value
+    }
+
+    /// Waits until in the control of this role and name stands `value`.
+    pub fn wait_for_value(&self, role: &str, label: &str, value: &str) {
+        let now = || self.place_of(role, label).value;
+        self.wait(|| now() == value, || format!("{label} {value:?}, which is {:?}", now()));
+    }
+
+    /// Clicks the middle of what is called exactly so.
+    pub fn click_label(&self, label: &str) {
+        self.click_at(self.place(label).area.middle());
+    }
+
+    /// Clicks the middle of the button whose name begins so.
+    pub fn click_starting(&self, start: &str) {
+        self.click_at(self.button_starting(start).area.middle());
+    }
+
+    /// Clicks what is called exactly so with keys such as `ctrl` held down.
+    pub fn click_with(&self, key: &str, place: &Place) {
+        self.holding(key, || self.click_at(place.area.middle()));
+    }
+
+    /// Brings a panel to the front.
+    pub fn open_panel(&self, name: &str) {
+        self.click_label(&format!("Panel {name}"));
+    }
+
+    /// Opens a menu and chooses from it.
+    pub fn choose(&self, menu: &str, action: &str) {
+        self.click_at(self.place_of("Button", menu).area.middle());
+        self.click_starting(action);
+    }
+
+    /// Drags a slider to a share of its rail.
+    pub fn drag_slider(&self, label: &str, share: f64) {
+        let rail = self.scrolled_to("Slider", label).area;
+        self.drag(1, rail.at(0.5, 0.5), rail.at(share, 0.5));
+    }
+
+    /// Replaces what stands in a field, and leaves it by Enter.
+    pub fn type_into(&self, label: &str, text: &str) {
+        self.click_at(self.scrolled_to("TextInput", label).area.middle());
+        self.retype(text);
+        self.key("Return");
+    }
+
+    /// Waits for a control of the upper panels, turning the wheel over them until it is in sight.
+    pub fn scrolled_to(&self, role: &str, label: &str) -> Place {
+        let [top, bottom] = ["Panel Run", "Panel Champions"].map(|tab| self.place(tab).area);
+        for _ in 0..40 {
+            let place = self.place_of(role, label);
+            let is_above = place.area.top < top.bottom;
+            if !is_above && place.area.bottom < bottom.top {
+                return place;
+            }
+            self.wheel(is_above, (top.left + 100, bottom.top - 12));
+        }
+        panic!("{label} could not be scrolled into sight");
+    }
+
+    /// A row of the list of champions: 0 is the saved one, 1 the first generation's.
+    pub fn champion(&self, row: u32) -> Place {
+        let tab = self.place("Panel Champions").area;
+        let generation = format!("Generation {row}");
+        let is_it = |place: &Place| {
+            let rest = place.label.strip_prefix(if row == 0 { "Saved" } else { &generation });
+            let is_named = rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
+            let is_here = place.area.top > tab.bottom && place.area.right < self.stage().left;
+            place.role == "Button" && is_named && is_here
+        };
+        let bottom = self.size().1;
+        for _ in 0..40 {
+            match self.find(is_it) {
+                Some(place) if place.area.middle().1 < bottom - 4 => return place,
+                // Those that are out of sight are not there; the saved one is above all.
+                _ => self.wheel(row == 0, (tab.left + 100, bottom - 40)),
+            }
+        }
+        panic!("no row for champion {row}");
+    }
+
+    /// Clicks a row of the list of champions: 0 is the saved one, 1 the first generation's.
+    pub fn click_champion(&self, row: u32) {
+        self.click_at(self.champion(row).area.middle());
+    }
+
+    /// Clicks a row of the list of champions with Shift held down.
+    pub fn shift_click_champion(&self, row: u32) {
+        let place = self.champion(row);
+        self.click_with("shift", &place);
+    }
+
+    /// The part of the window that is the stage's.
+    pub fn stage(&self) -> Area {
+        let stage = self.find(|place| place.label == "The stage");
+        stage.unwrap_or_else(|| self.place("The stage")).area
+    }
+
+    /// The part of the stage on which nothing lies but, in a race, its board.
+    pub fn scene(&self) -> Area {
+        let Area { left, top, right, bottom } = self.stage();
+        let cards = if self.find(|place| place.label == "Follow").is_some() { 100 } else { 10 };
+        Area { left: left + 10, top: top + cards, right: right - 10, bottom: bottom - 10 }
+    }
+
+    /// Holds the stage, or goes on, at this share of the time.
+    pub fn seek(&self, share: f64) {
+        self.click_at(self.place("Moment, in simulated seconds").area.at(share, 0.5));
+    }
+}
