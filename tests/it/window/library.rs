@@ -48,6 +48,12 @@ fn row(studio: &Studio, name: &str) -> Place {
     })
 }
 
+/// Chooses a save by a click on its row; from then on keys are the list's.
+fn choose(studio: &Studio, name: &str) {
+    studio.click_at(row(studio, name).area.middle());
+    studio.wait(|| row(studio, name).value == "on", || format!("{name} to be chosen"));
+}
+
 /// Waits until the caption under the stage says this.
 fn wait_for_caption(studio: &Studio, name: &str) {
     let left = studio.stage().left;
@@ -64,7 +70,7 @@ fn saves_are_searched_replayed_and_raced() {
     assert!(broken.label.contains("damaged"), "{}", broken.label);
     studio.double_click_at(row(&studio, "zebra-two").area.middle());
     wait_for_caption(&studio, "zebra-two");
-    studio.click_at(row(&studio, "zebra-one").area.middle());
+    choose(&studio, "zebra-one");
     studio.click_with("ctrl", &row(&studio, "zebra-two"));
     studio.place_with("2 chosen");
     studio.key("Return");
@@ -83,14 +89,14 @@ fn a_save_is_renamed_deleted_and_brought_back() {
     let wait_for = |name: &str, is: bool| {
         studio.wait(|| is_there(name) == is, || format!("{name} to be there: {is}"));
     };
-    studio.click_at(row(&studio, "zebra-one").area.middle());
+    choose(&studio, "zebra-one");
     studio.key("F2");
     studio.place_of("TextInput", "New name");
     studio.retype("zebra-best");
     studio.key("Return");
     wait_for("zebra-best", true);
     assert!(!is_there("zebra-one"));
-    studio.click_at(row(&studio, "zebra-best").area.middle());
+    choose(&studio, "zebra-best");
     studio.key("Delete");
     wait_for("zebra-best", false);
     wait_for_count(&studio, "2 of ");

@@ -29,7 +29,8 @@ fn theme_scale_panels_and_overlays_survive_a_restart() {
 
     let studio = Studio::open("settings-again", &arguments).expect("it opened before");
     studio.place_of("Button", "Light");
-    assert_eq!((studio.place("Panel Run").area, studio.stage()), (tab, stage));
+    let are_back = || (studio.place("Panel Run").area, studio.stage()) == (tab, stage);
+    studio.wait(are_back, || format!("{tab:?} and {stage:?}"));
     assert!(studio.find(|place| place.label == "Panel Charts").is_none());
     let menu = Area { left: 2, top: 2, right: 22, bottom: 6 };
     studio.picture_with(|picture| picture.brightness(menu) < 90);
