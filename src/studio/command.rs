@@ -426,7 +426,11 @@ fn apply(
     for label in library.take_done() {
         history.push(Step::Library { label });
     }
-    let (undoable, redoable) = library.steps();
+    if library.busy().is_some() {
+        // What is being taken back is neither done nor undone.
+        return;
+    }
+    let (undoable, redoable) = library.counts();
     if history.agree_with_library(undoable, redoable) > 0 {
         // Something else was done since: it cannot be done again in its place.
         library.forget_undone();
@@ -459,7 +463,11 @@ fn undo_in(library: &mut Library, way: Way, notices: &mut Notices) -> Result<(),
         Way::Back => library.undo()?,
         Way::Forth => library.redo()?,
     };
-    notices.news(said.unwrap_or_else(|| way.nothing().to_owned()));
+    // Of many at once it is said once they are done.
+    if let Some(said) = said.or_else(|| library.busy().is_none().then(|| way.nothing().to_owned()))
+    {
+        notices.news(said);
+    }
     Ok(())
 }
 

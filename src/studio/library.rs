@@ -227,8 +227,8 @@ impl Library {
     }
 
     /// How many changes can be undone, and how many done again.
-    pub fn steps(&self) -> (usize, usize) {
-        self.history.steps()
+    pub fn counts(&self) -> (usize, usize) {
+        self.history.counts()
     }
 
     /// Forgets what could be done again.

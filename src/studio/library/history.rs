@@ -37,7 +37,7 @@ impl History {
     }
 
     /// How many changes can be undone, and how many done again.
-    pub fn steps(&self) -> (usize, usize) {
+    pub fn counts(&self) -> (usize, usize) {
         (self.done.len(), self.undone.len())
     }
 
