@@ -19,7 +19,7 @@ mod stage;
 use super::program::{folder, json_lines, run, stdout_of};
 use display::Studio;
 use picture::{Picture, difference, is_blue, is_red};
-use places::Area;
+use places::{Area, Place};
 use std::time::Duration;
 
 /// A champion of the report's world.
@@ -28,7 +28,6 @@ const REPORTS_CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-
 #[test]
 fn it_opens_on_a_red_and_blue_snake_that_moves_while_a_run_evolves() {
     let Some(studio) = Studio::open("opens", "--preset quick") else { return };
-    studio.wait_for_title("showing saved champion");
     let first =
         studio.picture_with(|picture| picture.count(is_red) > 300 && picture.count(is_blue) > 300);
     studio.picture_with(|picture| difference(&first, picture) > 500);
@@ -289,8 +288,9 @@ fn a_run_that_was_stopped_goes_on_from_the_list() {
     std::fs::write(&log, two).expect("written");
     let Some(studio) = Studio::open("continue", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
-    studio.click_label("Continue a stopped run");
-    studio.click_starting("quick, seed 7");
+    studio.scroll_and_click("Button", "Continue a stopped run");
+    let is_it = |place: &Place| place.role == "Button" && place.label.starts_with("quick, seed 7");
+    studio.click_at(studio.scrolled_to_where("the stopped run", is_it).area.middle());
     studio.wait_for_title("seed 7 - 4 of 4 generations, finished");
     assert_eq!(std::fs::read_to_string(&log).expect("a log").lines().count(), 4);
 }

@@ -13,12 +13,10 @@ fn a_lesson_is_taken_from_its_beginning_to_its_end_and_ones_own_run_is_untouched
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
     assert!(studio.find(|place| place.label.contains("too much sticks")).is_none());
-    let second = studio.scrolled_to("Button", "A little less, a little more");
-    studio.click_at(second.area.middle());
+    studio.scroll_and_click("Button", "A little less, a little more");
     studio.place_with("friction 0.7");
     studio.place_with("too much sticks");
-    let back = studio.scrolled_to("Button", "Back to my own run");
-    studio.click_at(back.area.middle());
+    studio.scroll_and_click("Button", "Back to my own run");
     studio.wait_for_title(&title);
     studio.open_panel("World");
     assert_eq!(studio.value_of("TextInput", "Friction"), friction);
@@ -29,11 +27,9 @@ fn the_run_that_the_fifth_lesson_repeats_has_the_same_bits() {
     let Some(studio) = Studio::open("lesson-5", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("Lessons");
-    let begin = studio.scrolled_to("Button", "Begin lesson 5");
-    studio.click_at(begin.area.middle());
+    studio.scroll_and_click("Button", "Begin lesson 5");
     studio.wait_for_title("showing a lesson");
-    let twice = studio.scrolled_to("Button", "The same run twice");
-    studio.click_at(twice.area.middle());
+    studio.scroll_and_click("Button", "The same run twice");
     let hashes = || -> Vec<String> {
         let is_hash =
             |text: &str| text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());

@@ -180,16 +180,26 @@ impl Studio {
 
     /// Waits for a control of the upper panels, turning the wheel over them until it is in sight.
     pub fn scrolled_to(&self, role: &str, label: &str) -> Place {
+        self.scrolled_to_where(label, |place| place.role == role && place.label == label)
+    }
+
+    /// The same for one that `is` it.
+    pub fn scrolled_to_where(&self, what: &str, is: impl Fn(&Place) -> bool) -> Place {
         let [top, bottom] = ["Panel Run", "Panel Champions"].map(|tab| self.place(tab).area);
         for _ in 0..40 {
-            let place = self.place_of(role, label);
+            let place = self.place_where(what, &is);
             let is_above = place.area.top < top.bottom;
             if !is_above && place.area.bottom < bottom.top {
                 return place;
             }
             self.wheel(is_above, (top.left + 100, bottom.top - 12));
         }
-        panic!("{label} could not be scrolled into sight");
+        panic!("{what} could not be scrolled into sight");
+    }
+
+    /// Clicks a control of the upper panels, wherever it is in them.
+    pub fn scroll_and_click(&self, role: &str, label: &str) {
+        self.click_at(self.scrolled_to(role, label).area.middle());
     }
 
     /// A row of the list of champions: 0 is the saved one, 1 the first generation's.

@@ -74,15 +74,15 @@ fn a_change_in_the_world_tab_is_shown_beside_the_original_and_kept_or_dropped() 
     let Some(studio) = Studio::open("what-if", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("World");
-    studio.click_label("The ground has a surface of its own");
+    studio.scroll_and_click("CheckBox", "The ground has a surface of its own");
     studio.wait_for_title("showing saved champion and what if");
     studio.click_label("Drop");
     studio.wait_for_title_without("what if");
-    studio.click_label("The ground has a surface of its own");
+    studio.scroll_and_click("CheckBox", "The ground has a surface of its own");
     studio.wait_for_title("showing saved champion and what if");
     studio.click_label("Keep");
     studio.wait_for_title("showing saved champion in another world");
-    studio.click_label("The ground has a surface of its own");
+    studio.scroll_and_click("CheckBox", "The ground has a surface of its own");
     studio.wait_for_title("what if");
     studio.key("Escape");
     studio.wait_for_title("showing saved champion in another world");
