@@ -35,8 +35,9 @@ impl Studio {
 
     /// Types in place of what stands in the field that has the keyboard.
     pub fn retype(&self, text: &str) {
-        // A field asks which keys are held when a frame begins, not when a key was pressed.
-        self.holding("ctrl", || self.key("a"));
+        // Not by Ctrl A: a field asks which keys are held at a frame's end, which may be after both are let go.
+        self.key("End");
+        self.xdotool(&["key", "--repeat", "40", "--delay", "20", "BackSpace"]);
         self.type_text(text);
     }
 
