@@ -146,8 +146,12 @@ pub(super) enum Command {
     ToggleTheme,
     /// Take a picture of the stage alone, or of the window.
     TakePicture(Photograph),
+    /// Say something to the person.
+    Say(String),
     /// Bring a panel to the front.
     Open(PanelKind),
+    /// Bring the settings to the front that are about this.
+    FindSetting(&'static str),
     /// Close the panel that was used last.
     ClosePanel,
     /// Put the panels back where they are at first.
@@ -398,6 +402,10 @@ fn apply(
                 shown.map(|show| stage.present(show))
             }
             Command::TryLesson(scene) => lessons.try_out(*scene).map(|show| stage.present(show)),
+            Command::Say(text) => {
+                notices.news(text.clone());
+                Ok(())
+            }
             Command::TellLesson => {
                 lessons.tell();
                 Ok(())
@@ -477,6 +485,11 @@ fn arrange(command: &Command, desk: &mut Desk) -> bool {
         Command::Open(kind) => {
             desk.is_bare = false;
             desk.layout.open(*kind);
+        }
+        Command::FindSetting(label) => {
+            desk.is_bare = false;
+            desk.layout.open(PanelKind::World);
+            desk.sought = Some(label);
         }
         Command::ClosePanel => desk.layout.close_front(),
         Command::ResetLayout => desk.layout.reset(),

@@ -28,6 +28,8 @@ pub(super) struct Desk {
     pub is_bare: bool,
     /// Whether the tour was taken or skipped, now or at some time before.
     pub tour_is_over: bool,
+    /// The setting that somebody is looking for, until the panel of settings has heard of it.
+    pub sought: Option<&'static str>,
     over: Option<Over>,
 }
 
@@ -38,6 +40,7 @@ impl Default for Desk {
             scale: 1.0,
             is_bare: false,
             tour_is_over: true,
+            sought: None,
             over: None,
         }
     }

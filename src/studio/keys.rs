@@ -40,9 +40,8 @@ fn read(
         let is_taken = match &press.logical_key {
             // Whoever types, types; but with Control it is no letter.
             key if area.has_text_cursor() => !held.is_command(key),
-            // A button or a list that has the keyboard is steered by what is no letter.
-            Key::Character(_) => false,
-            _ => egui.wants_any_keyboard_input(),
+            // A list or a slider that has the keyboard is steered by keys of its own.
+            _ => egui.wants_any_keyboard_input() && !held.control,
         };
         if is_taken && !leaves {
             continue;

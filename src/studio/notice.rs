@@ -64,7 +64,7 @@ fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time
     notices.0.retain(|notice| notice.shown_for < LIFETIME);
     let context = contexts.ctx_mut()?;
     egui::Area::new(egui::Id::new("notices"))
-        .anchor(egui::Align2::RIGHT_TOP, [-look::GAP * 2.0, look::GAP * 2.0])
+        .anchor(egui::Align2::RIGHT_TOP, [-look::GAP * 2.0, look::GAP * 5.5])
         .interactable(false)
         .show(context, |ui| {
             ui.spacing_mut().item_spacing.y = look::GAP;

@@ -266,7 +266,10 @@ impl ChartsPanel {
                 archive_map(ui, archive, unit, shown, height, asked);
             }
             (Kind::Archive, ..) if run.settings().evolution.strategy != StrategyKind::MapElites => {
-                explain(ui, "MAP-Elites keeps one: the best of every kind of behaviour.");
+                explain(
+                    ui,
+                    "MAP-Elites keeps one: the best of every kind of behaviour. Choose it as the strategy in the Run panel, and begin a run.",
+                );
             }
             _ => explain(ui, kind.awaits()),
         }

@@ -44,9 +44,14 @@ impl EvolutionPanel {
             Status::Ready | Status::Paused => ("Start", Command::Start),
         };
         let palette = look::of(ui);
-        let first = egui::Button::new(egui::RichText::new(label).strong().color(palette.on_accent))
-            .fill(palette.accent)
-            .min_size(egui::vec2(look::GAP * 10.0, 0.0));
+        let can_start = !(is_finished && is_wrong);
+        let text = egui::RichText::new(label).strong();
+        let first = if can_start {
+            egui::Button::new(text.color(palette.on_accent)).fill(palette.accent)
+        } else {
+            egui::Button::new(text)
+        };
+        let first = first.min_size(egui::vec2(look::GAP * 10.0, 0.0));
         let single = if is_finished {
             "The run is finished; \"New run\" begins another"
         } else {
@@ -64,7 +69,7 @@ impl EvolutionPanel {
         };
         ui.horizontal(|ui| {
             for (is_on, button, hint, command) in [
-                (!(is_finished && is_wrong), first, first_hint, start),
+                (can_start, first, first_hint, start),
                 (
                     !is_finished,
                     egui::Button::new("One generation"),

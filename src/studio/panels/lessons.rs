@@ -69,7 +69,7 @@ fn lesson(ui: &mut egui::Ui, view: View<'_>, asked: &mut Vec<Command>) {
     }
     heading(ui, "What to look for");
     ui.label(lesson.look_for);
-    if !view.lanes.is_empty() {
+    if !view.lanes.is_empty() && view.has_tried {
         lanes(ui, view.lanes);
     }
     if !view.runs.is_empty() {
@@ -80,7 +80,7 @@ fn lesson(ui: &mut egui::Ui, view: View<'_>, asked: &mut Vec<Command>) {
         ui.label(lesson.answer);
     } else {
         ui.horizontal(|ui| {
-            explain(ui, "Try it first.");
+            explain(ui, "Watch and try it first.");
             if ui.small_button("Tell me").clicked() {
                 asked.push(Command::TellLesson);
             }

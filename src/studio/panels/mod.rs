@@ -184,6 +184,9 @@ fn draw(
     lanes.sort_by_key(|lane| lane.number());
     panels.places.clear();
     let panels = &mut *panels;
+    if let Some(label) = desk.sought.take() {
+        panels.world.seek(label);
+    }
     let mut viewer =
         Viewer { panels: &mut *panels, seen: &seen, lanes: &lanes, stage: None, asked: &mut asked };
     if desk.is_bare {
@@ -214,6 +217,10 @@ fn draw(
         area.set(&context, stage);
         if let Some(lane) = focused(&lanes, &seen.on_stage) {
             around_stage(&context, stage, &seen.on_stage, &lanes, lane, *seen.theme, &mut asked);
+            let is_in_sight = panels.places.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
+            if let Some(view) = seen.lessons.view().filter(|_| !is_in_sight) {
+                lesson_card(&context, stage, view.index, &mut asked);
+            }
         }
     }
     match desk.over() {
@@ -358,6 +365,31 @@ impl TabViewer for Viewer<'_, '_, '_> {
             style
         })
     }
+}
+
+/// That a lesson is going on, for who has its panel out of sight.
+fn lesson_card(
+    context: &egui::Context,
+    stage: egui::Rect,
+    lesson: usize,
+    asked: &mut Vec<Command>,
+) {
+    let palette = look::of_context(context);
+    let at = stage.center_bottom() - egui::vec2(0.0, look::GAP * 1.5);
+    let area = egui::Area::new(egui::Id::new("lesson")).pivot(egui::Align2::CENTER_BOTTOM);
+    area.fixed_pos(at).constrain_to(stage).show(context, |ui| {
+        palette.card(palette.accent).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(format!("Lesson {} is going on.", lesson + 1));
+                if ui.button("To the lesson").clicked() {
+                    asked.push(Command::Open(PanelKind::Lessons));
+                }
+                if ui.button("Back to my own run").clicked() {
+                    asked.push(Command::LeaveLesson);
+                }
+            });
+        });
+    });
 }
 
 /// The cards over the stage's edges.

@@ -32,6 +32,7 @@ impl NumberField {
             .desired_width(look::FIELD_WIDTH)
             .margin(egui::Margin::symmetric(8, 4));
         let response = ui.add(field).labelled_by(name.id).on_hover_text(hint);
+        choose_all(ui, &response, &text);
         let parsed = text.trim().parse().ok().filter(|number| range.contains(number));
         if response.changed() {
             self.problem = parsed.is_none().then(|| {
@@ -50,4 +51,14 @@ impl NumberField {
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
+}
+/// Who goes into a field to type a number types another one: what stands there is chosen as a whole.
+pub(super) fn choose_all(ui: &egui::Ui, field: &egui::Response, text: &str) {
+    if !field.gained_focus() {
+        return;
+    }
+    let mut state = egui::TextEdit::load_state(ui.ctx(), field.id).unwrap_or_default();
+    let [start, end] = [0, text.chars().count()].map(egui::text::CCursor::new);
+    state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
+    state.store(ui.ctx(), field.id);
 }

@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use super::parameters::all_sections;
 use crate::save::shipped_presets;
 use crate::studio::actions::{ACTIONS, Situation};
 use crate::studio::command::Command;
@@ -118,7 +119,16 @@ impl Palette {
             key: "",
             command: Command::BeginLesson(index),
         });
-        ACTIONS.iter().filter_map(of_action).chain(presets).chain(lessons).collect()
+        let settings = all_sections().into_iter().flat_map(|section| {
+            section.entries.iter().map(|entry| Entry {
+                group: "Setting".to_owned(),
+                name: format!("{} ({})", entry.label, section.title.to_lowercase()),
+                key: "",
+                command: Command::FindSetting(entry.label),
+            })
+        });
+        let actions = ACTIONS.iter().filter_map(of_action);
+        actions.chain(presets).chain(lessons).chain(settings).collect()
     }
 }
 
@@ -187,6 +197,8 @@ mod tests {
         let ice = Command::SetPreset("ice".to_owned());
         assert_eq!(sent("preset ice", press), [Command::Uncover, ice]);
         assert_eq!(sent("grip", press), [Command::Uncover, Command::BeginLesson(0)]);
+        let setting = Command::FindSetting("Slip");
+        assert_eq!(sent("setting slip", press), [Command::Uncover, setting]);
         assert_eq!(sent("no such thing", press), []);
     }
 

@@ -16,6 +16,13 @@ pub(super) fn progress(ui: &mut egui::Ui, run: &Evolution) {
     let finished = run.reports().len();
     let (text, share) = match run.status() {
         // Larger generations make for fewer of them.
+        Status::Finished if finished < generations as usize => {
+            let tried: u64 = run.reports().iter().map(|of| u64::from(of.evaluations)).sum();
+            let text = format!(
+                "All {finished} generations done: {tried} snakes. Larger ones make for fewer of them"
+            );
+            (text, 1.0)
+        }
         Status::Finished => (format!("All {finished} generations done"), 1.0),
         status => {
             let held = match status {
@@ -29,11 +36,16 @@ pub(super) fn progress(ui: &mut egui::Ui, run: &Evolution) {
     };
     ui.label(text);
     let inside = match run.run_hash() {
-        Some(hash) => format!("run hash {hash:016x}"),
+        Some(_) => "finished".to_owned(),
         None => format!("{done} of {population} snakes"),
     };
     ui.add(egui::ProgressBar::new(share).text(inside).fill(look::of(ui).accent_soft))
         .on_hover_text("Evaluated snakes of the current generation");
+    if let Some(hash) = run.run_hash() {
+        let hint = "It stands for every bit of the run: the same seed and settings give the same one, on any computer";
+        let text = egui::RichText::new(format!("Run hash {hash:016x}"));
+        ui.label(text.color(look::of(ui).text_weak)).on_hover_text(hint);
+    }
     let color = look::of(ui).text_weak;
     let weak = |text: String| egui::RichText::new(text).color(color);
     let pace = pace(run.reports());

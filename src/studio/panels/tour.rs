@@ -93,7 +93,7 @@ fn buttons(ui: &mut egui::Ui, index: usize, asked: &mut Vec<Command>) {
     let go_to = |step| Command::Cover(Over::Tour(step));
     let is_last = index + 1 == STEPS.len();
     let (label, next) =
-        if is_last { ("Begin", Command::Uncover) } else { ("Next", go_to(index + 1)) };
+        if is_last { ("Done", Command::Uncover) } else { ("Next", go_to(index + 1)) };
     let text = egui::RichText::new(label).strong().color(palette.on_accent);
     let forward = ui.add(egui::Button::new(text).fill(palette.accent));
     if ui.memory(|memory| memory.focused().is_none()) {
@@ -153,7 +153,7 @@ mod tests {
                 assert_eq!(click("Next"), [Command::Cover(Over::Tour(index + 1))]);
                 assert_eq!(click("Skip the tour"), [Command::Uncover]);
             } else {
-                assert_eq!(click("Begin"), [Command::Uncover]);
+                assert_eq!(click("Done"), [Command::Uncover]);
             }
         }
     }

@@ -41,6 +41,11 @@ impl WorldPanel {
         }
     }
 
+    /// Shows the settings that are about this.
+    pub fn seek(&mut self, text: &str) {
+        text.clone_into(&mut self.wanted);
+    }
+
     /// The field for what somebody looks for.
     fn find(&mut self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {

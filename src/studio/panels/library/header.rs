@@ -45,9 +45,13 @@ impl LibraryPanel {
         let response = ui.add(field);
         label(ui, &response, "Search the library");
         // From the field straight into the list.
-        let pressed = |key| ui.input(|input| input.key_pressed(key));
-        let is_entered = response.lost_focus() && pressed(Press::Enter);
-        self.wants_keyboard |= is_entered || (response.has_focus() && pressed(Press::ArrowDown));
+        let is_left = response.lost_focus();
+        let is_in_it = response.has_focus();
+        // The key is the field's: the list would take it for a wish to replay.
+        self.wants_keyboard |= ui.input_mut(|input| {
+            let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
+            (is_left && pressed(Press::Enter)) || (is_in_it && pressed(Press::ArrowDown))
+        });
         if ui.available_width() < look::COLUMNS_WIDTH {
             self.sort_by(ui);
         } else {

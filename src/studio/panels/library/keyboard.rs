@@ -26,6 +26,17 @@ impl LibraryPanel {
                 let possible = self.offers.1.iter().filter(|action| action.refusal.is_none());
                 possible.map(|action| &action.act).find(|act| is_it(act)).cloned()
             };
+            // Why what a key asks for cannot be.
+            let refused = |is_it: fn(&Act) -> bool| {
+                let of = self.offers.1.iter().find(|action| is_it(&action.act));
+                of.and_then(|action| action.refusal)
+            };
+            let why = match key {
+                Press::F2 => refused(|act| matches!(act, Act::Rename(_))),
+                Press::Delete => refused(Act::deletes),
+                _ => None,
+            };
+            asked.extend(why.map(|why| Command::Say(format!("{why}."))));
             let wanted = match key {
                 Press::Enter => acts(|act| {
                     matches!(act, Act::Send(Command::Library(Ask::Replay(_) | Ask::Race(_))))

@@ -6,6 +6,6 @@ pub use crate::evolve::may_change_during_run;
 pub fn when(answer: Result<(), &'static str>) -> String {
     match answer {
         Ok(()) => "Takes effect from the next generation.".to_owned(),
-        Err(reason) => format!("Goes to the next run: {}.", reason.trim_end_matches('.')),
+        Err(reason) => format!("{}.", reason.trim_end_matches('.')),
     }
 }

@@ -7,6 +7,7 @@ use super::entry::{Parts, Range};
 use super::sheet::{Changing, Sheet, Shown};
 use super::values::{list_of, numbers, rounded};
 use crate::studio::look;
+use crate::studio::panels::number_field::choose_all;
 
 /// A slider that is held still for so long shows what it does, in seconds.
 const REST_S: f64 = 0.35;
@@ -245,6 +246,7 @@ impl Sheet {
         let size = egui::vec2(width, ui.spacing().interact_size.y);
         let response = ui.add_sized(size, field).labelled_by(control.name);
         let response = response.on_hover_text(control.hint);
+        choose_all(ui, &response, &text);
         if let Some(said) = &control.said {
             let is_on = ui.is_enabled();
             response
