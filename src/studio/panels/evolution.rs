@@ -309,7 +309,7 @@ mod tests {
                 harness.run();
             })
         };
-        assert_eq!(type_seed("23"), [Command::SetSeed(123)], "appended to the 1 that was there");
+        assert_eq!(type_seed("23"), [Command::SetSeed(23)], "in place of the 1 that was there");
         assert_eq!(type_seed("x"), []);
     }
 
@@ -322,7 +322,7 @@ mod tests {
             harness.get_by_label("Population").type_text("a");
             harness.run();
             assert!(
-                harness.query_by_label_contains("Population is \"500a\"; allowed: 1 to").is_some()
+                harness.query_by_label_contains("Population is \"a\"; allowed: 1 to").is_some()
             );
             harness.get_by_label("Reset").click();
             harness.run();
@@ -341,7 +341,7 @@ mod tests {
             harness.get_by_label("Start").click();
             harness.run();
         });
-        assert_eq!(sent, [Command::SetSeed(19), Command::Start]);
+        assert_eq!(sent, [Command::SetSeed(9), Command::Start]);
     }
 
     /// What is sent when a person clicks on one label after another.

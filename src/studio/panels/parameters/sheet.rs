@@ -267,8 +267,8 @@ mod tests {
         assert!(said.starts_with("Generations in a run."), "{said}");
         assert!(said.contains("\nAllowed: 1 to 10000, whole numbers."), "{said}");
         assert!(said.ends_with("\nTakes effect from the next generation."), "{said}");
-        let said = hint(generations, Some(Err("the map is laid out by it")));
-        assert!(said.ends_with("\nGoes to the next run: the map is laid out by it."), "{said}");
+        let said = hint(generations, Some(Err("The map is laid out by it; the next run takes it")));
+        assert!(said.ends_with("\nThe map is laid out by it; the next run takes it."), "{said}");
         assert!(!hint(generations, None).contains("next"), "no run is under way");
     }
 }
