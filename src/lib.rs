@@ -9,7 +9,9 @@
 //! 2. **The same seed and settings give the same bits**: for any number of threads, in debug and
 //!    release, with and without the studio, on any x86-64 machine. Random numbers come from streams
 //!    named after run seed, generation, individual and purpose ([`rng::stream`]), never from the order
-//!    of arrival; results are in the order of the individuals before a strategy sees them.
+//!    of arrival; results are in the order of the individuals before a strategy sees them. What is changed during a
+//!    run ([`evolve::SettingChange`]) counts from a generation on, is written down before that generation begins, and
+//!    belongs to the run like its settings; so does the champion that a run may descend from ([`evolve::Founder`]).
 //! 3. **No transcendental function of the standard library in the core**: they differ from one C
 //!    library to the next. `libm` only; `clippy.toml` lists them.
 //!    Of the C library's float functions a step reaches two, through the physics engine, and neither can
@@ -19,7 +21,8 @@
 //!    any tree of fewer than 100 000 leaves. `snakes verify` compares what comes of it.
 //! 4. **The viewer only looks.** The frame rate, a moved window or a slow panel cannot change a result. A hand that
 //!    pulls a limb makes a disturbed rollout, which is marked, compared with nothing and kept nowhere.
-//! 5. **Panels send messages; one system applies them.**
+//! 5. **Panels send messages; one system applies them.** What can be done by name stands in one list, from which
+//!    menus, keys and palette are drawn.
 //! 6. **Whatever a person can break is checked where it enters**, and the error names the field, the
 //!    value and what is allowed ([`check::Invalid`]).
 //! 7. **A number has its unit in its name**: `duration_s`, `bend_limit_rad`, `torque_nm`.

@@ -29,8 +29,8 @@ impl EvolutionPanel {
         let mut pressed = Vec::new();
         self.buttons(ui, run, &mut pressed);
         progress(ui, run);
-        self.fields(ui, run, asked);
         stopped_runs(ui, run, asked);
+        self.fields(ui, run, asked);
         asked.append(&mut pressed);
     }
 

@@ -30,7 +30,7 @@ static SKIPPED: AtomicU32 = AtomicU32::new(0);
 const PATIENCE: Duration = Duration::from_secs(120);
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 /// Wide enough for all cards over the stage, and not slower to draw than need be.
-const SIZE: (i32, i32) = (1000, 700);
+const SIZE: (i32, i32) = (1000, 860);
 
 /// Skips a test, or fails where skipping is not allowed.
 fn skip(test: &str, reason: &str) {

@@ -53,7 +53,7 @@ fn the_tour_is_taken_once() {
     let Some(studio) = Studio::open("tour", &arguments) else { return };
     for step in 1..=5 {
         studio.place(&format!("{step} of 5"));
-        studio.click_label(if step < 5 { "Next" } else { "Begin" });
+        studio.click_label(if step < 5 { "Next" } else { "Done" });
     }
     studio.wait_for_no("5 of 5");
     assert_eq!(studio.quit(), Some(0));
