@@ -114,13 +114,17 @@ impl Layout {
     }
 
     /// The panels in a window of this size, in points, to be drawn.
-    pub fn state_in(&mut self, size: egui::Vec2) -> &mut DockState<PanelKind> {
+    ///
+    /// While the panels' size is changing, which is `is_settled` no more, nothing is measured.
+    pub fn state_in(&mut self, size: egui::Vec2, is_settled: bool) -> &mut DockState<PanelKind> {
         if self.is_to_be_laid_out {
             self.state = Self::at_first(size);
             self.is_to_be_laid_out = false;
             self.first.take().into_iter().for_each(|kind| self.open(kind));
         }
-        self.keep_widths(size.x);
+        if is_settled {
+            self.keep_widths(size.x);
+        }
         // The stage alone needs no tab to choose it by; with company it does.
         for (_, leaf) in self.state.iter_leaves_mut() {
             leaf.tab_bar_hidden = leaf.tabs == [PanelKind::Stage];
@@ -300,7 +304,7 @@ mod tests {
 
     fn laid_out(width: f32) -> Layout {
         let mut layout = Layout::default();
-        layout.state_in(egui::vec2(width, width * 9.0 / 16.0));
+        layout.state_in(egui::vec2(width, width * 9.0 / 16.0), true);
         layout
     }
 
@@ -343,7 +347,7 @@ mod tests {
         // Drawing says where it was drawn.
         let drawn = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 700.0));
         layout.state.main_surface_mut().root_node_mut().expect("a root").set_rect(drawn);
-        layout.state_in(egui::vec2(1920.0, 1080.0));
+        layout.state_in(egui::vec2(1920.0, 1080.0), true);
         assert!((left(&layout) * 1920.0 - LEFT).abs() < 1.0);
     }
 
@@ -351,7 +355,7 @@ mod tests {
     fn a_panel_asked_for_before_the_window_has_a_size_is_in_front_then() {
         let mut layout = Layout::default();
         layout.open(PanelKind::Charts);
-        layout.state_in(egui::vec2(1280.0, 720.0));
+        layout.state_in(egui::vec2(1280.0, 720.0), true);
         let path = layout.state.find_tab(&PanelKind::Charts).expect("there");
         let leaf = layout.state.leaf(path.node_path()).expect("a leaf");
         assert_eq!(leaf.active, path.tab);

@@ -164,11 +164,14 @@ fn draw(
     mut send: MessageWriter<Command>,
 ) -> Result {
     let context = contexts.ctx_mut()?.clone();
-    if !panels.is_dressed {
+    let is_first = !panels.is_dressed;
+    if is_first {
         look::apply(&context);
         panels.is_dressed = true;
     }
     look::show(&context, *seen.theme);
+    // Another size of the panels takes effect in the next frame.
+    let is_settled = context.zoom_factor() == desk.scale;
     context.set_zoom_factor(desk.scale);
     let mut asked = Vec::new();
     let situation =
@@ -189,7 +192,9 @@ fn draw(
     }
     let mut viewer =
         Viewer { panels: &mut *panels, seen: &seen, lanes: &lanes, stage: None, asked: &mut asked };
-    if desk.is_bare {
+    if is_first && !is_settled {
+        // Panels that are put where they were would be measured with another measure.
+    } else if desk.is_bare {
         viewer.stage(&mut root);
     } else {
         let (preset, seed) = (seen.evolution.preset(), seen.evolution.seed());
@@ -202,9 +207,8 @@ fn draw(
             },
         );
         let style = style(&root);
-        // Another size of the panels takes effect in the next frame.
-        let size = root.available_size() * (context.zoom_factor() / desk.scale);
-        DockArea::new(desk.layout.state_in(size))
+        let size = root.available_size();
+        DockArea::new(desk.layout.state_in(size, is_settled))
             .style(style)
             .hidable_tab_bars(true)
             .show_leaf_close_all_buttons(false)
