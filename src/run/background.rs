@@ -275,7 +275,6 @@ impl Worker {
             if experiment.is_over() {
                 break;
             }
-            control.start_generation();
             match control.pass_unless(|| self.has_wishes()) {
                 Ok(true) => {}
                 Ok(false) => continue,
@@ -319,16 +318,25 @@ impl Worker {
     /// Changes what is to be changed before the next generation.
     fn fulfil_wishes(&self, experiment: &mut Experiment, keeper: &mut Keeper) {
         loop {
-            self.population.store(experiment.population(), Ordering::Relaxed);
+            self.show_next_generation(experiment);
             let Some((field, text)) = self.wishes().pop_front() else { return };
             let event = match keeper.amend(experiment, &field, &text) {
                 Ok(None) => continue,
                 Ok(Some(change)) => Event::Changed(change),
                 Err(error) => Event::NotChanged { field, reason: error.to_string() },
             };
-            self.population.store(experiment.population(), Ordering::Relaxed);
+            // Before it is told, so that whoever hears of it sees the generation that it counts for.
+            self.show_next_generation(experiment);
             self.tell(event);
         }
+    }
+
+    /// Shows the progress of the generation that begins next, of which nobody is done; after the last one, of that one.
+    fn show_next_generation(&self, experiment: &Experiment) {
+        if !experiment.is_over() {
+            self.control.start_generation();
+        }
+        self.population.store(experiment.population(), Ordering::Relaxed);
     }
 }
 
