@@ -37,12 +37,8 @@ fn read(
         }
         let situation = now.situation();
         let leaves = press.logical_key == Key::Escape && situation.is_covered;
-        let is_taken = match &press.logical_key {
-            // Whoever types, types; but with Control it is no letter.
-            key if area.has_text_cursor() => !held.is_command(key),
-            // A list or a slider that has the keyboard is steered by keys of its own.
-            _ => egui.wants_any_keyboard_input() && !held.control,
-        };
+        let (is_typing, is_steering) = (area.has_text_cursor(), egui.wants_any_keyboard_input());
+        let is_taken = held.is_for_panel(&press.logical_key, is_typing, is_steering);
         if is_taken && !leaves {
             continue;
         }
@@ -58,6 +54,18 @@ struct Held {
 }
 
 impl Held {
+    /// Whether a panel has use for a key: a field in which somebody is typing, or a list or a slider that has the
+    /// keyboard and keys of its own. Help is there everywhere, but "?" can be typed.
+    fn is_for_panel(self, key: &Key, is_typing: bool, is_steering: bool) -> bool {
+        match key {
+            Key::F1 => false,
+            // With Control it is no letter.
+            key if is_typing => !self.is_command(key),
+            Key::Character(text) if text == "?" => false,
+            _ => is_steering && !self.control,
+        }
+    }
+
     /// Whether it is a key with Control that text fields have no use for.
     fn is_command(self, key: &Key) -> bool {
         let is_theirs =
@@ -170,5 +178,16 @@ mod tests {
         assert!(!CONTROL.is_command(&character("z")));
         assert!(CONTROL.is_command(&character("k")));
         assert!(!NONE.is_command(&character("k")));
+    }
+
+    #[test]
+    fn help_is_there_while_a_list_has_the_keyboard_and_a_question_mark_can_be_typed() {
+        let (help, letter) = (character("?"), character("n"));
+        assert!(!SHIFT.is_for_panel(&help, false, true));
+        assert!(SHIFT.is_for_panel(&help, true, true));
+        assert!(!NONE.is_for_panel(&Key::F1, true, true));
+        assert!(NONE.is_for_panel(&letter, false, true), "in a list");
+        assert!(!CONTROL.is_for_panel(&letter, false, true), "no letter");
+        assert!(!NONE.is_for_panel(&letter, false, false), "on the stage");
     }
 }
