@@ -2,6 +2,7 @@
 //!
 //! Whatever changes files can be undone. Several things that were done at once are undone at once.
 
+mod ask;
 mod cast;
 mod history;
 mod item;
@@ -12,80 +13,19 @@ use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 
-use super::casting::evenly_chosen;
 use super::engine::Engine;
-use super::notice::Notices;
-use super::stage::{MOST_LANES, Show};
+use super::stage::Show;
 use super::undo::Way;
 use crate::run::{Errand, Librarian};
-use crate::save::library::{Place, Step, delete, duplicate, export, import, rename};
-use crate::save::{SaveError, SavesFolder};
+use crate::save::SavesFolder;
+use crate::save::library::{Place, Step};
 
+pub(super) use ask::Ask;
 pub(super) use cast::found_run;
-use cast::{exhibit_of, generation_of};
 use history::{Change, History};
 pub(super) use item::{Item, fitness_text};
 pub(super) use take_in::plugin;
-use under_way::{
-    DELETED, DUPLICATED, EXPORTED, IMPORTED, MOST_AT_ONCE, Outcome, Task, UnderWay, Verb,
-};
-
-/// Something a person asks of the library.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Ask {
-    /// Begin to read the folder, or look at it again.
-    Look,
-    /// Read these first: they are in sight.
-    Hurry(Vec<Place>),
-    /// Put the champion of an entry on the stage; of a run its best.
-    Replay(Place),
-    /// Let the champions of entries race.
-    Race(Vec<Place>),
-    /// Put the champion of a run's generation on the stage; the first is 1.
-    ReplayGeneration {
-        /// The run's folder.
-        run: PathBuf,
-        /// The first is 1.
-        generation: u32,
-    },
-    /// Let the champions of these generations of a run race; of many, some at equal distances.
-    RaceGenerations {
-        /// The run's folder.
-        run: PathBuf,
-        /// The generations that have one.
-        generations: Vec<u32>,
-    },
-    /// Begin a run of which the champion of an entry is a parent.
-    FoundRun(Place),
-    /// Give a champion another name.
-    Rename {
-        /// Which.
-        place: Place,
-        /// How it is to be called.
-        name: String,
-    },
-    /// Copy champions beside themselves.
-    Duplicate(Vec<Place>),
-    /// Put entries away, from where undoing brings them back.
-    Delete(Vec<Place>),
-    /// Copy entries out.
-    Export {
-        /// Which.
-        places: Vec<Place>,
-        /// To which folder, or for one champion to which file; without it, to the usual folder.
-        to: Option<PathBuf>,
-    },
-    /// Copy champions or runs in.
-    Import(Vec<PathBuf>),
-    /// Undo what was done last.
-    Undo,
-    /// Do again what was undone last.
-    Redo,
-    /// End what is being done with many after the file that it is about.
-    Cancel,
-    /// Put on the stage what was read for it meanwhile.
-    Present,
-}
+use under_way::{MOST_AT_ONCE, UnderWay};
 
 /// What is in the folder of saves, as far as it is read, and what was done with it.
 #[derive(Resource, Debug)]
@@ -246,23 +186,12 @@ impl Library {
         self.history.redoable()
     }
 
-    /// Undoes what was done last. Returns what to say of it; nothing, if there is nothing to undo.
+    /// Undoes what was done last, or does again what was undone last. Returns what to say of it; nothing, if there is
+    /// nothing.
     ///
     /// # Errors
-    /// A file cannot be moved back.
-    pub fn undo(&mut self) -> Result<Option<String>, String> {
-        self.step(Way::Back)
-    }
-
-    /// Does again what was undone last. Returns what to say of it; nothing, if there is nothing.
-    ///
-    /// # Errors
-    /// A file cannot be moved.
-    pub fn redo(&mut self) -> Result<Option<String>, String> {
-        self.step(Way::Forth)
-    }
-
-    fn step(&mut self, way: Way) -> Result<Option<String>, String> {
+    /// A file cannot be moved, or something else is being done.
+    pub fn step(&mut self, way: Way) -> Result<Option<String>, String> {
         self.refuse_while_busy()?;
         if self.history.steps(way) > MOST_AT_ONCE {
             return self.send_out_undo(way);
@@ -297,150 +226,10 @@ impl Library {
         Ok(Some(format!("{verb}: {}.{elsewhere}", change.words)))
     }
 
-    /// Does what a person asks for, and says who is to take the stage.
-    ///
-    /// # Errors
-    /// What cannot be done, and why.
-    pub fn apply(&mut self, ask: &Ask, notices: &mut Notices) -> Result<Option<Show>, String> {
-        match ask {
-            Ask::Look => self.look()?,
-            Ask::Hurry(places) => {
-                if let Some(librarian) = &self.librarian {
-                    librarian.hurry(places.clone());
-                }
-            }
-            Ask::Replay(place) => {
-                let (place, best) = (place.clone(), self.best_of(place));
-                let is_quick = place.run().is_none() || best.is_some();
-                return self.load(is_quick, move || exhibit_of(&place, best).map(Show::solo));
-            }
-            Ask::Race(places) => {
-                let places = places.iter().take(MOST_LANES);
-                let racers: Vec<(Place, Option<u32>)> =
-                    places.map(|place| (place.clone(), self.best_of(place))).collect();
-                let is_quick =
-                    racers.iter().all(|(place, best)| place.run().is_none() || best.is_some());
-                return self.load(is_quick, move || {
-                    let exhibits = racers.iter().map(|(place, best)| exhibit_of(place, *best));
-                    Ok(Show::race(exhibits.collect::<Result<_, _>>()?))
-                });
-            }
-            Ask::Present => return self.loaded.take().transpose(),
-            Ask::ReplayGeneration { run, generation } => {
-                let (run, generation) = (run.clone(), *generation);
-                return self.load(true, move || generation_of(&run, generation).map(Show::solo));
-            }
-            Ask::RaceGenerations { run, generations } => {
-                let chosen = evenly_chosen(generations.len()).map(|index| generations[index]);
-                let exhibits = chosen.map(|generation| generation_of(run, generation));
-                return Ok(Some(Show::race(exhibits.collect::<Result<_, _>>()?)));
-            }
-            // It needs the evolution: see [`found_run`].
-            Ask::FoundRun(_) => {}
-            Ask::Rename { place, name } => {
-                self.refuse_while_busy()?;
-                let step = rename(place, name.trim()).map_err(|error| error.to_string())?;
-                self.keep(Change { words: format!("renamed {}", place.name()), steps: vec![step] });
-            }
-            Ask::Duplicate(places) => {
-                self.each(DUPLICATED, places, duplicate)?;
-            }
-            Ask::Delete(places) => {
-                if let Some(words) = self.each(DELETED, places, delete)? {
-                    notices.news(format!("{}. Ctrl Z brings it back", capital(&words)));
-                }
-            }
-            Ask::Export { places, to } => {
-                self.refuse_while_busy()?;
-                let (saves, to) = (self.saves.clone(), to.clone());
-                let act = move |place: Place| export(&saves, &place, to.as_deref()).into();
-                self.send_out(Task::Act(EXPORTED), places.clone(), act, |_| Outcome::Left(None))?;
-            }
-            Ask::Import(paths) => {
-                // What is dropped into a window nobody has looked into is to be seen too.
-                self.look()?;
-                self.refuse_while_busy()?;
-                let saves = self.saves.clone();
-                let act = move |path: PathBuf| import(&saves, &path).into();
-                self.send_out(Task::Act(IMPORTED), paths.clone(), act, |_| Outcome::Left(None))?;
-            }
-            Ask::Cancel => self.cancel(),
-            Ask::Undo => notices.news(self.undo()?.unwrap_or("There is nothing to undo".into())),
-            Ask::Redo => {
-                notices.news(self.redo()?.unwrap_or("There is nothing to do again".into()));
-            }
-        }
-        Ok(None)
-    }
-
-    fn look(&mut self) -> Result<(), String> {
-        match &self.librarian {
-            Some(librarian) => librarian.look_again(),
-            None => {
-                let librarian = Librarian::start(self.saves.clone());
-                let librarian =
-                    librarian.map_err(|error| format!("The saves cannot be read: {error}"))?;
-                self.librarian = Some(librarian);
-            }
-        }
-        Ok(())
-    }
-
     fn look_again(&self) {
         if let Some(librarian) = &self.librarian {
             librarian.look_again();
         }
-    }
-
-    /// Reads who is to take the stage: now, if that is quick, and else beside the window; see [`Ask::Present`].
-    fn load(
-        &mut self,
-        is_quick: bool,
-        load: impl FnOnce() -> Result<Show, String> + Send + 'static,
-    ) -> Result<Option<Show>, String> {
-        // Whoever was asked for before would come too late.
-        (self.loading, self.loaded) = (None, None);
-        if is_quick {
-            return load().map(Some);
-        }
-        let errand = Errand::start(load).map_err(|error| format!("Nothing was read: {error}"))?;
-        self.loading = Some(errand);
-        Ok(None)
-    }
-
-    /// Does something with each of several entries, with many of them beside the window: then nothing is returned.
-    /// What was done before one fails is kept, and can be undone.
-    fn each(
-        &mut self,
-        verb: Verb,
-        places: &[Place],
-        act: impl Fn(&SavesFolder, &Place) -> Result<Step, SaveError> + Send + 'static,
-    ) -> Result<Option<String>, String> {
-        self.refuse_while_busy()?;
-        if places.len() > MOST_AT_ONCE {
-            let saves = self.saves.clone();
-            let act = move |place: Place| act(&saves, &place).into();
-            self.send_out(Task::Act(verb), places.to_vec(), act, |_| Outcome::Left(None))?;
-            return Ok(None);
-        }
-        let mut steps = Vec::new();
-        let mut done = Vec::new();
-        let mut problem = None;
-        for place in places {
-            match act(&self.saves, place) {
-                Ok(step) => {
-                    steps.push(step);
-                    done.push(place.name());
-                }
-                Err(error) => {
-                    problem = Some(error.to_string());
-                    break;
-                }
-            }
-        }
-        let words = format!("{} {}", verb.done, listed(&done));
-        self.keep(Change { words: words.clone(), steps });
-        problem.map_or(Ok(Some(words)), Err)
     }
 
     /// Keeps what was done, to be undone.
@@ -485,25 +274,11 @@ fn name_of(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Names in a few words: one by itself, several counted.
-fn listed(names: &[String]) -> String {
-    match names {
-        [one] => one.clone(),
-        several => format!("{} saves", several.len()),
-    }
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(char::to_uppercase);
-    first.into_iter().flatten().chain(letters).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::save::{shipped_champion, store_champion};
-    use crate::studio::exhibit::Exhibit;
+    use crate::studio::notice::Notices;
     use tempfile::TempDir;
 
     pub fn library(names: &[&str]) -> (TempDir, Library) {
@@ -539,13 +314,13 @@ mod tests {
         assert_eq!(notices.len(), 1);
         assert_eq!(own(&mut library), ["b"]);
         assert_eq!(library.undoable(), Some("deleted 2 saves"));
-        let said = library.undo().expect("undone").expect("something");
+        let said = library.step(Way::Back).expect("undone").expect("something");
         assert_eq!(said, "Undone: deleted 2 saves.");
         assert_eq!(own(&mut library), ["a", "b", "c"]);
         assert_eq!((library.undoable(), library.redoable()), (None, Some("deleted 2 saves")));
-        library.redo().expect("redone");
+        library.step(Way::Forth).expect("redone");
         assert_eq!(own(&mut library), ["b"]);
-        assert_eq!(library.redo(), Ok(None));
+        assert_eq!(library.step(Way::Forth), Ok(None));
     }
 
     #[test]
@@ -554,7 +329,7 @@ mod tests {
         let a = place(&library, "a");
         library.apply(&Ask::Delete(vec![a]), &mut Notices::default()).expect("deleted");
         std::fs::write(folder.path().join("a.ron"), "another").expect("written");
-        let said = library.undo().expect("undone").expect("something");
+        let said = library.step(Way::Back).expect("undone").expect("something");
         assert_eq!(said, "Undone: deleted a. The name a is taken by now: it is called a 2.");
         let (count, newest) = library.newest();
         assert_eq!((count, newest.map(Place::name)), (1, Some("a 2".to_owned())));
@@ -573,7 +348,7 @@ mod tests {
         assert_eq!(library.undoable(), None);
         named(&mut library, "a", "c").expect("free");
         assert_eq!(own(&mut library), ["b", "c"]);
-        library.undo().expect("undone");
+        library.step(Way::Back).expect("undone");
         own(&mut library);
         named(&mut library, "b", "d").expect("free");
         assert_eq!(library.redoable(), None);
@@ -597,30 +372,5 @@ mod tests {
         assert_eq!(own(&mut library), ["a 2", "a"]);
         assert_eq!(library.undoable(), Some("imported a 2"));
         assert_eq!(notices.len(), 2);
-    }
-
-    #[test]
-    fn a_run_that_is_not_read_yet_takes_the_stage_once_it_is() {
-        let (folder, mut library) = library(&["mine"]);
-        let gone = Place::Run(folder.path().join("gone"));
-        let mut notices = Notices::default();
-        let ask = Ask::Replay(gone);
-        assert!(library.apply(&ask, &mut notices).expect("begun").is_none());
-        while library.loading.is_some() {
-            library.take_in(&mut notices);
-        }
-        assert!(library.has_loaded());
-        assert!(library.apply(&Ask::Present, &mut notices).expect_err("gone").contains("gone"));
-        assert!(library.apply(&Ask::Present, &mut notices).expect("nothing").is_none());
-    }
-
-    #[test]
-    fn those_who_are_chosen_take_the_stage_under_their_names() {
-        let (_folder, mut library) = library(&["mine"]);
-        let race = Ask::Race(vec![place(&library, "mine"), Place::Shipped("fast")]);
-        let show = library.apply(&race, &mut Notices::default()).expect("read").expect("shown");
-        let names: Vec<&str> = show.exhibits.iter().map(Exhibit::name).collect();
-        assert_eq!(names, ["mine", "fast"]);
-        assert_ne!(show.exhibits[0].source(), show.exhibits[1].source());
     }
 }

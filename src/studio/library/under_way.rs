@@ -1,7 +1,8 @@
 //! What is done with saves beside the window, since it may take its time: copies, and whatever concerns many at once.
 
+use super::ask::capital;
 use super::history::Change;
-use super::{Library, capital, name_of};
+use super::{Library, name_of};
 use crate::run::Batch;
 use crate::save::SaveError;
 use crate::save::library::Step;
@@ -260,39 +261,36 @@ mod tests {
     fn many_are_deleted_beside_the_window_and_all_come_back_at_once() {
         let (_folder, mut library, places) = of_many(300);
         let mut notices = Notices::default();
-        let began = std::time::Instant::now();
         library.apply(&Ask::Delete(places), &mut notices).expect("begun");
-        println!("the window waits for {:?}", began.elapsed());
         assert!(library.under_way().next().expect("it goes on").0.starts_with("Deleting "));
-        let refusal = library.undo().expect_err("it goes on");
+        let refusal = library.step(Way::Back).expect_err("it goes on");
         assert!(refusal.contains("of 300 saves goes on"), "{refusal}");
         wait(&mut library, &mut notices);
-        println!("all is done after {:?}", began.elapsed());
         assert!(own(&mut library).is_empty());
         assert_eq!(library.undoable(), Some("deleted 300 saves"));
-        library.undo().expect("begun");
+        library.step(Way::Back).expect("begun");
         assert!(library.under_way().next().is_some());
         wait(&mut library, &mut notices);
         assert_eq!(own(&mut library).len(), 300);
         assert_eq!((library.undoable(), library.redoable()), (None, Some("deleted 300 saves")));
-        library.redo().expect("begun");
+        library.step(Way::Forth).expect("begun");
         wait(&mut library, &mut notices);
         assert!(own(&mut library).is_empty());
     }
 
     #[test]
     fn what_is_cancelled_stops_and_what_was_done_by_then_can_be_undone() {
-        let (_folder, mut library, places) = of_many(200);
+        let (_folder, mut library, places) = of_many(1000);
         let mut notices = Notices::default();
         library.apply(&Ask::Duplicate(places), &mut notices).expect("begun");
         library.apply(&Ask::Cancel, &mut notices).expect("cancelled");
         wait(&mut library, &mut notices);
-        let copies = own(&mut library).len() - 200;
-        assert!(copies < 200, "{copies}");
+        let copies = own(&mut library).len() - 1000;
+        assert!(copies < 1000, "{copies}");
         if copies > 0 {
-            library.undo().expect("begun");
+            library.step(Way::Back).expect("begun");
             wait(&mut library, &mut notices);
-            assert_eq!(own(&mut library).len(), 200);
+            assert_eq!(own(&mut library).len(), 1000);
         }
         assert_eq!(library.undoable(), None);
     }
