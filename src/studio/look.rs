@@ -128,8 +128,8 @@ pub const LEAST_CHART_HEIGHT: f32 = 80.0;
 pub const PLOT_HEIGHT: f32 = 150.0;
 /// Height of what stands over and under a chart in its panel, in points.
 pub const WITHOUT_PLOT: f32 = 120.0;
-/// Height of a chart that has the room, in points.
-pub const TALL_CHART_HEIGHT: f32 = 420.0;
+/// How much higher than wide a chart that has the room may be.
+pub const TALLEST_CHART: f32 = 1.4;
 /// Least width of one of several charts side by side, in points.
 pub const MULTIPLE_WIDTH: f32 = 230.0;
 /// Least height of one of several charts below each other, in points.
@@ -179,6 +179,13 @@ pub fn apply(context: &egui::Context) {
         style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
         style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
         style.spacing.interact_size.y = GAP * 3.0;
+        // Seen without the pointer on it, or nobody knows that there is more; and beside what is scrolled.
+        style.spacing.scroll = egui::style::ScrollStyle {
+            floating_width: GAP / 2.0,
+            floating_allocated_width: GAP,
+            dormant_handle_opacity: 0.3,
+            ..egui::style::ScrollStyle::floating()
+        };
         for widget in [
             &mut style.visuals.widgets.noninteractive,
             &mut style.visuals.widgets.inactive,

@@ -162,8 +162,9 @@ impl ChartsPanel {
                 ui.selectable_value(&mut self.kind, kind, name).on_hover_text(hint);
             }
         });
-        let height = (ui.available_height() - look::WITHOUT_PLOT)
-            .clamp(look::PLOT_HEIGHT, look::TALL_CHART_HEIGHT);
+        let tallest = ui.available_width() * look::TALLEST_CHART;
+        let height =
+            (ui.available_height() - look::WITHOUT_PLOT).min(tallest).max(look::PLOT_HEIGHT);
         match self.kind {
             Kind::Front | Kind::Archive => self.found(ui, run, height, shown, asked),
             Kind::Methods => self.methods(ui, height, asked),
@@ -191,16 +192,8 @@ impl ChartsPanel {
             self.known = Some((kind, version, view_of(kind, run)));
         }
         let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
-        match view.filter(|view| !view.figure.is_empty()) {
-            Some(view) => {
-                header(ui, &view.figure, kind.file_name(), asked);
-                draw::draw(ui, kind.file_name(), view, height, place(shown), asked);
-            }
-            None => {
-                title(ui, kind.words().0);
-                explain(ui, kind.awaits());
-            }
-        }
+        let view = view.filter(|view| !view.figure.is_empty()).ok_or(kind.awaits());
+        view_or_why(ui, kind, view, height, place(shown), asked);
         if kind == Kind::Runs {
             runs::choice(ui, run, asked);
         }
@@ -214,21 +207,12 @@ impl ChartsPanel {
         shown: Option<Shown>,
         asked: &mut Vec<Command>,
     ) {
-        let missing = self.torques.follow(run, place(shown)).err();
-        let view = match missing {
-            None => self.torques.view(&run.settings().trial),
-            Some(_) => None,
+        let view = match self.torques.follow(run, place(shown)) {
+            Ok(()) => self.torques.view(&run.settings().trial).ok_or(Kind::Torques.awaits()),
+            Err(missing) => Err(missing),
         };
-        match view {
-            Some(view) => {
-                header(ui, &view.figure, Kind::Torques.file_name(), asked);
-                draw::draw(ui, "torques", view, height, None, asked);
-            }
-            None => {
-                title(ui, Kind::Torques.words().0);
-                explain(ui, missing.unwrap_or(Kind::Torques.awaits()));
-            }
-        }
+        // Who is on the stage is what it is about: nobody in it is marked.
+        view_or_why(ui, Kind::Torques, view, height, None, asked);
     }
 
     /// The front, or the archive.
@@ -285,6 +269,27 @@ impl ChartsPanel {
                 title(ui, "Comparison of methods");
                 explain(ui, Kind::Methods.awaits());
             }
+        }
+    }
+}
+
+/// Draws a chart, or says why there is none yet.
+fn view_or_why(
+    ui: &mut egui::Ui,
+    kind: Kind,
+    view: Result<&View, &str>,
+    height: f32,
+    shown: Option<Place>,
+    asked: &mut Vec<Command>,
+) {
+    match view {
+        Ok(view) => {
+            header(ui, &view.figure, kind.file_name(), asked);
+            draw::draw(ui, kind.file_name(), view, height, shown, asked);
+        }
+        Err(why) => {
+            title(ui, kind.words().0);
+            explain(ui, why);
         }
     }
 }

@@ -56,8 +56,9 @@ pub(super) struct LibraryPanel {
     scroll_to: Option<Place>,
     /// Whether the list is to have the keyboard from the next frame on.
     wants_keyboard: bool,
-    /// How far the list is scrolled, in points.
+    /// How far the list is scrolled, and how high it was then, in points.
     offset: f32,
+    height: f32,
     /// Heights over and under the list in the last frame, in points.
     around: [f32; 2],
 }
@@ -170,11 +171,22 @@ impl LibraryPanel {
             ui.add_space(look::GAP);
             return explain(ui, text);
         }
-        ui.spacing_mut().item_spacing.y = 0.0;
-        let view = ui.available_height();
-        let mut area = egui::ScrollArea::vertical().id_salt("saves").auto_shrink(false);
         let items = library.items();
         let row_of = |place: &Place| rows.iter().position(|row| items[*row].place() == place);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let view = ui.available_height();
+        if self.height != view {
+            // What is said of the chosen one takes its room from the list, which is not to hide that one.
+            let was_in_sight = |row: usize| {
+                let top = row as f32 * look::SAVE_HEIGHT - self.offset;
+                top < self.height && top + look::SAVE_HEIGHT > 0.0
+            };
+            let cursor = self.selection.cursor();
+            let cursor = cursor.filter(|place| row_of(place).is_some_and(was_in_sight));
+            self.scroll_to = self.scroll_to.take().or(cursor.cloned());
+            self.height = view;
+        }
+        let mut area = egui::ScrollArea::vertical().id_salt("saves").auto_shrink(false);
         if let Some(row) = self.scroll_to.take().as_ref().and_then(row_of) {
             let top = row as f32 * look::SAVE_HEIGHT;
             let lowest = top + look::SAVE_HEIGHT - view;

@@ -232,31 +232,29 @@ fn ring(painter: &egui::Painter, transform: &PlotTransform, hit: &Hit, color: Co
     }
 }
 
-/// What is drawn how, in a line that wraps.
+/// What is drawn how, in a line that wraps between names. Marks have theirs in the chart.
 fn legend(ui: &mut egui::Ui, figure: &Figure) {
-    let mut marks: Vec<&str> = Vec::new();
+    let color = look::of(ui).text;
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = look::GAP / 2.0;
+        ui.spacing_mut().item_spacing = egui::vec2(look::GAP, look::GAP / 2.0);
         for series in figure.listed() {
-            sample(ui, series);
-            ui.label(axis_text(&series.name, look::of(ui).text));
-            ui.add_space(look::GAP / 2.0);
-        }
-        for mark in figure.charts.iter().flat_map(|chart| &chart.marks) {
-            if !marks.contains(&mark.name.as_str()) {
-                marks.push(&mark.name);
-                sample(ui, &Series::new("", Role::Others, Shape::Dashed(Vec::new())));
-                ui.label(axis_text(&mark.name, look::of(ui).text));
-                ui.add_space(look::GAP / 2.0);
-            }
+            let font = egui::TextStyle::Small.resolve(ui.style());
+            let name = ui.painter().layout_no_wrap(series.name.clone(), font, color);
+            let sample_size = egui::vec2(look::SAMPLE_WIDTH, look::SMALL_SIZE);
+            let left = sample_size.x + look::GAP / 2.0;
+            let size = egui::vec2(left + name.size().x, name.size().y);
+            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+            response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &series.name)
+            });
+            sample(ui, egui::Align2::LEFT_CENTER.align_size_within_rect(sample_size, rect), series);
+            ui.painter().galley(egui::pos2(rect.left() + left, rect.top()), name, color);
         }
     });
 }
 
 /// A sample of how a series is drawn.
-fn sample(ui: &mut egui::Ui, series: &Series) {
-    let size = egui::vec2(look::SAMPLE_WIDTH, look::SMALL_SIZE);
-    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
     let color = look::of(ui).role(series.role);
     let (painter, y) = (ui.painter(), rect.center().y);
     let ends = [egui::pos2(rect.left(), y), egui::pos2(rect.right(), y)];

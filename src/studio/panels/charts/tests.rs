@@ -192,9 +192,7 @@ fn long_reports(generations: u32) -> Vec<crate::run::GenerationReport> {
 #[test]
 fn of_ten_thousand_generations_the_window_draws_a_few_and_the_table_has_all() {
     let reports = long_reports(10_000);
-    let began = std::time::Instant::now();
     let view = fitness::view(&Settings::default(), &reports);
-    println!("worked out in {:?}", began.elapsed());
     assert_eq!(view.figure.table().len(), 10_001);
     let points = view.drawn[0].iter().map(|drawn| match drawn {
         thin::Drawn::Points(points) => points.len(),
@@ -202,13 +200,4 @@ fn of_ten_thousand_generations_the_window_draws_a_few_and_the_table_has_all() {
         thin::Drawn::AsItIs => 0,
     });
     assert!(points.max().expect("series") <= thin::MOST_POINTS + 2);
-    let mut harness = Harness::builder()
-        .with_size(egui::vec2(600.0, 700.0))
-        .build_ui_state(|ui, asked| draw::draw(ui, "long", &view, 400.0, None, asked), Vec::new());
-    harness.run();
-    let began = std::time::Instant::now();
-    for _ in 0..20 {
-        harness.step();
-    }
-    println!("a frame takes {:?}", began.elapsed() / 20);
 }

@@ -323,16 +323,21 @@ fn nothing_sticks_out_of_a_narrow_or_a_low_panel() {
 }
 
 #[test]
+fn who_is_chosen_stays_in_sight_when_what_is_said_of_it_makes_the_list_low() {
+    let library = library();
+    let mut harness = harness(&library, [420.0, 560.0]);
+    let list = |harness: &Test<'_>| harness.get_by_label_contains("Saves: ").rect();
+    let before = list(&harness).height();
+    choose(&mut harness, "fast");
+    let (list, row) = (list(&harness), row_of(&harness, "fast").rect());
+    assert!(list.height() < before - look::SAVE_HEIGHT, "{} of {before}", list.height());
+    assert!(list.contains_rect(row), "{row} in {list}");
+}
+
+#[test]
 fn of_ten_thousand_saves_only_the_rows_in_sight_are_laid_out() {
     let entries = (0..10_000).map(|number| entry(file(&format!("save {number:05}")), number + 1));
     let library = Library::of(vec![Reading::Listed(entries.collect())]);
-    let mut order = Order::default();
-    for turn in ["from nothing", "again", "with a new search"] {
-        let search = if turn == "with a new search" { "save" } else { "" };
-        let began = std::time::Instant::now();
-        order.update(&library, search, Sort::default(), 0.0);
-        println!("sorted {turn} in {:?}", began.elapsed());
-    }
     let mut harness = harness(&library, [420.0, 600.0]);
     let rows = |harness: &Test<'_>| {
         let is_row = |label: String| label.starts_with("save 0");
