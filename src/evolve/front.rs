@@ -106,15 +106,8 @@ mod tests {
         .into_iter()
         .enumerate()
         {
-            let evaluation = Evaluation {
-                fitness: y_m,
-                centre_y_m: y_m,
-                disqualified: None,
-                trace_hash: 0,
-                steps: 1,
-                effort: Some(Effort { energy_j, ..Effort::default() }),
-                behaviour: None,
-            };
+            let effort = Some(Effort { energy_j, ..Effort::default() });
+            let evaluation = Evaluation { effort, ..Evaluation::of_fitness(y_m) };
             let genome = genome.clone();
             let individual = individual as u32;
             front.add(FrontMember { genome, evaluation, generation: 1, individual }, -7.0);

@@ -173,19 +173,6 @@ mod tests {
     use crate::genome::Controller;
     use crate::world::Disqualification;
 
-    fn evaluated(fitness: f32) -> Evaluation {
-        let disqualified = None;
-        Evaluation {
-            fitness,
-            centre_y_m: fitness,
-            disqualified,
-            trace_hash: 0,
-            steps: 1,
-            effort: None,
-            behaviour: None,
-        }
-    }
-
     fn small() -> Halving {
         let mut settings = Settings::default();
         settings.evolution.population = 8;
@@ -208,7 +195,8 @@ mod tests {
         let mut halving = small();
         let mut genomes = halving.ask();
         for range_nm in [100.0, 50.0, 25.0] {
-            let fitness = (0..8).map(|i| evaluated(if i == 5 { 9.0 } else { i as f32 }));
+            let fitness =
+                (0..8).map(|i| Evaluation::of_fitness(if i == 5 { 9.0 } else { i as f32 }));
             halving.tell(&genomes, &fitness.collect::<Vec<_>>());
             let children = halving.ask();
             for (index, child) in children.iter().enumerate() {
@@ -232,7 +220,7 @@ mod tests {
         let mut halving = Halving::new(&plan);
         assert_eq!(halving.parents(), [Parents::Newborn; 8]);
         let genomes = halving.ask();
-        let evaluations: Vec<_> = (0..8).map(|i| evaluated(i as f32)).collect();
+        let evaluations: Vec<_> = (0..8).map(|i| Evaluation::of_fitness(i as f32)).collect();
         halving.tell(&genomes, &evaluations);
         let is_right = |halving: &Halving| {
             for (child, parents) in halving.ask().iter().zip(halving.parents()) {
@@ -254,8 +242,10 @@ mod tests {
     fn a_generation_without_a_healthy_agent_starts_afresh() {
         let mut halving = small();
         let genomes = halving.ask();
-        let broken =
-            Evaluation { disqualified: Some(Disqualification::JointBroke), ..evaluated(99.0) };
+        let broken = Evaluation {
+            disqualified: Some(Disqualification::JointBroke),
+            ..Evaluation::of_fitness(99.0)
+        };
         halving.tell(&genomes, &[broken; 8]);
         let again = halving.ask();
         assert_eq!(again.len(), 8);

@@ -316,16 +316,11 @@ mod tests {
         assert_eq!(search.parents(), [Parents::Newborn; 12]);
         let evaluations: Vec<Evaluation> = (0..12)
             .map(|index| Evaluation {
-                fitness: index as f32,
-                centre_y_m: index as f32,
-                disqualified: None,
-                trace_hash: 0,
-                steps: 1,
-                effort: None,
                 behaviour: Some(Behaviour {
                     contact_duty: index as f32 / 12.0,
                     ..Behaviour::default()
                 }),
+                ..Evaluation::of_fitness(index as f32)
             })
             .collect();
         search.tell(&genomes, &evaluations);

@@ -190,13 +190,9 @@ mod tests {
     #[test]
     fn the_disqualified_are_not_ranked_and_ties_go_to_the_first() {
         let evaluation = |fitness, steps, disqualified| Evaluation {
-            fitness,
-            centre_y_m: fitness,
-            disqualified,
-            trace_hash: 0,
             steps,
-            effort: None,
-            behaviour: None,
+            disqualified,
+            ..Evaluation::of_fitness(fitness)
         };
         let evaluations = [
             evaluation(1.0, 9, None),

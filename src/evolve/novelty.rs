@@ -235,15 +235,8 @@ mod tests {
     use crate::score::Behaviour;
 
     fn evaluation(centre_y_m: f32, contact_duty: f32) -> Evaluation {
-        Evaluation {
-            fitness: centre_y_m,
-            centre_y_m,
-            disqualified: None,
-            trace_hash: 0,
-            steps: 1,
-            effort: None,
-            behaviour: Some(Behaviour { contact_duty, ..Behaviour::default() }),
-        }
+        let behaviour = Some(Behaviour { contact_duty, ..Behaviour::default() });
+        Evaluation { behaviour, ..Evaluation::of_fitness(centre_y_m) }
     }
 
     /// Who of a generation of four comes first: three alike, the last of whom is the fittest, and an odd one.

@@ -188,6 +188,7 @@ mod tests {
     use crate::evolve::{Founder, Settings, StrategyKind};
     use crate::genome::ControllerKind;
     use crate::run::{Control, pool};
+    use crate::save::names_in;
     use std::fs;
 
     fn plan() -> RunPlan {
@@ -224,15 +225,6 @@ mod tests {
             experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
         }
         experiment
-    }
-
-    fn files(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).expect("a folder");
-        let names = entries.map(|entry| entry.expect("an entry").file_name());
-        let mut names: Vec<String> =
-            names.map(|name| name.to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
     }
 
     #[test]
@@ -283,7 +275,7 @@ mod tests {
         let saves = tempfile::tempdir().expect("a folder");
         let mut run = source(saves.path(), Earlier::Keep).open("a test").expect("opened");
         evolve(&mut run, 6);
-        let files = files(run.keeper.folder());
+        let files = names_in(run.keeper.folder());
         let of = |prefix: &str| files.iter().filter(|name| name.starts_with(prefix)).count();
         assert_eq!(of("generation-"), 6, "{files:?}");
         let checkpoints: Vec<&String> =
@@ -551,7 +543,7 @@ mod tests {
         let mut old = source.clone();
         old.folder = saves.path().join("old");
         fs::create_dir(&old.folder).expect("created");
-        for file in files(run.keeper.folder()) {
+        for file in names_in(run.keeper.folder()) {
             let from = run.keeper.folder().join(&file);
             fs::copy(from, old.folder.join(&file)).expect("copied");
         }

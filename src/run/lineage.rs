@@ -172,18 +172,6 @@ mod tests {
     use super::*;
     use crate::evolve::{RunPlan, Settings, StrategyKind, begin};
 
-    fn evaluation(fitness: f32) -> Evaluation {
-        Evaluation {
-            fitness,
-            centre_y_m: fitness,
-            disqualified: None,
-            trace_hash: 0,
-            steps: 1,
-            effort: None,
-            behaviour: None,
-        }
-    }
-
     /// Evolves without a world: of each generation the one with this index is the best.
     fn lineage(strategy: StrategyKind, best: &[usize]) -> (Lineage, Vec<LineageRecord>) {
         let mut settings = Settings::default();
@@ -197,8 +185,9 @@ mod tests {
         let mut records = Vec::new();
         for (number, best) in (1..).zip(best) {
             let (genomes, parents) = (strategy.ask(), strategy.parents());
-            let evaluations: Vec<Evaluation> =
-                (0..6).map(|i| evaluation(if i == *best { 9.0 } else { i as f32 })).collect();
+            let evaluations: Vec<Evaluation> = (0..6)
+                .map(|i| Evaluation::of_fitness(if i == *best { 9.0 } else { i as f32 }))
+                .collect();
             strategy.tell(&genomes, &evaluations);
             let genomes = genomes.into_iter().map(Arc::new).collect();
             let generation = Generation { number, genomes, evaluations, parents };
@@ -241,7 +230,8 @@ mod tests {
 
     #[test]
     fn the_spread_reaches_from_the_least_to_the_greatest() {
-        let evaluations: Vec<Evaluation> = (0..100).map(|i| evaluation(i as f32)).collect();
+        let evaluations: Vec<Evaluation> =
+            (0..100).map(|i| Evaluation::of_fitness(i as f32)).collect();
         let generation =
             Generation { number: 1, genomes: Vec::new(), evaluations, parents: Vec::new() };
         let spread = generation.spread();

@@ -180,15 +180,8 @@ mod tests {
     use super::*;
 
     fn evaluation(fitness: f32, disqualified: Option<Disqualification>) -> Evaluation {
-        Evaluation {
-            fitness,
-            centre_y_m: fitness + 1.0,
-            disqualified,
-            trace_hash: 0,
-            steps: 1,
-            effort: None,
-            behaviour: None,
-        }
+        let centre_y_m = fitness + 1.0;
+        Evaluation { centre_y_m, disqualified, ..Evaluation::of_fitness(fitness) }
     }
 
     #[test]

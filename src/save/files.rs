@@ -299,3 +299,13 @@ pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
     // Permissions alone do not tell (read-only mounts, quotas): try it. The file goes when dropped.
     tempfile::tempfile_in(folder).map(drop).map_err(unwritable)
 }
+
+/// The names of what is in a folder, sorted, those that are hidden too: for tests.
+#[cfg(test)]
+pub fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let names = entries.map(|entry| entry.expect("an entry").file_name());
+    let mut names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}

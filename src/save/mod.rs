@@ -40,6 +40,8 @@ pub use comparison::{
     store_comparison,
 };
 pub use files::SaveError;
+#[cfg(test)]
+pub use files::names_in;
 pub use folder::{
     RunSummary, SavesFolder, fingerprint, load_generation, load_run, run_name, settings_fingerprint,
 };

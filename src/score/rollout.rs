@@ -35,6 +35,20 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
+    /// What somebody healthy has who reached so far, and of whom nothing else is known: for tests.
+    #[cfg(test)]
+    pub fn of_fitness(fitness: f32) -> Self {
+        Self {
+            fitness,
+            centre_y_m: fitness,
+            disqualified: None,
+            trace_hash: 0,
+            steps: 1,
+            effort: None,
+            behaviour: None,
+        }
+    }
+
     /// Whether both are of the same bits. What one of them did not measure does not count.
     pub fn agrees_with(&self, other: &Self) -> bool {
         fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {

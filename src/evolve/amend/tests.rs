@@ -33,13 +33,11 @@ fn evaluations(generation: u32, count: usize) -> Vec<Evaluation> {
     let evaluation = |index: usize| {
         let number = ((index * 37 + generation as usize * 11) % 101) as f32;
         Evaluation {
-            fitness: number / 10.0 - 7.0,
-            centre_y_m: number / 10.0 - 7.0,
             disqualified: (index % 7 == 3).then_some(Disqualification::TooFast),
-            trace_hash: 0,
             steps: 60,
             effort: Some(Effort { energy_j: 100.0 * number, ..Effort::default() }),
             behaviour: Some(Behaviour { contact_duty: number / 101.0, ..Behaviour::default() }),
+            ..Evaluation::of_fitness(number / 10.0 - 7.0)
         }
     };
     (0..count).map(evaluation).collect()

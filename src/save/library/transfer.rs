@@ -136,21 +136,12 @@ fn copy_files(from: &Path, to: &Path, deeper: u32) -> Result<(), SaveError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::save::files::names_in;
     use crate::save::library::fixtures::{champion_in, names, run_in, saves};
     use crate::save::library::{list, read_entry};
 
     fn own(saves: &SavesFolder) -> Vec<String> {
         names(&list(saves).expect("readable"), |place| place.path().is_some())
-    }
-
-    /// Names in a folder, those that are hidden too.
-    fn files(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).expect("a folder");
-        let names = entries.map(|entry| entry.expect("an entry").file_name());
-        let mut names: Vec<String> =
-            names.map(|name| name.to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
     }
 
     #[test]
@@ -172,7 +163,7 @@ mod tests {
         let refusal = export(&saves, &place, Some(&file)).expect_err("taken").to_string();
         assert!(refusal.contains("not taken yet"), "{refusal}");
         export(&saves, &Place::Shipped("fast"), Some(&new)).expect("exported");
-        assert_eq!(files(&new), ["a.ron", "fast.ron"]);
+        assert_eq!(names_in(&new), ["a.ron", "fast.ron"]);
         assert_eq!(own(&saves), ["a"], "copies are not listed");
         let in_a_file = file.join("below");
         let refusal = export(&saves, &place, Some(&in_a_file)).expect_err("no folder").to_string();
@@ -205,7 +196,7 @@ mod tests {
         let imported = step.place().expect("there");
         assert_eq!(imported.name(), run.name());
         assert_eq!(read_entry(&imported).expect("whole"), read_entry(&run).expect("whole"));
-        assert_eq!(files(others.path()).len(), 1, "nothing unfinished is left");
+        assert_eq!(names_in(others.path()).len(), 1, "nothing unfinished is left");
     }
 
     #[test]
@@ -224,7 +215,7 @@ mod tests {
         fs::write(champion, "(").expect("written");
         let error = import(&saves, run.path().expect("a folder")).expect_err("damaged").to_string();
         assert!(error.contains("generation-1.ron: damaged or incomplete"), "{error}");
-        assert!(files(saves.path()).is_empty());
+        assert!(names_in(saves.path()).is_empty());
     }
 
     #[test]

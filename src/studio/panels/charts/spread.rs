@@ -120,15 +120,7 @@ mod tests {
     use super::*;
 
     fn evaluation(fitness: f32, disqualified: Option<Disqualification>) -> Evaluation {
-        Evaluation {
-            fitness,
-            centre_y_m: fitness,
-            disqualified,
-            trace_hash: 0,
-            steps: 1,
-            effort: None,
-            behaviour: None,
-        }
+        Evaluation { disqualified, ..Evaluation::of_fitness(fitness) }
     }
 
     #[test]
