@@ -66,8 +66,6 @@ pub(super) enum Command {
     ShowAsFound,
     /// Let this engine simulate what is on the stage, which another engine found.
     Simulate,
-    /// Look for runs that were stopped before their end.
-    ListStoppedRuns,
     /// Go on with the run in this folder.
     Continue(PathBuf),
     /// Look for all runs in the folder of saves.

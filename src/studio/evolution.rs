@@ -16,7 +16,7 @@ use super::export::{self, Export};
 use super::presets::Presets;
 use crate::check::Invalid;
 use crate::evolve::{Champion, Origin, RunPlan, Settings, fields, with_fields};
-use crate::run::{Background, Exploration, GenerationReport, Listing, RunSource, caught};
+use crate::run::{Background, Exploration, GenerationReport, RunSource, caught};
 use crate::save::{Earlier, Preset, RunSummary, load_preset};
 use crate::score::evaluate;
 
@@ -54,10 +54,6 @@ pub(super) struct Evolution {
     background: Option<Background>,
     /// The run before, if it may still be ending.
     before: Option<Background>,
-    /// Runs that were stopped before their end, once somebody has asked for them.
-    stopped: Option<Vec<RunSummary>>,
-    /// A look for them that is under way.
-    listing: Option<Listing>,
     reports: Vec<GenerationReport>,
     /// What the run has found besides, once a generation is finished.
     exploration: Option<Box<Exploration>>,
@@ -100,8 +96,6 @@ impl Evolution {
             number: 0,
             background: None,
             before: None,
-            stopped: None,
-            listing: None,
             reports: Vec::new(),
             exploration: None,
             ancestors: OnceLock::new(),
@@ -175,9 +169,10 @@ impl Evolution {
         of(now) != of(next) || now.founder != next.founder || self.awaited != next.settings
     }
 
-    /// Runs that were stopped before their end and can go on, once somebody has asked for them.
-    pub fn stopped(&self) -> Option<&[RunSummary]> {
-        self.stopped.as_deref()
+    /// Runs that were stopped before their end and can go on, once somebody has asked for runs.
+    pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
+        let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
+        Some(self.others.runs()?.iter().filter(is_other))
     }
 
     /// Reports of the finished generations, the first generation first.
@@ -325,30 +320,18 @@ impl Evolution {
     /// Puts another run in the place of the current one, which ends in the background.
     fn replace(&mut self, source: RunSource) {
         let before = self.background.take().or(self.before.take());
-        let (number, stopped) = (self.number + 1, self.stopped.take());
-        let others = std::mem::take(&mut self.others);
         *self = Self {
-            number,
+            number: self.number + 1,
             before,
-            others,
+            others: std::mem::take(&mut self.others),
             is_lent: self.is_lent,
             ..Self::prepared(source, self.engine.clone())
         };
-        if stopped.is_some() {
+        if self.others.runs().is_some() {
             // Somebody may be looking at the list: the run that was replaced belongs into it. What cannot
             // be listed now is listed when it is asked for again.
-            self.stopped = stopped;
-            let _ = self.list_stopped();
+            let _ = self.list_runs();
         }
-    }
-
-    /// Looks for runs that were stopped before their end, the current one aside.
-    pub fn list_stopped(&mut self) -> Result<(), String> {
-        match Listing::start(self.engine.saves.clone()) {
-            Ok(listing) => self.listing = Some(listing),
-            Err(error) => return Err(format!("The runs cannot be listed: {error}")),
-        }
-        Ok(())
     }
 
     /// Looks for all runs in the folder of saves.
@@ -364,14 +347,6 @@ impl Evolution {
     /// Writes a chart into a file beside the runs. Returns the file's path.
     pub fn export(&self, chart: &Export) -> Result<PathBuf, String> {
         export::export(&self.engine.saves, chart)
-    }
-
-    fn take_in_listing(&mut self) {
-        self.others.take_in();
-        let Some(mut runs) = self.listing.as_ref().and_then(Listing::poll) else { return };
-        runs.retain(|run| run.is_stopped() && run.folder != self.source.folder);
-        self.stopped = Some(runs);
-        self.listing = None;
     }
 
     /// Goes on with a run that was stopped; the current one can be gone on with later.

@@ -54,7 +54,6 @@ fn apply(
             }
             Command::SetSeed(seed) => evolution.set_seed(*seed),
             Command::SetPopulation(population) => evolution.set_population(*population),
-            Command::ListStoppedRuns => evolution.list_stopped(),
             Command::Continue(folder) => {
                 stage.settle();
                 evolution.go_on_with(folder)

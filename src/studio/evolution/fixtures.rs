@@ -53,7 +53,7 @@ pub fn compared_run(saves: &Path, is_damaged: bool) -> Evolution {
     let mut run = explored_run();
     run.compare_with(&folder).expect("a thread");
     while run.others.compared().iter().any(|compared| compared.read.is_none()) {
-        run.take_in_listing();
+        run.others.take_in();
     }
     run
 }

@@ -34,7 +34,7 @@ fn take_in(
     lanes: Query<&Lane>,
     (programme, mut playback): (Res<Programme>, ResMut<Playback>),
 ) {
-    evolution.take_in_listing();
+    evolution.others.take_in();
     let Some(background) = &evolution.background else { return };
     let events: Vec<Event> = std::iter::from_fn(|| background.poll()).collect();
     // In most frames nothing has come: what is to be beaten need not be looked for among all reports.

@@ -226,7 +226,8 @@ fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
         let Some(stopped) = run.stopped() else {
             return explain(ui, "Looking ...");
         };
-        if stopped.is_empty() {
+        let mut stopped = stopped.peekable();
+        if stopped.peek().is_none() {
             explain(ui, "No other run was stopped before its end.");
         }
         for summary in stopped {
@@ -243,7 +244,7 @@ fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
         }
     });
     if opened.header_response.clicked() {
-        asked.push(Command::ListStoppedRuns);
+        asked.push(Command::ListRuns);
     }
 }
 
@@ -251,6 +252,7 @@ fn stopped_runs(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
 mod tests {
     use super::*;
     use crate::studio::evolution::prepared_run as run;
+    use crate::studio::panels::parameters::tests::assert_nothing_is_wider_than;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -456,7 +458,6 @@ mod tests {
 
     #[test]
     fn at_every_width_nothing_is_wider_than_the_panel() {
-        use egui::accesskit::Role;
         let run = run();
         for width in [300.0, 459.0, 480.0, 900.0] {
             let mut panel = EvolutionPanel::default();
@@ -477,19 +478,7 @@ mod tests {
                 harness.get_by_label(kind.title()).click();
                 harness.run();
             }
-            let roles = [
-                Role::Label,
-                Role::Slider,
-                Role::TextInput,
-                Role::Button,
-                Role::CheckBox,
-                Role::ComboBox,
-            ];
-            for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
-                let rect = node.rect();
-                let is_inside = rect.left() >= 0.0 && rect.right() <= width;
-                assert!(is_inside, "{rect:?} of {width} points: {node:?}");
-            }
+            assert_nothing_is_wider_than(&harness, width);
             // The named of each section are there.
             for label in ["Cooling", "First step of CMA-ES", "Columns and rows", "Neighbours"] {
                 assert!(harness.query_all_by_label(label).next().is_some(), "{label}");

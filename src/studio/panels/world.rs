@@ -171,6 +171,7 @@ pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &History, asked: &mut Vec
 mod tests {
     use super::*;
     use crate::studio::evolution::prepared_run;
+    use crate::studio::panels::parameters::tests::assert_nothing_is_wider_than;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -335,19 +336,7 @@ mod tests {
                     let are_aligned = one.left() == other.left() && one.width() == other.width();
                     assert!(are_aligned, "{one:?} and {other:?} at {width} points");
                 }
-                let roles = [
-                    Role::Label,
-                    Role::Slider,
-                    Role::TextInput,
-                    Role::Button,
-                    Role::CheckBox,
-                    Role::ComboBox,
-                ];
-                for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
-                    let rect = node.rect();
-                    let is_inside = rect.left() >= 0.0 && rect.right() <= width;
-                    assert!(is_inside, "{rect:?} of {width} points: {node:?}");
-                }
+                assert_nothing_is_wider_than(harness, width);
             });
         }
     }

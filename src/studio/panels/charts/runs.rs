@@ -115,11 +115,11 @@ pub(super) fn choice(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command
     }
     let Some(runs) = others.runs() else { return explain(ui, "Looking for other runs ...") };
     let mut choices = runs.iter().filter(|other| other.folder != run.folder()).peekable();
-    if choices.peek().is_none() {
-        return explain(ui, "There is no other run in the folder of saves yet.");
-    }
     ui.horizontal(|ui| {
-        ui.label(format!("Lay over this run, up to {MOST_COMPARED}:"));
+        match choices.peek() {
+            Some(_) => ui.label(format!("Lay over this run, up to {MOST_COMPARED}:")),
+            None => ui.label("There is no other run in the saves yet."),
+        };
         if ui.small_button("Look again").on_hover_text("Look for new runs").clicked() {
             asked.push(Command::ListRuns);
         }

@@ -47,4 +47,4 @@ pub fn all_sections() -> Vec<&'static Section> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -55,15 +55,7 @@ impl Sheet {
         let check = |text: &str| shown.check.typed(text);
         let plain = shown.value.trim_start_matches('[').trim_end_matches(']');
         self.row(ui, shown, false, |sheet, ui, width, name| {
-            let control = Control {
-                id: shown.field,
-                name,
-                said: None,
-                value: shown.value,
-                hint: &shown.hint,
-                check: &check,
-            };
-            sheet.text_field(ui, &control, plain, width)
+            sheet.text_field(ui, &Control::of(shown, name, &check), plain, width)
         })
     }
 }

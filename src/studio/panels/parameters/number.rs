@@ -29,6 +29,18 @@ pub(super) struct Control<'a> {
     pub check: &'a dyn Fn(&str) -> Result<String, String>,
 }
 
+impl<'a> Control<'a> {
+    /// That of a setting as a whole, with its name on the screen.
+    pub(super) fn of(
+        shown: &'a Shown,
+        name: egui::Id,
+        check: &'a dyn Fn(&str) -> Result<String, String>,
+    ) -> Self {
+        let Shown { field, value, ref hint, .. } = *shown;
+        Self { id: field, name, said: None, value, hint, check }
+    }
+}
+
 impl Sheet {
     /// Draws a number, or one for each part. Returns a new value.
     pub(super) fn number(
@@ -62,14 +74,7 @@ impl Sheet {
                 }
                 Part::Control => {
                     let check = |text: &str| shown.check.typed(text);
-                    let control = Control {
-                        id: shown.field,
-                        name,
-                        said: None,
-                        value: shown.value,
-                        hint: &shown.hint,
-                        check: &check,
-                    };
+                    let control = Control::of(shown, name, &check);
                     self.slider_and_field(ui, &control, range, width)
                 }
                 Part::Reset => self.reset(ui, shown),

@@ -12,6 +12,21 @@ use bevy_egui::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
+/// That nothing one reads or uses lies beside a panel of this width, in points.
+pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
+    harness: &Harness<'_, S>,
+    width: f32,
+) {
+    use egui::accesskit::Role;
+    let roles =
+        [Role::Label, Role::Slider, Role::TextInput, Role::Button, Role::CheckBox, Role::ComboBox];
+    for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
+        let rect = node.rect();
+        let is_inside = rect.left() >= 0.0 && rect.right() <= width;
+        assert!(is_inside, "{rect:?} of {width} points: {node:?}");
+    }
+}
+
 /// A run in which everything that can be given is given, and whatever has a least value has it.
 fn run_with_all_given() -> Evolution {
     let mut run = prepared_run();
