@@ -184,6 +184,8 @@ pub fn apply(context: &egui::Context) {
             floating_width: GAP / 2.0,
             floating_allocated_width: GAP,
             dormant_handle_opacity: 0.3,
+            // Half a white is grey where colours are blended as light is.
+            fade: egui::style::ScrollFadeStyle { strength: 0.0, ..Default::default() },
             ..egui::style::ScrollStyle::floating()
         };
         for widget in [

@@ -8,12 +8,12 @@ use crate::studio::look;
 
 /// What the mouse does on the stage.
 const MOUSE: [(&str, &str); 6] = [
-    ("Click", "a limb's numbers"),
-    ("Drag", "turn the camera; on a limb, pull it"),
-    ("Right drag", "move the camera"),
-    ("Wheel", "nearer, further"),
-    ("Double click", "look at what is there"),
-    ("Drop a file", "import it"),
+    ("Click", "A limb's numbers"),
+    ("Drag", "Turn the camera; on a limb, pull it"),
+    ("Right drag", "Move the camera"),
+    ("Wheel", "Nearer, further"),
+    ("Double click", "Look at what is there"),
+    ("Drop a file", "Import it"),
 ];
 
 /// Draws the keys and adds what was asked for.

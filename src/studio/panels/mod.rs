@@ -152,7 +152,7 @@ struct Seen<'w, 's> {
     on_stage: OnStage<'w, 's>,
     theme: Res<'w, look::Theme>,
     lessons: Res<'w, Lessons>,
-    library: Res<'w, Library>,
+    saves: Res<'w, Library>,
 }
 
 fn draw(
@@ -220,10 +220,12 @@ fn draw(
     if let Some(stage) = viewer.stage {
         area.set(&context, stage);
         if let Some(lane) = focused(&lanes, &seen.on_stage) {
-            around_stage(&context, stage, &seen.on_stage, &lanes, lane, *seen.theme, &mut asked);
+            let theme = *seen.theme;
+            let below_bar =
+                around_stage(&context, stage, &seen.on_stage, &lanes, lane, theme, &mut asked);
             let is_in_sight = panels.places.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
             if let Some(view) = seen.lessons.view().filter(|_| !is_in_sight) {
-                lesson_card(&context, stage, view.index, &mut asked);
+                lesson_card(&context, below_bar, view.index, &mut asked);
             }
         }
     }
@@ -311,7 +313,7 @@ impl Viewer<'_, '_, '_> {
                 panels.champions.ui(ui, &opening.0, reports, &shown, leaders, asked);
             }
             PanelKind::Lessons => lessons(ui, self.seen.lessons.view(), asked),
-            PanelKind::Library => panels.library.ui(ui, &self.seen.library, asked),
+            PanelKind::Library => panels.library.ui(ui, &self.seen.saves, asked),
         }
     }
 }
@@ -372,16 +374,9 @@ impl TabViewer for Viewer<'_, '_, '_> {
 }
 
 /// That a lesson is going on, for who has its panel out of sight.
-fn lesson_card(
-    context: &egui::Context,
-    stage: egui::Rect,
-    lesson: usize,
-    asked: &mut Vec<Command>,
-) {
+fn lesson_card(context: &egui::Context, at: egui::Pos2, lesson: usize, asked: &mut Vec<Command>) {
     let palette = look::of_context(context);
-    let at = stage.center_bottom() - egui::vec2(0.0, look::GAP * 1.5);
-    let area = egui::Area::new(egui::Id::new("lesson")).pivot(egui::Align2::CENTER_BOTTOM);
-    area.fixed_pos(at).constrain_to(stage).show(context, |ui| {
+    egui::Area::new(egui::Id::new("lesson")).fixed_pos(at).show(context, |ui| {
         palette.card(palette.accent).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label(format!("Lesson {} is going on.", lesson + 1));
@@ -396,7 +391,7 @@ fn lesson_card(
     });
 }
 
-/// The cards over the stage's edges.
+/// The cards over the stage's edges. Returns where there is room for another, under the one at the top left.
 fn around_stage(
     context: &egui::Context,
     stage: egui::Rect,
@@ -405,7 +400,7 @@ fn around_stage(
     focused: &Lane,
     theme: look::Theme,
     asked: &mut Vec<Command>,
-) {
+) -> egui::Pos2 {
     let stage = stage.shrink(look::GAP * 1.5);
     let palette = look::of_context(context);
     let card = |name: &str, pivot: egui::Align2, at: egui::Pos2| {
@@ -420,8 +415,8 @@ fn around_stage(
         });
     });
     if *on_stage.programme != Programme::Solo {
-        let at = bar.response.rect.left_bottom() + egui::vec2(0.0, look::GAP);
-        card("board", egui::Align2::LEFT_TOP, at).show(context, |ui| {
+        // Of several lanes, seen as they are at first, none is there.
+        card("board", egui::Align2::LEFT_BOTTOM, stage.left_bottom()).show(context, |ui| {
             frame.show(ui, |ui| {
                 let time_s = on_stage.playback.time_s();
                 board(ui, lanes, &on_stage.programme, focused.number(), time_s, asked);
@@ -435,6 +430,7 @@ fn around_stage(
             frame.show(ui, |ui| limb_card(ui, focused, limb));
         });
     }
+    bar.response.rect.left_bottom() + egui::vec2(0.0, look::GAP)
 }
 
 /// A section's title.

@@ -72,19 +72,13 @@ impl Album {
         studio.step_aside();
         // Messages go after eight seconds; a camera glides for one, and a large picture takes one.
         std::thread::sleep(Duration::from_secs(9));
-        studio.still_picture().store(&folder.join(format!("{name}-{}.png", self.theme)));
+        studio.picture().store(&folder.join(format!("{name}-{}.png", self.theme)));
     }
 
-    /// The stage: alone, in a race, in another world, from near.
+    /// The stage: a race, another world, one from near.
     fn stage(&self) -> Option<()> {
         let studio = self.open(RUN, true)?;
         studio.key("a");
-        studio.key("0");
-        studio.key("space");
-        studio.wait_for_title(", held");
-        studio.seek(0.42);
-        self.keep(&studio, "single");
-
         studio.key("n");
         studio.wait_for_title("showing a race of 6");
         studio.key("space");
@@ -118,7 +112,7 @@ impl Album {
         Some(())
     }
 
-    /// The panels, and what lies over the window.
+    /// The main view, the panels, and what lies over the window.
     fn panels(&self) -> Option<()> {
         let studio = self.open(RUN, true)?;
         studio.key("a");
@@ -126,6 +120,8 @@ impl Album {
         studio.key("space");
         studio.wait_for_title(", held");
         studio.seek(0.42);
+        self.keep(&studio, "single");
+
         studio.open_panel("Charts");
         studio.place("Chart: Fitness by generation");
         self.keep(&studio, "charts");
