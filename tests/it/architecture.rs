@@ -7,8 +7,8 @@ fn source() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// Every source file: its path below `src/` with forward slashes, and its text without tests.
-fn files() -> Vec<(String, String)> {
+/// Every source file: its path below `src/` with forward slashes, and its text.
+fn all_files() -> Vec<(String, String)> {
     fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).expect("a folder") {
             let path = entry.expect("an entry").path();
@@ -26,11 +26,60 @@ fn files() -> Vec<(String, String)> {
         let path = path.strip_prefix(source()).expect("below src");
         path.to_string_lossy().replace('\\', "/")
     };
-    let text = |path: &Path| {
-        let text = fs::read_to_string(path).expect("read");
-        text.split("#[cfg(test)]").next().unwrap_or_default().to_owned()
-    };
-    paths.iter().map(|path| (relative(path), text(path))).collect()
+    paths.iter().map(|path| (relative(path), fs::read_to_string(path).expect("read"))).collect()
+}
+
+/// The same without tests.
+fn files() -> Vec<(String, String)> {
+    let texts = all_files();
+    let of_tests: Vec<String> =
+        texts.iter().flat_map(|(path, text)| test_files(path, text)).collect();
+    for path in &of_tests {
+        assert!(texts.iter().any(|(of, _)| of == path), "src/{path} is declared, and not there");
+    }
+    let is_of_tests = |path: &String| of_tests.contains(path);
+    texts
+        .into_iter()
+        .filter(|(path, _)| !is_of_tests(path))
+        .map(|(path, text)| (path, without_tests(&text)))
+        .collect()
+}
+
+/// The files of modules that a file declares for tests only.
+fn test_files(path: &str, text: &str) -> Vec<String> {
+    let folder = path.strip_suffix("/mod.rs").or(path.strip_suffix(".rs")).expect("a source file");
+    let declared = text.split("#[cfg(test)]\n").skip(1).filter_map(|after| {
+        let (head, _) = after.lines().next()?.split_once(';')?;
+        let (_, name) = head.split_once("mod ")?;
+        Some(format!("{folder}/{name}.rs"))
+    });
+    declared.collect()
+}
+
+/// A file's text without its modules of tests. What else is only there in tests stays.
+fn without_tests(text: &str) -> String {
+    let mut rest = text;
+    let mut kept = String::new();
+    while let Some((before, after)) = rest.split_once("#[cfg(test)]\n") {
+        kept += before;
+        let head = after.lines().next().unwrap_or_default();
+        let is_module = head.contains("mod ") && head.ends_with('{');
+        // Its closing brace is the first that stands at the margin.
+        rest = match after.split_once("\n}\n") {
+            Some((_, after_it)) if is_module => after_it,
+            _ => after,
+        };
+    }
+    kept + rest
+}
+
+#[test]
+fn a_file_is_scanned_to_its_end_but_for_its_tests() {
+    let text = "a\n#[cfg(test)]\nfn b() {\n}\n#[cfg(test)]\nmod tests {\n    c\n}\nd\n";
+    assert_eq!(without_tests(text), "a\nfn b() {\n}\nd\n");
+    let text = "mod a;\n#[cfg(test)]\npub(super) mod tests;\nmod b;\n";
+    assert_eq!(test_files("studio/mod.rs", text), ["studio/tests.rs"]);
+    assert_eq!(test_files("studio/lane.rs", text), ["studio/lane/tests.rs"]);
 }
 
 /// The modules in the order of the pipeline: each may use those before it, none after it.
@@ -115,7 +164,7 @@ fn only_the_simulation_steps_the_engine() {
 
 #[test]
 fn every_file_opens_with_what_it_is_for() {
-    for (path, text) in files() {
+    for (path, text) in all_files() {
         assert!(text.starts_with("//!"), "src/{path} does not open with //!");
     }
 }
