@@ -185,14 +185,16 @@ impl Studio {
 
     /// The same for one that `is` it.
     pub fn scrolled_to_where(&self, what: &str, is: impl Fn(&Place) -> bool) -> Place {
-        let [top, bottom] = ["Panel Run", "Panel Champions"].map(|tab| self.place(tab).area);
+        let [top, below] = ["Panel Run", "Panel Champions"].map(|tab| self.place(tab).area);
+        // In a low window all panels are beside each other, and each has the whole height.
+        let bottom = if below.top < top.bottom { self.size().1 } else { below.top };
         for _ in 0..40 {
             let place = self.place_where(what, &is);
             let is_above = place.area.top < top.bottom;
-            if !is_above && place.area.bottom < bottom.top {
+            if !is_above && place.area.bottom < bottom {
                 return place;
             }
-            self.wheel(is_above, (top.left + 100, bottom.top - 12));
+            self.wheel(is_above, (top.left + 100, bottom - 12));
         }
         panic!("{what} could not be scrolled into sight");
     }
