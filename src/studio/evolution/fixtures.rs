@@ -5,6 +5,7 @@ use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Control, Experiment, pool};
 use crate::save::{SavesFolder, store_csv};
+use crate::score::evaluate;
 use crate::studio::Options;
 
 /// A run of the report's settings that has not begun.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::Evolution;
-use crate::evolve::{Champion, Parents, Place};
+use crate::evolve::{Champion, Origin, Parents, Place, Settings};
 use crate::genome::Genome;
 use crate::run::{Ancestor, caught};
 use crate::score::{Evaluation, evaluate};
@@ -24,6 +24,34 @@ impl Evolution {
         };
         let origin = self.origin(place.generation, place.individual);
         Some(Champion { genome: (*genome).clone(), trial, evaluation, origin })
+    }
+
+    /// Somebody of the front of distance and energy.
+    pub fn front_member(&self, generation: u32, individual: u32) -> Option<Champion> {
+        let mut members = self.exploration()?.front.members();
+        let member =
+            members.find(|is| (is.generation, is.individual) == (generation, individual))?;
+        Some(Champion {
+            genome: member.genome.clone(),
+            trial: self.settings().trial.clone(),
+            evaluation: member.evaluation,
+            origin: self.origin(generation, individual),
+        })
+    }
+
+    /// The best of a cell of the archive. The archive keeps its genes and its fitness; what else there is to know
+    /// of it is found out anew.
+    pub fn elite(&self, cell: u32) -> Option<Champion> {
+        let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
+        let Settings { trial, genome: space, .. } = self.settings();
+        let genome = space.genome_at(&elite.point, trial.descent());
+        let evaluation = caught(|| evaluate(&genome, trial)).ok()?;
+        let origin = self.origin(elite.generation, elite.individual);
+        Some(Champion { genome, trial: trial.clone(), evaluation, origin })
+    }
+
+    fn origin(&self, generation: u32, individual: u32) -> Origin {
+        Origin { preset: self.preset().to_owned(), seed: self.seed(), generation, individual }
     }
 
     /// The genes of somebody, if anybody remembers them.

@@ -1,0 +1,146 @@
+//! The plan of the next run: what is set, taken from a preset, undone.
+
+use std::sync::Arc;
+
+use super::Evolution;
+use crate::check::Invalid;
+use crate::evolve::{RunPlan, Settings, fields, with_fields};
+use crate::save::{Preset, load_preset};
+use crate::studio::presets::Presets;
+
+impl Evolution {
+    /// Seed of the next run.
+    pub fn next_seed(&self) -> u64 {
+        self.engine.next.seed
+    }
+
+    /// Settings of the next run.
+    pub fn next_settings(&self) -> &Settings {
+        &self.engine.next.settings
+    }
+
+    /// The plan of the next run.
+    pub fn next_plan(&self) -> &RunPlan {
+        &self.engine.next
+    }
+
+    /// Name of the preset that the next run starts from.
+    pub fn next_preset(&self) -> &str {
+        &self.engine.next.preset
+    }
+
+    /// Whether the next run has another seed, founder or settings than the current one has by now, or soon.
+    pub fn next_run_differs(&self) -> bool {
+        let (now, next) = (&self.source_now, &self.engine.next);
+        let of = |plan: &RunPlan| (plan.seed, plan.preset.clone());
+        of(now) != of(next) || now.founder != next.founder || self.awaited != next.settings
+    }
+
+    /// Sets the seed of the next run; a run that has not begun takes it at once.
+    pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
+        self.engine.next.seed = seed;
+        self.take_over_if_ready()
+    }
+
+    /// Sets the population of the next run; a run that has not begun takes it at once, and one that is under way from
+    /// its next generation on, if its method allows it.
+    pub fn set_population(&mut self, population: u32) -> Result<(), String> {
+        self.set_field("evolution.population", &population.to_string())
+    }
+
+    /// Sets one setting of the next run, by its name; a run that has not begun takes it at once, and one that is under
+    /// way from its next generation on, if it may.
+    pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
+        self.set_fields(&[(field.to_owned(), text.to_owned())])
+    }
+
+    /// Sets several settings of the next run at once, as [`Self::set_field`] does.
+    pub fn set_fields(&mut self, changes: &[(String, String)]) -> Result<(), String> {
+        let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+        let next = &self.engine.next;
+        let settings =
+            with_fields(&next.settings, changes).map_err(|error: Invalid| error.to_string())?;
+        self.set_next_plan(RunPlan { settings, ..next.clone() })
+    }
+
+    /// Gives the next run another plan; a run that has not begun takes it at once. What may change in a run under way
+    /// changes there too, unless the plan is that of another preset.
+    pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
+        plan.check_founder().map_err(|error| {
+            format!("The next run begins from a champion, whom this does not suit: {error}")
+        })?;
+        let before = std::mem::replace(&mut self.engine.next, plan);
+        let next = &self.engine.next;
+        if before == *next {
+            return Ok(());
+        }
+        if before.preset == next.preset && !self.is_lent {
+            let known = fields(&before.settings);
+            let changed = fields(&next.settings).into_iter().filter(|field| !known.contains(field));
+            for (field, text) in changed.collect::<Vec<_>>() {
+                self.change_running_too(&field, &text)?;
+            }
+        }
+        self.take_over_if_ready()
+    }
+
+    /// The presets that can be chosen.
+    pub fn presets(&self) -> &Presets {
+        &self.engine.presets
+    }
+
+    /// Looks for a person's own presets anew.
+    pub fn list_presets(&mut self) {
+        self.engine.presets = Arc::new(Presets::read(&self.engine.saves));
+    }
+
+    /// The settings of the next run's preset as they come, if it is known.
+    pub fn preset_settings(&self) -> Option<&Settings> {
+        let name = self.next_preset();
+        let first = &self.engine.first.plan;
+        // Somebody may have begun with a file of their own.
+        let of_first = (first.preset == name).then_some(&first.settings);
+        self.engine.presets.settings_of(name).or(of_first)
+    }
+
+    /// Keeps the next run's settings as a preset of a person's own, of which they are from now on.
+    pub fn store_preset(&mut self, name: &str) -> Result<(), String> {
+        let next = &self.engine.next;
+        let about = format!("Your own; it began as {}.", next.preset);
+        let preset = Preset { name: name.to_owned(), about, settings: next.settings.clone() };
+        self.engine.saves.store_own_preset(&preset).map_err(|error| error.to_string())?;
+        self.list_presets();
+        self.engine.next.preset = preset.name;
+        self.take_over_if_ready()
+    }
+
+    /// Takes a preset for the next run: a shipped one, or one of a person's own.
+    pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
+        let preset = match self.engine.presets.find(name)? {
+            Some(preset) => preset.clone(),
+            None => load_preset(name).map_err(|error| error.to_string())?,
+        };
+        self.engine.next.preset = preset.name;
+        self.engine.next.settings = preset.settings;
+        self.engine.next.founder = None;
+        self.take_over_if_ready()
+    }
+
+    /// Gives the next run the world back that it had in a plan, and the rest if that is of another preset. Seed and
+    /// population, which are no matter of the world, stay.
+    pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
+        let next = &mut self.engine.next;
+        if next.preset == before.preset {
+            next.settings.trial = before.settings.trial.clone();
+        } else {
+            next.preset.clone_from(&before.preset);
+            next.settings = before.settings.clone();
+            next.founder.clone_from(&before.founder);
+        }
+        // One that was chosen meanwhile may not suit that world.
+        if next.check_founder().is_err() {
+            next.founder = None;
+        }
+        self.take_over_if_ready()
+    }
+}
