@@ -147,6 +147,8 @@ const FOLLOWED_M: f32 = 0.005;
 /// So much of the lanes before and behind the snakes is in view, in metres.
 const AHEAD_M: f32 = 9.0;
 const BEHIND_M: f32 = 6.0;
+/// At most this share of the picture makes room for a card.
+const MOST_ASIDE: f32 = 0.25;
 /// How eagerly the camera goes to where it was asked to, in 1/s.
 const GLIDE_PER_S: f32 = 14.0;
 /// A pinch of a trackpad's whole scale zooms by this factor.
@@ -297,7 +299,6 @@ fn glide(
 ) {
     let mut goal = rig.view;
     if rig.frames_all() {
-        let target = rig.anchor.unwrap_or_default() + goal.offset;
         let points = lanes.iter().flat_map(|lane| {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
             let middle = lane.drawn_middle() + lane.offset();
@@ -305,8 +306,9 @@ fn glide(
             let ends = lane.last_poses().iter().map(move |pose| pose.translation + lane.offset());
             ends.chain([middle - half_width, middle + half_width]).chain(around)
         });
-        let zoom = goal.distance_m / View::USUAL_M;
-        goal.distance_m = goal.distance_to_see(target, points, area.aspect()) * zoom;
+        // The card there is low, and nothing of the lanes is in the corner but a tail: half its width is enough.
+        let left_share = (area.card_share() / 2.0).min(MOST_ASIDE);
+        goal = goal.framing(rig.anchor.unwrap_or_default(), points, area.aspect(), left_share);
     }
     let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
     rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };

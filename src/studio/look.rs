@@ -111,7 +111,7 @@ pub const PALETTE_WIDTH: f32 = 480.0;
 /// Width of a step of the tour, in points.
 pub const TOUR_WIDTH: f32 = 380.0;
 /// Width of a column of keys, in points.
-pub const KEY_COLUMN_WIDTH: f32 = 340.0;
+pub const KEY_COLUMN_WIDTH: f32 = 320.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torques under the stage, in points.
@@ -149,6 +149,8 @@ pub const SAVE_HEIGHT: f32 = 44.0;
 pub const THUMBNAIL_SIZE: egui::Vec2 = egui::vec2(76.0, 36.0);
 /// Height of the picture of the save that is chosen, in points.
 pub const PICTURE_HEIGHT: f32 = 64.0;
+/// Below this width the stage has little room for cards, in points.
+pub const NARROW_STAGE: f32 = 560.0;
 /// From this width on the library has columns, in points.
 pub const COLUMNS_WIDTH: f32 = 560.0;
 /// Widths of the library's columns after the name: fitness, preset, generation, date, in points.

@@ -8,20 +8,23 @@ use bevy_egui::egui;
 pub(super) struct StageArea {
     /// Where it is, in the panels' points.
     rect: egui::Rect,
+    /// How wide the card at its lower left corner is, as a share of its width.
+    card_share: f32,
     /// The panels, which know what lies over the stage.
     context: egui::Context,
 }
 
 impl Default for StageArea {
     fn default() -> Self {
-        Self { rect: egui::Rect::ZERO, context: egui::Context::default() }
+        Self { rect: egui::Rect::ZERO, card_share: 0.0, context: egui::Context::default() }
     }
 }
 
 impl StageArea {
-    /// Takes in where panels leave room.
-    pub fn set(&mut self, context: &egui::Context, rect: egui::Rect) {
+    /// Takes in where panels leave room, and how wide a card lies in the lower left corner of that, in points.
+    pub fn set(&mut self, context: &egui::Context, rect: egui::Rect, card_width: f32) {
         self.rect = rect;
+        self.card_share = card_width / rect.width().max(1.0);
         // A context is a handle.
         self.context = context.clone();
     }
@@ -56,6 +59,11 @@ impl StageArea {
     /// Whether something is being typed in a panel.
     pub fn has_text_cursor(&self) -> bool {
         self.context.text_edit_focused()
+    }
+
+    /// How wide the card at its lower left corner is, as a share of its width.
+    pub fn card_share(&self) -> f32 {
+        self.card_share
     }
 
     /// Width over height.

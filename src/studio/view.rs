@@ -111,6 +111,24 @@ impl View {
             && self.offset.distance(other.offset) < 2.0e-3
     }
 
+    /// Stands so far back, and so far aside, that all points are in view, and none in so large a share of the picture at
+    /// its left. `aspect` is its width over its height. What the distance was before counts as a share of
+    /// [`Self::USUAL_M`].
+    pub fn framing(
+        self,
+        target: Vec3,
+        points: impl IntoIterator<Item = Vec3>,
+        aspect: f32,
+        left_share: f32,
+    ) -> Self {
+        let zoom = self.distance_m / Self::USUAL_M;
+        let target = target + self.offset;
+        let distance_m = self.distance_to_see(target, points, aspect * (1.0 - left_share)) * zoom;
+        let half_width_m = distance_m * libm::tanf(VERTICAL_VIEW_RAD / 2.0) * aspect;
+        let right = self.turn() * Vec3::Y;
+        Self { distance_m, offset: self.offset - right * (half_width_m * left_share), ..self }
+    }
+
     /// How far from `target` the camera has to be so that all points are in view, in metres. `aspect` is the
     /// picture's width over its height.
     pub fn distance_to_see(
@@ -156,6 +174,27 @@ mod tests {
                 });
                 let most = places.into_iter().fold(0.0, f32::max);
                 assert!((0.8..=1.0 / MARGIN + 0.01).contains(&most), "{shot:?} {aspect}: {most}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_left_of_the_picture_can_be_left_free() {
+        let points = [Vec3::new(12.0, -7.0, 0.0), Vec3::new(-12.0, 21.0, 5.0), Vec3::ZERO];
+        let (target, aspect) = (Vec3::new(0.0, 7.0, 2.0), 1.6);
+        for shot in Shot::ALL {
+            for left_share in [0.0, 0.1, 0.25] {
+                let view = View::of(shot, 6).framing(target, points, aspect, left_share);
+                let into_eye = view.looking_at(target + view.offset).to_matrix().inverse();
+                let half = libm::tanf(VERTICAL_VIEW_RAD / 2.0) * aspect;
+                let places = points.map(|point| {
+                    let at = into_eye.transform_point3(point);
+                    at.x / -at.z / half
+                });
+                let left = places.into_iter().fold(1.0, f32::min);
+                let right = places.into_iter().fold(-1.0, f32::max);
+                let edge = 2.0 * left_share - 1.0;
+                assert!(left > edge && right < 1.0, "{shot:?}: {left} of {edge}, {right}");
             }
         }
     }

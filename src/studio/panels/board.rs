@@ -50,13 +50,15 @@ fn order(standings: &mut [Standing]) {
     });
 }
 
-/// Draws the board and adds what was asked for. `focus` is the lane whose numbers are shown.
+/// Draws the board and adds what was asked for. `focus` is the lane whose numbers are shown. Where the stage
+/// `is_narrow` it says the same in fewer letters.
 pub(super) fn board(
     ui: &mut egui::Ui,
     lanes: &[&Lane],
     programme: &Programme,
     focus: usize,
     time_s: f64,
+    is_narrow: bool,
     asked: &mut Vec<Command>,
 ) {
     let palette = look::of(ui);
@@ -85,6 +87,7 @@ pub(super) fn board(
                 let text = match (standing.is_out, standing.landed_s) {
                     _ if standing.is_disturbed => "by hand".to_owned(),
                     (true, _) => "out".to_owned(),
+                    (false, Some(landed_s)) if is_narrow => format!("{landed_s:.2} s"),
                     (false, Some(landed_s)) => format!("landed {landed_s:.2} s"),
                     (false, None) => format!("{:.2} m", standing.y_m),
                 };
@@ -93,7 +96,12 @@ pub(super) fn board(
                     (false, Some(_)) => palette.accent,
                     (false, None) => palette.text,
                 };
-                ui.label(egui::RichText::new(format!("{text:>14}")).monospace().color(color));
+                let width = if is_narrow { 8 } else { 14 };
+                let text = egui::RichText::new(format!("{text:>width$}")).monospace().color(color);
+                let value = ui.label(text);
+                if standing.landed_s.is_some() {
+                    value.on_hover_text("When it landed");
+                }
                 ui.end_row();
             }
         });
@@ -162,12 +170,30 @@ mod tests {
         ] {
             let lanes: Vec<&Lane> = lanes.iter().collect();
             let mut harness = Harness::new_ui_state(
-                |ui, asked| board(ui, &lanes, &programme, 0, 0.0, asked),
+                |ui, asked| board(ui, &lanes, &programme, 0, 0.0, false, asked),
                 Vec::new(),
             );
             harness.get_by_label(label).click();
             harness.run();
             assert_eq!(*harness.state(), [command], "{label}");
         }
+    }
+
+    #[test]
+    fn over_a_narrow_stage_it_is_narrower() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = Lane::new(Exhibit::saved(&loaded, 0, "one"), 0);
+        let width = |is_narrow| {
+            let mut harness = Harness::new_ui_state(
+                |ui, asked: &mut Vec<Command>| {
+                    board(ui, &[&lane], &Programme::Race, 0, 0.0, is_narrow, asked);
+                },
+                Vec::new(),
+            );
+            harness.run();
+            let [name, value] = ["one", " m"].map(|label| harness.get_by_label_contains(label));
+            value.rect().right() - name.rect().left()
+        };
+        assert!(width(true) + 30.0 < width(false), "{} of {}", width(true), width(false));
     }
 }

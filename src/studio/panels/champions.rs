@@ -3,10 +3,11 @@
 use bevy_egui::egui;
 
 use super::{explain, row};
-use crate::evolve::Champion;
+use crate::evolve::{Champion, Origin};
 use crate::run::GenerationReport;
 use crate::studio::casting::{Pick, Saved};
 use crate::studio::command::Command;
+use crate::studio::exhibit::{Exhibit, Source};
 
 /// What of the list is on the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +21,25 @@ pub(super) enum Shown {
         /// Its index in that generation.
         individual: u32,
     },
+}
+
+impl Shown {
+    /// How an exhibit is listed, if it is; `run` is the number of the current run.
+    pub(super) fn of(exhibit: &Exhibit, run: u32) -> Option<Self> {
+        match exhibit.source() {
+            Source::Opening(index) => Some(Self::Opening(index)),
+            Source::Run(of) if of == run => {
+                let Origin { generation, individual, .. } = exhibit.champion().origin;
+                Some(Self::Found { generation, individual })
+            }
+            Source::Library(_) | Source::Run(_) | Source::Lesson => None,
+        }
+    }
+
+    /// Whether it is this individual of the current run.
+    pub(super) fn is(self, generation: u32, individual: u32) -> bool {
+        self == Self::Found { generation, individual }
+    }
 }
 
 /// The list.

@@ -24,6 +24,7 @@ mod parameters;
 mod presets;
 mod progress;
 mod signals;
+mod stage_cards;
 mod timeline;
 mod tour;
 mod view_bar;
@@ -40,7 +41,6 @@ use super::casting::Opening;
 use super::command::Command;
 use super::desk::{Desk, Over};
 use super::evolution::Evolution;
-use super::exhibit::{Exhibit, Source};
 use super::hands::Hands;
 use super::lane::Lane;
 use super::lessons::{LESSONS, Lessons};
@@ -51,9 +51,7 @@ use super::stage::{Programme, end_s};
 use super::stage_area::StageArea;
 use super::undo::History;
 use super::{Opened, look};
-use crate::evolve::Origin;
 
-use board::board;
 use champions::{ChampionsPanel, Shown};
 use charts::{ChartsPanel, FitnessChart};
 use evolution::EvolutionPanel;
@@ -61,12 +59,11 @@ use key_overlay::key_overlay;
 use layout::style;
 use lessons::lessons;
 use library::LibraryPanel;
-use limb_card::limb_card;
 use menu::menu;
 use palette::Palette;
+use stage_cards::{around_stage, lesson_card};
 use timeline::TimelinePanel;
 use tour::tour;
-use view_bar::view_bar;
 use world::WorldPanel;
 
 pub(super) use layout::{Layout, PanelKind};
@@ -116,25 +113,6 @@ impl FromWorld for Panels {
             places: Vec::new(),
             is_dressed: false,
         }
-    }
-}
-
-impl Shown {
-    /// How an exhibit is listed, if it is; `run` is the number of the current run.
-    fn of(exhibit: &Exhibit, run: u32) -> Option<Self> {
-        match exhibit.source() {
-            Source::Opening(index) => Some(Self::Opening(index)),
-            Source::Run(of) if of == run => {
-                let Origin { generation, individual, .. } = exhibit.champion().origin;
-                Some(Self::Found { generation, individual })
-            }
-            Source::Library(_) | Source::Run(_) | Source::Lesson => None,
-        }
-    }
-
-    /// Whether it is this individual of the current run.
-    fn is(self, generation: u32, individual: u32) -> bool {
-        self == Self::Found { generation, individual }
     }
 }
 
@@ -218,16 +196,18 @@ fn draw(
             .show_inside(&mut root, &mut viewer);
     }
     if let Some(stage) = viewer.stage {
-        area.set(&context, stage);
+        let mut card_width = 0.0;
         if let Some(lane) = focused(&lanes, &seen.on_stage) {
             let theme = *seen.theme;
-            let below_bar =
+            let around =
                 around_stage(&context, stage, &seen.on_stage, &lanes, lane, theme, &mut asked);
+            card_width = around.board_width;
             let is_in_sight = panels.places.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
             if let Some(view) = seen.lessons.view().filter(|_| !is_in_sight) {
-                lesson_card(&context, below_bar, view.index, &mut asked);
+                lesson_card(&context, around.below_bar, view.index, &mut asked);
             }
         }
+        area.set(&context, stage, card_width);
     }
     match desk.over() {
         Some(Over::Keys) => key_overlay(&context, &mut asked),
@@ -371,66 +351,6 @@ impl TabViewer for Viewer<'_, '_, '_> {
             style
         })
     }
-}
-
-/// That a lesson is going on, for who has its panel out of sight.
-fn lesson_card(context: &egui::Context, at: egui::Pos2, lesson: usize, asked: &mut Vec<Command>) {
-    let palette = look::of_context(context);
-    egui::Area::new(egui::Id::new("lesson")).fixed_pos(at).show(context, |ui| {
-        palette.card(palette.accent).show(ui, |ui| {
-            ui.horizontal(|ui| {
-                ui.label(format!("Lesson {} is going on.", lesson + 1));
-                if ui.button("To the lesson").clicked() {
-                    asked.push(Command::Open(PanelKind::Lessons));
-                }
-                if ui.button("Back to my own run").clicked() {
-                    asked.push(Command::LeaveLesson);
-                }
-            });
-        });
-    });
-}
-
-/// The cards over the stage's edges. Returns where there is room for another, under the one at the top left.
-fn around_stage(
-    context: &egui::Context,
-    stage: egui::Rect,
-    on_stage: &OnStage,
-    lanes: &[&Lane],
-    focused: &Lane,
-    theme: look::Theme,
-    asked: &mut Vec<Command>,
-) -> egui::Pos2 {
-    let stage = stage.shrink(look::GAP * 1.5);
-    let palette = look::of_context(context);
-    let card = |name: &str, pivot: egui::Align2, at: egui::Pos2| {
-        egui::Area::new(egui::Id::new(name)).pivot(pivot).fixed_pos(at).constrain_to(stage)
-    };
-    let frame = palette.card(palette.field_hovered);
-    let bar = card("view", egui::Align2::LEFT_TOP, stage.left_top()).show(context, |ui| {
-        let small = egui::Margin::symmetric(look::GAP as i8 / 2, look::GAP as i8 / 2);
-        frame.inner_margin(small).show(ui, |ui| {
-            let is_smooth = on_stage.smoothing.iter().any(|msaa| *msaa != Msaa::Off);
-            view_bar(ui, on_stage.rig.shot(), &on_stage.overlays, is_smooth, theme, asked);
-        });
-    });
-    if *on_stage.programme != Programme::Solo {
-        // Of several lanes, seen as they are at first, none is there.
-        card("board", egui::Align2::LEFT_BOTTOM, stage.left_bottom()).show(context, |ui| {
-            frame.show(ui, |ui| {
-                let time_s = on_stage.playback.time_s();
-                board(ui, lanes, &on_stage.programme, focused.number(), time_s, asked);
-            });
-        });
-    }
-    if let Some(limb) = on_stage.hands.limb {
-        // The pointer goes through it, to the snake that may be behind.
-        let place = card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom());
-        place.interactable(false).show(context, |ui| {
-            frame.show(ui, |ui| limb_card(ui, focused, limb));
-        });
-    }
-    bar.response.rect.left_bottom() + egui::vec2(0.0, look::GAP)
 }
 
 /// A section's title.
