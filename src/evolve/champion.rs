@@ -19,11 +19,19 @@ pub struct Champion {
 impl Champion {
     /// What it reached, in a few words: fitness, and what the place of its centre means.
     pub fn reached(&self) -> String {
-        let Evaluation { fitness, centre_y_m, .. } = self.evaluation;
-        let meaning = self.trial.meaning(f64::from(centre_y_m));
+        let score = self.score();
+        match self.trial.fitness {
+            Fitness::StepsClimbed => score,
+            _ => format!("{score}, {}", self.trial.meaning(f64::from(self.evaluation.centre_y_m))),
+        }
+    }
+
+    /// Its fitness with the unit.
+    pub fn score(&self) -> String {
+        let fitness = self.evaluation.fitness;
         match self.trial.fitness {
             Fitness::StepsClimbed => format!("{fitness:.0} steps"),
-            kind => format!("{fitness:.2}{}, {meaning}", kind.unit()),
+            kind => format!("{fitness:.2}{}", kind.unit()),
         }
     }
 }

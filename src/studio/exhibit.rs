@@ -188,7 +188,10 @@ impl Exhibit {
     pub fn caption(&self) -> String {
         let name = &self.name;
         let manner = match (&self.manner, self.other_engine()) {
-            (Manner::Changed(_, what), _) => format!(" with {what}; on record "),
+            (Manner::Changed(_, what), _) => {
+                // What that place means was said of another world.
+                return format!("{name} with {what}; as found {}", self.champion.score());
+            }
             (_, None) => ": ".to_owned(),
             (_, Some(engine)) if self.recording().is_some() => {
                 format!(" as engine {engine} recorded it: ")

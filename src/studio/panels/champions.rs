@@ -115,8 +115,8 @@ impl ChampionsPanel {
                 if let Some(saved) = opening.get(index) {
                     let name = if opening.len() == 1 { "Saved" } else { &saved.name };
                     let is_shown = shown.contains(&Shown::Opening(index));
-                    let reached = saved.loaded.champion.reached();
-                    entry(ui, is_shown, name, &reached, Pick::Opening(index), None, asked);
+                    let champion = &saved.loaded.champion;
+                    entry(ui, is_shown, name, champion, Pick::Opening(index), None, asked);
                     continue;
                 }
                 // The latest first: that is what one waits for.
@@ -135,7 +135,7 @@ impl ChampionsPanel {
                 let is_best = best == Some(generation);
                 let name = if is_best { format!("{name}, best") } else { name };
                 let race = (leaders(Some(generation)) > 1).then_some(generation);
-                entry(ui, is_shown, &name, &champion.reached(), pick, race, asked);
+                entry(ui, is_shown, &name, champion, pick, race, asked);
             }
         });
     }
@@ -157,13 +157,19 @@ fn entry(
     ui: &mut egui::Ui,
     is_shown: bool,
     name: &str,
-    reached: &str,
+    champion: &Champion,
     pick: Pick,
     race: Option<u32>,
     asked: &mut Vec<Command>,
 ) {
-    let hint = "Click to replay; with Shift, beside what is on the stage; right click for more";
-    let response = row(ui, is_shown, name, reached).on_hover_text(hint);
+    let response = row(ui, is_shown, name, &champion.reached()).on_hover_ui(|ui| {
+        // What tells those apart that came equally far.
+        if let Some(effort) = champion.evaluation.effort {
+            let (energy_kj, speed_m_s) = (effort.energy_j / 1000.0, effort.top_speed_m_s);
+            ui.label(format!("Spent {energy_kj:.1} kJ, and was {speed_m_s:.1} m/s fast at most"));
+        }
+        ui.label("Click to replay; with Shift, beside what is on the stage; right click for more");
+    });
     if response.clicked() {
         let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
         asked.push(if joins { Command::Join(pick) } else { Command::Show(pick) });

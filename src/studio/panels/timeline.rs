@@ -4,6 +4,7 @@ use bevy_egui::egui;
 
 use super::icons::{Icon, icon_button};
 use super::signals::Signals;
+use crate::score::Fitness;
 use crate::studio::command::Command;
 use crate::studio::exhibit::Source;
 use crate::studio::lane::Lane;
@@ -134,26 +135,38 @@ fn numbers(ui: &mut egui::Ui, lane: &Lane) {
     let behaviour = evaluation.behaviour;
     let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
     let steps = behaviour.map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));
+    let more = match trial.fitness {
+        Fitness::Climb => {
+            "; with the whole snake on the landing it has arrived, and it counts no more"
+        }
+        _ => "",
+    };
+    let fitness_hint =
+        format!("What it would be worth if the time ended now: {}{more}", trial.fitness.words());
     // The most important first: in a narrow window only some have room.
     let all = [
-        ("fitness", Some(format!("{:.2}{unit}", evaluation.fitness))),
-        ("steps", steps),
-        ("speed", Some(format!("{:.2} m/s", lane.speed_m_s()))),
-        ("energy", energy_kj.map(|energy_kj| format!("{energy_kj:.2} kJ"))),
+        ("fitness", Some(format!("{:.2}{unit}", evaluation.fitness)), fitness_hint.as_str()),
+        ("steps", steps, "Steps below the middle block"),
+        ("speed", Some(format!("{:.2} m/s", lane.speed_m_s())), "Of the middle block"),
+        (
+            "energy",
+            energy_kj.map(|energy_kj| format!("{energy_kj:.2} kJ")),
+            "What the joints have spent so far",
+        ),
     ];
     let room = ui.available_width();
     let mut used = 0.0;
-    let with_room = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
-    let shown: Vec<(&str, String)> = with_room
-        .take_while(|(name, value)| {
+    let with_room = all.into_iter().filter_map(|(name, value, hint)| Some((name, value?, hint)));
+    let shown: Vec<(&str, String, &str)> = with_room
+        .take_while(|(name, value, _)| {
             used += (name.len() + value.chars().count()) as f32 * LETTER_WIDTH + look::GAP * 2.5;
             used < room
         })
         .collect();
     // From right to left.
-    for (name, value) in shown.into_iter().rev() {
-        ui.label(egui::RichText::new(value).monospace());
-        ui.label(egui::RichText::new(name).color(palette.text_weak));
+    for (name, value, hint) in shown.into_iter().rev() {
+        ui.label(egui::RichText::new(value).monospace()).on_hover_text(hint);
+        ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(hint);
         ui.add_space(look::GAP / 2.0);
     }
 }
