@@ -104,7 +104,7 @@ pub struct Args {
     /// Open the studio with the result of `snakes compare`
     #[arg(long, global = true, value_name = "FILE")]
     pub comparison: Option<PathBuf>,
-    /// Size of the window in pixels
+    /// Size of the window in pixels; where several make up one, in those
     #[arg(long, global = true, value_name = "WIDTHxHEIGHT")]
     window_size: Option<String>,
     /// The colours: light or dark [default: those chosen last; at first light]

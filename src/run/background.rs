@@ -20,7 +20,7 @@ use crate::evolve::{Archive, Champion, Front, SettingChange};
 pub enum Event {
     /// The run's folder is open, and these generations are behind the run.
     Opened(Vec<GenerationReport>),
-    /// These settings were changed before, the earliest first. Told once, of a run that was.
+    /// These settings were changed before, the earliest first. Told once, of a run that was, before it is open.
     WasChanged(Vec<SettingChange>),
     /// A setting is changed, and takes effect with the generation that begins next.
     Changed(SettingChange),
@@ -262,10 +262,10 @@ impl Worker {
         let explored =
             |experiment: &Experiment| Event::Explored(Box::new(Exploration::of(experiment)));
         self.population.store(experiment.population(), Ordering::Relaxed);
-        self.tell(Event::Opened(reports));
         if !keeper.changes().is_empty() {
             self.tell(Event::WasChanged(keeper.changes().to_vec()));
         }
+        self.tell(Event::Opened(reports));
         if experiment.finished() > 0 {
             self.tell(explored(&experiment));
         }

@@ -28,7 +28,7 @@ pub struct Preferences {
     pub theme: String,
     /// How large the panels are drawn: see [`UI_SCALES`].
     pub ui_scale: f32,
-    /// Size of the window, in pixels; none: the usual one.
+    /// Size of the window, in logical pixels; none: the usual one.
     pub window_size: Option<(u32, u32)>,
     /// Where the panels are, in the window's own words; empty: where they are at first.
     pub layout: String,

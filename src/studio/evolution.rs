@@ -66,6 +66,11 @@ pub(super) struct Evolution {
     run_hash: Option<u64>,
     /// Whether a lesson has the stage and the settings: see [`Self::lend`].
     is_lent: bool,
+    /// Whether the next run's settings are set for the run under way, too, as far as they may change there: they are
+    /// not if they came from another preset or another run.
+    next_is_own: bool,
+    /// The folder of a run that was reset: what is in it is thrown away when such a run begins.
+    discarded: Option<PathBuf>,
 }
 
 pub(super) fn plugin(app: &mut App) {
@@ -102,6 +107,8 @@ impl Evolution {
             leaders: VecDeque::new(),
             run_hash: None,
             is_lent: false,
+            next_is_own: true,
+            discarded: None,
         }
     }
 
@@ -113,6 +120,11 @@ impl Evolution {
             Some(background) if background.is_paused() => Status::Paused,
             Some(_) => Status::Running,
         }
+    }
+
+    /// How many evaluations the current run may cost, after all its changes.
+    pub fn budget(&self) -> u64 {
+        self.source_now.budget()
     }
 
     /// Which run of this session it is; the first is 0.
@@ -234,9 +246,12 @@ impl Evolution {
         Ok(())
     }
 
-    /// Begins the next run now; the current one can be gone on with later.
+    /// Begins another run now, with the next seed if nothing else differs; the current one can be gone on with later.
     pub fn begin_next(&mut self) -> Result<(), String> {
         if self.next_run_differs() {
+            self.prepare_next();
+        } else if self.is_under_way() {
+            self.engine.next.seed = self.engine.next.seed.wrapping_add(1);
             self.prepare_next();
         }
         self.start()
@@ -249,6 +264,7 @@ impl Evolution {
         if self.source.plan != self.engine.next {
             self.prepare_next();
         } else {
+            self.discarded = Some(self.source.folder.clone());
             self.replace(RunSource { earlier: Earlier::Discard, ..self.source.clone() });
         }
         Ok(())
@@ -257,7 +273,12 @@ impl Evolution {
     /// Prepares the next run.
     fn prepare_next(&mut self) {
         let plan = self.engine.next.clone();
-        self.replace(RunSource::in_saves(&self.engine.saves, plan, Earlier::Keep));
+        let mut source = RunSource::in_saves(&self.engine.saves, plan, Earlier::Keep);
+        // Whoever has reset it means so even after having looked at other settings.
+        if self.discarded.as_ref() == Some(&source.folder) {
+            source.earlier = Earlier::Discard;
+        }
+        self.replace(source);
     }
 
     /// Puts another run in the place of the current one, which ends in the background.
@@ -268,6 +289,7 @@ impl Evolution {
             before,
             others: std::mem::take(&mut self.others),
             is_lent: self.is_lent,
+            discarded: self.discarded.take(),
             ..Self::prepared(source, self.engine.clone())
         };
         if self.others.runs().is_some() {
@@ -275,6 +297,13 @@ impl Evolution {
             // be listed now is listed when it is asked for again.
             let _ = self.list_runs();
         }
+    }
+
+    /// Prepares the current run to go on with what is kept of it.
+    fn open_again(&mut self) {
+        self.engine.set_run_folder(None);
+        self.replace(RunSource { earlier: Earlier::Keep, ..self.source.clone() });
+        self.next_is_own = self.next_looks_own();
     }
 
     /// Looks for all runs in the folder of saves.

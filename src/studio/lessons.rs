@@ -114,7 +114,11 @@ impl Lessons {
         }
         let own = match self.current.take() {
             // From one lesson to the next: one's own is still that of before the first.
-            Some(before) => before.own,
+            Some(before) => {
+                // What was set in the lesson before means nothing in this one.
+                history.give_back(History::default());
+                before.own
+            }
             None => {
                 let pace = match evolution.status() {
                     Status::Running if evolution.is_single_generation() => Pace::OneGeneration,

@@ -49,6 +49,8 @@ pub(super) struct Library {
     history: History,
     /// What was done lately: see [`Self::take_done`].
     done: Vec<String>,
+    /// What was left of taking back or doing again: see [`Self::take_left`].
+    left: Vec<(Way, String)>,
     errands: Vec<UnderWay>,
     /// Who is being read to take the stage.
     loading: Option<Errand<Result<Show, String>>>,
@@ -83,6 +85,7 @@ impl Library {
             sortings: 0,
             history: History::default(),
             done: Vec::new(),
+            left: Vec::new(),
             errands: Vec::new(),
             loading: None,
             loaded: None,
@@ -245,6 +248,12 @@ impl Library {
     /// What was done since this was asked last, in a few words each, to be undone in its order with everything else.
     pub fn take_done(&mut self) -> Vec<String> {
         std::mem::take(&mut self.done)
+    }
+
+    /// What could not be taken back, or not be done again, as a whole since this was asked last, in a few words each:
+    /// the rest of it can be tried again.
+    pub fn take_left(&mut self) -> Vec<(Way, String)> {
+        std::mem::take(&mut self.left)
     }
 
     fn point_out(&mut self, place: Option<Place>) {

@@ -112,6 +112,9 @@ pub const PALETTE_WIDTH: f32 = 480.0;
 pub const TOUR_WIDTH: f32 = 380.0;
 /// Width of a column of keys, in points.
 pub const KEY_COLUMN_WIDTH: f32 = 320.0;
+/// Where messages begin, in points from the top of the window: under the bar over the stage, which in a narrow window
+/// reaches as far as they do.
+pub const NOTICES_TOP: f32 = 84.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torques under the stage, in points.

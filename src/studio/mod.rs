@@ -95,7 +95,7 @@ pub struct Options {
     pub champions: Vec<(String, LoadedChampion)>,
     /// A comparison of methods to show.
     pub comparison: Option<Comparison>,
-    /// Size of the window, in pixels; none: as it was before.
+    /// Size of the window, in logical pixels; none: as it was before.
     pub window_size: Option<(u32, u32)>,
     /// The colours to open with; none: as they were before.
     pub theme: Option<Theme>,
@@ -255,7 +255,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     }
 }
 
-/// Size of a window for which nobody has asked for another, in pixels.
+/// Size of a window for which nobody has asked for another, in logical pixels.
 const WINDOW_SIZE: (u32, u32) = (1280, 720);
 
 fn window((width, height): (u32, u32)) -> Window {

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use bevy::prelude::*;
+use bevy_egui::egui::accesskit::{Live, Role};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 use super::look;
@@ -64,7 +65,7 @@ fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time
     notices.0.retain(|notice| notice.shown_for < LIFETIME);
     let context = contexts.ctx_mut()?;
     egui::Area::new(egui::Id::new("notices"))
-        .anchor(egui::Align2::RIGHT_TOP, [-look::GAP * 2.0, look::GAP * 5.5])
+        .anchor(egui::Align2::RIGHT_TOP, [-look::GAP * 2.0, look::NOTICES_TOP])
         .interactable(false)
         .show(context, |ui| {
             ui.spacing_mut().item_spacing.y = look::GAP;
@@ -74,7 +75,13 @@ fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time
                     let edge = if notice.is_problem { palette.problem } else { palette.accent };
                     palette.card(edge).show(ui, |ui| {
                         ui.set_max_width(look::NOTICE_WIDTH);
-                        ui.label(egui::RichText::new(&notice.text).color(palette.text));
+                        let text = egui::RichText::new(&notice.text).color(palette.text);
+                        let label = ui.label(text);
+                        // A screen reader says it when it comes.
+                        ui.ctx().accesskit_node_builder(label.id, |node| {
+                            node.set_role(Role::Status);
+                            node.set_live(Live::Polite);
+                        });
                     });
                 }
             });

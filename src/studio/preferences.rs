@@ -135,10 +135,14 @@ fn remember(
 
 fn now(remembered: &Remembered, chosen: &Chosen) -> Preferences {
     let before = &remembered.stored;
-    let window_size =
-        chosen.window.iter().next().map(|window| {
-            (window.resolution.physical_width(), window.resolution.physical_height())
-        });
+    // A window is asked for in logical pixels. Physical ones would be taken for those, and on a display with more than
+    // one to the other it would grow at every start.
+    let logical = |length: f32| length.round() as u32;
+    let window_size = chosen
+        .window
+        .iter()
+        .next()
+        .map(|window| (logical(window.width()), logical(window.height())));
     let is_smooth = chosen.is_smooth();
     let has_chosen = before.smooth_edges.is_some() || is_smooth != remembered.was_smooth;
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
@@ -160,6 +164,7 @@ fn now(remembered: &Remembered, chosen: &Chosen) -> Preferences {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::window::WindowResolution;
 
     fn app(file: &PreferencesFile) -> App {
         let mut app = App::new();
@@ -206,5 +211,19 @@ mod tests {
         let app = app(&file);
         assert_eq!(app.world().resource::<Notices>().len(), 1);
         assert!(folder.path().join("studio.ron.unreadable").exists());
+    }
+
+    #[test]
+    fn a_window_does_not_grow_at_every_start_where_several_pixels_make_one() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = PreferencesFile::at(&folder.path().join("studio.ron"));
+        let mut app = app(&file);
+        let mut resolution = WindowResolution::new(2560, 1440);
+        resolution.set_scale_factor(2.0);
+        app.world_mut().spawn((Window { resolution, ..default() }, PrimaryWindow));
+        app.world_mut().write_message(AppExit::Success);
+        app.update();
+        let chosen = Remembered::read(&file).chosen().clone();
+        assert_eq!(chosen.window_size, Some((1280, 720)));
     }
 }

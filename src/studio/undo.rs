@@ -20,6 +20,9 @@ pub(super) use follow::followed;
 /// So many steps can be undone.
 const MOST_STEPS: usize = 200;
 
+/// The subject of a step to the plan of a run that is gone on with.
+const CONTINUE: &str = "continue";
+
 /// Something that can be undone. Whatever else is to be undone in the same order, such as a file that was deleted,
 /// is a kind of its own here, with its way back and forth where commands are applied.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +49,11 @@ impl Step {
     /// Whether it is about saves.
     fn is_of_library(&self) -> bool {
         matches!(self, Self::Library { .. })
+    }
+
+    /// Whether it was that another run is gone on with: its settings are no edit of the run under way.
+    pub fn is_of_another_run(&self) -> bool {
+        matches!(self, Self::Plan { subject, .. } if subject == CONTINUE)
     }
 
     /// What was changed, in a few words.
@@ -152,6 +160,14 @@ impl History {
         Some(step)
     }
 
+    /// Puts a step back to where it was taken from: not all of it could be taken.
+    pub fn put_back(&mut self, way: Way, step: Step) {
+        match way {
+            Way::Back => self.done.push_back(step),
+            Way::Forth => self.undone.push(step),
+        }
+    }
+
     /// Takes the next step one way that is about saves, whatever else was done after it. Says whether there was one.
     pub fn take_of_library(&mut self, way: Way) -> bool {
         match way {
@@ -240,7 +256,7 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
         }
         Command::Continue(_) => {
             let RunPlan { preset, seed, .. } = after;
-            ("continue".to_owned(), format!("the settings of {preset}, seed {seed}"))
+            (CONTINUE.to_owned(), format!("the settings of {preset}, seed {seed}"))
         }
         _ => return None,
     })
@@ -380,5 +396,20 @@ mod tests {
         assert_eq!(stepped(&now, &plan("0.5"), &plan("1")).seed, 2);
         let other_seed = RunPlan { seed: 9, ..plan("1") };
         assert_eq!(stepped(&now, &plan("0.5"), &other_seed).seed, 9);
+    }
+
+    #[test]
+    fn what_could_not_be_undone_as_a_whole_is_still_the_next_to_undo() {
+        let mut history = History::default();
+        history.push(of_library("renamed a"));
+        history.push(of_library("deleted 300 saves"));
+        let step = history.take(Way::Back).expect("a step");
+        // Some of them are back, and can be deleted again; the rest can be brought back, too.
+        history.put_back(Way::Back, step);
+        assert_eq!(history.agree_with_library(2, 1), 0);
+        assert_eq!(history.next(Way::Back), Some("deleted 300 saves"));
+        assert_eq!(history.next(Way::Forth), Some("deleted 300 saves"));
+        history.take(Way::Back);
+        assert_eq!(history.next(Way::Back), Some("renamed a"));
     }
 }

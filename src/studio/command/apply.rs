@@ -164,6 +164,9 @@ fn apply(
     for label in library.take_done() {
         history.push(Step::Library { label });
     }
+    for (way, label) in library.take_left() {
+        history.put_back(way, Step::Library { label });
+    }
     if library.busy().is_some() {
         // What is being taken back is neither done nor undone.
         return;

@@ -123,7 +123,12 @@ impl StageParams<'_, '_> {
             Step::Plan { before, after, .. } => {
                 let (from, to) = if way == Way::Back { (after, before) } else { (before, after) };
                 let now = evolution.next_plan().clone();
-                evolution.set_next_plan(stepped(&now, from, to))?;
+                let next = stepped(&now, from, to);
+                if step.is_of_another_run() {
+                    evolution.set_next_plan_alone(next)?;
+                } else {
+                    evolution.set_next_plan(next)?;
+                }
                 let next = evolution.next_plan();
                 let show = followed(&self.exhibits(), &self.programme, &now, next)?;
                 self.present(show);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Evolution, Status};
 use crate::check::within;
 use crate::evolve::{
-    Champion, Founder, RunPlan, SettingChange, Settings, may_change_during_run, with_field,
+    Champion, Founder, RunPlan, SettingChange, Settings, fields, may_change_during_run, with_field,
 };
 use crate::run::{THREADS_RANGE, pool};
 
@@ -21,11 +21,19 @@ impl Evolution {
         if !self.is_under_way() {
             return Err("No run is under way; the next run takes it.");
         }
+        if self.is_lent {
+            return Err("A lesson is going on, and your own run waits.");
+        }
+        if !self.next_is_own {
+            return Err(
+                "The run under way keeps its own: the next run's settings are of another preset or run.",
+            );
+        }
         may_change_during_run(field, self.settings())
     }
 
     /// Changes a setting of the run under way, by its full dotted name, from its next generation on.
-    pub fn change_running(&mut self, field: &str, text: &str) -> Result<(), String> {
+    pub(super) fn change_running(&mut self, field: &str, text: &str) -> Result<(), String> {
         self.may_change(field).map_err(str::to_owned)?;
         self.awaited = with_field(&self.awaited, field, text).map_err(|error| error.to_string())?;
         if let Some(background) = &self.background {
@@ -52,6 +60,17 @@ impl Evolution {
         for change in changes {
             // The run has allowed it before.
             let _ = self.source_now.change(change);
+            self.await_as_it_is(&change.field);
+        }
+    }
+
+    /// Awaits that a setting, by its full dotted name, stays as the run has it by now.
+    pub(super) fn await_as_it_is(&mut self, field: &str) {
+        let all = fields(&self.source_now.settings);
+        let Some((_, value)) = all.into_iter().find(|(of, _)| of == field) else { return };
+        // What belongs to a choice that is awaited no more is of no account then.
+        if let Ok(awaited) = with_field(&self.awaited, field, &value) {
+            self.awaited = awaited;
         }
     }
 
@@ -65,7 +84,7 @@ impl Evolution {
         }
     }
 
-    /// Takes in that a change was refused.
+    /// Takes in that nothing more will change.
     pub(super) fn await_no_change(&mut self) {
         self.awaited = self.source_now.settings.clone();
     }

@@ -64,8 +64,17 @@ impl Evolution {
     }
 
     /// Gives the next run another plan; a run that has not begun takes it at once. What may change in a run under way
-    /// changes there too, unless the plan is that of another preset.
+    /// changes there too, unless the plan is that of another preset or of another run.
     pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
+        self.plan_next(plan, true)
+    }
+
+    /// Gives the next run another plan, and leaves the run under way as it is.
+    pub fn set_next_plan_alone(&mut self, plan: RunPlan) -> Result<(), String> {
+        self.plan_next(plan, false)
+    }
+
+    fn plan_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
         plan.check_founder().map_err(|error| {
             format!("The next run begins from a champion, whom this does not suit: {error}")
         })?;
@@ -74,14 +83,27 @@ impl Evolution {
         if before == *next {
             return Ok(());
         }
-        if before.preset == next.preset && !self.is_lent {
-            let known = fields(&before.settings);
-            let changed = fields(&next.settings).into_iter().filter(|field| !known.contains(field));
-            for (field, text) in changed.collect::<Vec<_>>() {
-                self.change_running_too(&field, &text)?;
+        if !self.is_lent {
+            if is_edit && self.next_is_own && before.preset == next.preset {
+                let known = fields(&before.settings);
+                let all = fields(&next.settings).into_iter();
+                for (field, text) in all.filter(|field| !known.contains(field)).collect::<Vec<_>>()
+                {
+                    self.change_running_too(&field, &text)?;
+                }
+            } else {
+                self.next_is_own = self.next_looks_own();
             }
         }
         self.take_over_if_ready()
+    }
+
+    /// Whether the next run's settings could be those of the run under way, and what is set there be meant for it, too.
+    pub(super) fn next_looks_own(&self) -> bool {
+        let next = &self.engine.next;
+        let is_same_preset = next.preset == self.source_now.preset;
+        let is_alike = next.settings.evolution == self.awaited.evolution;
+        next.settings == self.awaited || (is_same_preset && is_alike)
     }
 
     /// The presets that can be chosen.
@@ -120,16 +142,14 @@ impl Evolution {
             Some(preset) => preset.clone(),
             None => load_preset(name).map_err(|error| error.to_string())?,
         };
-        self.engine.next.preset = preset.name;
-        self.engine.next.settings = preset.settings;
-        self.engine.next.founder = None;
-        self.take_over_if_ready()
+        let seed = self.next_seed();
+        self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
     }
 
     /// Gives the next run the world back that it had in a plan, and the rest if that is of another preset. Seed and
     /// population, which are no matter of the world, stay.
     pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
-        let next = &mut self.engine.next;
+        let mut next = self.next_plan().clone();
         if next.preset == before.preset {
             next.settings.trial = before.settings.trial.clone();
         } else {
@@ -141,6 +161,6 @@ impl Evolution {
         if next.check_founder().is_err() {
             next.founder = None;
         }
-        self.take_over_if_ready()
+        self.set_next_plan(next)
     }
 }

@@ -73,6 +73,7 @@ fn take_in(
             Event::Opened(behind) => {
                 // Whatever happens from now on, it is not thrown away once more.
                 evolution.source.earlier = Earlier::Keep;
+                evolution.discarded = None;
                 let generations = evolution.settings().evolution.generations;
                 let last = behind.last().filter(|last| last.generation < generations);
                 if let Some(last) = last {
@@ -95,7 +96,7 @@ fn take_in(
                 evolution.take_in_changes(&[change]);
             }
             Event::NotChanged { field, reason } => {
-                evolution.await_no_change();
+                evolution.await_as_it_is(&field);
                 notices.problem(format!("The run keeps its {field}: {reason}"));
             }
             Event::Explored(exploration) => evolution.explore(exploration),
@@ -112,8 +113,10 @@ fn take_in(
                 notices.news("The run is finished; \"New run\" begins another.".to_owned());
             }
             Event::BrokeOff => {
-                notices.problem("The run broke off by an error of the program.".to_owned());
-                evolution.background = None;
+                let problem = "The run broke off by an error of the program. Start goes on with what is kept of it.";
+                notices.problem(problem.to_owned());
+                evolution.open_again();
+                return;
             }
             Event::NotSaved(problem) => {
                 notices.problem(format!("Not saved, and held: {problem}. Start tries again."));
@@ -166,6 +169,125 @@ mod tests {
             let _ = rest.recv_timeout(Duration::from_millis(2));
         }
         panic!("it never came");
+    }
+
+    /// Does something with the run.
+    fn act<T>(app: &mut App, act: impl FnOnce(&mut Evolution) -> Result<T, String>) -> T {
+        act(&mut app.world_mut().resource_mut::<Evolution>()).expect("allowed")
+    }
+
+    /// A studio whose run is held after its first generation.
+    fn held_studio(saves: &SavesFolder) -> App {
+        let mut app = studio(saves);
+        act(&mut app, |run| run.single_generation());
+        wait_until(&mut app, |run| run.reports().len() == 1 && run.status() == Status::Paused);
+        app
+    }
+
+    #[test]
+    fn settings_of_another_preset_or_run_do_not_change_the_run_under_way() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        let before = act(&mut app, |run| {
+            let before = run.next_plan().clone();
+            run.set_preset("report")?;
+            run.set_population(9)?;
+            assert!(run.may_change("evolution.population").is_err());
+            assert_eq!(run.awaited.evolution.population, 6);
+            // As undoing does that.
+            run.set_next_plan(before.clone())?;
+            assert_eq!(run.may_change("evolution.population"), Ok(()));
+            Ok(before)
+        });
+        act(&mut app, |run| {
+            // As undoing does that somebody went on with this run, before which another was set.
+            let mut other = before;
+            other.settings.evolution.population = 5;
+            run.set_next_plan_alone(other)?;
+            run.set_field("halving.parents", "3")?;
+            let awaited = &run.awaited.evolution;
+            assert_eq!((awaited.population, awaited.halving.parents), (6, 4));
+            assert!(run.next_run_differs());
+            Ok(())
+        });
+    }
+
+    #[test]
+    fn a_run_that_was_reset_begins_anew_even_after_a_look_at_other_settings() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        act(&mut app, |run| {
+            run.reset()?;
+            run.set_population(5)?;
+            run.set_population(6)?;
+            run.single_generation()
+        });
+        wait_until(&mut app, |run| !run.reports().is_empty());
+        let reports = app.world().resource::<Evolution>().reports();
+        assert_eq!(reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
+        // What was evolved since is not thrown away again.
+        act(&mut app, |run| {
+            run.set_seed(2)?;
+            run.begin_next()?;
+            run.pause()?;
+            run.set_seed(1)?;
+            run.begin_next()
+        });
+        wait_until(&mut app, |run| run.status() == Status::Finished);
+        let evolution = app.world().resource::<Evolution>();
+        assert_eq!((evolution.seed(), evolution.reports().len()), (1, 3));
+    }
+
+    #[test]
+    fn what_a_run_may_cost_counts_the_generations_before_a_change_as_they_were() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        act(&mut app, |run| run.set_population(4));
+        wait_until(&mut app, |run| run.changes().len() == 1);
+        assert_eq!(app.world().resource::<Evolution>().budget(), 6 + 4 + 4);
+    }
+
+    #[test]
+    fn a_refused_change_takes_no_other_along() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        act(&mut app, |run| {
+            // As many parents as four leave no child: the run refuses the one and takes the other.
+            run.change_running("evolution.population", "5")?;
+            run.background()?.amend([("evolution.strategy".to_owned(), "ga".to_owned())]);
+            run.change_running("evolution.halving.parents", "2")
+        });
+        wait_until(&mut app, |run| run.changes().len() == 2);
+        let evolution = app.world().resource::<Evolution>();
+        assert_eq!(evolution.awaited, *evolution.settings());
+    }
+
+    #[test]
+    fn a_champion_that_founds_a_run_twice_founds_two() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        act(&mut app, |run| run.begin_next());
+        let evolution = app.world().resource::<Evolution>();
+        assert_eq!((evolution.number(), evolution.seed()), (1, 2));
+    }
+
+    #[test]
+    fn a_run_that_broke_off_can_be_gone_on_with() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        act(&mut app, |run| {
+            run.change_running("evolution.halving.parents", "2")?;
+            Ok(())
+        });
+        wait_until(&mut app, |run| run.changes().len() == 1);
+        act(&mut app, |run| {
+            run.open_again();
+            assert_eq!((run.status(), run.changes().len()), (Status::Ready, 0));
+            run.start()
+        });
+        wait_until(&mut app, |run| run.status() == Status::Finished);
+        let evolution = app.world().resource::<Evolution>();
+        assert_eq!((evolution.reports().len(), evolution.changes().len()), (3, 1));
     }
 
     #[test]

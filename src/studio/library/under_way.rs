@@ -185,6 +185,9 @@ impl Library {
         };
         match task {
             Task::Undo(way, words) => {
+                if !left.is_empty() {
+                    self.left.push((way, words.clone()));
+                }
                 // The last of them was to be undone first.
                 left.reverse();
                 let change = self.history.settle(way, words, steps, left);
@@ -278,21 +281,65 @@ mod tests {
         assert!(own(&mut library).is_empty());
     }
 
+    /// Begins something and cancels it at once, until it was not faster. Returns what is done by then.
+    fn cancelled(
+        library: &mut Library,
+        begin: impl Fn(&mut Library, &mut Notices),
+        all: usize,
+        back: impl Fn(&mut Library),
+        count: impl Fn(&mut Library) -> usize,
+    ) -> usize {
+        let mut notices = Notices::default();
+        for _ in 0..50 {
+            begin(library, &mut notices);
+            library.apply(&Ask::Cancel, &mut notices).expect("cancelled");
+            wait(library, &mut notices);
+            let done = count(library);
+            if done < all {
+                return done;
+            }
+            back(library);
+            wait(library, &mut notices);
+        }
+        panic!("it was always done before it was cancelled");
+    }
+
     #[test]
     fn what_is_cancelled_stops_and_what_was_done_by_then_can_be_undone() {
-        let (_folder, mut library, places) = of_many(1000);
-        let mut notices = Notices::default();
-        library.apply(&Ask::Duplicate(places), &mut notices).expect("begun");
-        library.apply(&Ask::Cancel, &mut notices).expect("cancelled");
-        wait(&mut library, &mut notices);
-        let copies = own(&mut library).len() - 1000;
-        assert!(copies < 1000, "{copies}");
-        if copies > 0 {
+        let (_folder, mut library, places) = of_many(200);
+        let undo = |library: &mut Library| {
             library.step(Way::Back).expect("begun");
-            wait(&mut library, &mut notices);
-            assert_eq!(own(&mut library).len(), 1000);
+        };
+        let duplicate = |library: &mut Library, notices: &mut Notices| {
+            library.apply(&Ask::Duplicate(places.clone()), notices).expect("begun");
+        };
+        let copies = |library: &mut Library| own(library).len() - 200;
+        if cancelled(&mut library, duplicate, 200, undo, copies) > 0 {
+            undo(&mut library);
+            wait(&mut library, &mut Notices::default());
         }
+        assert_eq!(own(&mut library).len(), 200);
         assert_eq!(library.undoable(), None);
+    }
+
+    #[test]
+    fn what_is_left_of_a_cancelled_undo_is_told_and_can_be_undone() {
+        let (_folder, mut library, places) = of_many(200);
+        let mut notices = Notices::default();
+        library.apply(&Ask::Delete(places), &mut notices).expect("begun");
+        wait(&mut library, &mut notices);
+        assert!(library.take_left().is_empty());
+        let undo = |library: &mut Library, _: &mut Notices| {
+            library.step(Way::Back).expect("begun");
+        };
+        let redo = |library: &mut Library| {
+            library.step(Way::Forth).expect("begun");
+        };
+        cancelled(&mut library, undo, 200, redo, |library| own(library).len());
+        assert_eq!(library.take_left(), [(Way::Back, "deleted 200 saves".to_owned())]);
+        undo(&mut library, &mut notices);
+        wait(&mut library, &mut notices);
+        assert_eq!(own(&mut library).len(), 200);
     }
 
     #[test]

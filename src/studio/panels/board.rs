@@ -99,7 +99,7 @@ pub(super) fn board(
                 let width = if is_narrow { 8 } else { 14 };
                 let text = egui::RichText::new(format!("{text:>width$}")).monospace().color(color);
                 let value = ui.label(text);
-                if standing.landed_s.is_some() {
+                if standing.landed_s.is_some() && !standing.is_out && !standing.is_disturbed {
                     value.on_hover_text("When it landed");
                 }
                 ui.end_row();

@@ -83,7 +83,7 @@ fn pace(reports: &[GenerationReport]) -> Option<f64> {
 /// Evaluations that are left of what the run may cost, `done` of the current generation being made.
 fn left(run: &Evolution, done: u32) -> u64 {
     let made: u64 = run.reports().iter().map(|report| u64::from(report.evaluations)).sum();
-    run.settings().evolution.budget().saturating_sub(made + u64::from(done))
+    run.budget().saturating_sub(made + u64::from(done))
 }
 
 /// The reasons for which snakes were disqualified, the most frequent first.

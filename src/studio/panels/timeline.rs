@@ -141,8 +141,14 @@ fn numbers(ui: &mut egui::Ui, lane: &Lane) {
         }
         _ => "",
     };
-    let fitness_hint =
-        format!("What it would be worth if the time ended now: {}{more}", trial.fitness.words());
+    let cost = match trial.energy_cost_per_kj {
+        0.0 => String::new(),
+        cost => format!(", less {cost} per kJ that the joints spend"),
+    };
+    let fitness_hint = format!(
+        "What it would be worth if the time ended now: {}{cost}{more}",
+        trial.fitness.words()
+    );
     // The most important first: in a narrow window only some have room.
     let all = [
         ("fitness", Some(format!("{:.2}{unit}", evaluation.fitness)), fitness_hint.as_str()),

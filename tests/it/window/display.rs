@@ -224,9 +224,12 @@ impl Studio {
         }
     }
 
-    /// Waits until the stage has stopped changing, with the pointer, which is part of the picture, away.
+    /// Waits until the stage has stopped changing, with the pointer, which is part of the picture, away, and no message
+    /// over it, which would go at some time.
     pub fn still_picture(&self) -> Picture {
         self.step_aside();
+        let has_no_message = || self.find(|place| place.role == "Status").is_none();
+        self.wait(has_no_message, || "messages to go".to_owned());
         let mut before = self.picture();
         let mut equal = 0;
         let started = Instant::now();

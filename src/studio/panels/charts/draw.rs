@@ -239,9 +239,11 @@ fn legend(ui: &mut egui::Ui, figure: &Figure) {
         ui.spacing_mut().item_spacing = egui::vec2(look::GAP, look::GAP / 2.0);
         for series in figure.listed() {
             let font = egui::TextStyle::Small.resolve(ui.style());
-            let name = ui.painter().layout_no_wrap(series.name.clone(), font, color);
             let sample_size = egui::vec2(look::SAMPLE_WIDTH, look::SMALL_SIZE);
             let left = sample_size.x + look::GAP / 2.0;
+            // One that is longer than a line has several.
+            let room = (ui.max_rect().width() - left).max(look::SAMPLE_WIDTH);
+            let name = ui.painter().layout(series.name.clone(), font, color, room);
             let size = egui::vec2(left + name.size().x, name.size().y);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
             response.widget_info(|| {

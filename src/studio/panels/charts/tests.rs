@@ -4,6 +4,7 @@ use super::*;
 use crate::evolve::Settings;
 use crate::studio::casting::Pick;
 use crate::studio::evolution::{compared_run, explored_run, prepared_run};
+use crate::studio::panels::parameters::tests::assert_nothing_is_wider_than;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -200,4 +201,16 @@ fn of_ten_thousand_generations_the_window_draws_a_few_and_the_table_has_all() {
         thin::Drawn::AsItIs => 0,
     });
     assert!(points.max().expect("series") <= thin::MOST_POINTS + 2);
+}
+
+#[test]
+fn a_long_name_in_a_legend_has_several_lines() {
+    let mut view = fitness::view(&Settings::default(), &long_reports(3));
+    let figure = Arc::make_mut(&mut view.figure);
+    figure.charts[0].series[0].name = "a run of a preset with quite a long name: median ".repeat(3);
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(300.0, 700.0))
+        .build_ui_state(|ui, asked| draw::draw(ui, "long", &view, 400.0, None, asked), Vec::new());
+    harness.run();
+    assert_nothing_is_wider_than(&harness, 300.0);
 }

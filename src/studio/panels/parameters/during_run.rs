@@ -1,7 +1,5 @@
 //! What may be changed while a run is under way.
 
-pub use crate::evolve::may_change_during_run;
-
 /// When a change takes effect, in a sentence.
 pub fn when(answer: Result<(), &'static str>) -> String {
     match answer {

@@ -10,12 +10,12 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::columns::{Columns, Part};
-use super::during_run::{may_change_during_run, when};
+use super::during_run::when;
 use super::entry::{Entry, Kind, Section};
 use super::refusal::Check;
 use super::values::Values;
 use crate::studio::command::Command;
-use crate::studio::evolution::{Evolution, Status};
+use crate::studio::evolution::Evolution;
 use crate::studio::look;
 use crate::studio::panels::icons::{Icon, small_icon_button};
 
@@ -137,8 +137,7 @@ impl Sheet {
         let field = format!("{}{}", section.prefix, entry.field);
         let values = Arc::clone(&self.values);
         let Some(value) = values.now(&field) else { return };
-        let is_under_way = matches!(run.status(), Status::Running | Status::Paused);
-        let answer = is_under_way.then(|| may_change_during_run(&field, run.settings()));
+        let answer = run.is_under_way().then(|| run.may_change(&field));
         let is_from_next_generation = answer == Some(Ok(()));
         let about = Shown {
             entry,
