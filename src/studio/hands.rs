@@ -55,8 +55,8 @@ struct Hit {
 
 /// A pointer that moves less than this has clicked, in pixels.
 const CLICK_PIXELS: f32 = 5.0;
-/// Two presses within this time, in seconds, at one place are a double click.
-const DOUBLE_CLICK_S: f32 = 0.4;
+/// Two presses within this time, in seconds, at one place are a double click, on the stage and in panels.
+pub(super) const DOUBLE_CLICK_S: f32 = 0.4;
 
 impl Hands {
     /// What pulls at a lane, in its own coordinates.

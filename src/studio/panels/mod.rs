@@ -41,7 +41,7 @@ use super::casting::Opening;
 use super::command::Command;
 use super::desk::{Desk, Over};
 use super::evolution::Evolution;
-use super::hands::Hands;
+use super::hands::{DOUBLE_CLICK_S, Hands};
 use super::lane::Lane;
 use super::lessons::{LESSONS, Lessons};
 use super::library::Library;
@@ -148,6 +148,11 @@ fn draw(
         panels.is_dressed = true;
     }
     look::show(&context, *seen.theme);
+    // Presses are known by the frame in which they come: where frames are long, two that are near may seem far.
+    let frame_s = context.input(|input| input.unstable_dt);
+    context.options_mut(|options| {
+        options.input_options.max_double_click_delay = f64::from(DOUBLE_CLICK_S + frame_s);
+    });
     // Another size of the panels takes effect in the next frame.
     let is_settled = context.zoom_factor() == desk.scale;
     context.set_zoom_factor(desk.scale);
