@@ -1,7 +1,7 @@
 //! Reading bounded text and writing whole files.
 
 use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use ron::ser::PrettyConfig;
@@ -240,7 +240,15 @@ fn write_and(
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
         Ok(())
     };
-    write().map_err(|source| SaveError::Unwritable { path: path.to_owned(), source })
+    write().map_err(|error| unwritable(path, error))
+}
+
+/// That a file or folder cannot be written, and why.
+fn unwritable(path: &Path, error: std::io::Error) -> SaveError {
+    // A temporary file's error names that file, which nobody has heard of, and is no error of the system's own.
+    let names_another = error.raw_os_error().is_none() && error.kind() != ErrorKind::Other;
+    let source = if names_another { error.kind().into() } else { error };
+    SaveError::Unwritable { path: path.to_owned(), source }
 }
 
 /// The numbers N for which a folder has a file `<prefix>N.ron`, in no order.
@@ -288,7 +296,7 @@ pub fn remove_unfinished(folder: &Path) {
 
 /// Makes sure that files can be written into `folder`, creating it if need be.
 pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
-    let unwritable = |source| SaveError::Unwritable { path: folder.to_owned(), source };
+    let unwritable = |error| unwritable(folder, error);
     let is_new = !folder.exists();
     fs::create_dir_all(folder).map_err(unwritable)?;
     if is_new {

@@ -19,10 +19,18 @@ struct Notice {
     shown_for: Duration,
 }
 
-/// How long a message stays.
-const LIFETIME: Duration = Duration::from_secs(8);
+/// How long good news stays.
+const NEWS: Duration = Duration::from_secs(8);
+/// How long a problem stays, which takes longer to read and matters more.
+const PROBLEM: Duration = Duration::from_secs(16);
 /// More than this many at once would cover the stage; the oldest goes.
 const MOST: usize = 4;
+
+impl Notice {
+    fn is_over(&self) -> bool {
+        self.shown_for >= if self.is_problem { PROBLEM } else { NEWS }
+    }
+}
 
 impl Notices {
     /// Something good to know.
@@ -62,7 +70,7 @@ pub(super) fn plugin(app: &mut App) {
 
 fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time<Real>>) -> Result {
     notices.0.iter_mut().for_each(|notice| notice.shown_for += time.delta());
-    notices.0.retain(|notice| notice.shown_for < LIFETIME);
+    notices.0.retain(|notice| !notice.is_over());
     let context = contexts.ctx_mut()?;
     egui::Area::new(egui::Id::new("notices"))
         .anchor(egui::Align2::RIGHT_TOP, [-look::GAP * 2.0, look::NOTICES_TOP])
@@ -76,7 +84,9 @@ fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time
                     palette.card(edge).show(ui, |ui| {
                         ui.set_max_width(look::NOTICE_WIDTH);
                         let text = egui::RichText::new(&notice.text).color(palette.text);
-                        let label = ui.label(text);
+                        // The card keeps to the right; its lines begin at the left.
+                        let lines = egui::Layout::top_down(egui::Align::Min);
+                        let label = ui.with_layout(lines, |ui| ui.label(text)).inner;
                         // A screen reader says it when it comes.
                         ui.ctx().accesskit_node_builder(label.id, |node| {
                             node.set_role(Role::Status);

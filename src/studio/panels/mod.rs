@@ -96,6 +96,7 @@ struct Panels {
     /// Where each panel was drawn in this frame, in points.
     places: Vec<(PanelKind, egui::Rect)>,
     is_dressed: bool,
+    letters: look::Letters,
 }
 
 impl FromWorld for Panels {
@@ -112,6 +113,7 @@ impl FromWorld for Panels {
             palette: Palette::default(),
             places: Vec::new(),
             is_dressed: false,
+            letters: look::Letters::default(),
         }
     }
 }
@@ -148,6 +150,7 @@ fn draw(
         panels.is_dressed = true;
     }
     look::show(&context, *seen.theme);
+    panels.letters.warm_up(&context);
     // Presses are known by the frame in which they come: where frames are long, two that are near may seem far.
     let frame_s = context.input(|input| input.unstable_dt);
     context.options_mut(|options| {
