@@ -327,11 +327,23 @@ fn who_is_chosen_stays_in_sight_when_what_is_said_of_it_makes_the_list_low() {
     let library = library();
     let mut harness = harness(&library, [420.0, 560.0]);
     let list = |harness: &Test<'_>| harness.get_by_label_contains("Saves: ").rect();
-    let before = list(&harness).height();
+    let list_height = |harness: &Test<'_>| list(harness).height();
+    let before = list_height(&harness);
     choose(&mut harness, "fast");
     let (list, row) = (list(&harness), row_of(&harness, "fast").rect());
     assert!(list.height() < before - look::SAVE_HEIGHT, "{} of {before}", list.height());
     assert!(list.contains_rect(row), "{row} in {list}");
+    // Let go, it leaves its room to the list again.
+    let held = Modifiers::COMMAND;
+    let at = row.center();
+    harness.event_modifiers(egui::Event::PointerMoved(at), held);
+    for pressed in [true, false] {
+        let button = egui::PointerButton::Primary;
+        let event = egui::Event::PointerButton { pos: at, button, pressed, modifiers: held };
+        harness.event_modifiers(event, held);
+    }
+    harness.run();
+    assert_eq!(list_height(&harness), before);
 }
 
 #[test]
