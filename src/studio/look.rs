@@ -1,5 +1,6 @@
 //! The one look of the studio: palette and spacing. Nothing else in the studio names a colour.
 
+mod letters;
 mod palette;
 
 use std::str::FromStr;
@@ -11,6 +12,7 @@ use bevy_egui::egui::{self, Color32, CornerRadius};
 use crate::check::Invalid;
 use crate::plot;
 
+pub use letters::Letters;
 pub use palette::Palette;
 
 /// Which palette panels and scene share.
@@ -213,45 +215,6 @@ pub fn show(context: &egui::Context, theme: Theme) {
     context.set_theme(egui::Theme::from(theme));
 }
 
-/// Keeps every letter in egui's font texture, of the size that is drawn. A letter that is new to it is missing for a
-/// frame, because the texture arrives on the graphics card one frame after the text.
-#[derive(Debug, Default)]
-pub struct Letters {
-    /// How letters are drawn that are there, and how many pixels make a point.
-    drawn: Option<(egui::epaint::text::TextOptions, f32)>,
-}
-
-impl Letters {
-    /// Draws every letter once if the texture is a new one, which it is after a change of how letters are drawn: also
-    /// when [`apply`] has taken effect.
-    pub fn warm_up(&mut self, context: &egui::Context) {
-        let options = context.fonts(|fonts| *fonts.options());
-        let now = Some((options, context.pixels_per_point()));
-        if self.drawn != now {
-            self.drawn = now;
-            draw_letters(context);
-        }
-    }
-}
-
-fn draw_letters(context: &egui::Context) {
-    let letters: String = (' '..='~').chain(['·', '²', '³', '±', '×', '°', '−', '…']).collect();
-    let style = context.global_style();
-    let sizes = [TITLE_SIZE, HEADING_SIZE, TAG_SIZE, SMALL_SIZE - 1.0];
-    let others = [
-        egui::TextStyle::Body,
-        egui::TextStyle::Monospace,
-        egui::TextStyle::Small,
-        egui::TextStyle::Button,
-    ];
-    let others = others.map(|of| of.resolve(&style));
-    context.fonts_mut(|fonts| {
-        for font in sizes.map(egui::FontId::proportional).into_iter().chain(others) {
-            fonts.layout_no_wrap(letters.clone(), font, Color32::WHITE);
-        }
-    });
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -285,26 +248,5 @@ mod tests {
         };
         let shades: Vec<f32> = (0..=100).map(|i| brightness(ramp(i as f32 / 100.0))).collect();
         assert!(shades.is_sorted(), "{shades:?}");
-    }
-
-    #[test]
-    fn letters_are_on_the_graphics_card_before_they_are_needed() {
-        let context = egui::Context::default();
-        let mut letters = Letters::default();
-        // How many pictures of letters a frame sends to the graphics card.
-        let mut frame = |text: &str| {
-            context.begin_pass(egui::RawInput::default());
-            if letters.drawn.is_none() {
-                apply(&context);
-            }
-            letters.warm_up(&context);
-            let font = egui::TextStyle::Body.resolve(&context.global_style());
-            context.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, Color32::WHITE));
-            context.end_pass().textures_delta.set.len()
-        };
-        // With the second frame the style has taken effect.
-        assert!(frame("") > 0 && frame("") > 0);
-        assert_eq!(frame("/tmp/Ahoi ~ 0123456789: N·m"), 0);
-        assert!(frame("é") > 0, "one that is not among them");
     }
 }

@@ -150,7 +150,7 @@ fn draw(
         panels.is_dressed = true;
     }
     look::show(&context, *seen.theme);
-    panels.letters.warm_up(&context);
+    panels.letters.warm_up(&context, desk.scale);
     // Presses are known by the frame in which they come: where frames are long, two that are near may seem far.
     let frame_s = context.input(|input| input.unstable_dt);
     context.options_mut(|options| {
