@@ -232,7 +232,8 @@ fn write_and(
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut file = builder.tempfile_in(folder)?;
-        file.write_all(contents)?;
+        // Past the temporary file's own wrapping of errors, which names that file.
+        file.as_file_mut().write_all(contents)?;
         file.as_file().sync_all()?;
         put(file).map_err(|error| error.error)?;
         // The file is there by now; that its name survives a power cut too is up to the platform.

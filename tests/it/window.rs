@@ -229,7 +229,9 @@ const ENDLESS: &str = "--preset quick --generations 10000";
 fn a_studio_that_was_killed_goes_on_with_its_run_and_headless_mode_goes_on_with_it_too() {
     let folder = folder();
     let saves = folder.path().join("saves");
-    let arguments = format!("--preset quick --saves {}", saves.display());
+    // A generation takes longer than a window to say that it is done, on a quick machine too.
+    let run = "--preset quick --population 500";
+    let arguments = format!("{run} --saves {}", saves.display());
     let Some(studio) = Studio::open("killed", &arguments) else { return };
     studio.wait_for_title("2 of 4 generations");
     // Dropping it kills it.
@@ -242,7 +244,7 @@ fn a_studio_that_was_killed_goes_on_with_its_run_and_headless_mode_goes_on_with_
     let Some(studio) = Studio::open("resumed", &resume) else { return };
     studio.wait_for_title("4 of 4 generations, finished");
     drop(studio);
-    let undisturbed = json_lines(folder.path(), "--no-render --json --preset quick --out other");
+    let undisturbed = json_lines(folder.path(), &format!("--no-render --json {run} --out other"));
     let resumed = json_lines(folder.path(), &format!("--no-render --json {resume}"));
     assert_eq!(resumed[4]["run_hash"], undisturbed[4]["run_hash"]);
 }
