@@ -248,11 +248,8 @@ impl Evolution {
 
     /// Begins another run now, with the next seed if nothing else differs; the current one can be gone on with later.
     pub fn begin_next(&mut self) -> Result<(), String> {
-        if self.next_run_differs() {
-            self.prepare_next();
-        } else if self.is_under_way() {
-            self.engine.next.seed = self.engine.next.seed.wrapping_add(1);
-            self.prepare_next();
+        if self.next_run_differs() || self.is_under_way() {
+            self.prepare_another();
         }
         self.start()
     }
@@ -349,11 +346,16 @@ impl Evolution {
     /// After the end of a run the next one: what was asked for meanwhile, or the next seed.
     fn begin_next_if_over(&mut self) {
         if self.status() == Status::Finished {
-            if !self.next_run_differs() {
-                self.engine.next.seed = self.engine.next.seed.wrapping_add(1);
-            }
-            self.prepare_next();
+            self.prepare_another();
         }
+    }
+
+    /// Prepares a run that is not the current one once more: with the next seed, if nothing else differs.
+    fn prepare_another(&mut self) {
+        if !self.next_run_differs() {
+            self.engine.next.seed = self.engine.next.seed.wrapping_add(1);
+        }
+        self.prepare_next();
     }
 
     /// The run's thread, started if it was not.

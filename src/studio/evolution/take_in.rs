@@ -136,6 +136,7 @@ mod tests {
     use crate::studio::engine::Engine;
     use crate::studio::evolution::Status;
     use std::time::{Duration, Instant};
+    use tempfile::TempDir;
 
     /// A studio without a window, whose run is saved in a folder.
     fn studio(saves: &SavesFolder) -> App {
@@ -177,17 +178,17 @@ mod tests {
     }
 
     /// A studio whose run is held after its first generation.
-    fn held_studio(saves: &SavesFolder) -> App {
-        let mut app = studio(saves);
+    fn held_studio() -> (TempDir, App) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = studio(&SavesFolder::find(Some(folder.path())));
         act(&mut app, |run| run.single_generation());
         wait_until(&mut app, |run| run.reports().len() == 1 && run.status() == Status::Paused);
-        app
+        (folder, app)
     }
 
     #[test]
     fn settings_of_another_preset_or_run_do_not_change_the_run_under_way() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        let (_folder, mut app) = held_studio();
         let before = act(&mut app, |run| {
             let before = run.next_plan().clone();
             run.set_preset("report")?;
@@ -214,8 +215,7 @@ mod tests {
 
     #[test]
     fn a_run_that_was_reset_begins_anew_even_after_a_look_at_other_settings() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        let (_folder, mut app) = held_studio();
         act(&mut app, |run| {
             run.reset()?;
             run.set_population(5)?;
@@ -240,8 +240,7 @@ mod tests {
 
     #[test]
     fn what_a_run_may_cost_counts_the_generations_before_a_change_as_they_were() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        let (_folder, mut app) = held_studio();
         act(&mut app, |run| run.set_population(4));
         wait_until(&mut app, |run| run.changes().len() == 1);
         assert_eq!(app.world().resource::<Evolution>().budget(), 6 + 4 + 4);
@@ -249,10 +248,9 @@ mod tests {
 
     #[test]
     fn a_refused_change_takes_no_other_along() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        let (_folder, mut app) = held_studio();
         act(&mut app, |run| {
-            // As many parents as four leave no child: the run refuses the one and takes the other.
+            // A strategy cannot change on the way: the run refuses that, and takes what is before and after it.
             run.change_running("evolution.population", "5")?;
             run.background()?.amend([("evolution.strategy".to_owned(), "ga".to_owned())]);
             run.change_running("evolution.halving.parents", "2")
@@ -264,8 +262,7 @@ mod tests {
 
     #[test]
     fn a_champion_that_founds_a_run_twice_founds_two() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
+        let (_folder, mut app) = held_studio();
         act(&mut app, |run| run.begin_next());
         let evolution = app.world().resource::<Evolution>();
         assert_eq!((evolution.number(), evolution.seed()), (1, 2));
@@ -273,12 +270,8 @@ mod tests {
 
     #[test]
     fn a_run_that_broke_off_can_be_gone_on_with() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mut app = held_studio(&SavesFolder::find(Some(folder.path())));
-        act(&mut app, |run| {
-            run.change_running("evolution.halving.parents", "2")?;
-            Ok(())
-        });
+        let (_folder, mut app) = held_studio();
+        act(&mut app, |run| run.change_running("evolution.halving.parents", "2"));
         wait_until(&mut app, |run| run.changes().len() == 1);
         act(&mut app, |run| {
             run.open_again();
@@ -295,12 +288,9 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         let mut app = studio(&saves);
-        let run = |app: &mut App, act: &dyn Fn(&mut Evolution) -> Result<(), String>| {
-            act(&mut app.world_mut().resource_mut::<Evolution>()).expect("allowed");
-        };
-        run(&mut app, &|run| run.single_generation());
+        act(&mut app, |run| run.single_generation());
         wait_until(&mut app, |run| run.reports().len() == 1);
-        run(&mut app, &|run| {
+        act(&mut app, |run| {
             run.set_field("halving.parents", "2")?;
             run.set_population(4)?;
             run.set_field("surface.friction", "0.5")?;
@@ -310,7 +300,7 @@ mod tests {
             run.change_running("evolution.generations", "4")
         });
         wait_until(&mut app, |run| run.changes().len() == 3);
-        run(&mut app, &|run| {
+        act(&mut app, |run| {
             let (now, next) = (&run.settings().evolution, &run.next_settings().evolution);
             assert_eq!((now.halving.parents, now.population, now.generations), (2, 4, 4));
             assert_eq!((next.halving.parents, next.population, next.generations), (2, 4, 3));
@@ -326,7 +316,7 @@ mod tests {
         let (hash, folder) = (evolution.run_hash(), evolution.source.folder.clone());
         drop(app);
         let mut app = studio(&saves);
-        run(&mut app, &|run| run.go_on_with(&folder));
+        act(&mut app, |run| run.go_on_with(&folder));
         wait_until(&mut app, |run| run.status() == Status::Finished);
         let evolution = app.world().resource::<Evolution>();
         assert_eq!((evolution.run_hash(), evolution.changes().len()), (hash, 3));

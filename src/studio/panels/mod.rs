@@ -89,7 +89,7 @@ struct Panels {
     fitness: FitnessChart,
     charts: ChartsPanel,
     champions: ChampionsPanel,
-    library: LibraryPanel,
+    saves: LibraryPanel,
     world: WorldPanel,
     timeline: TimelinePanel,
     palette: Palette,
@@ -107,7 +107,7 @@ impl FromWorld for Panels {
             fitness: FitnessChart::default(),
             charts: ChartsPanel::new(comparison),
             champions: ChampionsPanel::default(),
-            library: LibraryPanel::default(),
+            saves: LibraryPanel::default(),
             world: WorldPanel::default(),
             timeline: TimelinePanel::default(),
             palette: Palette::default(),
@@ -301,7 +301,7 @@ impl Viewer<'_, '_, '_> {
                 panels.champions.ui(ui, &opening.0, reports, &shown, leaders, asked);
             }
             PanelKind::Lessons => lessons(ui, self.seen.lessons.view(), asked),
-            PanelKind::Library => panels.library.ui(ui, &self.seen.saves, asked),
+            PanelKind::Library => panels.saves.ui(ui, &self.seen.saves, asked),
         }
     }
 }

@@ -5,7 +5,6 @@
 
 mod columns;
 pub mod controller;
-mod during_run;
 mod entry;
 mod named;
 mod number;

@@ -10,7 +10,6 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::columns::{Columns, Part};
-use super::during_run::when;
 use super::entry::{Entry, Kind, Section};
 use super::refusal::Check;
 use super::values::Values;
@@ -251,6 +250,14 @@ fn set(field: &str, text: &str) -> Command {
     match text.parse() {
         Ok(population) if field == "evolution.population" => Command::SetPopulation(population),
         _ => Command::SetField { field: field.to_owned(), text: text.to_owned() },
+    }
+}
+
+/// When a change takes effect, in a sentence.
+fn when(answer: Result<(), &'static str>) -> String {
+    match answer {
+        Ok(()) => "Takes effect from the next generation.".to_owned(),
+        Err(reason) => format!("{}.", reason.trim_end_matches('.')),
     }
 }
 
