@@ -1,7 +1,8 @@
-//! What a step and an evaluation cost, and what listing a large folder of saves does. Compare with `cargo bench -- --save-baseline before` and
-//! `cargo bench -- --baseline before`; `snakes bench` gives the ratio to bare rapier.
+//! Benchmarks of a step, of an evaluation, of seeking, and of listing a large folder of saves. Compare with
+//! `cargo bench -- --save-baseline before` and `cargo bench -- --baseline before`; `snakes bench` measures the
+//! ratio to bare rapier.
 
-#![expect(clippy::expect_used, reason = "a benchmark that cannot begin has nothing to say")]
+#![expect(clippy::expect_used, reason = "a benchmark that cannot start has to fail")]
 
 mod library;
 
@@ -11,17 +12,17 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use snakes_and_stairs::genome::{Genome, GenomeSpace};
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::shipped_champion;
-use snakes_and_stairs::score::{History, Rollout, Trial, evaluate};
+use snakes_and_stairs::score::{KeyframeHistory, Rollout, Trial, evaluate};
 
-fn newborn(trial: &Trial) -> Genome {
+fn random_genome(trial: &Trial) -> Genome {
     let mut rng = stream(1, 1, 0, Purpose::Birth);
-    GenomeSpace::default().birth(trial.descent(), &mut rng)
+    GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng)
 }
 
 /// One step in the middle of a rollout, when the snake is in contact and in motion.
 fn one_step(criterion: &mut Criterion) {
     let trial = Trial { duration_s: 600.0, ..Default::default() };
-    let genome = newborn(&Trial::default());
+    let genome = random_genome(&Trial::default());
     let in_motion = || {
         let mut rollout = Rollout::new(&genome, &trial);
         (0..120).for_each(|_| assert!(rollout.advance(), "a healthy snake"));
@@ -32,29 +33,29 @@ fn one_step(criterion: &mut Criterion) {
     });
 }
 
-/// One evaluation of the default trial: 300 steps, the world's building included.
+/// One evaluation of the default trial: building the world and 300 steps.
 fn one_evaluation(criterion: &mut Criterion) {
     let trial = Trial::default();
-    let genome = newborn(&trial);
+    let genome = random_genome(&trial);
     criterion.bench_function("one evaluation", |bencher| {
         bencher.iter(|| evaluate(black_box(&genome), &trial));
     });
 }
 
-/// Going to the middle and to the end of the shipped champion's 15 s from the nearest keyframe, as the studio's
-/// timeline does; and, for comparison, looking through all of it, which it does once beside the window.
+/// Seeking to the middle and to the end of the shipped champion's 15 s from the nearest keyframe, as the studio's
+/// timeline does; and, for comparison, computing the whole history, which the studio does once in the background.
 fn seeking(criterion: &mut Criterion) {
     let champion = shipped_champion().expect("well formed").champion;
-    let look_through =
-        || History::of(&champion.genome, &champion.trial, |_| true).expect("not stopped");
-    let history = look_through();
+    let whole_history =
+        || KeyframeHistory::of(&champion.genome, &champion.trial, |_| true).expect("not stopped");
+    let history = whole_history();
     let steps = champion.trial.steps();
     let mut group = criterion.benchmark_group("seeking");
     for (name, step) in [("to the middle", steps / 2), ("to the end", steps - 1)] {
         group.bench_function(name, |bencher| bencher.iter(|| history.rollout_at(black_box(step))));
     }
     group.sample_size(20);
-    group.bench_function("a whole history", |bencher| bencher.iter(look_through));
+    group.bench_function("a whole history", |bencher| bencher.iter(whole_history));
 }
 
 criterion_group!(benches, one_step, one_evaluation, seeking, library::listing);

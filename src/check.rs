@@ -1,7 +1,7 @@
-//! Checking what a person can break: one error type for every number that comes from outside.
+//! Validation of input: one error type for every value that comes from outside.
 //!
-//! A setting is checked where it enters (a flag, a preset, a save, a panel), and the message always
-//! has the same three parts: the field, the value it had, what is allowed.
+//! A value is checked where it enters (a flag, a preset, a save, a panel). The message always has the same
+//! three parts: the field, its value, and the allowed range.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -14,24 +14,24 @@ pub struct Invalid {
     pub field: String,
     /// The value that was given.
     pub value: String,
-    /// What would have been accepted.
+    /// The values that are allowed.
     pub allowed: String,
 }
 
 impl Invalid {
-    /// Names a field, the value it had, and what is allowed there.
+    /// An error about a field with its value and the allowed values.
     pub fn new(field: impl Into<String>, value: impl Display, allowed: impl Into<String>) -> Self {
         Self { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// The same complaint about a field that sits inside `parent`.
+    /// The same error about a field inside `parent`.
     pub fn inside(mut self, parent: &str) -> Self {
         self.field = format!("{parent}.{}", self.field);
         self
     }
 }
 
-/// Accepts `value` if it lies in `range`. A float that is not a number lies in no range.
+/// Accepts `value` if it lies in `range`. NaN lies in no range.
 pub fn within<T: PartialOrd + Display>(
     field: &str,
     value: T,
@@ -44,7 +44,7 @@ pub fn within<T: PartialOrd + Display>(
     }
 }
 
-/// Accepts a name that may become part of a file's name: it can neither leave a folder nor hide in it.
+/// Accepts a name that may become part of a file name: it can neither leave a folder nor make a hidden file.
 pub fn name(field: &str, value: &str) -> Result<(), Invalid> {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if (1..=40).contains(&value.len()) && value.chars().all(plain) {
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn not_a_number_is_in_no_range() {
+    fn nan_is_in_no_range() {
         assert!(within("x", f32::NAN, f32::MIN..=f32::MAX).is_err());
         assert!(within("x", f32::INFINITY, f32::MIN..=f32::MAX).is_err());
     }

@@ -1,63 +1,66 @@
 //! Snakes & Stairs: a five-block snake evolves until it climbs a staircase.
 //!
-//! Read this file from top to bottom and you have read the pipeline. Each module uses those above
-//! it, never those below.
+//! The modules below are in the order of the pipeline: each uses only those above it.
 //!
 //! # Invariants
 //! 1. **One scoring path.** Headless runs, the studio, replays and tests all advance a
-//!    [`score::Rollout`], which goes through [`world::Simulation::step`] with one constant step.
+//!    [`score::Rollout`], which calls [`world::Simulation::step`] with one constant step.
 //! 2. **The same seed and settings give the same bits**: for any number of threads, in debug and
 //!    release, with and without the studio, on any x86-64 machine. Random numbers come from streams
-//!    named after run seed, generation, individual and purpose ([`rng::stream`]), never from the order
-//!    of arrival; results are in the order of the individuals before a strategy sees them. What is changed during a
-//!    run ([`evolve::SettingChange`]) counts from a generation on, is written down before that generation begins, and
-//!    belongs to the run like its settings; so does the champion that a run may descend from ([`evolve::Founder`]).
-//! 3. **No transcendental function of the standard library in the core**: they differ from one C
-//!    library to the next. `libm` only; `clippy.toml` lists them.
-//!    Of the C library's float functions a step reaches two, through the physics engine, and neither can
-//!    make a difference: `sincosf`, only ever of +0, because joint limits are symmetric (the C standard
-//!    fixes both results); and `log2f`, by which parry's bounding volume tree decides how much of itself
-//!    to rebuild, rounded to a whole number that no error of a few units in the last place changes for
-//!    any tree of fewer than 100 000 leaves. `snakes verify` compares what comes of it.
-//! 4. **The viewer only looks.** The frame rate, a moved window or a slow panel cannot change a result. A hand that
-//!    pulls a limb makes a disturbed rollout, which is marked, compared with nothing and kept nowhere.
-//! 5. **Panels send messages; one system applies them.** What can be done by name stands in one list, from which
-//!    menus, keys and palette are drawn.
-//! 6. **Whatever a person can break is checked where it enters**, and the error names the field, the
-//!    value and what is allowed ([`check::Invalid`]).
+//!    identified by run seed, generation, individual and purpose ([`rng::stream`]), never by the order
+//!    of evaluation. A strategy receives results in the order of the individuals. A change of settings during a
+//!    run ([`evolve::SettingChange`]) takes effect with a given generation, is saved before that generation
+//!    begins, and belongs to the run like its settings; so does the champion from which a run may start
+//!    ([`evolve::Founder`]).
+//! 3. **No transcendental function of the standard library in the core**: their results differ between C
+//!    libraries. The core uses `libm` only; `clippy.toml` lists the forbidden functions.
+//!    Through the physics engine a step calls two float functions of the C library, and neither can change
+//!    a result: `sincosf`, always with +0, because joint limits are symmetric (the C standard fixes both
+//!    results); and `log2f`, with which parry's bounding volume tree decides how much of itself to rebuild,
+//!    rounded to a whole number that no error of a few units in the last place changes for any tree of
+//!    fewer than 100 000 leaves. `snakes verify` compares the resulting trajectories.
+//! 4. **The viewer only reads.** The frame rate, a moved window or a slow panel cannot change a result. If the user
+//!    pulls a limb, the rollout is marked as disturbed, is never compared with a record, and is never saved.
+//! 5. **Panels send messages; one system applies them.** All actions that have a name stand in one list, from which
+//!    menus, keys and command palette are built.
+//! 6. **Input is checked where it enters**, and the error names the field, its value and the allowed range
+//!    ([`check::Invalid`]).
 //! 7. **A number has its unit in its name**: `duration_s`, `bend_limit_rad`, `torque_nm`.
 //!
-//! A test (`tests/it/architecture.rs`) checks those that a scan of the source can.
+//! A test (`tests/it/architecture.rs`) checks the invariants that a scan of the source can check.
 //!
 //! # Axes
-//! x across the stairs, y towards and up the stairs, z up, in the core and in the window alike: the
-//! studio's camera has z up, so that what the engine's own tools draw lies where the blocks are.
+//! x across the stairs, y towards and up the stairs, z up, both in the core and in the window: the
+//! studio's camera has z up, so that the drawings of the engine's own tools match the blocks.
 
 pub mod check;
 pub mod rng;
 
-/// Stairs, surface, snake, and one `Simulation` that steps them; built on rapier3d.
+/// Rows that describe each setting, and the walk through them.
+pub mod schema;
+
+/// Stairs, surfaces, the snake's body, and one `Simulation` that steps them; built on rapier3d.
 pub mod world;
 
-/// What evolves.
+/// Genomes: the controllers and body properties that evolve.
 pub mod genome;
 
-/// From genes to torques.
+/// Controllers at work: from genes and sensed joint angles to torques.
 pub mod control;
 
-/// A `Trial`, a `Rollout` of one genome through it, and what it scored.
+/// Scoring: a `Trial`, a `Rollout` of one genome in it, and its `Evaluation`.
 pub mod score;
 
-/// Strategies behind ask and tell.
+/// Search strategies with an ask-and-tell interface.
 pub mod evolve;
 
-/// Files: runs, champions, presets.
+/// File formats and folders: runs, champions, presets.
 pub mod save;
 
 /// Experiments on worker threads, and the headless mode.
 pub mod run;
 
-/// Plots as pictures.
+/// Plots as image files.
 pub mod plot;
 
 /// The window.
@@ -67,6 +70,6 @@ pub mod studio;
 /// The command line.
 pub mod cli;
 
-/// Version of everything that decides the bits of a run: physics, controllers, random streams,
-/// strategies. Raised by hand whenever a change alters them on purpose; saves record it.
+/// Version of everything that determines the bits of a run: physics, controllers, random streams,
+/// strategies. Raised by hand whenever a change alters the bits on purpose; saves record it.
 pub const ENGINE_VERSION: u32 = 2;

@@ -1,5 +1,5 @@
-//! Plots as pictures: Table 1 beside ours, a torque signal as in the report's Figure 4, and whatever chart there is as
-//! data.
+//! Plots as pictures: the report's Table 1 beside ours, a torque signal as in the report's Figure 4, and any figure
+//! that is given as data.
 
 mod figure;
 mod paint;
@@ -11,11 +11,13 @@ use std::sync::OnceLock;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
-use crate::evolve::{Champion, StrategyKind};
-use crate::genome::{Controller, ControllerKind, Wave, Waves};
-use crate::run::compare::{Quartiles, Row};
+use crate::evolve::Champion;
+use crate::genome::{ControllerKind, JointCommands};
+use crate::run::Quartiles;
+use crate::run::compare::ComparisonRow;
 use crate::run::table1::{REPORT_MEANS, Table1};
 use crate::save::{CURVE_POINTS, Comparison, Picture};
+use crate::score::Rollout;
 
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 pub use paint::{figure, ramp, role_color};
@@ -31,19 +33,19 @@ impl PlotError {
     }
 }
 
-/// Ours, in all plots.
+/// Colour of our results, in all plots.
 const OURS: RGBColor = RGBColor(0x1f, 0x6f, 0xd0);
-/// The report's.
+/// Colour of the report's results.
 const THEIRS: RGBColor = RGBColor(0xd0, 0x6a, 0x10);
-/// Text and axes.
+/// Colour of text and axes.
 const INK: RGBColor = RGBColor(0x22, 0x26, 0x2e);
-/// Lines that only guide the eye.
+/// Colour of grid lines and frames.
 const FAINT: RGBColor = RGBColor(0xdd, 0xdf, 0xe4);
 const FONT: &str = "sans-serif";
 const TITLE_PIXELS: u32 = 26;
 const TEXT_PIXELS: u32 = 18;
 
-/// The means of all seeds over the generations, their mean with its spread, and the report's.
+/// Plots the means of all seeds over the generations, their mean with one standard deviation, and the report's means.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -111,39 +113,20 @@ pub fn table1(table: &Table1, title: &str) -> Result<Picture, PlotError> {
     })
 }
 
-/// How often a wave is sampled.
-const SAMPLES_PER_S: f64 = 60.0;
-
-/// What one joint axis of a champion is told over time, as in the report's Figure 4: the first joint's bend.
+/// Plots the commands to the bend axis of a champion's first joint, as in the report's Figure 4.
 ///
 /// # Errors
 /// The plotting library failed.
 pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
     let duration_s = f64::from(champion.trial.duration_s);
-    let samples = |wave: &Wave, frequency_hz: f32| {
-        let count = (duration_s * SAMPLES_PER_S) as usize;
-        let sample = |index: usize| {
-            let time_s = index as f64 / SAMPLES_PER_S;
-            (time_s, f64::from(wave.at(f64::from(frequency_hz) * time_s)))
-        };
-        (0..=count).map(sample).collect::<Vec<_>>()
-    };
-    let of_waves = |waves: &Waves| {
-        waves.joints.first().map_or(Vec::new(), |joint| samples(&joint.bend, waves.frequency_hz))
-    };
-    // Points that hold are marked; a wave has none.
-    let (points, dot, unit, digits, least) = match &champion.genome.controller {
-        Controller::Signal(signals) => {
-            let torques = signals.joints.first().map_or(&[][..], |joint| &joint.bend_nm);
-            let at_s = |index: usize| index as f64 / f64::from(signals.points_per_s);
-            let points = torques.iter().enumerate();
-            let points = points.map(|(index, &nm)| (at_s(index), f64::from(nm))).collect();
-            (points, 3, "torque in N·m", 0, 1000.0)
-        }
-        Controller::Wave(waves) => (of_waves(waves), 0, "torque in N·m", 0, 1000.0),
-        Controller::Gait(gait) => (of_waves(&gait.waves), 0, "target angle in rad", 1, 1.0),
-    };
-    let y_range = padded(points.iter().map(|(_, value)| *value).chain([-least, least]));
+    let commands = champion.genome.controller.commands(duration_s);
+    let JointCommands { quantity, least_range, is_held, joints } =
+        commands.unwrap_or_else(|| applied_torques(champion));
+    let points = joints.into_iter().next().map_or(Vec::new(), |[bend, _]| bend);
+    // Commands that are held between their points have marks; a smooth curve has none.
+    let dot = if is_held { 3 } else { 0 };
+    let digits = if least_range < 10.0 { 1 } else { 0 };
+    let y_range = padded(points.iter().map(|(_, value)| *value).chain([-least_range, least_range]));
     draw((960, 420), |area| {
         let mut chart = ChartBuilder::on(area)
             .caption(title, (FONT, TITLE_PIXELS).into_font().color(&INK))
@@ -154,7 +137,7 @@ pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
         chart
             .configure_mesh()
             .x_desc("time in s")
-            .y_desc(unit)
+            .y_desc(quantity)
             .y_labels(9)
             .y_label_formatter(&|value| format!("{value:.digits$}"))
             .light_line_style(WHITE)
@@ -169,33 +152,32 @@ pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
     })
 }
 
-/// A colour per strategy, in their order: those of Okabe and Ito, which colour-blind people tell apart too.
-const STRATEGY_COLORS: [RGBColor; 6] = [
-    RGBColor(0xd5, 0x5e, 0x00),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0x00, 0x72, 0xb2),
-    RGBColor(0xcc, 0x79, 0xa7),
-    RGBColor(0xe6, 0x9f, 0x00),
-    RGBColor(0x80, 0x80, 0x80),
-];
-
-/// The colour of a strategy, as red, green and blue.
-pub fn strategy_color(strategy: StrategyKind) -> [u8; 3] {
-    let place = StrategyKind::ALL.iter().position(|kind| *kind == strategy);
-    let RGBColor(red, green, blue) = STRATEGY_COLORS[place.unwrap_or(0)];
-    [red, green, blue]
+/// The torques that acted in a champion's rollout, for a controller whose commands depend on its senses.
+fn applied_torques(champion: &Champion) -> JointCommands {
+    let mut rollout = Rollout::new(&champion.genome, &champion.trial);
+    let step_s = f64::from(champion.trial.physics.step_s());
+    let mut joints = vec![[Vec::new(), Vec::new()]; champion.genome.controller.joints()];
+    while rollout.advance() {
+        let time_s = f64::from(rollout.step() - 1) * step_s;
+        for ([bend, twist], torque) in joints.iter_mut().zip(rollout.simulation().applied_torques())
+        {
+            bend.push((time_s, f64::from(torque.bend_nm)));
+            twist.push((time_s, f64::from(torque.twist_nm)));
+        }
+    }
+    JointCommands { quantity: "torque in N·m", least_range: 1000.0, is_held: false, joints }
 }
 
-/// Learning curves of a comparison: a chart per controller, a line with its band per strategy.
+/// Plots the learning curves of a comparison: a chart per controller, a line and a band per strategy.
 ///
 /// # Errors
 /// The plotting library failed.
 pub fn comparison(comparison: &Comparison) -> Result<Picture, PlotError> {
     let rows = comparison.rows();
-    let is_there = |kind: &ControllerKind| rows.iter().any(|row| row.controller == *kind);
+    let is_compared = |kind: &ControllerKind| rows.iter().any(|row| row.controller == *kind);
     let controllers: Vec<ControllerKind> =
-        ControllerKind::ALL.into_iter().filter(is_there).collect();
-    let curves: Vec<(&Row<'_>, Vec<(usize, Quartiles)>)> =
+        ControllerKind::ALL.into_iter().filter(is_compared).collect();
+    let curves: Vec<(&ComparisonRow<'_>, Vec<(usize, Quartiles)>)> =
         rows.iter().map(|row| (row, row.curve())).collect();
     let ends = curves.iter().flat_map(|(_, curve)| curve.iter().map(|(_, q)| [q.low, q.high]));
     let y_range = padded(ends.flatten());
@@ -224,7 +206,7 @@ pub fn comparison(comparison: &Comparison) -> Result<Picture, PlotError> {
                 .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
                 .draw()?;
             for (row, curve) in curves.iter().filter(|(row, _)| row.controller == *controller) {
-                let [red, green, blue] = strategy_color(row.strategy);
+                let [red, green, blue] = row.strategy.info().color;
                 let color = RGBColor(red, green, blue);
                 let above = curve.iter().map(|&(point, q)| (x_of(point), q.high));
                 let below = curve.iter().rev().map(|&(point, q)| (x_of(point), q.low));
@@ -270,8 +252,8 @@ pub fn caption(picture: &mut Picture, text: &str) -> Result<(), PlotError> {
     area.present().map_err(PlotError::new)
 }
 
-/// Writes short texts onto a picture, each on a light ground over a point: `(text, (x, y))`, in pixels from the top
-/// left. One that would cover another goes above it.
+/// Writes labels onto a picture, each on a light background above a point: `(text, (x, y))`, in pixels from the top
+/// left. A label that would cover another is moved above it.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -279,7 +261,7 @@ pub fn tags(picture: &mut Picture, tags: &[(&str, (f32, f32))]) -> Result<(), Pl
     font()?;
     let size = (picture.width, picture.height);
     let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
-    // As large as on a screen of this height.
+    // The size of a label on a screen of this height.
     let pixels = (size.1 / 48).clamp(12, 40);
     let style = (FONT, pixels).into_font().color(&INK);
     let mut lowest_first: Vec<_> = tags.iter().collect();
@@ -304,7 +286,7 @@ pub fn tags(picture: &mut Picture, tags: &[(&str, (f32, f32))]) -> Result<(), Pl
     area.present().map_err(PlotError::new)
 }
 
-/// The range of the values with a margin.
+/// The range of the finite values with a margin.
 fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (least, most) = values
         .filter(|value| value.is_finite())
@@ -333,8 +315,8 @@ fn draw(
     Ok(picture)
 }
 
-/// Makes the embedded font known to the plotting library, once. No font of the system is looked for, so
-/// that a plot looks the same everywhere.
+/// Registers the embedded font with the plotting library, once. System fonts are not used, so a plot looks the same
+/// everywhere.
 fn font() -> Result<(), PlotError> {
     static REGISTERED: OnceLock<bool> = OnceLock::new();
     let register =
@@ -352,7 +334,7 @@ mod tests {
     use crate::run::table1::SeedResult;
 
     #[test]
-    fn a_plot_has_ours_and_theirs_in_it() {
+    fn a_plot_shows_our_curve_and_the_reports() {
         let seed = |shift: f64| SeedResult {
             seed: 1,
             means: REPORT_MEANS.map(|mean| Some(mean + shift)).to_vec(),
@@ -370,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_without_values_is_still_a_range() {
+    fn without_values_there_is_a_default_range() {
         assert_eq!(padded(std::iter::empty()), -1.0..1.0);
         assert_eq!(padded([1.0, f64::NAN].into_iter()), 0.5..1.5);
     }

@@ -1,32 +1,32 @@
-//! Where every random number of the program comes from.
+//! The source of all random numbers of the program.
 //!
-//! A stream is named by what it is for (run seed, generation, individual, purpose), never by when it
-//! is asked for. So the numbers an individual gets do not depend on how many threads ran before it,
-//! in which order, or whether a window was open.
+//! A stream is identified by run seed, generation, individual and purpose, never by the time of the
+//! request. The numbers of an individual therefore do not depend on the number of threads, on the order
+//! of evaluation, or on an open window.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// What a random stream is used for. The numbers are part of the determinism promise: they may be
-/// added to, never changed.
+/// Purpose of a random stream. The discriminants are part of the determinism promise: new ones may be
+/// added, existing ones never change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Purpose {
-    /// Drawing an individual from nothing.
+    /// Drawing a random genome.
     Birth = 1,
     /// Varying a parent into a child.
     Mutation = 2,
-    /// Drawing a candidate of the search for settings.
+    /// Drawing the points of `snakes verify`; once, of the search that found the free numbers of `report`.
     Calibration = 3,
-    /// Putting a trial off, to see how robust a champion is.
+    /// Perturbing a trial to measure the robustness of a champion.
     Perturbation = 4,
-    /// Putting the further trials of an evaluation off.
+    /// Perturbing the repeated trials of an evaluation.
     Repeat = 5,
     /// Drawing a point of a search distribution.
     Sample = 6,
-    /// Drawing where a search begins again.
+    /// Drawing the start of a restarted search.
     Restart = 7,
-    /// Choosing what is kept in an archive.
+    /// Choosing among the members of an archive.
     Archive = 8,
 }
 
@@ -48,7 +48,7 @@ mod tests {
     use rand::Rng;
 
     #[test]
-    fn every_part_of_a_streams_name_changes_its_numbers() {
+    fn each_part_of_a_streams_key_changes_its_numbers() {
         let first = |seed, generation, individual, purpose| {
             stream(seed, generation, individual, purpose).next_u64()
         };

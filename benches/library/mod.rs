@@ -1,10 +1,10 @@
-//! What listing a large folder of saves costs, and reading one entry of it.
+//! Benchmarks of listing a large folder of saves and of reading one entry.
 
 use criterion::Criterion;
 use snakes_and_stairs::save::SavesFolder;
-use snakes_and_stairs::save::library::{Place, list, read_entry};
+use snakes_and_stairs::save::library::{SavePlace, list, read_entry};
 
-/// Ten thousand files of a few bytes: their contents are not looked at.
+/// Ten thousand files of a few bytes: their contents are not read.
 pub fn listing(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a folder");
     for number in 0..10_000 {
@@ -18,6 +18,6 @@ pub fn listing(criterion: &mut Criterion) {
         bencher.iter(|| list(&saves).expect("readable"));
     });
     group.bench_function("read one", |bencher| {
-        bencher.iter(|| read_entry(&Place::Shipped("climber")).expect("whole"));
+        bencher.iter(|| read_entry(&SavePlace::Shipped("climber")).expect("whole"));
     });
 }

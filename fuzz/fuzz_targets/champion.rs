@@ -1,4 +1,4 @@
-//! A saved champion of any format. What is accepted must also be playable.
+//! A saved champion. An accepted one can also be simulated.
 #![no_main]
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a strategy had learned.
+//! The state of a search.
 #![no_main]
 
 use std::path::Path;
@@ -25,8 +25,8 @@ fuzz_target!(|text: &str| {
     for (plan, fingerprint) in PLANS.iter() {
         match parse_checkpoint(Path::new("x"), &text.replace("PLAN", fingerprint), plan) {
             Ok((generation, _, knowledge)) => {
-                // What is accepted can be gone on with.
-                let strategy = resume(plan, generation % 100, knowledge.strategy);
+                // An accepted state can be resumed.
+                let strategy = resume(plan, generation % 100, &knowledge.strategy);
                 let children = strategy.expect("it passed the same check").ask();
                 for child in children {
                     assert_eq!(plan.settings.trial.check_genome(&child), Ok(()));

@@ -1,4 +1,4 @@
-//! A setting by name, as --set and the panels take it.
+//! A setting by name and value, as in `--set`.
 #![no_main]
 
 use std::sync::LazyLock;

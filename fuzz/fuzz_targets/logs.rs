@@ -1,5 +1,5 @@
-//! The logs of a run. The first byte says which, and whether the lines get true checksums, without which a
-//! fuzzer would see little more than the checksum.
+//! The logs of a run. The first byte selects the log, and whether the lines get correct checksums; without them, a
+//! fuzzer would hardly get further than the checksum.
 #![no_main]
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The file that says what run a folder holds.
+//! The plan of a run.
 #![no_main]
 
 use std::path::Path;

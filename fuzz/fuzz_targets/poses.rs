@@ -1,4 +1,4 @@
-//! The recorded poses of a champion: a frame count and bytes behind base64.
+//! The recorded poses of a champion: a number of frames, and their bytes in base64.
 #![no_main]
 
 use std::path::Path;

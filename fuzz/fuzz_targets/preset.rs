@@ -1,4 +1,4 @@
-//! A person's own preset.
+//! A preset.
 #![no_main]
 
 use std::path::Path;

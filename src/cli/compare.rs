@@ -4,37 +4,21 @@ use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::args::Args;
-use super::{CliError, cancel_on_interrupt, print};
+use super::args::{Args, CompareArgs};
+use super::error::CliError;
+use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::plot;
-use crate::run::compare::{Contestant, run_all};
+use crate::run::compare::{PlannedRun, run_all};
 use crate::run::headless::{HeadlessError, say};
 use crate::save::{
-    Comparison, MOST_RUNS, load_comparison, run_name, settings_fingerprint, store_comparison,
-    store_csv, store_picture,
+    Comparison, MAX_COMPARED_RUNS, load_comparison, run_name, settings_fingerprint,
+    store_comparison, store_csv, store_picture,
 };
 
-/// What is compared.
-#[derive(Debug, clap::Args)]
-pub struct CompareArgs {
-    /// Strategies: all, or some of halving, ga, cma-es, map-elites, novelty, random
-    #[arg(long, value_name = "A,B", default_value = "all")]
-    strategies: String,
-    /// Controllers: all, or some of signal, wave, gait
-    #[arg(long, value_name = "X,Y", default_value = "all")]
-    controllers: String,
-    /// How many seeds, from --seed on
-    #[arg(long, value_name = "N", default_value_t = 10)]
-    seeds: u64,
-    /// Evaluations that each run may spend
-    #[arg(long, value_name = "M", default_value_t = 3000)]
-    evaluations: u32,
-}
-
-/// The kinds that a list names.
+/// The kinds that a flag's list names, in their usual order and each once.
 fn kinds<K: Copy + PartialEq, const N: usize>(
     flag: &str,
     text: &str,
@@ -52,44 +36,46 @@ fn kinds<K: Copy + PartialEq, const N: usize>(
         })
     };
     let named: Vec<K> = text.split(',').map(named).collect::<Result<_, _>>()?;
-    // In their own order, and each once.
     Ok(all.into_iter().filter(|kind| named.contains(kind)).collect())
 }
 
-/// Runs everything that is not yet in the result's file, and shows the result.
-pub fn compare(args: &Args, what: &CompareArgs) -> Result<(), CliError> {
+/// Performs the runs that the result's file does not have yet, and prints the result.
+pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     let (preset, settings) = args.settings()?;
-    let strategies = kinds("strategies", &what.strategies, StrategyKind::ALL, StrategyKind::name)?;
+    let strategies =
+        kinds("strategies", &compared.strategies, StrategyKind::ALL, StrategyKind::name)?;
     let controllers =
-        kinds("controllers", &what.controllers, ControllerKind::ALL, ControllerKind::name)?;
-    within("seeds", what.seeds, 1..=10_000)?;
+        kinds("controllers", &compared.controllers, ControllerKind::ALL, ControllerKind::name)?;
+    within("seeds", compared.seeds, 1..=10_000)?;
     let first_seed = args.seed()?;
-    let last_seed = first_seed.checked_add(what.seeds - 1).ok_or_else(|| {
-        Invalid::new("seed", first_seed, "a first seed that leaves room for the others")
+    let last_seed = first_seed.checked_add(compared.seeds - 1).ok_or_else(|| {
+        Invalid::new("seed", first_seed, "a first seed with room for the others after it")
     })?;
     let mut plans = Vec::new();
     for &strategy in &strategies {
         for &controller in &controllers {
             for seed in first_seed..=last_seed {
-                let contestant = Contestant { strategy, controller, seed };
-                plans.push(contestant.plan(&preset, &settings, what.evaluations)?);
+                let planned = PlannedRun { strategy, controller, seed };
+                plans.push(planned.plan(&preset, &settings, compared.evaluations)?);
             }
         }
     }
-    within("runs", plans.len(), 1..=MOST_RUNS)?;
+    within("runs", plans.len(), 1..=MAX_COMPARED_RUNS)?;
     let folder = args.results_folder();
     folder.prepare()?;
     let base = RunPlan::new(&preset, 0, settings.clone());
-    let name = format!("compare-{}-{}", run_name(&base).replace("-seed0", ""), what.evaluations);
+    let name =
+        format!("compare-{}-{}", run_name(&base).replace("-seed0", ""), compared.evaluations);
     let named = |kind: &str| folder.path().join(format!("{name}.{kind}"));
     let (ron, csv, png) = (named("ron"), named("csv"), named("png"));
     let fitness = settings.trial.fitness;
     let fingerprint = settings_fingerprint(&base);
-    let mut comparison = Comparison::new(&preset, fingerprint, what.evaluations, fitness);
+    let mut comparison = Comparison::new(&preset, fingerprint, compared.evaluations, fitness);
     if ron.exists() && !args.restart {
         let earlier = load_comparison(&ron)?;
-        if earlier.settings != comparison.settings || earlier.evaluations != what.evaluations {
-            let allowed = format!("{}, as the preset has them", comparison.settings);
+        if earlier.settings != comparison.settings || earlier.evaluations != compared.evaluations {
+            let allowed =
+                format!("{}, the fingerprint of the preset's settings", comparison.settings);
             let source = Invalid::new("settings", earlier.settings, allowed);
             return Err(crate::save::SaveError::Invalid { path: ron, source }.into());
         }
@@ -97,12 +83,12 @@ pub fn compare(args: &Args, what: &CompareArgs) -> Result<(), CliError> {
     }
     plans.retain(|plan| !is_done(&comparison, plan));
     say(&format!(
-        "preset {preset}: {} of {} runs to do, {} evaluations each",
+        "preset {preset}: {} of {} runs left, {} evaluations each",
         plans.len(),
-        strategies.len() * controllers.len() * what.seeds as usize,
-        what.evaluations
+        strategies.len() * controllers.len() * compared.seeds as usize,
+        compared.evaluations
     ));
-    let bar = ProgressBar::new(u64::from(what.evaluations) * plans.len() as u64);
+    let bar = ProgressBar::new(u64::from(compared.evaluations) * plans.len() as u64);
     // The template is a constant; if it were wrong, the default bar would do.
     if let Ok(style) =
         ProgressStyle::with_template("{wide_bar} {pos}/{len} evaluations  {eta} left")
@@ -111,9 +97,10 @@ pub fn compare(args: &Args, what: &CompareArgs) -> Result<(), CliError> {
     }
     let control = cancel_on_interrupt();
     let spent = |evaluations: u32| bar.inc(evaluations.into());
-    let result = run_all(&plans, args.threads()?, &control, spent, |run| {
+    let evaluator = args.evaluator()?;
+    let result = run_all(&plans, &*evaluator, &control, spent, |run| {
         comparison.add(run);
-        // Nothing that was computed is lost.
+        // After each run, so that a kill loses none that is finished.
         Ok(store_comparison(&ron, &comparison)?)
     });
     bar.finish_and_clear();
@@ -129,6 +116,7 @@ pub fn compare(args: &Args, what: &CompareArgs) -> Result<(), CliError> {
     show(args, &comparison, [ron, csv, png])
 }
 
+/// Whether the comparison has this run already.
 fn is_done(comparison: &Comparison, plan: &RunPlan) -> bool {
     comparison.runs.iter().any(|run| {
         run.seed == plan.seed

@@ -1,5 +1,6 @@
-//! What the command line may end with.
+//! The errors of the command line.
 
+use crate::check::Invalid;
 use crate::run::headless::HeadlessError;
 use crate::run::verify::VerifyError;
 use crate::save::SaveError;
@@ -7,10 +8,10 @@ use crate::save::SaveError;
 /// An error of the command line, in one line.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// The program was called wrongly.
+    /// The arguments are wrong.
     #[error("{0}")]
     Usage(String),
-    /// It was called well, and failed.
+    /// The arguments are right, but the work failed.
     #[error(transparent)]
     Headless(#[from] HeadlessError),
     /// The golden trajectories could not be computed.
@@ -18,14 +19,14 @@ pub enum CliError {
     Verify(#[from] VerifyError),
     /// This machine computes other bits.
     #[error(
-        "{differ} of {all} trajectories differ from the reference: saves from elsewhere go another way \
-         on this machine (fingerprint {fingerprint}, reference {reference}); please report it with the \
-         table above, the processor and the system"
+        "{differ} of {all} trajectories differ from the reference: champions saved on other machines move \
+         differently on this one (fingerprint {fingerprint}, reference {reference}); please report this with \
+         the table above, the processor and the operating system"
     )]
     OtherBits {
-        /// How many trajectories differ.
+        /// Number of trajectories that differ.
         differ: usize,
-        /// How many there are.
+        /// Number of all trajectories.
         all: usize,
         /// The fingerprint of this machine.
         fingerprint: String,
@@ -35,13 +36,13 @@ pub enum CliError {
     /// A plot could not be drawn.
     #[error(transparent)]
     Plot(#[from] crate::plot::PlotError),
-    /// The studio could not start, or ended badly.
+    /// The studio could not start, or ended with an error.
     #[cfg(feature = "studio")]
     #[error(transparent)]
     Studio(#[from] crate::studio::StudioError),
     /// The program was built without the studio.
     #[cfg(not(feature = "studio"))]
-    #[error("this build has no studio: it opens no window and draws no figures; use --no-render")]
+    #[error("this build has no studio: it opens no window and draws no pictures; use --no-render")]
     NoStudio,
 }
 
@@ -52,6 +53,12 @@ impl CliError {
             Self::Usage(_) => 2,
             _ => 1,
         }
+    }
+}
+
+impl From<Invalid> for CliError {
+    fn from(invalid: Invalid) -> Self {
+        Self::Usage(invalid.to_string())
     }
 }
 

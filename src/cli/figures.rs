@@ -1,11 +1,12 @@
-//! `snakes figures`: a picture of each generation's champion, and one of a signal.
+//! `snakes figures`: a picture of each generation's champion, and a plot of a torque signal.
 
 use std::path::Path;
 
 use indicatif::ProgressBar;
 
 use super::args::Args;
-use super::{CliError, print};
+use super::error::CliError;
+use super::output::print;
 use crate::evolve::Champion;
 use crate::plot;
 use crate::save::{LoadedChampion, Picture, SavesFolder, load_run, store_picture};
@@ -14,7 +15,7 @@ use crate::studio::figures;
 /// Size of the pictures, in pixels.
 const SIZE: (u32, u32) = (1280, 720);
 
-/// Draws the champions of a run's folder: the report's Figures 5 to 10, and one signal as its Figure 4. They
+/// Draws the champions of a run's folder (the report's Figures 5 to 10) and one torque signal (its Figure 4). The files
 /// go into the run's own folder `figures`, unless another is named.
 pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
     let (numbers, champions): (Vec<u32>, Vec<LoadedChampion>) = load_run(run)?.into_iter().unzip();
@@ -45,7 +46,7 @@ pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
         let note = match (loaded.is_of_this_engine(), &loaded.recording) {
             (false, Some(_)) => format!("   as engine {} recorded it", loaded.engine),
             _ if evaluation.agrees_with(&champion.evaluation) => String::new(),
-            _ => "   REPLAYED OTHERWISE THAN RECORDED".to_owned(),
+            _ => "   REPLAY DIFFERS FROM THE RECORD".to_owned(),
         };
         let shown = Champion { evaluation, ..champion.clone() };
         let text = format!(

@@ -1,49 +1,19 @@
-//! `snakes robust`: in how many perturbed trials a champion reaches each step.
+//! `snakes robust`: the share of perturbed trials in which a champion reaches each step.
 
 use std::path::Path;
 
 use indicatif::ProgressBar;
 
 use super::args::Args;
-use super::{CliError, cancel_on_interrupt, print};
+use super::error::CliError;
+use super::output::{cancel_on_interrupt, print};
 use crate::check::within;
-use crate::run::headless::{HeadlessError, watched};
-use crate::run::pool;
+use crate::run::LocalPool;
+use crate::run::headless::HeadlessError;
+use crate::run::progress_bar::with_bar;
 use crate::run::robust::{Robustness, Share, robustness};
 use crate::save::load_champion;
 use crate::score::PerturbationRange;
-
-/// How far perturbed trials are off.
-#[derive(Debug, clap::Args)]
-pub struct OffBy {
-    /// Share by which friction is larger or smaller
-    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().friction)]
-    off_friction: f32,
-    /// Share by which the steps are higher or lower
-    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().rise)]
-    off_rise: f32,
-    /// Share by which the limbs are heavier or lighter
-    #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().density)]
-    off_density: f32,
-    /// Distance of the start, along and across, in metres
-    #[arg(long, value_name = "M", default_value_t = PerturbationRange::default().start_m)]
-    off_start: f32,
-    /// Turn of the snake at the start, in degrees
-    #[arg(long, value_name = "DEG", default_value_t = PerturbationRange::default().turn_deg)]
-    off_turn: f32,
-}
-
-impl From<&OffBy> for PerturbationRange {
-    fn from(off: &OffBy) -> Self {
-        Self {
-            friction: off.off_friction,
-            rise: off.off_rise,
-            density: off.off_density,
-            start_m: off.off_start,
-            turn_deg: off.off_turn,
-        }
-    }
-}
 
 /// Runs a champion through perturbed trials and prints the shares.
 pub fn robust(
@@ -55,11 +25,11 @@ pub fn robust(
     within("trials", trials, 1..=1_000_000)?;
     range.check()?;
     let champion = load_champion(file)?.champion;
-    let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
+    let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
     let (control, seed) = (cancel_on_interrupt(), args.seed()?);
     let bar = ProgressBar::new(trials.into());
     let found =
-        watched(&bar, &control, || robustness(&champion, range, trials, seed, &pool, &control));
+        with_bar(&bar, &control, || robustness(&champion, range, trials, seed, &pool, &control));
     let found = found.map_err(|_| HeadlessError::Cancelled { kept: None })?;
     if args.json {
         for (step, share) in shares(&found) {

@@ -1,21 +1,20 @@
-//! `snakes verify`: a table, a fingerprint, and in plain words whether this machine agrees.
+//! `snakes verify`: a table, a fingerprint, and whether this machine agrees with the reference.
 
 use indicatif::ProgressBar;
 
 use super::args::Args;
-use super::{CliError, cancel_on_interrupt, print};
+use super::error::CliError;
+use super::output::{cancel_on_interrupt, print};
 use crate::ENGINE_VERSION;
-use crate::run::headless::HeadlessError;
-use crate::run::pool;
 use crate::run::verify::Trajectories;
 
 /// Computes the golden trajectories and compares them with the reference.
 pub fn verify(args: &Args) -> Result<(), CliError> {
     let reference = Trajectories::reference()?;
-    let pool = pool(args.threads()?).map_err(HeadlessError::from)?;
+    let evaluator = args.evaluator()?;
     let control = cancel_on_interrupt();
     let bar = ProgressBar::new(1);
-    let computed = Trajectories::computed(&pool, &control, |done, all| {
+    let computed = Trajectories::computed(&*evaluator, &control, |done, all| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
     });
@@ -56,8 +55,8 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
         text += &format!("\nfingerprint  {fingerprint}  (engine {ENGINE_VERSION})\n");
         if agrees {
             text += &format!(
-                "This machine computes the reference's bits in all {} trajectories: a save from \
-                 elsewhere replays here exactly, and yours elsewhere.\n",
+                "This machine computes the reference's bits in all {} trajectories: champions \
+                 saved on other machines replay exactly here, and yours replay exactly there.\n",
                 expected.len()
             );
         }

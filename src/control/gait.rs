@@ -1,25 +1,40 @@
-//! A servo: what pulls a joint towards the angle that a gait wants.
+//! Periodic joint angles, followed by a servo.
 
-use crate::genome::Gait;
+use super::{Controller, Observation, Senses};
+use crate::genome::{Gait, Wave};
+use crate::world::JointTorque;
 
-/// A proportional-derivative servo.
-#[derive(Debug, Clone, Copy)]
-pub struct Servo {
-    stiffness_nm_per_rad: f32,
-    damping_nms_per_rad: f32,
+/// Pulls every joint towards the angle of a gait.
+#[derive(Debug, Clone)]
+pub struct GaitFollower(pub Gait);
+
+impl GaitFollower {
+    /// The torque of a proportional-derivative servo on a joint axis, in N·m.
+    fn torque_nm(&self, target_rad: f32, angle_rad: f32, rate_rad_s: f32) -> f32 {
+        self.0.stiffness_nm_per_rad * (target_rad - angle_rad)
+            - self.0.servo_damping_nms_per_rad * rate_rad_s
+    }
 }
 
-impl Servo {
-    /// The servo of a gait.
-    pub fn new(gait: &Gait) -> Self {
-        Self {
-            stiffness_nm_per_rad: gait.stiffness_nm_per_rad,
-            damping_nms_per_rad: gait.servo_damping_nms_per_rad,
+impl Controller for GaitFollower {
+    fn needs(&self) -> Senses {
+        Senses { joints: true }
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let waves = &self.0.waves;
+        let periods = observation.periods(waves.frequency_hz);
+        let pull = |wave: &Wave, angle_rad, rate_rad_s| {
+            self.torque_nm(wave.at(periods), angle_rad, rate_rad_s)
+        };
+        let joints = waves.joints.iter().zip(&observation.joints);
+        for (torque, (joint, state)) in torques.iter_mut().zip(joints) {
+            torque.bend_nm = pull(&joint.bend, state.bend_rad, state.bend_rad_s);
+            torque.twist_nm = pull(&joint.twist, state.twist_rad, state.twist_rad_s);
         }
     }
 
-    /// The torque towards `target_rad` on a joint that stands at `angle_rad` and turns at `rate_rad_s`, in N·m.
-    pub fn torque_nm(&self, target_rad: f32, angle_rad: f32, rate_rad_s: f32) -> f32 {
-        self.stiffness_nm_per_rad * (target_rad - angle_rad) - self.damping_nms_per_rad * rate_rad_s
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
     }
 }

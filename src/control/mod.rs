@@ -1,76 +1,102 @@
-//! From genes, and what the agent feels, to torques: what the snake's joints are told in each step.
+//! From genes and observations to torques.
+//!
+//! A new kind of controller is a file here, a line in `controller_of`, and its genes, which are registered in
+//! `genome/controllers`.
 
+mod controller;
 mod gait;
+mod observation;
 mod signal;
+mod wave;
 
-use gait::Servo;
-use signal::SignalPlayer;
+pub use controller::Controller;
+pub use observation::{Observation, Senses};
 
-use crate::genome::{Controller, Genome, Wave, Waves};
-use crate::world::{JointState, JointTorque};
+use crate::genome::ControllerGenes;
+use crate::world::{JointTorque, Simulation};
 
-/// A controller at work in one world.
-#[derive(Debug, Clone)]
-pub struct Driver {
-    kind: Kind,
-    steps_per_s: f64,
+/// The controller that genes encode, in its state before the first step.
+fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
+    match genes {
+        ControllerGenes::Signal(signals) => Box::new(signal::SignalPlayer(signals.clone())),
+        ControllerGenes::Wave(waves) => Box::new(wave::WavePlayer(waves.clone())),
+        ControllerGenes::Gait(gait) => Box::new(gait::GaitFollower(gait.clone())),
+    }
 }
 
-#[derive(Debug, Clone)]
-enum Kind {
-    Signal(SignalPlayer),
-    Wave(Waves),
-    Gait { waves: Waves, servo: Servo },
+/// A controller at work in one world: it observes, then acts. A clone goes on with the state of the original.
+#[derive(Clone)]
+pub struct ControlLoop {
+    controller: Box<dyn Controller>,
+    observation: Observation,
 }
 
-impl Driver {
-    /// What drives a genome in a world that takes `steps_per_s` steps a second.
-    pub fn new(genome: &Genome, steps_per_s: u32) -> Self {
-        let kind = match &genome.controller {
-            Controller::Signal(signals) => {
-                Kind::Signal(SignalPlayer::new(signals.clone(), steps_per_s))
-            }
-            Controller::Wave(waves) => Kind::Wave(waves.clone()),
-            Controller::Gait(gait) => {
-                Kind::Gait { waves: gait.waves.clone(), servo: Servo::new(gait) }
-            }
-        };
-        Self { kind, steps_per_s: f64::from(steps_per_s) }
+impl ControlLoop {
+    /// The control loop of a genome in a world that takes `steps_per_s` steps a second.
+    pub fn new(genes: &ControllerGenes, steps_per_s: u32) -> Self {
+        Self::of(controller_of(genes), steps_per_s)
     }
 
-    /// Whether it wants to know how the joints stand.
-    pub fn feels(&self) -> bool {
-        matches!(self.kind, Kind::Gait { .. })
+    fn of(controller: Box<dyn Controller>, steps_per_s: u32) -> Self {
+        Self { controller, observation: Observation { steps_per_s, ..Observation::default() } }
     }
 
-    /// Writes the torques of step number `step` (0 is the first), one per joint from the head. `felt` is how
-    /// the joints stand, for a driver that wants to know; they are clamped to the joints' limits later.
-    pub fn torques(&self, step: u32, felt: &[JointState], torques: &mut [JointTorque]) {
-        match &self.kind {
-            Kind::Signal(player) => player.torques(step, torques),
-            Kind::Wave(waves) => {
-                let turns = self.turns(step, waves);
-                for (torque, joint) in torques.iter_mut().zip(&waves.joints) {
-                    torque.bend_nm = joint.bend.at(turns);
-                    torque.twist_nm = joint.twist.at(turns);
-                }
-            }
-            Kind::Gait { waves, servo } => {
-                let turns = self.turns(step, waves);
-                let joints = waves.joints.iter().zip(felt);
-                for (torque, (joint, state)) in torques.iter_mut().zip(joints) {
-                    let pull = |wave: &Wave, angle_rad, rate_rad_s| {
-                        servo.torque_nm(wave.at(turns), angle_rad, rate_rad_s)
-                    };
-                    torque.bend_nm = pull(&joint.bend, state.bend_rad, state.bend_rad_s);
-                    torque.twist_nm = pull(&joint.twist, state.twist_rad, state.twist_rad_s);
-                }
-            }
+    /// Writes the torques of step number `step` (0 is the first), one per joint from the head.
+    pub fn act(&mut self, step: u32, world: &Simulation, torques: &mut [JointTorque]) {
+        self.observation.update(step, world, self.controller.needs());
+        self.controller.act(&self.observation, torques);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::GenomeSpace;
+    use crate::rng::{Purpose, stream};
+    use crate::score::Trial;
+
+    /// Counts its steps, and expects joint states only when it needs them.
+    #[derive(Clone)]
+    struct Counter {
+        senses: Senses,
+        acted: f32,
+    }
+
+    impl Controller for Counter {
+        fn needs(&self) -> Senses {
+            self.senses
+        }
+
+        fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+            let sensed = if self.senses.joints { torques.len() } else { 0 };
+            assert_eq!(observation.joints.len(), sensed);
+            self.acted += 1.0;
+            torques[0].bend_nm = self.acted;
+        }
+
+        fn boxed_clone(&self) -> Box<dyn Controller> {
+            Box::new(self.clone())
         }
     }
 
-    /// Periods of the fundamental that have passed when a step begins.
-    fn turns(&self, step: u32, waves: &Waves) -> f64 {
-        f64::from(waves.frequency_hz) * f64::from(step) / self.steps_per_s
+    #[test]
+    fn a_clone_continues_with_the_state_of_its_controller() {
+        for joints in [false, true] {
+            let trial = Trial::default();
+            let mut rng = stream(1, 1, 0, Purpose::Birth);
+            let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+            let world = Simulation::new(&trial.world_plan(&genome));
+            let mut torques = vec![JointTorque::default(); world.joint_states().len()];
+            let counter = Counter { senses: Senses { joints }, acted: 0.0 };
+            let mut original = ControlLoop::of(Box::new(counter), 60);
+            original.act(0, &world, &mut torques);
+            let mut clone = original.clone();
+            for step in 1..4 {
+                original.act(step, &world, &mut torques);
+            }
+            assert_eq!(torques[0].bend_nm, 4.0);
+            clone.act(1, &world, &mut torques);
+            assert_eq!(torques[0].bend_nm, 2.0, "not affected by the original");
+        }
     }
 }

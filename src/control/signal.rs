@@ -1,30 +1,30 @@
 //! Torque signals, played back.
 
-use crate::genome::Signals;
+use super::{Controller, Observation, Senses};
+use crate::genome::TorqueSignals;
 use crate::world::JointTorque;
 
 /// Plays back torque signals: each point holds until the next takes effect, the last one to the end.
 #[derive(Debug, Clone)]
-pub struct SignalPlayer {
-    signals: Signals,
-    points_per_step: f64,
-}
+pub struct SignalPlayer(pub TorqueSignals);
 
-impl SignalPlayer {
-    /// A player for a world that takes `steps_per_s` steps a second.
-    pub fn new(signals: Signals, steps_per_s: u32) -> Self {
-        let points_per_step = f64::from(signals.points_per_s) / f64::from(steps_per_s);
-        Self { signals, points_per_step }
+impl Controller for SignalPlayer {
+    fn needs(&self) -> Senses {
+        Senses::default()
     }
 
-    /// Writes the torques of step number `step` (0 is the first), one per joint from the head.
-    pub fn torques(&self, step: u32, torques: &mut [JointTorque]) {
-        let point = (f64::from(step) * self.points_per_step) as usize;
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let points_per_step = f64::from(self.0.points_per_s) / f64::from(observation.steps_per_s);
+        let point = (f64::from(observation.step) * points_per_step) as usize;
         let at_point = |signal: &[f32]| signal.get(point).or(signal.last()).copied().unwrap_or(0.0);
-        for (torque, joint) in torques.iter_mut().zip(&self.signals.joints) {
+        for (torque, joint) in torques.iter_mut().zip(&self.0.joints) {
             torque.bend_nm = at_point(&joint.bend_nm);
             torque.twist_nm = at_point(&joint.twist_nm);
         }
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
     }
 }
 
@@ -36,11 +36,12 @@ mod tests {
     #[test]
     fn a_point_holds_until_the_next_and_the_last_to_the_end() {
         let joints = vec![JointSignals { bend_nm: vec![1.0, 2.0, 3.0], twist_nm: vec![-1.0] }];
-        let player = SignalPlayer::new(Signals { points_per_s: 20.0, joints }, 60);
+        let mut player = SignalPlayer(TorqueSignals { points_per_s: 20.0, joints });
         let mut torques = [JointTorque::default()];
         let bends: Vec<f32> = (0..12)
             .map(|step| {
-                player.torques(step, &mut torques);
+                let observation = Observation { step, steps_per_s: 60, ..Observation::default() };
+                player.act(&observation, &mut torques);
                 torques[0].bend_nm
             })
             .collect();

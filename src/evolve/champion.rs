@@ -1,23 +1,29 @@
-//! An individual worth keeping, and where it comes from.
+//! An individual worth keeping, with its origin.
 
 use crate::genome::Genome;
 use crate::score::{Evaluation, Fitness, Trial};
+use crate::world::BodyPlan;
 
-/// An individual worth keeping, with all that is needed to see it again.
+/// An individual worth keeping, with everything that a replay needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Champion {
     /// The individual.
     pub genome: Genome,
     /// The conditions under which it was scored.
     pub trial: Trial,
-    /// What it reached.
+    /// Its evaluation.
     pub evaluation: Evaluation,
-    /// Where it comes from.
+    /// The run that found it, and its place there.
     pub origin: Origin,
 }
 
 impl Champion {
-    /// What it reached, in a few words: fitness, and what the place of its centre means.
+    /// The body that it has in its trial.
+    pub fn body(&self) -> BodyPlan {
+        self.trial.agent.body_plan(&self.genome)
+    }
+
+    /// A short description of its result: fitness, and the meaning of its final position.
     pub fn reached(&self) -> String {
         let score = self.score();
         match self.trial.fitness {
@@ -36,7 +42,7 @@ impl Champion {
     }
 }
 
-/// The place of an individual in the run that found it.
+/// The run that found an individual, and its generation and index there.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
     /// Name of the preset.

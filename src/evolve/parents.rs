@@ -1,44 +1,44 @@
-//! Who comes from whom: what a strategy knows of it, which changes nothing of what it does.
+//! Parents of individuals, as far as a strategy knows them. Nothing of a run depends on this.
 
-/// The place of an individual in its run.
+/// An individual of a run, by its generation and index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct IndividualId {
     /// Generation; the first is 1.
     pub generation: u32,
     /// Index within the generation; the first is 0.
     pub individual: u32,
 }
 
-impl Place {
-    /// The places of these individuals of a generation.
+impl IndividualId {
+    /// The ids of some individuals of a generation.
     pub(super) fn all(generation: u32, individuals: &[usize]) -> Vec<Self> {
-        let place = |&individual: &usize| Self { generation, individual: individual as u32 };
-        individuals.iter().map(place).collect()
+        let id = |&individual: &usize| Self { generation, individual: individual as u32 };
+        individuals.iter().map(id).collect()
     }
 }
 
-/// Whom an individual comes from.
+/// The parents of an individual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parents {
-    /// Nobody: it was drawn from nothing.
-    Newborn,
+    /// None: its genome was drawn at random.
+    None,
     /// One, of which it is a copy, varied or not.
-    One(Place),
-    /// Two. The first is the one that it resembles more, if that can be said.
-    Two(Place, Place),
-    /// Nobody in particular: it was drawn from what the search had learned of all before.
+    One(IndividualId),
+    /// Two. The first is the one that it resembles more, if there is a difference.
+    Two(IndividualId, IndividualId),
+    /// No single individual: it was drawn from a distribution that all earlier generations have shaped.
     Distribution,
-    /// Somebody of a generation that was finished before anybody wrote this down.
+    /// Not recorded, because an earlier session finished the generation of its parents.
     Unknown,
 }
 
 impl Parents {
-    /// The parents' places, the first first.
-    pub fn places(self) -> impl Iterator<Item = Place> {
+    /// The ids of the parents, the first first.
+    pub fn ids(self) -> impl Iterator<Item = IndividualId> {
         let (first, second) = match self {
             Self::One(first) => (Some(first), None),
             Self::Two(first, second) => (Some(first), Some(second)),
-            Self::Newborn | Self::Distribution | Self::Unknown => (None, None),
+            Self::None | Self::Distribution | Self::Unknown => (None, None),
         };
         first.into_iter().chain(second)
     }

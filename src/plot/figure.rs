@@ -1,74 +1,74 @@
-//! A chart as data: what a window draws, what becomes a picture, and what becomes a table are the same.
+//! A chart as data: the window, the picture and the table of a chart all use the same figure.
 
 use std::ops::RangeInclusive;
 
 use crate::evolve::StrategyKind;
 
-/// A legend names so many shades; of more it names none, they say what they mean by their order.
-const MOST_SHADES_LISTED: usize = 8;
+/// Maximum number of shades that a legend lists; of more it lists none, because their order explains them.
+const MAX_SHADES_LISTED: usize = 8;
 
 /// One chart, or several that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What it shows, in a few words.
+    /// Its title, a few words.
     pub title: String,
-    /// What else there is to say of it, in a sentence or two; may be empty.
+    /// An explanation in a sentence or two; may be empty.
     pub note: String,
     /// The charts, in reading order.
     pub charts: Vec<Chart>,
-    /// Its table, where that is of other numbers than those that are drawn; the first record is the head.
+    /// Its table, if that has other numbers than the charts; the first record is the header.
     pub numbers: Option<Vec<Vec<String>>>,
 }
 
-/// What is drawn within one pair of axes.
+/// Series within one pair of axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// What tells it from the others of its figure; empty for an only one.
+    /// Its name within the figure; empty for the only one.
     pub name: String,
     /// The axis from left to right.
     pub x: Axis,
     /// The axis from the bottom up.
     pub y: Axis,
-    /// What is drawn, the hindmost first.
+    /// The series, the rearmost first.
     pub series: Vec<Series>,
-    /// Heights to compare with: dashed lines from left to right.
+    /// Reference values: horizontal dashed lines.
     pub marks: Vec<Mark>,
 }
 
 /// An axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What it measures.
+    /// The quantity.
     pub name: String,
-    /// In what; empty for a count.
+    /// Its unit; empty for a count.
     pub unit: &'static str,
-    /// From where to where.
+    /// Least and greatest value.
     pub range: RangeInclusive<f64>,
-    /// Names in place of numbers, each at its place.
+    /// Names in place of numbers, each with its position.
     pub names: Vec<(f64, String)>,
 }
 
-/// A height to compare with.
+/// A reference value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// What is there.
+    /// Its name.
     pub name: String,
-    /// Where it is.
+    /// Its position on the y axis.
     pub y: f64,
 }
 
-/// Something that is drawn, and listed under its name.
+/// Data that are drawn in one way and listed under one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What it is. Empty for what only helps the eye: it is in no legend and no table.
+    /// Its name. Empty for a visual aid, which appears in no legend and no table.
     pub name: String,
-    /// What it means, which says its colour.
+    /// Its meaning, which determines its colour.
     pub role: Role,
-    /// How it is drawn.
+    /// Its shape.
     pub shape: Shape,
 }
 
-/// How a series is drawn.
+/// The data of a series, and how they are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// Points joined by straight lines.
@@ -77,38 +77,38 @@ pub enum Shape {
     Dashed(Vec<[f64; 2]>),
     /// Points.
     Points(Vec<[f64; 2]>),
-    /// From a lower to an upper end, at each x.
+    /// An area between a lower and an upper value at each x: `[x, lower, upper]`.
     Band(Vec<[f64; 3]>),
-    /// Bars from nothing up: the middle of each, and its height.
+    /// Bars that begin at zero.
     Bars {
-        /// How wide each is.
+        /// Width of each bar.
         width: f64,
-        /// The middle of each, and its height.
+        /// Centre and height of each bar.
         bars: Vec<[f64; 2]>,
     },
-    /// Rectangles: from and to in x, from and to in y, and where their value stands between the least and the most of
-    /// all, from 0 to 1; and that value.
+    /// Rectangles: `[left, right, bottom, top]`, the share of the value between the least and the greatest of all
+    /// (0 to 1), and the value.
     Cells(Vec<([f64; 4], f32, f64)>),
 }
 
-/// What a series means.
+/// Meaning of a series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Role {
-    /// The best, or what it is all about.
+    /// The main series.
     First,
-    /// What stands beside it.
+    /// A second series beside the main one.
     Second,
-    /// What stands beside both.
+    /// A third series.
     Third,
-    /// All the others.
+    /// All other individuals or runs.
     Others,
     /// A torque about the bend axis.
     Bend,
     /// A torque about the twist axis.
     Twist,
-    /// A method.
+    /// A learning method.
     Strategy(StrategyKind),
-    /// A value between the least, 0, and the most, 1.
+    /// A value between the least, 0, and the greatest, 1.
     Share(f32),
 }
 
@@ -123,9 +123,9 @@ impl Axis {
         with_unit(&self.name, self.unit)
     }
 
-    /// The name at a place, if places have names.
-    pub fn name_at(&self, place: f64) -> Option<&str> {
-        let is_there = |(at, _): &&(f64, String)| (at - place).abs() < 1.0e-6;
+    /// The name at a position, if there is one.
+    pub fn name_at(&self, position: f64) -> Option<&str> {
+        let is_there = |(at, _): &&(f64, String)| (at - position).abs() < 1.0e-6;
         self.names.iter().find(is_there).map(|(_, name)| name.as_str())
     }
 }
@@ -142,7 +142,7 @@ impl Series {
 }
 
 impl Shape {
-    /// What of a shape becomes columns of a table: what to add to the series' name in each column's head.
+    /// The columns of its table, as suffixes to the name of the series.
     fn columns(&self) -> &'static [&'static str] {
         match self {
             Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => &[""],
@@ -161,7 +161,7 @@ impl Shape {
         }
     }
 
-    /// Its rows: x, and a value for each column.
+    /// The rows of its table: x, and a value for each column.
     fn rows(&self) -> Vec<(f64, Vec<f64>)> {
         match self {
             Self::Line(points) | Self::Dashed(points) | Self::Points(points) => {
@@ -195,11 +195,11 @@ impl Figure {
         self.charts.iter().flat_map(|chart| &chart.series).all(|series| series.shape.is_empty())
     }
 
-    /// What a legend names: every name once, and of shades no more than a legend can hold.
+    /// The series that a legend lists: each name once, and shades only if there are few.
     pub fn listed(&self) -> Vec<&Series> {
         let is_shade = |series: &Series| matches!(series.role, Role::Share(_));
         let all = || self.charts.iter().flat_map(|chart| &chart.series);
-        let are_many = all().filter(|series| is_shade(series)).count() > MOST_SHADES_LISTED;
+        let are_many = all().filter(|series| is_shade(series)).count() > MAX_SHADES_LISTED;
         let mut listed: Vec<&Series> = Vec::new();
         for series in all().filter(|series| !series.name.is_empty()) {
             let is_known = listed.iter().any(|known| known.name == series.name);
@@ -211,13 +211,13 @@ impl Figure {
         listed
     }
 
-    /// The figure as a table, its first record the head: a column for each series, with its unit. Of several charts
-    /// the first column names the chart.
+    /// The figure as a table, the first record its header: a column for each series, with its unit. If there are
+    /// several charts, the first column names the chart.
     pub fn table(&self) -> Vec<Vec<String>> {
         if let Some(numbers) = &self.numbers {
             return numbers.clone();
         }
-        let are_several = self.charts.len() > 1;
+        let has_several_charts = self.charts.len() > 1;
         let mut heads: Vec<String> = Vec::new();
         let mut rows: Vec<Vec<(usize, String)>> = Vec::new();
         let column = |head: String, heads: &mut Vec<String>| {
@@ -228,7 +228,7 @@ impl Figure {
         };
         for chart in &self.charts {
             let mut of_chart: Vec<Row> = Vec::new();
-            let first: Vec<(usize, String)> = if are_several {
+            let first: Vec<(usize, String)> = if has_several_charts {
                 vec![(column("chart".to_owned(), &mut heads), chart.name.clone())]
             } else {
                 Vec::new()
@@ -260,10 +260,10 @@ impl Figure {
     }
 }
 
-/// What stands at an x: columns and their values.
+/// A row of a table: x, and the columns with their values.
 type Row = (f64, Vec<(usize, f64)>);
 
-/// Cells at one x in one row, as long as no two of them are of one column.
+/// Joins rows of the same x, unless they have values in the same column.
 fn merged(mut rows: Vec<Row>) -> Vec<Row> {
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut merged: Vec<Row> = Vec::new();
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_has_a_column_for_each_series_with_a_name_and_its_unit() {
+    fn a_table_has_a_column_with_its_unit_for_each_named_series() {
         let band = Series::new("middle half", Role::Others, Shape::Band(vec![[1.0, -8.0, -7.0]]));
         let best = line("best", &[[1.0, -6.5], [2.0, 1.25]]);
         let unnamed = line("", &[[3.0, 1.0]]);
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn points_at_one_place_have_a_row_each_and_charts_their_name() {
+    fn points_at_the_same_x_have_a_row_each_and_charts_are_named() {
         let cloud = Shape::Points(vec![[1.0, 5.0], [1.0, 6.0], [2.0, 7.0]]);
         let charts = vec![
             chart(
@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn a_legend_names_everything_once_and_not_too_many_shades() {
+    fn a_legend_lists_each_name_once_and_only_few_shades() {
         let shades = |count| {
             (0..count).map(|index| {
                 let shade = Role::Share(index as f32 / 20.0);
@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn names_stand_in_place_of_numbers() {
+    fn names_replace_numbers() {
         let mut chart = chart("", vec![line("parent", &[[0.0, 0.5]])]);
         chart.x.names = vec![(0.0, "density (kg/m³)".to_owned())];
         assert_eq!(Figure::of("", chart).table()[1], ["density (kg/m³)", "0.5"]);

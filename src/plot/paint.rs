@@ -10,25 +10,25 @@ use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Area, Axis, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
-use super::{TEXT_PIXELS, TITLE_PIXELS, draw, strategy_color};
+use super::{TEXT_PIXELS, TITLE_PIXELS, draw};
 use crate::save::Picture;
 
 /// Size of every picture of a figure, in pixels.
 const SIZE: (u32, u32) = (1600, 900);
-/// Between a picture's edge and what is in it, in pixels.
+/// Margin of a picture, in pixels.
 const MARGIN: i32 = 24;
 /// Height of a line of the legend, in pixels.
 const LEGEND_LINE: i32 = 30;
 /// Length of a sample in the legend, in pixels.
 const SAMPLE: i32 = 34;
-/// So many of the parts of a dashed line are on and off, in pixels.
+/// Lengths of the dashes and gaps of a dashed line, in pixels.
 const DASH: (i32, i32) = (10, 7);
-/// Room for names below a chart, in pixels; they stand upright.
+/// Height of the names below a chart, in pixels; they are rotated.
 const NAMES_HEIGHT: u32 = 250;
-/// Names are cut after so many letters.
-const LONGEST_NAME: usize = 32;
+/// Maximum length of a name, in characters; the rest is cut off.
+const MAX_NAME_LENGTH: usize = 32;
 
-/// The colour of a role, as red, green and blue: that of the light theme.
+/// The colour of a role in the light theme, as red, green and blue.
 pub fn role_color(role: Role) -> [u8; 3] {
     match role {
         Role::First | Role::Bend => [0x1a, 0x66, 0xd9],
@@ -36,13 +36,13 @@ pub fn role_color(role: Role) -> [u8; 3] {
         Role::Third => [0x00, 0x72, 0x5c],
         Role::Others => [0x52, 0x5c, 0x6e],
         Role::Twist => [0xb3, 0x5c, 0x00],
-        Role::Strategy(kind) => strategy_color(kind),
+        Role::Strategy(kind) => kind.info().color,
         Role::Share(share) => ramp(share),
     }
 }
 
-/// From the least to the most: viridis (van der Walt and Smith, 2015), whose brightness rises evenly, so that it
-/// reads in order without its hues too.
+/// Colours from the least to the greatest value: viridis (van der Walt and Smith, 2015). Its brightness rises evenly,
+/// so its order is visible without the hues.
 const RAMP: [[u8; 3]; 9] = [
     [0x44, 0x01, 0x54],
     [0x47, 0x2d, 0x7b],
@@ -55,7 +55,7 @@ const RAMP: [[u8; 3]; 9] = [
     [0xfd, 0xe7, 0x25],
 ];
 
-/// The colour of a value between the least, 0, and the most, 1, as red, green and blue.
+/// The colour of a value between the least, 0, and the greatest, 1, as red, green and blue.
 pub fn ramp(share: f32) -> [u8; 3] {
     let last = RAMP.len() - 1;
     let place = share.clamp(0.0, 1.0) * last as f32;
@@ -85,7 +85,7 @@ pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
         }
         let below = legend(area, figure, top)?;
         let (_, charts) = area.split_vertically(below);
-        // As many beside as below each other: the picture is wide, and so are its charts.
+        // As many columns as rows: the picture is wide, and so are its charts.
         let columns = (1..=figure.charts.len()).find(|n| n * n >= figure.charts.len());
         let columns = columns.unwrap_or(1).min(figure.charts.len().max(1));
         let rows = figure.charts.len().div_ceil(columns);
@@ -96,7 +96,7 @@ pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
     })
 }
 
-/// Writes the legend from a height on. Returns where it ends.
+/// Writes the legend from `top` down. Returns its lower end, in pixels.
 fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>> {
     let text = (FONT, TEXT_PIXELS).into_font().color(&INK);
     let (mut x, mut y) = (MARGIN, top);
@@ -114,7 +114,7 @@ fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>>
     Ok(if listed.is_empty() { top } else { y + LEGEND_LINE })
 }
 
-/// A sample of how a series is drawn.
+/// Draws a sample of a series in the legend.
 fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dyn Error>> {
     let color = color_of(series.role);
     let ends = [(x, y), (x + SAMPLE, y)];
@@ -191,7 +191,7 @@ fn paint(
         let upright = [(*place, *chart.y.range.start()), (*place, *chart.y.range.end())];
         axes.draw_series(LineSeries::new(upright, FAINT.stroke_width(1)))?;
         let (x, y) = axes.plotting_area().map_coordinate(&upright[0]);
-        let short: String = name.chars().take(LONGEST_NAME).collect();
+        let short: String = name.chars().take(MAX_NAME_LENGTH).collect();
         let style = text().transform(FontTransform::Rotate270);
         let style = style.pos(Pos::new(HPos::Right, VPos::Center));
         let (left, top) = area.get_base_pixel();
@@ -273,7 +273,7 @@ mod tests {
         }
     }
 
-    /// How many pixels of a picture have the colour of a role.
+    /// Number of pixels of a picture that have the colour of a role.
     fn pixels(picture: &Picture, role: Role) -> usize {
         let color = role_color(role);
         picture.rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == color).count()
@@ -290,7 +290,7 @@ mod tests {
             (Role::Share(1.0), Shape::Cells(vec![([1.0, 2.0, 1.0, 2.0], 1.0, 9.0)]), 20_000),
         ] {
             let name = format!("{shape:?}");
-            let figure = Figure::of("Title", chart("", vec![Series::new("it", role, shape)]));
+            let figure = Figure::of("Title", chart("", vec![Series::new("series", role, shape)]));
             let picture = super::figure(&figure).expect("drawn");
             assert_eq!((picture.width, picture.height), SIZE);
             let found = pixels(&picture, role);
@@ -299,8 +299,8 @@ mod tests {
     }
 
     #[test]
-    fn several_charts_have_a_part_each_and_names_stand_below() {
-        let line = |role| Series::new("it", role, Shape::Line(vec![[0.0, 0.0], [4.0, 3.0]]));
+    fn several_charts_are_drawn_and_names_below_them() {
+        let line = |role| Series::new("series", role, Shape::Line(vec![[0.0, 0.0], [4.0, 3.0]]));
         let mut charts: Vec<Chart> = [Role::First, Role::Second, Role::Third, Role::Twist]
             .map(|role| chart("joint", vec![line(role)]))
             .into();
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ramp_goes_from_its_first_colour_to_its_last() {
+    fn the_ramp_reaches_from_its_first_colour_to_its_last() {
         assert_eq!((ramp(0.0), ramp(1.0)), (RAMP[0], RAMP[8]));
     }
 }

@@ -1,39 +1,43 @@
-//! An experiment on a thread of its own, for a window that must not wait.
+//! A run on a thread of its own, for a window that must not wait.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use rayon::ThreadPool;
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, unbounded};
 
-use super::{
-    Ancestor, Cancelled, Control, Descent, Experiment, Generation, GenerationReport, Keeper,
-    KeptRun, RunSource,
-};
-use crate::evolve::{Archive, Champion, Front, SettingChange};
+use super::evaluator::Evaluator;
+use super::experiment::Experiment;
+use super::lineage::{Ancestor, Ancestry, Generation};
+use super::recorder::{RecordedRun, RunRecorder, RunSource};
+use super::report::GenerationReport;
+use super::run_control::{Cancelled, RunControl};
+use crate::evolve::{Archive, Champion, Front, RunPlan, SettingChange};
 
-/// What an experiment in the background has to tell.
+/// News about a run in the background.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Event {
-    /// The run's folder is open, and these generations are behind the run.
-    Opened(Vec<GenerationReport>),
-    /// These settings were changed before, the earliest first. Told once, of a run that was, before it is open.
-    WasChanged(Vec<SettingChange>),
-    /// A setting is changed, and takes effect with the generation that begins next.
-    Changed(SettingChange),
-    /// A setting stays as it is.
-    NotChanged {
+pub enum RunEvent {
+    /// The run's folder is open.
+    Opened(Box<OpenedRun>),
+    /// A setting is changed; the change takes effect with the generation that begins next.
+    SettingChanged {
+        /// The change.
+        change: SettingChange,
+        /// The plan with it.
+        plan_now: Box<RunPlan>,
+    },
+    /// A setting was not changed.
+    SettingNotChanged {
         /// Its full dotted name.
         field: String,
         /// Why, in a line.
         reason: String,
     },
-    /// The run's folder cannot be opened: nothing is evolved.
+    /// The run's folder cannot be opened, and why: nothing is evolved.
     Refused(String),
-    /// What has been found besides champions: after the generations behind the run, and before each further one.
+    /// Results besides champions: after the run was opened, and before each [`Self::Generation`].
     Explored(Box<Exploration>),
     /// A generation is finished.
     Generation(Box<GenerationReport>),
@@ -42,33 +46,44 @@ pub enum Event {
         /// Hash over the whole run.
         run_hash: u64,
     },
-    /// The generation could not be saved. The run is held; going on tries again.
+    /// The generation could not be saved, and why. The run is held; resuming tries again.
     NotSaved(String),
-    /// The program failed on a genome, in a line; the run goes on.
+    /// The simulation of an individual panicked, in a line; the run continues.
     Crashed(String),
-    /// The run broke off by an error of the program, and will say no more.
-    BrokeOff,
+    /// The run's thread ended by an error of the program; no more events follow.
+    Failed,
 }
 
-/// What a run has found besides its champions.
+/// A run whose folder was opened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenedRun {
+    /// The plan it began with.
+    pub plan_at_start: RunPlan,
+    /// The plan with all changes that earlier sessions made.
+    pub plan_now: RunPlan,
+    /// The finished generations, the first first.
+    pub reports: Vec<GenerationReport>,
+}
+
+/// Results of a run besides its champions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exploration {
-    /// Who is beaten by nobody in distance and energy.
+    /// The individuals that no other beats in both distance and energy.
     pub front: Front,
-    /// The best of every kind, if the strategy keeps such an archive.
+    /// The strategy's archive of elites, if it has one.
     pub archive: Option<Archive>,
-    /// The best of the latest generation, the best first; nobody of a generation that an earlier session finished.
+    /// The best of the latest generation, the best first; empty if an earlier session finished it.
     pub leaders: Vec<Champion>,
     /// The latest generation; none if an earlier session finished it.
     pub generation: Option<Arc<Generation>>,
-    /// The parents of the next generation, each with how many children it will have, as far as they are known.
+    /// The known parents of the next generation, each with its number of children.
     pub parents: Vec<(Arc<Ancestor>, u32)>,
-    /// The line of descent of the best so far.
-    pub descent: Descent,
+    /// The ancestry of the best so far.
+    pub ancestry: Ancestry,
 }
 
 impl Exploration {
-    /// Of an experiment, as it is.
+    /// The results of an experiment so far.
     pub fn of(experiment: &Experiment) -> Self {
         Self {
             front: experiment.front().clone(),
@@ -76,267 +91,252 @@ impl Exploration {
             leaders: experiment.leaders().to_vec(),
             generation: experiment.generation().cloned(),
             parents: experiment.parents(),
-            descent: experiment.descent(),
+            ancestry: experiment.ancestry(),
         }
     }
 }
 
-/// An experiment that goes on in the background. Dropping it cancels it, and waits a moment for what is
-/// being written.
+/// A run on a background thread. Dropping this cancels it and waits briefly for files that are being written.
 #[derive(Debug)]
-pub struct Background {
-    control: Arc<Control>,
-    pause_after_generation: Arc<AtomicBool>,
-    /// Behind a lock so that a window may keep this where several threads can see it.
-    events: Mutex<Receiver<Event>>,
-    /// Size of the generation under way. Some strategies change it.
-    population: Arc<AtomicU32>,
-    /// Settings that are to be changed before the next generation, by full dotted names, with their values.
-    wishes: Arc<Mutex<VecDeque<(String, String)>>>,
-    /// The threads of the next generation.
-    pool: Arc<Mutex<Arc<ThreadPool>>>,
+pub struct BackgroundRun {
+    shared: Arc<BackgroundState>,
+    events: Receiver<RunEvent>,
     has_ended: AtomicBool,
 }
 
-/// How long dropping an experiment waits for its thread: much longer than a file takes to be written.
-const LONGEST_FAREWELL: Duration = Duration::from_secs(2);
+/// How long dropping a run waits for its thread: much longer than it takes to write a file.
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
-impl Background {
-    /// Opens a run and starts it on `pool`, held before its first evaluation: see [`Self::resume`]. If its
-    /// folder may still be in use by `before`, it waits until that has ended, in the background.
+/// Shared between the run's thread and its [`BackgroundRun`].
+#[derive(Debug)]
+struct BackgroundState {
+    control: RunControl,
+    pause_after_generation: AtomicBool,
+    /// Size of the generation in progress. Some strategies change it.
+    population: AtomicU32,
+    /// Requested changes of settings: full dotted names and values.
+    requests: Mutex<VecDeque<(String, String)>>,
+    /// The evaluator of the next generation.
+    evaluator: Mutex<Arc<dyn Evaluator>>,
+}
+
+impl BackgroundState {
+    fn requests(&self) -> MutexGuard<'_, VecDeque<(String, String)>> {
+        self.requests.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn evaluator(&self) -> MutexGuard<'_, Arc<dyn Evaluator>> {
+        self.evaluator.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl BackgroundRun {
+    /// Opens a run and holds it before its first evaluation: see [`Self::resume`]. If `before` may still use its
+    /// folder, the run's thread waits until that has ended.
     ///
     /// # Errors
     /// The thread could not be started.
     pub fn start(
         source: RunSource,
-        pool: Arc<ThreadPool>,
+        evaluator: Arc<dyn Evaluator>,
         before: Option<Self>,
     ) -> std::io::Result<Self> {
-        let control = Arc::new(Control::default());
-        control.pause();
-        let pause_after_generation = Arc::new(AtomicBool::new(false));
-        let population = Arc::new(AtomicU32::new(source.plan.settings.evolution.population));
-        let wishes = Arc::default();
-        let pool = Arc::new(Mutex::new(pool));
-        let (sender, events) = channel();
+        let shared = Arc::new(BackgroundState {
+            control: RunControl::default(),
+            pause_after_generation: AtomicBool::new(false),
+            population: AtomicU32::new(source.plan.settings.evolution.population),
+            requests: Mutex::default(),
+            evaluator: Mutex::new(evaluator),
+        });
+        shared.control.pause();
         if let Some(before) = &before {
-            before.control.cancel();
+            before.shared.control.cancel();
         }
-        thread::Builder::new().name("experiment".to_owned()).spawn({
-            let worker = Worker {
-                control: Arc::clone(&control),
-                pause_after_generation: Arc::clone(&pause_after_generation),
-                population: Arc::clone(&population),
-                wishes: Arc::clone(&wishes),
-                pool: Arc::clone(&pool),
-                events: sender,
-            };
-            move || {
-                if let Some(before) = before {
-                    before.wait_for_end();
-                }
-                if worker.control.is_cancelled() {
-                    return;
-                }
-                match source.open("the studio") {
-                    Ok(run) => worker.work(run),
-                    Err(error) => worker.tell(Event::Refused(error.to_string())),
-                }
+        let (sender, events) = unbounded();
+        let worker = RunWorker { shared: Arc::clone(&shared), events: sender };
+        thread::Builder::new().name("experiment".to_owned()).spawn(move || {
+            if let Some(before) = before {
+                before.wait_for_end();
+            }
+            if worker.shared.control.is_cancelled() {
+                return;
+            }
+            match source.open("the studio") {
+                Ok(run) => worker.work(run),
+                Err(error) => worker.send(RunEvent::Refused(error.to_string())),
             }
         })?;
-        let events = Mutex::new(events);
-        Ok(Self {
-            control,
-            pause_after_generation,
-            events,
-            population,
-            wishes,
-            pool,
-            has_ended: AtomicBool::new(false),
-        })
+        Ok(Self { shared, events, has_ended: AtomicBool::new(false) })
     }
 
-    /// Goes on until paused or finished.
+    /// Continues until paused or finished.
     pub fn resume(&self) {
-        self.pause_after_generation.store(false, Ordering::SeqCst);
-        self.control.resume();
+        self.shared.pause_after_generation.store(false, Ordering::SeqCst);
+        self.shared.control.resume();
     }
 
-    /// Goes on to the end of the current generation, then pauses.
+    /// Continues to the end of the current generation, then pauses.
     pub fn run_single_generation(&self) {
-        self.pause_after_generation.store(true, Ordering::SeqCst);
-        self.control.resume();
+        self.shared.pause_after_generation.store(true, Ordering::SeqCst);
+        self.shared.control.resume();
     }
 
     /// Whether it will pause after the current generation.
     pub fn is_single_generation(&self) -> bool {
-        self.pause_after_generation.load(Ordering::SeqCst)
+        self.shared.pause_after_generation.load(Ordering::SeqCst)
     }
 
     /// Holds the workers.
     pub fn pause(&self) {
-        self.control.pause();
+        self.shared.control.pause();
     }
 
-    /// Changes settings, by their full dotted names, before the next generation begins; of a run that is held between
-    /// two generations, at once. What comes of it is told: [`Event::Changed`], [`Event::NotChanged`], or nothing, if
-    /// it is already so.
-    pub fn amend(&self, changes: impl IntoIterator<Item = (String, String)>) {
-        self.wishes.lock().unwrap_or_else(PoisonError::into_inner).extend(changes);
-        self.control.nudge();
+    /// Requests changes of settings, by their full dotted names, before the next generation begins; if the run is
+    /// held between two generations, at once. Each is answered by [`RunEvent::SettingChanged`] or
+    /// [`RunEvent::SettingNotChanged`], unless the setting has that value already.
+    pub fn request_changes(&self, changes: impl IntoIterator<Item = (String, String)>) {
+        self.shared.requests().extend(changes);
+        self.shared.control.wake();
     }
 
-    /// Takes other worker threads, from the next generation on. That changes no bit.
-    pub fn set_pool(&self, pool: Arc<ThreadPool>) {
-        *self.pool.lock().unwrap_or_else(PoisonError::into_inner) = pool;
+    /// Replaces the evaluator from the next generation on. That changes no bit.
+    pub fn set_evaluator(&self, evaluator: Arc<dyn Evaluator>) {
+        *self.shared.evaluator() = evaluator;
     }
 
     /// Whether the workers are held.
     pub fn is_paused(&self) -> bool {
-        self.control.is_paused()
+        self.shared.control.is_paused()
     }
 
-    /// Finished evaluations of the current generation, and how many there will be.
+    /// Number of finished evaluations of the current generation, and their total.
     pub fn progress(&self) -> (u32, u32) {
-        let population = self.population.load(Ordering::Relaxed);
-        // Between two generations one number may be read before and the other after.
-        (self.control.done().min(population), population)
+        let population = self.shared.population.load(Ordering::Relaxed);
+        // Between two generations, one number may be read before and the other after the change.
+        (self.shared.control.done().min(population), population)
     }
 
     /// The next event, if there is one.
-    pub fn poll(&self) -> Option<Event> {
-        match self.events.lock().unwrap_or_else(PoisonError::into_inner).try_recv() {
+    pub fn poll(&self) -> Option<RunEvent> {
+        match self.events.try_recv() {
             Ok(event) => {
-                let is_last = matches!(event, Event::Finished { .. } | Event::Refused(_));
+                let is_last = matches!(event, RunEvent::Finished { .. } | RunEvent::Refused(_));
                 self.has_ended.fetch_or(is_last, Ordering::Relaxed);
                 Some(event)
             }
             Err(TryRecvError::Empty) => None,
-            // The thread is gone. Unless it has said that it finished, it did not get there.
+            // The thread is gone. Without a last event, it panicked.
             Err(TryRecvError::Disconnected) => {
-                (!self.has_ended.swap(true, Ordering::Relaxed)).then_some(Event::BrokeOff)
+                (!self.has_ended.swap(true, Ordering::Relaxed)).then_some(RunEvent::Failed)
             }
         }
     }
 
-    /// Waits for as long as it takes until the folder of a cancelled experiment is free.
+    /// Blocks until a cancelled run has released its folder.
     fn wait_for_end(self) {
-        let events = self.events.lock().unwrap_or_else(PoisonError::into_inner);
-        // Until its end of the channel is gone.
-        events.iter().for_each(drop);
+        // The thread drops its end of the channel last.
+        self.events.iter().for_each(drop);
     }
 }
 
-impl Drop for Background {
+impl Drop for BackgroundRun {
     fn drop(&mut self) {
-        self.control.cancel();
-        let events = self.events.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let deadline = Instant::now() + LONGEST_FAREWELL;
-        // Its end of the channel is gone when the thread has ended.
-        while events.recv_timeout(deadline.saturating_duration_since(Instant::now()))
-            != Err(RecvTimeoutError::Disconnected)
+        self.shared.control.cancel();
+        let deadline = Instant::now() + SHUTDOWN_TIMEOUT;
+        // The channel is disconnected when the thread has ended.
+        while self.events.recv_deadline(deadline) != Err(RecvTimeoutError::Disconnected)
             && Instant::now() < deadline
         {}
     }
 }
 
-/// What the experiment's thread shares with its [`Background`].
-struct Worker {
-    control: Arc<Control>,
-    pause_after_generation: Arc<AtomicBool>,
-    population: Arc<AtomicU32>,
-    wishes: Arc<Mutex<VecDeque<(String, String)>>>,
-    pool: Arc<Mutex<Arc<ThreadPool>>>,
-    events: Sender<Event>,
+/// State of the run's thread.
+struct RunWorker {
+    shared: Arc<BackgroundState>,
+    events: Sender<RunEvent>,
 }
 
-impl Worker {
-    /// A send fails only when nobody listens any more; the run is cancelled then anyway.
-    fn tell(&self, event: Event) {
+impl RunWorker {
+    /// Sending fails only when the receiver was dropped; the run is cancelled then anyway.
+    fn send(&self, event: RunEvent) {
         drop(self.events.send(event));
     }
 
-    fn work(&self, run: KeptRun) {
-        let KeptRun { mut experiment, mut keeper, reports } = run;
-        let control = &*self.control;
+    fn work(&self, run: RecordedRun) {
+        let RecordedRun { plan_at_start, mut experiment, mut recorder, reports } = run;
+        let control = &self.shared.control;
         let explored =
-            |experiment: &Experiment| Event::Explored(Box::new(Exploration::of(experiment)));
-        self.population.store(experiment.population(), Ordering::Relaxed);
-        if !keeper.changes().is_empty() {
-            self.tell(Event::WasChanged(keeper.changes().to_vec()));
-        }
-        self.tell(Event::Opened(reports));
+            |experiment: &Experiment| RunEvent::Explored(Box::new(Exploration::of(experiment)));
+        self.shared.population.store(experiment.population(), Ordering::Relaxed);
+        let plan_now = experiment.plan_now().into_owned();
+        self.send(RunEvent::Opened(Box::new(OpenedRun { plan_at_start, plan_now, reports })));
         if experiment.finished() > 0 {
-            self.tell(explored(&experiment));
+            self.send(explored(&experiment));
         }
         loop {
-            // Even one that is at its end can be made longer.
-            self.fulfil_wishes(&mut experiment, &mut keeper);
+            // Even a finished run can be made longer.
+            self.serve_requests(&mut experiment, &mut recorder);
             if experiment.is_over() {
                 break;
             }
-            match control.pass_unless(|| self.has_wishes()) {
+            match control.wait_while_paused_unless(|| !self.shared.requests().is_empty()) {
                 Ok(true) => {}
                 Ok(false) => continue,
                 Err(Cancelled) => return,
             }
-            let pool = Arc::clone(&self.pool.lock().unwrap_or_else(PoisonError::into_inner));
-            let note = |generation, individual, evaluation: &_| {
-                keeper.note(generation, individual, evaluation);
+            let evaluator = Arc::clone(&self.shared.evaluator());
+            let record = |generation, individual, evaluation: &_| {
+                recorder.record_evaluation(generation, individual, evaluation);
             };
-            let Ok(report) = experiment.run_generation_noting(&pool, control, note) else { return };
+            let report = experiment.run_generation_recording(&*evaluator, control, record);
+            let Ok(report) = report else { return };
             let crashes = loop {
-                match keeper.keep(&experiment, &report) {
+                match recorder.record_generation(&experiment, &report) {
                     Ok(crashes) => break crashes,
                     Err(error) => {
                         control.pause();
-                        self.tell(Event::NotSaved(error.to_string()));
+                        self.send(RunEvent::NotSaved(error.to_string()));
                     }
                 }
-                if control.pass().is_err() {
+                if control.wait_while_paused().is_err() {
                     return;
                 }
             };
-            if self.pause_after_generation.swap(false, Ordering::SeqCst) {
+            if self.shared.pause_after_generation.swap(false, Ordering::SeqCst) {
                 control.pause();
             }
-            crashes.into_iter().for_each(|crash| self.tell(Event::Crashed(crash)));
-            self.tell(explored(&experiment));
-            self.tell(Event::Generation(Box::new(report)));
+            crashes.into_iter().for_each(|crash| self.send(RunEvent::Crashed(crash)));
+            self.send(explored(&experiment));
+            self.send(RunEvent::Generation(Box::new(report)));
         }
-        self.tell(Event::Finished { run_hash: experiment.run_hash() });
+        self.send(RunEvent::Finished { run_hash: experiment.run_hash() });
     }
 
-    fn wishes(&self) -> MutexGuard<'_, VecDeque<(String, String)>> {
-        self.wishes.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn has_wishes(&self) -> bool {
-        !self.wishes().is_empty()
-    }
-
-    /// Changes what is to be changed before the next generation.
-    fn fulfil_wishes(&self, experiment: &mut Experiment, keeper: &mut Keeper) {
+    /// Makes the requested changes of settings.
+    fn serve_requests(&self, experiment: &mut Experiment, recorder: &mut RunRecorder) {
         loop {
             self.show_next_generation(experiment);
-            let Some((field, text)) = self.wishes().pop_front() else { return };
-            let event = match keeper.amend(experiment, &field, &text) {
+            let Some((field, text)) = self.shared.requests().pop_front() else { return };
+            let event = match recorder.change_setting(experiment, &field, &text) {
                 Ok(None) => continue,
-                Ok(Some(change)) => Event::Changed(change),
-                Err(error) => Event::NotChanged { field, reason: error.to_string() },
+                Ok(Some(change)) => {
+                    let plan_now = Box::new(experiment.plan_now().into_owned());
+                    RunEvent::SettingChanged { change, plan_now }
+                }
+                Err(error) => RunEvent::SettingNotChanged { field, reason: error.to_string() },
             };
-            // Before it is told, so that whoever hears of it sees the generation that it counts for.
+            // Before the event is sent, so that its receiver sees the generation that the change is for.
             self.show_next_generation(experiment);
-            self.tell(event);
+            self.send(event);
         }
     }
 
-    /// Shows the progress of the generation that begins next, of which nobody is done; after the last one, of that one.
+    /// Shows the progress of the next generation, of which nothing is done; after the last one, of that one.
     fn show_next_generation(&self, experiment: &Experiment) {
         if !experiment.is_over() {
-            self.control.start_generation();
+            self.shared.control.start_generation();
         }
-        self.population.store(experiment.population(), Ordering::Relaxed);
+        self.shared.population.store(experiment.population(), Ordering::Relaxed);
     }
 }
 

@@ -1,21 +1,20 @@
-//! How fast the simulation is: our scoring path against bare rapier, one thread against many, all in
-//! one run and in turn, so that a noisy machine slows them alike.
+//! Measures the speed of the simulation: our scoring path against bare rapier, one thread against many, in turn
+//! within one run, so that a noisy machine slows all of them alike.
 
+use std::convert::Infallible;
 use std::time::{Duration, Instant};
 
-use rayon::ThreadPool;
-use rayon::prelude::*;
 use serde::Serialize;
 
-use super::pool;
-use crate::control::Driver;
+use super::{LocalPool, WorkersError};
+use crate::control::ControlLoop;
 use crate::evolve::Settings;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
 use crate::score::{Trial, evaluate};
 use crate::world::{JointTorque, Simulation};
 
-/// What the bench measured. Rates are medians over its rounds, ratios medians of per-round ratios.
+/// Results of the benchmark. Rates are medians over its rounds, ratios medians of per-round ratios.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BenchReport {
     /// Worker threads of the many-threads figures.
@@ -48,18 +47,18 @@ pub fn bench(
     threads: usize,
     duration: Duration,
     mut progress: impl FnMut(f64),
-) -> Result<BenchReport, rayon::ThreadPoolBuildError> {
+) -> Result<BenchReport, WorkersError> {
     let trial = &settings.trial;
-    // The disqualified stop early; without them both contestants take the same steps.
+    // Disqualified rollouts stop early; without them, ours and bare rapier take the same steps.
     let genomes: Vec<Genome> = (0..10 * GENOMES as u32)
         .map(|individual| {
             let mut rng = stream(1, 1, individual, Purpose::Birth);
-            settings.genome.birth(trial.descent(), &mut rng)
+            settings.genome.random_genome(trial.genome_shape(), &mut rng)
         })
         .filter(|genome| evaluate(genome, trial).disqualified.is_none())
         .take(GENOMES)
         .collect();
-    let (one, many) = (pool(1)?, pool(threads)?);
+    let (one, many) = (LocalPool::new(1)?, LocalPool::new(threads)?);
     let started = Instant::now();
     let mut rounds: Vec<Round> = Vec::new();
     loop {
@@ -96,7 +95,7 @@ pub fn bench(
     })
 }
 
-/// Steps per second of the three contestants, measured one after the other.
+/// Steps per second of the three variants, measured one after the other.
 struct Round {
     ours: f64,
     bare: f64,
@@ -105,32 +104,26 @@ struct Round {
 
 /// Runs every genome once per thread of the pool and returns steps per wall second.
 fn steps_per_s(
-    pool: &ThreadPool,
+    pool: &LocalPool,
     threads: usize,
     genomes: &[Genome],
     run: impl Fn(&Genome) -> u32 + Sync,
 ) -> f64 {
     let started = Instant::now();
-    let steps: u64 = pool.install(|| {
-        let copies = rayon::iter::repeat_n(genomes, threads).flatten();
-        copies.map(|genome| u64::from(run(genome))).sum()
-    });
+    let steps = |index: usize| Ok(u64::from(run(&genomes[index % genomes.len()])));
+    let steps: Result<Vec<u64>, Infallible> = pool.map(genomes.len() * threads, steps);
+    let steps: u64 = steps.into_iter().flatten().sum();
     steps as f64 / started.elapsed().as_secs_f64()
 }
 
-/// The same world and torques as `evaluate`, without health checks, pose copies and trace: what any
-/// program would do that drives this snake with rapier. Returns the world at the end.
+/// The same world and torques as `evaluate`, without health checks, pose copies and trace, as any program would
+/// drive this snake with rapier. Returns the world at the end.
 fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
     let mut simulation = Simulation::new(&trial.world_plan(genome));
-    let driver = Driver::new(genome, trial.physics.steps_per_s);
-    let mut felt = Vec::new();
-    let mut torques = vec![JointTorque::default(); trial.agent.joints()];
+    let mut control = ControlLoop::new(&genome.controller, trial.physics.steps_per_s);
+    let mut torques = vec![JointTorque::default(); simulation.body().joints.len()];
     for step in 0..trial.steps() {
-        if driver.feels() {
-            felt.clear();
-            felt.extend(simulation.joint_states());
-        }
-        driver.torques(step, &felt, &mut torques);
+        control.act(step, &simulation, &mut torques);
         simulation.apply(&torques);
         simulation.physics_mut().step();
     }
@@ -149,10 +142,10 @@ mod tests {
     use crate::world::Pose;
 
     #[test]
-    fn the_bare_loop_computes_the_very_motion_that_is_scored() {
+    fn the_bare_loop_computes_the_motion_that_is_scored() {
         let settings = Settings::default();
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = settings.genome.birth(settings.trial.descent(), &mut rng);
+        let genome = settings.genome.random_genome(settings.trial.genome_shape(), &mut rng);
         let bare: Vec<Pose> = step_bare(&genome, &settings.trial).poses().collect();
         let mut rollout = Rollout::new(&genome, &settings.trial);
         while rollout.advance() {}

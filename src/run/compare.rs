@@ -1,32 +1,34 @@
 //! Several methods under equal budgets, with the same seeds.
 
-use std::sync::Mutex;
-use std::sync::PoisonError;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
+use super::evaluator::Evaluator;
+use super::experiment::Experiment;
 use super::headless::HeadlessError;
-use super::{Cancelled, Control, Experiment, pool};
+use super::report::{GenerationReport, Quartiles};
+use super::run_control::{Cancelled, RunControl};
 use crate::check::{Invalid, within};
 use crate::evolve::{Descriptor, RunPlan, Settings, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::save::{CURVE_POINTS, ComparedBest, ComparedRun, Comparison};
 
-/// A run that a comparison is to make.
+/// One run of a comparison.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Contestant {
-    /// The method.
+pub struct PlannedRun {
+    /// The learning method.
     pub strategy: StrategyKind,
-    /// What drives the joints.
+    /// The controller of the joints.
     pub controller: ControllerKind,
     /// The seed.
     pub seed: u64,
 }
 
-impl Contestant {
-    /// What it runs: the settings with its method and controller, and generations that spend the budget.
+impl PlannedRun {
+    /// Its plan: the settings with its method and controller, and enough generations to spend the budget.
     ///
-    /// The report's method gets the report's number of generations: its range halves with each, so that it would
-    /// stand still in more. The others get the settings' population.
+    /// The report's method gets the report's number of generations: its mutation range halves with each, so more
+    /// would change nothing. The others keep the population of the settings.
     ///
     /// # Errors
     /// The budget is too small for one generation, or the settings do not fit together.
@@ -40,52 +42,51 @@ impl Contestant {
         settings.genome.controller = self.controller;
         let evolution = &mut settings.evolution;
         evolution.strategy = self.strategy;
-        if self.strategy == StrategyKind::Halving {
-            evolution.generations = REPORT_GENERATIONS;
-            evolution.population = evaluations / REPORT_GENERATIONS;
+        let fixed_generations = self.strategy.info().compared_generations;
+        if let Some(generations) = fixed_generations {
+            evolution.generations = generations;
+            evolution.population = evaluations / generations;
         } else {
             evolution.generations = evaluations / evolution.population.max(1);
         }
-        let least = evolution.population.max(REPORT_GENERATIONS);
-        within("evaluations", evaluations, least..=LARGEST_BUDGET)?;
+        let min = evolution.population.max(fixed_generations.unwrap_or(1));
+        within("evaluations", evaluations, min..=MAX_BUDGET)?;
         settings.check()?;
         Ok(RunPlan::new(preset, self.seed, settings))
     }
 }
 
-/// The report's run has six generations.
-const REPORT_GENERATIONS: u32 = 6;
-/// The largest budget of a run.
-const LARGEST_BUDGET: u32 = 10_000_000;
+/// Maximum number of evaluations of a run.
+const MAX_BUDGET: u32 = 10_000_000;
 
-/// Runs everyone, each on one of so many threads, and tells `done` of each run that is finished, one at a time, and
-/// `spent` of the evaluations of each generation.
+/// Evolves all plans, as many at the same time as `evaluator` has workers. Calls `done` with each finished run, one
+/// at a time, and `spent` with the number of evaluations of each generation.
 ///
 /// # Errors
-/// The interrupt key was pressed, threads could not be started, or `done` failed.
+/// `control` was cancelled, workers could not be started, or `done` failed.
 pub fn run_all(
     plans: &[RunPlan],
-    threads: usize,
-    control: &Control,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
     spent: impl Fn(u32) + Sync,
     done: impl FnMut(ComparedRun) -> Result<(), HeadlessError> + Send,
 ) -> Result<(), HeadlessError> {
     let next = AtomicUsize::new(0);
     let done = Mutex::new(done);
-    // Whole runs side by side: nobody waits for the slowest of a generation.
+    // Whole runs in parallel: no worker waits for the slowest evaluation of a generation.
     let worker = || -> Result<(), HeadlessError> {
-        let alone = pool(1)?;
+        let single = evaluator.with_workers(1)?;
         while let Some(plan) = plans.get(next.fetch_add(1, Ordering::SeqCst)) {
             let mut experiment = Experiment::new(plan.clone());
             let run = run_one(&mut experiment, plan, |experiment| {
-                let report = experiment.run_generation(&alone, control)?;
+                let report = experiment.run_generation(&*single, control)?;
                 spent(report.evaluations);
                 Ok(report)
             });
             let run = run.map_err(|Cancelled| HeadlessError::Cancelled { kept: None })?;
             let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
             if let Err(error) = done(run) {
-                // Nobody computes what cannot be kept.
+                // The other runs could not be saved either.
                 control.cancel();
                 return Err(error);
             }
@@ -93,11 +94,12 @@ pub fn run_all(
         Ok(())
     };
     std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads.min(plans.len())).map(|_| scope.spawn(worker)).collect();
+        let workers: Vec<_> =
+            (0..evaluator.workers().min(plans.len())).map(|_| scope.spawn(worker)).collect();
         let results = workers
             .into_iter()
             .map(|worker| worker.join().unwrap_or(Err(HeadlessError::Cancelled { kept: None })));
-        // What went wrong counts before who was cancelled because of it.
+        // Report the cause rather than the cancellations that followed.
         let mut errors: Vec<HeadlessError> = results.filter_map(Result::err).collect();
         errors.sort_by_key(|error| matches!(error, HeadlessError::Cancelled { .. }));
         errors.into_iter().next().map_or(Ok(()), Err)
@@ -107,7 +109,7 @@ pub fn run_all(
 fn run_one(
     experiment: &mut Experiment,
     plan: &RunPlan,
-    mut generation: impl FnMut(&mut Experiment) -> Result<super::GenerationReport, Cancelled>,
+    mut generation: impl FnMut(&mut Experiment) -> Result<GenerationReport, Cancelled>,
 ) -> Result<ComparedRun, Cancelled> {
     let budget = plan.settings.evolution.budget();
     let mut curve = vec![None; CURVE_POINTS];
@@ -120,7 +122,7 @@ fn run_one(
         first_on_landing = first_on_landing.or(report.first_on_landing.map(number));
         last_mean = report.statistics.map(|statistics| statistics.mean);
         let best = experiment.best().map(|best| best.evaluation.fitness);
-        // A point of the curve is what was known when that share of the budget was spent.
+        // A point of the curve is the best fitness when that share of the budget was spent.
         let reached = (experiment.evaluated() * CURVE_POINTS as u64).div_ceil(budget.max(1));
         curve.iter_mut().skip((reached as usize).saturating_sub(1)).for_each(|at| *at = best);
     }
@@ -145,41 +147,12 @@ fn run_one(
     })
 }
 
-/// Median and quartiles.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quartiles {
-    /// A quarter is below.
-    pub low: f64,
-    /// Half is below.
-    pub median: f64,
-    /// Three quarters are below.
-    pub high: f64,
-}
-
-impl Quartiles {
-    /// Of some values, by linear interpolation between them (definition 7 of Hyndman and Fan, The American
-    /// Statistician 50 (1996)); none of none.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let mut values: Vec<f64> = values.into_iter().collect();
-        values.sort_by(f64::total_cmp);
-        let last = values.len().checked_sub(1)?;
-        let at = |share: f64| {
-            let place = share * last as f64;
-            let (below, part) = (place as usize, place - (place as usize) as f64);
-            let (low, high) = (values[below], values[(below + 1).min(last)]);
-            // Infinity times nothing is not a number.
-            if part == 0.0 || low == high { low } else { low + (high - low) * part }
-        };
-        Some(Self { low: at(0.25), median: at(0.5), high: at(0.75) })
-    }
-}
-
 /// One method with one controller, over all seeds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row<'a> {
-    /// The method.
+pub struct ComparisonRow<'a> {
+    /// The learning method.
     pub strategy: StrategyKind,
-    /// What drove the joints.
+    /// The controller of the joints.
     pub controller: ControllerKind,
     /// Its runs.
     pub runs: Vec<&'a ComparedRun>,
@@ -187,15 +160,15 @@ pub struct Row<'a> {
 
 impl Comparison {
     /// The rows of the table, in the order of strategies and controllers.
-    pub fn rows(&self) -> Vec<Row<'_>> {
-        let mut rows: Vec<Row<'_>> = Vec::new();
+    pub fn rows(&self) -> Vec<ComparisonRow<'_>> {
+        let mut rows: Vec<ComparisonRow<'_>> = Vec::new();
         for run in &self.runs {
             let (strategy, controller) = (run.strategy, run.controller);
             match rows.last_mut() {
                 Some(row) if (row.strategy, row.controller) == (strategy, controller) => {
                     row.runs.push(run);
                 }
-                _ => rows.push(Row { strategy, controller, runs: vec![run] }),
+                _ => rows.push(ComparisonRow { strategy, controller, runs: vec![run] }),
             }
         }
         rows
@@ -238,10 +211,10 @@ impl Comparison {
                     .map_or("-".to_owned(), |mean| format!("{:.2}", mean.median)),
             );
         }
-        text + "\nmedian [quartiles] over the seeds; who never lands counts as infinite evaluations\n"
+        text + "\nmedian [quartiles] over the seeds; a run that never lands counts as infinite evaluations\n"
     }
 
-    /// The rows of the CSV file, the head first: one per run.
+    /// The records of the CSV file, the header first: one per run.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = [
             "strategy",
@@ -276,18 +249,18 @@ impl Comparison {
     }
 }
 
-impl Row<'_> {
+impl ComparisonRow<'_> {
     /// Best fitness of each run.
     pub fn fitness(&self) -> Option<Quartiles> {
         Quartiles::of(self.runs.iter().filter_map(|run| Some(f64::from(run.best?.fitness))))
     }
 
-    /// Steps that the best of each run climbed.
+    /// Number of steps that the best of each run climbed.
     pub fn steps_climbed(&self) -> Option<Quartiles> {
         Quartiles::of(self.runs.iter().filter_map(|run| Some(f64::from(run.best?.steps_climbed))))
     }
 
-    /// Evaluations until the first agent on the landing. A run without one counts as infinite.
+    /// Number of evaluations until the first agent on the landing; infinite for a run without one.
     pub fn evaluations_to_landing(&self) -> Option<Quartiles> {
         let number = |run: &&ComparedRun| run.first_on_landing.map_or(f64::INFINITY, f64::from);
         Quartiles::of(self.runs.iter().map(number))
@@ -298,8 +271,8 @@ impl Row<'_> {
         Quartiles::of(self.runs.iter().filter_map(|run| run.best?.energy_j_per_m))
     }
 
-    /// The learning curve: quartiles of the best fitness so far at each point of the budget at which every run
-    /// has one.
+    /// The learning curve: quartiles of the best fitness so far, at each point of the budget where all runs have
+    /// a best.
     pub fn curve(&self) -> Vec<(usize, Quartiles)> {
         let at = |point: usize| {
             let values: Option<Vec<f64>> =
@@ -313,24 +286,15 @@ impl Row<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn quartiles_are_those_of_definition_7() {
-        let quartiles = Quartiles::of([4.0, 1.0, 3.0, 2.0]).expect("four values");
-        assert_eq!((quartiles.low, quartiles.median, quartiles.high), (1.75, 2.5, 3.25));
-        let with_infinity = Quartiles::of([1.0, 2.0, f64::INFINITY]).expect("three values");
-        assert_eq!((with_infinity.low, with_infinity.median), (1.5, 2.0));
-        assert_eq!(Quartiles::of([]), None);
-    }
+    use crate::run::LocalPool;
 
     fn plans() -> Vec<RunPlan> {
         let mut settings = Settings::default();
         settings.trial.duration_s = 0.5;
         settings.evolution.population = 6;
-        let contestant =
-            |strategy| Contestant { strategy, controller: ControllerKind::Gait, seed: 3 };
+        let planned = |strategy| PlannedRun { strategy, controller: ControllerKind::Gait, seed: 3 };
         StrategyKind::ALL
-            .map(|strategy| contestant(strategy).plan("test", &settings, 24).expect("allowed"))
+            .map(|strategy| planned(strategy).plan("test", &settings, 24).expect("allowed"))
             .to_vec()
     }
 
@@ -340,12 +304,13 @@ mod tests {
             comparison.add(run);
             Ok(())
         };
-        run_all(plans, threads, &Control::default(), |_| (), done).expect("not cancelled");
+        let evaluator = LocalPool::new(threads).expect("threads");
+        run_all(plans, &evaluator, &RunControl::default(), |_| (), done).expect("not cancelled");
         comparison
     }
 
     #[test]
-    fn everyone_spends_the_same_and_the_number_of_threads_changes_nothing() {
+    fn all_runs_spend_the_same_and_the_number_of_threads_changes_nothing() {
         let plans = plans();
         let comparison = compared(&plans, 1);
         assert_eq!(comparison.runs.len(), 6);
@@ -353,8 +318,8 @@ mod tests {
         assert_eq!(comparison, compared(&plans, 3));
         let mut experiment = Experiment::new(plans[1].clone());
         while !experiment.is_over() {
-            let alone = pool(1).expect("a pool");
-            experiment.run_generation(&alone, &Control::default()).expect("not cancelled");
+            let evaluator = LocalPool::new(1).expect("threads");
+            experiment.run_generation(&evaluator, &RunControl::default()).expect("not cancelled");
         }
         let ga = &comparison.runs[1];
         assert_eq!(ga.run_hash, format!("{:016x}", experiment.run_hash()), "it is the run itself");

@@ -1,65 +1,62 @@
-//! The program without a window: an experiment as a table or as JSON lines, a replay as a verdict.
+//! The program without a window: evolves a run and prints it as a table or as JSON lines.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Duration;
+use std::path::PathBuf;
 
-use indicatif::{ProgressBar, ProgressStyle};
-use rayon::{ThreadPool, ThreadPoolBuildError};
 use serde_json::{Value, json};
 
-use super::{Cancelled, Control, Experiment, GenerationReport, KeptRun, RunSource, caught, pool};
-use crate::ENGINE_VERSION;
+use super::evaluator::{Evaluator, WorkersError};
+use super::progress_bar::run_generation_with_bar;
+use super::recorder::{RecordedRun, RunSource};
+use super::report::GenerationReport;
+use super::run_control::{Cancelled, RunControl};
 use crate::evolve::{Champion, RunPlan, SettingChange};
-use crate::save::{SaveError, load_champion};
-use crate::score::{Evaluation, evaluate};
-use crate::world::{Effort, HealthLimits};
+use crate::save::SaveError;
 
-/// Why a headless command failed.
+/// A headless command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
     /// A file could not be read or written.
     #[error(transparent)]
     Save(#[from] SaveError),
-    /// The threads could not be started.
-    #[error("threads: cannot be started: {0}")]
-    Threads(#[from] ThreadPoolBuildError),
+    /// The workers could not be started.
+    #[error(transparent)]
+    Workers(#[from] WorkersError),
     /// Standard output was closed or is full.
     #[error("standard output: cannot be written: {0}")]
     Output(#[from] io::Error),
     /// The interrupt key stopped a run.
     #[error(
-        "cancelled after generation {finished} of {generations}; it goes on with --resume {}",
+        "cancelled after generation {finished} of {generations}; continue it with --resume {}",
         folder.display()
     )]
     Stopped {
-        /// Generations that are finished.
+        /// Number of generations that are finished.
         finished: u32,
-        /// Generations in the run.
+        /// Number of generations in the run.
         generations: u32,
         /// The run's folder.
         folder: PathBuf,
     },
     /// A generation could not be saved.
     #[error(
-        "{source}; generations up to {saved} are safe, the run goes on with --resume {}",
+        "{source}; generations up to {saved} are saved, continue the run with --resume {}",
         folder.display()
     )]
     NotSaved {
-        /// Why.
+        /// The cause.
         source: Box<SaveError>,
-        /// Generations that are saved.
+        /// Number of generations that are saved.
         saved: u32,
         /// The run's folder.
         folder: PathBuf,
     },
-    /// The program failed on the genome of a save.
-    #[error("{}: the program failed on its genome: {message}", path.display())]
+    /// The simulation of a saved genome panicked.
+    #[error("{}: simulating its genome failed: {message}", path.display())]
     Crashed {
         /// The save.
         path: PathBuf,
-        /// What the program said.
+        /// The message of the panic.
         message: String,
     },
     /// The interrupt key was pressed.
@@ -68,15 +65,15 @@ pub enum HeadlessError {
         None => "the first seed was not finished, nothing is saved".to_owned(),
     })]
     Cancelled {
-        /// Where the best so far is.
+        /// The file of the best so far.
         kept: Option<PathBuf>,
     },
-    /// A replay came out differently than recorded.
+    /// A replay differs from its record.
     #[error("{path}: replay differs from the record: {difference}")]
     Differs {
         /// The save.
         path: PathBuf,
-        /// What differs, and why that may be.
+        /// The difference, and a possible reason.
         difference: String,
     },
     /// Every agent of every generation was disqualified.
@@ -84,45 +81,46 @@ pub enum HeadlessError {
     NoChampion,
 }
 
-/// Evolves a run to its end and prints it to `out`, a line per generation, those included that were behind
-/// it. Each generation is saved before its line is printed.
+/// Evolves a run to its end and prints a line per generation to `out`, beginning with those that earlier sessions
+/// finished. Each generation is saved before its line is printed.
 ///
 /// # Errors
 /// See [`HeadlessError`]. The folder is opened before the first evaluation.
 pub fn evolve(
     source: RunSource,
-    threads: usize,
+    evaluator: &dyn Evaluator,
     json: bool,
-    control: &Arc<Control>,
+    control: &RunControl,
     out: &mut dyn Write,
 ) -> Result<(), HeadlessError> {
     let RunPlan { preset, seed, founder, .. } = source.plan.clone();
-    let KeptRun { mut experiment, mut keeper, reports } = source.open("snakes --no-render")?;
-    let pool = pool(threads)?;
-    let folder = keeper.folder().to_owned();
+    let run = source.open("snakes --no-render")?;
+    let RecordedRun { mut experiment, mut recorder, reports, .. } = run;
+    let folder = recorder.folder().to_owned();
     let settings = experiment.settings().into_owned();
     let generations = settings.evolution.generations;
-    let behind = match reports.len() {
+    let earlier = match reports.len() {
         0 => String::new(),
         _ if experiment.is_over() => "; finished before (--restart evolves it again)".to_owned(),
-        behind => format!("; goes on after generation {behind}"),
+        finished => format!("; continues after generation {finished}"),
     };
     let founder = founder.map(|founder| format!(", from {}", founder.name()));
     let from = founder.unwrap_or_default();
     say(&format!(
         "preset {preset}, seed {seed}{from}: generations {generations}, population {}, threads \
-         {threads}{behind}",
-        settings.evolution.population
+         {}{earlier}",
+        settings.evolution.population,
+        evaluator.workers()
     ));
-    if !keeper.changes().is_empty() {
-        say(&format!("changed on the way: {}", in_words(keeper.changes())));
+    if !recorder.changes().is_empty() {
+        say(&format!("changed during the run: {}", list_changes(recorder.changes())));
     }
     if !json {
         writeln!(out, "{TABLE_HEAD}")?;
     }
     let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
-        landing.see(report);
+        landing.add(report);
         let line = if json { json_line(report).to_string() } else { table_row(report) };
         writeln!(out, "{line}")?;
         out.flush()
@@ -130,22 +128,23 @@ pub fn evolve(
     reports.iter().try_for_each(&mut print)?;
     drop(reports);
     while !experiment.is_over() {
-        let note = |generation, individual, evaluation: &_| {
-            keeper.note(generation, individual, evaluation);
+        let record = |generation, individual, evaluation: &_| {
+            recorder.record_evaluation(generation, individual, evaluation);
         };
-        let report = with_progress(&mut experiment, &pool, control, note);
+        let report = run_generation_with_bar(&mut experiment, evaluator, control, record);
         let finished = experiment.finished();
         let report = report.map_err(|Cancelled| HeadlessError::Stopped {
             finished,
             generations,
             folder: folder.clone(),
         })?;
-        let crashes =
-            keeper.keep(&experiment, &report).map_err(|source| HeadlessError::NotSaved {
+        let crashes = recorder.record_generation(&experiment, &report).map_err(|source| {
+            HeadlessError::NotSaved {
                 source: Box::new(source),
                 saved: experiment.finished() - 1,
                 folder: folder.clone(),
-            })?;
+            }
+        })?;
         crashes.iter().for_each(|crash| say(crash));
         print(&report)?;
     }
@@ -157,10 +156,10 @@ pub fn evolve(
             "run_hash": run_hash,
             "first_on_landing": landing.first,
             "best": best.map(|best| best.evaluation.fitness),
-            "champion": keeper.best(),
+            "champion": recorder.best(),
         });
         writeln!(out, "{last}")?;
-    } else if let (Some(best), Some(path)) = (best, keeper.best()) {
+    } else if let (Some(best), Some(path)) = (best, recorder.best()) {
         writeln!(out, "\nchampion  {}", about(best))?;
         writeln!(out, "saved to  {}", path.display())?;
         if let Some(first) = landing.first {
@@ -171,10 +170,10 @@ pub fn evolve(
     best.map(|_| ()).ok_or(HeadlessError::NoChampion)
 }
 
-/// What was changed, in a line; of many changes the latest.
-fn in_words(changes: &[SettingChange]) -> String {
-    const MOST: usize = 6;
-    let left_out = changes.len().saturating_sub(MOST);
+/// The changes in a line; of many, the latest.
+fn list_changes(changes: &[SettingChange]) -> String {
+    const MAX_LISTED: usize = 6;
+    let left_out = changes.len().saturating_sub(MAX_LISTED);
     let mut texts: Vec<String> = Vec::new();
     if left_out > 0 {
         texts.push(format!("{left_out} earlier"));
@@ -187,146 +186,26 @@ fn in_words(changes: &[SettingChange]) -> String {
     texts.join(", ")
 }
 
-/// Counts evaluations up to the first agent on the landing.
+/// Finds the first individual on the landing, in the order of all evaluations.
 #[derive(Debug, Default)]
 struct Landing {
+    /// Number of evaluations so far.
     spent: u64,
-    /// Its number, counted from 1.
+    /// Its number; the first evaluation is 1.
     first: Option<u64>,
 }
 
 impl Landing {
-    fn see(&mut self, report: &GenerationReport) {
+    fn add(&mut self, report: &GenerationReport) {
         let number = report.first_on_landing.map(|index| self.spent + u64::from(index) + 1);
         self.first = self.first.or(number);
         self.spent += u64::from(report.evaluations);
     }
 }
 
-/// Runs one generation with a progress bar on the terminal; where standard error is no terminal, none
-/// is drawn. `note` is told of every evaluation: see [`Experiment::run_generation_noting`].
-///
-/// # Errors
-/// [`Cancelled`], if `control` was.
-pub fn with_progress(
-    experiment: &mut Experiment,
-    pool: &ThreadPool,
-    control: &Arc<Control>,
-    note: impl Fn(u32, u32, &Evaluation) + Sync,
-) -> Result<GenerationReport, Cancelled> {
-    let bar = ProgressBar::new(experiment.population().into());
-    // The template is a constant; if it were wrong, the default bar would do.
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {eta} left") {
-        bar.set_style(style);
-    }
-    bar.set_message(format!("generation {}", experiment.finished() + 1));
-    watched(&bar, control, || experiment.run_generation_noting(pool, control, note))
-}
-
-/// Does `work` while a bar shows how much of it `control` has counted.
-pub fn watched<T>(bar: &ProgressBar, control: &Control, work: impl FnOnce() -> T) -> T {
-    let result = std::thread::scope(|scope| {
-        let (finished, watched) = std::sync::mpsc::channel::<()>();
-        scope.spawn(move || {
-            // Ends when the sender is dropped.
-            while watched.recv_timeout(Duration::from_millis(100))
-                == Err(std::sync::mpsc::RecvTimeoutError::Timeout)
-            {
-                bar.set_position(control.done().into());
-            }
-        });
-        let result = work();
-        drop(finished);
-        result
-    });
-    bar.finish_and_clear();
-    result
-}
-
-/// Re-simulates a saved champion and compares it with its record, bit for bit.
-///
-/// # Errors
-/// The file cannot be used, or fitness or trace differ from what was recorded.
-pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), HeadlessError> {
-    let loaded = load_champion(path)?;
-    let recorded = loaded.champion.evaluation;
-    let Champion { genome, trial, .. } = &loaded.champion;
-    let found = caught(|| evaluate(genome, trial))
-        .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })?;
-    let matches = found.agrees_with(&recorded);
-    let meaning = loaded.champion.trial.meaning(f64::from(found.centre_y_m));
-    if json {
-        let line = json!({
-            "fitness": found.fitness,
-            "trace_hash": format!("{:016x}", found.trace_hash),
-            "recorded_fitness": recorded.fitness,
-            "recorded_trace_hash": format!("{:016x}", recorded.trace_hash),
-            "steps": found.steps,
-            "energy_j": found.effort.map(|effort| effort.energy_j),
-            "top_speed_m_s": found.effort.map(|effort| effort.top_speed_m_s),
-            "joint_drift_m": found.effort.map(|effort| effort.joint_drift_m),
-            "sideways_m": found.effort.map(|effort| effort.sideways_m),
-            "disqualified": found.disqualified.map(|reason| reason.words()),
-            "meaning": meaning,
-            "engine": loaded.engine,
-            "matches": matches,
-        });
-        writeln!(out, "{line}")?;
-    } else {
-        let unit = loaded.champion.trial.fitness.unit();
-        writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;
-        if let Some(reason) = found.disqualified {
-            let words = reason.words();
-            writeln!(out, "disqualified after {} steps: {words}", found.steps)?;
-        }
-        if let Some(effort) = &found.effort {
-            writeln!(out, "{}", effort_lines(effort, &trial.health))?;
-        }
-        writeln!(out, "trace_hash  {:016x}", found.trace_hash)?;
-        if matches {
-            writeln!(out, "equal to the record, bit for bit")?;
-        }
-    }
-    if matches {
-        return Ok(());
-    }
-    let engine = if loaded.is_of_this_engine() {
-        "the file was edited, or this machine computes other bits".to_owned()
-    } else {
-        format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
-    };
-    let difference = format!(
-        "fitness {}, {} steps, trace {:016x}; recorded {}, {} steps, {:016x} ({engine})",
-        found.fitness,
-        found.steps,
-        found.trace_hash,
-        recorded.fitness,
-        recorded.steps,
-        recorded.trace_hash,
-    );
-    Err(HeadlessError::Differs { path: path.to_owned(), difference })
-}
-
-/// What a run demanded, each with the limit beyond which it would have been disqualified.
-fn effort_lines(effort: &Effort, health: &HealthLimits) -> String {
-    format!(
-        "energy      {:.1} J\n\
-         top speed   {:.2} m/s of {} m/s\n\
-         joint drift {:.4} m of {} m\n\
-         sideways    {:.2} m of {} m",
-        effort.energy_j,
-        effort.top_speed_m_s,
-        health.speed_m_s,
-        effort.joint_drift_m,
-        health.joint_drift_m,
-        effort.sideways_m,
-        health.arena_half_width_m,
-    )
-}
-
-/// Tells a person how it goes; standard output is for results.
+/// Writes a line for the user to standard error; standard output is for results.
 pub fn say(line: &str) {
-    // Nothing is left to do if even standard error is gone.
+    // If standard error is closed, there is no other place to report to.
     let _ = writeln!(io::stderr(), "{line}");
 }
 
@@ -376,7 +255,7 @@ fn about(champion: &Champion) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::Statistics;
+    use crate::run::report::Statistics;
 
     fn report() -> GenerationReport {
         let statistics = Statistics {
@@ -409,13 +288,13 @@ mod tests {
     fn the_first_on_the_landing_is_counted_over_generations() {
         let mut landing = Landing::default();
         for (evaluations, first_on_landing) in [(50, None), (50, Some(7)), (50, Some(0))] {
-            landing.see(&GenerationReport { evaluations, first_on_landing, ..report() });
+            landing.add(&GenerationReport { evaluations, first_on_landing, ..report() });
         }
         assert_eq!(landing.first, Some(58));
     }
 
     #[test]
-    fn a_row_stands_under_its_head() {
+    fn table_rows_align_with_the_head() {
         let report = report();
         let row = table_row(&report);
         for (number, column) in [("-7.22", "mean"), ("1.50", "best"), ("12", "disqualified")] {

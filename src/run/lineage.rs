@@ -1,11 +1,11 @@
-//! A generation as it was, and who came from whom over all of them. Nothing of a run depends on it.
+//! The last generation, and the ancestry of individuals over all generations. A run's results do not depend on it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::evolve::{Parents, Place, ranking};
+use crate::evolve::{IndividualId, Parents, ranking};
 use crate::genome::Genome;
-use crate::save::{BornRecord, LineageRecord, MOST_SPREAD};
+use crate::save::{IndividualRecord, LineageRecord, MAX_SPREAD};
 use crate::score::Evaluation;
 
 /// A finished generation. All three lists are in the order of the individuals.
@@ -15,99 +15,100 @@ pub struct Generation {
     pub number: u32,
     /// The individuals.
     pub genomes: Vec<Arc<Genome>>,
-    /// How they did.
+    /// Their evaluations.
     pub evaluations: Vec<Evaluation>,
-    /// Whom they come from.
+    /// Their parents.
     pub parents: Vec<Parents>,
 }
 
-/// Somebody who has, or may have, descendants.
+/// An individual that has, or may have, descendants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ancestor {
     /// Its place in the run.
-    pub place: Place,
-    /// What it reached; none if it was disqualified.
+    pub place: IndividualId,
+    /// Its fitness; none if it was disqualified.
     pub fitness: Option<f32>,
-    /// Its genes; none if an earlier session found it.
+    /// Its genome; none if an earlier session found it.
     pub genome: Option<Arc<Genome>>,
-    /// Whom it comes from.
+    /// Its parents.
     pub parents: Parents,
 }
 
-/// How a generation's fitness was spread.
+/// Distribution of a generation's fitness.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Spread {
+pub struct FitnessSpread {
     /// The generation; the first is 1.
     pub generation: u32,
-    /// Some of the healthy ones' fitness, from the least to the greatest, spread evenly over them.
+    /// Fitness of a sample of healthy individuals at even distances in the ranking, in ascending order.
     pub fitness: Vec<f32>,
 }
 
-/// The line of descent of somebody.
+/// The ancestry of an individual.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Descent {
-    /// Itself, its first parent, that one's first parent, and so on, as far as it is known.
+pub struct Ancestry {
+    /// The individual, its first parent, that one's first parent, and so on, as far as known.
     pub line: Vec<Arc<Ancestor>>,
-    /// The second parents of those in the line, as far as they are known.
+    /// The second parents of those in the line, as far as known.
     pub others: Vec<Arc<Ancestor>>,
-    /// Everybody's fitness, the first generation first.
-    pub spreads: Vec<Arc<Spread>>,
+    /// Fitness in all generations, the first generation first.
+    pub spreads: Vec<Arc<FitnessSpread>>,
 }
 
-/// Who came from whom. Lines that have died out are forgotten.
+/// The ancestors of the individuals that may have descendants. Extinct lines are removed.
 #[derive(Debug, Default)]
 pub(super) struct Lineage {
-    known: BTreeMap<Place, Arc<Ancestor>>,
-    spreads: Vec<Arc<Spread>>,
+    known: BTreeMap<IndividualId, Arc<Ancestor>>,
+    spreads: Vec<Arc<FitnessSpread>>,
 }
 
-/// More ancestors than this would take too much memory; the earliest go.
-const MOST_KNOWN: usize = 60_000;
+/// Maximum number of ancestors, to limit memory; the earliest are removed.
+const MAX_ANCESTORS: usize = 60_000;
 
 impl Lineage {
-    /// What an earlier session has written down.
+    /// The lineage that earlier sessions saved.
     pub fn recalled(records: &[LineageRecord]) -> Self {
         let mut lineage = Self::default();
         for record in records {
-            let place = |individual| Place { generation: record.generation, individual };
-            let ancestors = record.born.iter().map(|&BornRecord(individual, fitness, parents)| {
-                let place = place(individual);
-                Ancestor { place, fitness, genome: None, parents: parents.into() }
-            });
+            let place = |individual| IndividualId { generation: record.generation, individual };
+            let ancestors =
+                record.born.iter().map(|&IndividualRecord(individual, fitness, parents)| {
+                    let place = place(individual);
+                    Ancestor { place, fitness, genome: None, parents: parents.into() }
+                });
             let ancestors = ancestors.map(|ancestor| (ancestor.place, Arc::new(ancestor)));
             lineage.known.extend(ancestors);
             let (generation, fitness) = (record.generation, record.spread.clone());
-            lineage.spreads.push(Arc::new(Spread { generation, fitness }));
+            lineage.spreads.push(Arc::new(FitnessSpread { generation, fitness }));
         }
         lineage
     }
 
-    /// Takes a generation in: those of it who may have children, and its champion. Returns what is to be written down.
+    /// Adds the champion of a generation and its individuals that may have children. Returns the record to be saved.
     pub fn add(
         &mut self,
         generation: &Generation,
-        breeders: &[Place],
-        champion: Option<Place>,
+        parent_pool: &[IndividualId],
+        champion: Option<IndividualId>,
     ) -> LineageRecord {
         let number = generation.number;
-        let champion = champion.filter(|champion| !breeders.contains(champion));
-        let born = breeders.iter().copied().chain(champion);
+        let champion = champion.filter(|champion| !parent_pool.contains(champion));
+        let born = parent_pool.iter().copied().chain(champion);
         let born = born.filter(|place| place.generation == number);
         let ancestors = born.filter_map(|place| generation.ancestor(place.individual));
         let ancestors: Vec<Arc<Ancestor>> = ancestors.map(Arc::new).collect();
         let born = ancestors.iter().map(|ancestor| {
-            BornRecord(ancestor.place.individual, ancestor.fitness, ancestor.parents.into())
+            IndividualRecord(ancestor.place.individual, ancestor.fitness, ancestor.parents.into())
         });
         let fitness = generation.spread();
         let record =
             LineageRecord { generation: number, spread: fitness.clone(), born: born.collect() };
-        self.spreads.push(Arc::new(Spread { generation: number, fitness }));
+        self.spreads.push(Arc::new(FitnessSpread { generation: number, fitness }));
         self.known.extend(ancestors.into_iter().map(|ancestor| (ancestor.place, ancestor)));
         record
     }
 
-    /// Forgets everybody but these and whom they come from.
-    pub fn retain(&mut self, roots: impl Iterator<Item = Place>) {
+    /// Removes all individuals but these and their ancestors.
+    pub fn retain(&mut self, roots: impl Iterator<Item = IndividualId>) {
         let mut lines = BTreeSet::new();
         let mut kept = BTreeSet::new();
         for root in roots {
@@ -118,49 +119,49 @@ impl Lineage {
                     break;
                 }
                 kept.insert(place);
-                kept.extend(ancestor.parents.places());
-                next = ancestor.parents.places().next();
+                kept.extend(ancestor.parents.ids());
+                next = ancestor.parents.ids().next();
             }
         }
         self.known.retain(|place, _| kept.contains(place));
-        while self.known.len() > MOST_KNOWN {
+        while self.known.len() > MAX_ANCESTORS {
             self.known.pop_first();
         }
     }
 
-    /// Somebody who is known.
-    pub fn get(&self, place: Place) -> Option<&Arc<Ancestor>> {
+    /// A known individual.
+    pub fn get(&self, place: IndividualId) -> Option<&Arc<Ancestor>> {
         self.known.get(&place)
     }
 
-    /// The line of descent of somebody.
-    pub fn descent(&self, of: Option<Place>) -> Descent {
+    /// The ancestry of an individual.
+    pub fn ancestry(&self, of: Option<IndividualId>) -> Ancestry {
         let first = of.and_then(|place| self.get(place));
-        let parent = |ancestor: &&Arc<Ancestor>| self.get(ancestor.parents.places().next()?);
+        let parent = |ancestor: &&Arc<Ancestor>| self.get(ancestor.parents.ids().next()?);
         let line: Vec<_> = std::iter::successors(first, parent).cloned().collect();
-        let seconds = line.iter().filter_map(|ancestor| ancestor.parents.places().nth(1));
+        let seconds = line.iter().filter_map(|ancestor| ancestor.parents.ids().nth(1));
         let others = seconds.filter_map(|place| self.get(place).cloned()).collect();
-        Descent { line, others, spreads: self.spreads.clone() }
+        Ancestry { line, others, spreads: self.spreads.clone() }
     }
 }
 
 impl Generation {
-    /// One of its individuals as an ancestor of others.
+    /// One of its individuals, as an ancestor.
     fn ancestor(&self, individual: u32) -> Option<Ancestor> {
         let index = individual as usize;
         let evaluation = self.evaluations.get(index)?;
         Some(Ancestor {
-            place: Place { generation: self.number, individual },
+            place: IndividualId { generation: self.number, individual },
             fitness: evaluation.disqualified.is_none().then_some(evaluation.fitness),
             genome: self.genomes.get(index).cloned(),
             parents: self.parents.get(index).copied().unwrap_or(Parents::Unknown),
         })
     }
 
-    /// Some of the healthy ones' fitness, from the least to the greatest, spread evenly over them.
+    /// Fitness of a sample of healthy individuals at even distances in the ranking, in ascending order.
     fn spread(&self) -> Vec<f32> {
         let ranked = ranking(&self.evaluations);
-        let count = ranked.len().min(MOST_SPREAD);
+        let count = ranked.len().min(MAX_SPREAD);
         let place = |index: usize| index * (ranked.len() - 1) / (count - 1).max(1);
         let chosen = (0..count).rev().map(|index| ranked[place(index)]);
         chosen.map(|index| self.evaluations[index].fitness).collect()
@@ -172,7 +173,7 @@ mod tests {
     use super::*;
     use crate::evolve::{RunPlan, Settings, StrategyKind, begin};
 
-    /// Evolves without a world: of each generation the one with this index is the best.
+    /// Evolves without simulating: `best` has the index of the best individual of each generation.
     fn lineage(strategy: StrategyKind, best: &[usize]) -> (Lineage, Vec<LineageRecord>) {
         let mut settings = Settings::default();
         settings.evolution.strategy = strategy;
@@ -191,51 +192,51 @@ mod tests {
             strategy.tell(&genomes, &evaluations);
             let genomes = genomes.into_iter().map(Arc::new).collect();
             let generation = Generation { number, genomes, evaluations, parents };
-            let champion = Place { generation: number, individual: *best as u32 };
-            let breeders = strategy.breeders();
-            records.push(lineage.add(&generation, &breeders, Some(champion)));
-            lineage.retain(breeders.into_iter().chain(Some(champion)));
+            let champion = IndividualId { generation: number, individual: *best as u32 };
+            let parent_pool = strategy.parent_pool();
+            records.push(lineage.add(&generation, &parent_pool, Some(champion)));
+            lineage.retain(parent_pool.into_iter().chain(Some(champion)));
         }
         (lineage, records)
     }
 
     #[test]
-    fn the_line_of_the_reports_method_goes_back_parent_by_parent() {
+    fn the_ancestry_of_the_reports_method_goes_back_parent_by_parent() {
         // In turn: even indices are children of the best, odd ones of the second.
         let (lineage, records) = lineage(StrategyKind::Halving, &[3, 2, 1, 4]);
-        let of = Place { generation: 4, individual: 4 };
-        let line = lineage.descent(Some(of)).line;
+        let of = IndividualId { generation: 4, individual: 4 };
+        let line = lineage.ancestry(Some(of)).line;
         let places: Vec<(u32, u32)> =
             line.iter().map(|a| (a.place.generation, a.place.individual)).collect();
         // 4 of the last comes from the best of the third, 1; that from the second best of the second, 5 (of 2 and
         // 5); that, odd, from the second best of the first (of 3 and 5).
         assert_eq!(places, [(4, 4), (3, 1), (2, 5), (1, 5)]);
         assert!(line.iter().all(|ancestor| ancestor.genome.is_some()));
-        let again = Lineage::recalled(&records).descent(Some(of));
-        let known: Vec<Place> = again.line.iter().map(|ancestor| ancestor.place).collect();
+        let again = Lineage::recalled(&records).ancestry(Some(of));
+        let known: Vec<IndividualId> = again.line.iter().map(|ancestor| ancestor.place).collect();
         assert_eq!(known, line.iter().map(|ancestor| ancestor.place).collect::<Vec<_>>());
         assert_eq!(again.spreads.len(), 4);
     }
 
     #[test]
-    fn who_has_no_descendants_is_forgotten() {
+    fn individuals_without_descendants_are_removed() {
         let best: Vec<usize> = (0..60).map(|generation| generation % 6).collect();
         let (lineage, _) = self::lineage(StrategyKind::Halving, &best);
         assert!(lineage.known.len() < 60 + 2 * 6, "{} are known", lineage.known.len());
         let (crossed, _) = self::lineage(StrategyKind::Ga, &best);
-        let descent = crossed.descent(Some(Place { generation: 60, individual: 5 }));
-        assert_eq!(descent.line.len(), 60);
-        assert!(!descent.others.is_empty(), "some have two parents");
+        let ancestry = crossed.ancestry(Some(IndividualId { generation: 60, individual: 5 }));
+        assert_eq!(ancestry.line.len(), 60);
+        assert!(!ancestry.others.is_empty(), "some have two parents");
     }
 
     #[test]
-    fn the_spread_reaches_from_the_least_to_the_greatest() {
+    fn the_fitness_sample_includes_the_least_and_the_greatest() {
         let evaluations: Vec<Evaluation> =
             (0..100).map(|i| Evaluation::of_fitness(i as f32)).collect();
         let generation =
             Generation { number: 1, genomes: Vec::new(), evaluations, parents: Vec::new() };
         let spread = generation.spread();
-        assert_eq!(spread.len(), MOST_SPREAD);
+        assert_eq!(spread.len(), MAX_SPREAD);
         assert_eq!((spread.first(), spread.last()), (Some(&0.0), Some(&99.0)));
         assert!(spread.is_sorted());
         let none = Generation { evaluations: Vec::new(), ..generation };

@@ -1,40 +1,38 @@
-//! An experiment going on: worker threads, pause and cancel, statistics, and the headless mode.
+//! Runs: evaluation, pause and cancel, statistics, saving, background threads and the headless mode.
 
 mod background;
-mod batch;
+mod background_task;
 pub mod bench;
-pub mod calibrate;
 pub mod compare;
-mod control;
-mod errand;
+mod evaluator;
 mod experiment;
 pub mod headless;
-mod keeper;
-mod librarian;
+mod library_reader;
 mod lineage;
-mod listing;
 mod lookahead;
 mod panics;
-mod reading;
+mod parallel_runs;
+pub mod progress_bar;
+mod recorder;
+mod replay;
 mod report;
 pub mod robust;
-mod side_by_side;
+mod run_control;
 pub mod table1;
-mod threads;
 pub mod verify;
 
-pub use background::{Background, Event, Exploration};
-pub use batch::Batch;
-pub use control::{Cancelled, Control};
-pub use errand::Errand;
+pub use background::{BackgroundRun, Exploration, OpenedRun, RunEvent};
+pub use background_task::{BackgroundTask, TaskProgress};
+pub use evaluator::{
+    EvaluationResult, Evaluator, LocalPool, THREADS_RANGE, WorkersError, available_cores,
+};
 pub use experiment::Experiment;
-pub use keeper::{ChangeError, Keeper, KeptRun, RunSource};
-pub use librarian::{Librarian, Reading};
-pub use lineage::{Ancestor, Descent, Generation, Spread};
-pub use listing::Listing;
+pub use library_reader::{LibraryEvent, LibraryReader};
+pub use lineage::{Ancestor, Ancestry, FitnessSpread, Generation};
 pub use lookahead::Lookahead;
 pub use panics::caught;
-pub use reading::LogReading;
-pub use report::{Crash, GenerationReport, Statistics};
-pub use side_by_side::{SideBySide, Told};
-pub use threads::{THREADS_RANGE, available_cores, pool};
+pub use parallel_runs::{ParallelRuns, ParallelRunsEvent};
+pub use recorder::{ChangeError, RecordedRun, RunRecorder, RunSource};
+pub use replay::replay;
+pub use report::{Crash, GenerationReport, Quartiles, Statistics};
+pub use run_control::{Cancelled, RunControl};

@@ -1,4 +1,4 @@
-//! A panic in an evaluation ends that evaluation, not the program.
+//! Catches panics, so that one in an evaluation ends that evaluation and not the program.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -10,20 +10,21 @@ thread_local! {
     static EXPECTED: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs `work`; a panic in it becomes its message and place, and is printed nowhere.
+/// Runs `work`; a panic in it becomes an error with its message and location, and is not printed.
 ///
 /// # Errors
-/// `work` panicked. What it was changing may be half changed: it must not be used again.
+/// `work` panicked. Values that it was changing may be inconsistent and must not be used again.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    listen();
+    install_hook();
     EXPECTED.set(Some(String::new()));
     let result = panic::catch_unwind(AssertUnwindSafe(work));
-    let heard = EXPECTED.take().unwrap_or_default();
-    result.map_err(|payload| if heard.is_empty() { words(payload.as_ref()) } else { heard })
+    let message = EXPECTED.take().unwrap_or_default();
+    result
+        .map_err(|payload| if message.is_empty() { message_of(payload.as_ref()) } else { message })
 }
 
-/// Lets a panic on a thread that expects it leave its message there instead of on standard error.
-fn listen() {
+/// Installs a panic hook that stores the message on threads that expect a panic, instead of printing it.
+fn install_hook() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let usual = panic::take_hook();
@@ -31,7 +32,7 @@ fn listen() {
             let is_expected = EXPECTED.with_borrow_mut(|expected| {
                 if let Some(message) = expected {
                     let place = info.location().map(|place| format!(" at {place}"));
-                    *message = words(info.payload()) + &place.unwrap_or_default();
+                    *message = message_of(info.payload()) + &place.unwrap_or_default();
                 }
                 expected.is_some()
             });
@@ -42,8 +43,8 @@ fn listen() {
     });
 }
 
-/// A panic's message, on one line that is not too long.
-fn words(payload: &(dyn Any + Send)) -> String {
+/// A panic's message, on one line of limited length.
+fn message_of(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     let text = text.unwrap_or("a panic without a message");

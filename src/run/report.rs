@@ -1,11 +1,12 @@
-//! What a generation was like, in numbers.
+//! Results of a generation in numbers.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::compare::Quartiles;
-use crate::evolve::Champion;
+use crate::evolve::{Champion, Origin, RunPlan};
+use crate::genome::Genome;
 use crate::save::{GenerationRecord, StatisticsRecord};
 use crate::score::{Evaluation, Trial};
 use crate::world::Disqualification;
@@ -13,25 +14,25 @@ use crate::world::Disqualification;
 /// The result of one generation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GenerationReport {
-    /// The first is 1.
+    /// Its number; the first is 1.
     pub generation: u32,
-    /// Individuals that were evaluated.
+    /// Number of individuals that were evaluated.
     pub evaluations: u32,
-    /// How many of them were disqualified, for whatever reason.
+    /// Number of them that were disqualified, for any reason.
     pub disqualified: u32,
-    /// How many for which reason; nothing of a generation that is known from its log.
+    /// Number of disqualified individuals by reason; empty for a generation that was read from its log.
     pub reasons: BTreeMap<Disqualification, u32>,
-    /// On how many of them the program failed.
+    /// Number of them whose simulation panicked.
     pub crashed: u32,
     /// The first few of these.
     pub crashes: Vec<Crash>,
-    /// How many ended on the landing, in good health.
+    /// Number of healthy individuals that ended on the landing.
     pub on_landing: u32,
     /// The index of the first of them.
     pub first_on_landing: Option<u32>,
-    /// Fitness statistics over the others; none if all were disqualified.
+    /// Fitness statistics over the healthy ones; none if all were disqualified.
     pub statistics: Option<Statistics>,
-    /// What the mean means, in the words of the report's Table 1.
+    /// Meaning of the mean, in the words of the report's Table 1.
     pub meaning: String,
     /// Hash over the bits of every evaluation, in the order of the individuals.
     pub hash: u64,
@@ -41,17 +42,80 @@ pub struct GenerationReport {
     pub champion: Option<Champion>,
 }
 
-/// A genome on which the program failed.
+/// An individual whose simulation panicked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crash {
     /// The individual; its evaluation is void.
     pub individual: Champion,
-    /// What the program said.
+    /// The message of the panic.
     pub message: String,
 }
 
+/// Maximum number of crashes in a report; more would add nothing new.
+const MAX_CRASHES: usize = 3;
+
+/// A generation that was just evaluated.
+pub(super) struct EvaluatedGeneration<'a> {
+    pub plan: &'a RunPlan,
+    /// Its number; the first is 1.
+    pub generation: u32,
+    /// In the order of the individuals, as the evaluations.
+    pub genomes: &'a [Genome],
+    pub evaluations: &'a [Evaluation],
+}
+
+impl EvaluatedGeneration<'_> {
+    /// One of its individuals.
+    pub fn individual(&self, index: usize) -> Champion {
+        Champion {
+            genome: self.genomes[index].clone(),
+            trial: self.plan.settings.trial.clone(),
+            evaluation: self.evaluations[index],
+            origin: Origin {
+                preset: self.plan.preset.clone(),
+                seed: self.plan.seed,
+                generation: self.generation,
+                individual: index as u32,
+            },
+        }
+    }
+
+    /// Its report. `ranking` has the indices of the healthy ones, the best first; `messages` those of the panics, in
+    /// the order of the individuals.
+    pub fn report(
+        &self,
+        ranking: &[usize],
+        messages: Vec<Option<String>>,
+        elapsed: Duration,
+    ) -> GenerationReport {
+        let (evaluations, trial) = (self.evaluations, &self.plan.settings.trial);
+        let crashes = messages.into_iter().enumerate().filter_map(|(index, message)| {
+            Some(Crash { individual: self.individual(index), message: message? })
+        });
+        let reasons = reasons(evaluations);
+        let statistics = Statistics::of(evaluations);
+        let landed = |evaluation: &&Evaluation| evaluation.is_on_landing(&trial.stairs);
+        let first_on_landing = evaluations.iter().position(|e| landed(&e));
+        GenerationReport {
+            generation: self.generation,
+            on_landing: evaluations.iter().filter(landed).count() as u32,
+            first_on_landing: first_on_landing.map(|index| index as u32),
+            evaluations: evaluations.len() as u32,
+            disqualified: reasons.values().sum(),
+            crashed: reasons.get(&Disqualification::Crashed).copied().unwrap_or(0),
+            reasons,
+            crashes: crashes.take(MAX_CRASHES).collect(),
+            statistics,
+            meaning: meaning(statistics.as_ref(), trial),
+            hash: generation_hash(evaluations),
+            elapsed_s: elapsed.as_secs_f64(),
+            champion: ranking.first().map(|&index| self.individual(index)),
+        }
+    }
+}
+
 impl GenerationReport {
-    /// The line of the log.
+    /// This report as a line of the log.
     pub fn record(&self) -> GenerationRecord {
         GenerationRecord {
             generation: self.generation,
@@ -80,7 +144,7 @@ impl GenerationReport {
         }
     }
 
-    /// The report that is in a line of the log, under the trial of its run.
+    /// The report that a line of the log stands for, under the trial of its run.
     pub fn of_record(record: &GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
         let statistics = record.statistics.map(|statistics| {
             let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m, .. } =
@@ -107,16 +171,16 @@ impl GenerationReport {
     }
 }
 
-/// What a generation's mean means.
-pub fn meaning(statistics: Option<&Statistics>, trial: &Trial) -> String {
+/// Meaning of a generation's mean.
+fn meaning(statistics: Option<&Statistics>, trial: &Trial) -> String {
     match statistics {
         Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
         None => "all disqualified".to_owned(),
     }
 }
 
-/// How many were disqualified for which reason.
-pub fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
+/// Number of disqualified individuals by reason.
+fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
     let mut counts = BTreeMap::new();
     for reason in evaluations.iter().filter_map(|evaluation| evaluation.disqualified) {
         *counts.entry(reason).or_default() += 1;
@@ -124,7 +188,7 @@ pub fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
     counts
 }
 
-/// Statistics over the fitness of those agents of one generation that were not disqualified.
+/// Statistics over the fitness of the healthy individuals of one generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// Arithmetic mean.
@@ -137,15 +201,14 @@ pub struct Statistics {
     pub std: f64,
     /// Least fitness.
     pub worst: f64,
-    /// Mean y of the centre at the end, in m, whatever is rewarded.
+    /// Mean final y of the centre, in m, independent of what is rewarded.
     pub mean_centre_y_m: f64,
-    /// Below the first lies a quarter, above the second another; none where an earlier version of the program left
-    /// them out.
+    /// Lower and upper quartile; none in logs of earlier versions of the program.
     pub quartiles: Option<(f64, f64)>,
 }
 
 impl Statistics {
-    /// The statistics of the healthy ones among `evaluations`, in a fixed order of summation.
+    /// Statistics over the healthy ones among `evaluations`, summed in a fixed order.
     pub fn of(evaluations: &[Evaluation]) -> Option<Self> {
         let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
         let mut fitness: Vec<f64> = healthy.map(|e| f64::from(e.fitness)).collect();
@@ -163,8 +226,37 @@ impl Statistics {
     }
 }
 
+/// Median and quartiles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quartiles {
+    /// A quarter is below.
+    pub low: f64,
+    /// Half is below.
+    pub median: f64,
+    /// Three quarters are below.
+    pub high: f64,
+}
+
+impl Quartiles {
+    /// The quartiles of some values, by linear interpolation between them (definition 7 of Hyndman and Fan, The
+    /// American Statistician 50 (1996)); none if there are no values.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        let at = |share: f64| {
+            let place = share * last as f64;
+            let (below, part) = (place as usize, place - (place as usize) as f64);
+            let (low, high) = (values[below], values[(below + 1).min(last)]);
+            // Infinity times zero is not a number.
+            if part == 0.0 || low == high { low } else { low + (high - low) * part }
+        };
+        Some(Self { low: at(0.25), median: at(0.5), high: at(0.75) })
+    }
+}
+
 /// The hash of a generation: every evaluation's bits, in the order of the individuals.
-pub fn generation_hash(evaluations: &[Evaluation]) -> u64 {
+fn generation_hash(evaluations: &[Evaluation]) -> u64 {
     let mut hash = Xxh3Default::new();
     for evaluation in evaluations {
         hash.update(&evaluation.trace_hash.to_le_bytes());
@@ -218,5 +310,14 @@ mod tests {
     fn the_hash_depends_on_the_order_of_the_individuals() {
         let [a, b] = [evaluation(1.0, None), evaluation(2.0, None)];
         assert_ne!(generation_hash(&[a, b]), generation_hash(&[b, a]));
+    }
+
+    #[test]
+    fn quartiles_are_those_of_definition_7() {
+        let quartiles = Quartiles::of([4.0, 1.0, 3.0, 2.0]).expect("four values");
+        assert_eq!((quartiles.low, quartiles.median, quartiles.high), (1.75, 2.5, 3.25));
+        let with_infinity = Quartiles::of([1.0, 2.0, f64::INFINITY]).expect("three values");
+        assert_eq!((with_infinity.low, with_infinity.median), (1.5, 2.0));
+        assert_eq!(Quartiles::of([]), None);
     }
 }

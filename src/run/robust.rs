@@ -1,28 +1,27 @@
-//! How robust a champion is: the same genome in many worlds that are a little otherwise.
+//! Robustness of a champion: the same genome in many slightly perturbed trials.
 
-use rayon::ThreadPool;
-use rayon::prelude::*;
-
-use super::{Cancelled, Control, caught};
+use super::evaluator::LocalPool;
+use super::panics::caught;
+use super::run_control::{Cancelled, RunControl};
 use crate::evolve::Champion;
 use crate::rng::{Purpose, stream};
 use crate::score::{Evaluation, Fitness, PerturbationRange, Rollout, Trial};
 
-/// What became of the trials.
+/// Results of the trials.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Robustness {
-    /// How many trials there were.
+    /// Number of trials.
     pub trials: u32,
-    /// In how many of them the agent was disqualified.
+    /// Number of trials in which the agent was disqualified.
     pub disqualified: u32,
-    /// In how many of them the agent stood at least so many steps high at the end: first one step, then two.
+    /// Number of trials in which the agent ended at least one step high, at least two steps high, and so on.
     pub reached: Vec<u32>,
 }
 
-/// A share, and where the true one lies in 95 % of cases.
+/// A share and its 95 % confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Share {
-    /// The share that was seen.
+    /// The observed share.
     pub seen: f64,
     /// Lower end of the interval.
     pub least: f64,
@@ -39,8 +38,8 @@ pub fn robustness(
     range: &PerturbationRange,
     trials: u32,
     seed: u64,
-    pool: &ThreadPool,
-    control: &Control,
+    pool: &LocalPool,
+    control: &RunControl,
 ) -> Result<Robustness, Cancelled> {
     let Champion { genome, .. } = champion;
     let trial = &Trial {
@@ -49,9 +48,9 @@ pub fn robustness(
         ..champion.trial.clone()
     };
     control.start_generation();
-    let one = |number: u32| {
-        control.pass()?;
-        let mut rng = stream(seed, 0, number, Purpose::Perturbation);
+    let one = |number: usize| {
+        control.wait_while_paused()?;
+        let mut rng = stream(seed, 0, number as u32, Purpose::Perturbation);
         let perturbation = range.draw(&mut rng);
         let steps = caught(|| {
             let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
@@ -60,11 +59,10 @@ pub fn robustness(
             disqualified.is_none().then_some(steps as u32)
         });
         control.count_one();
-        // A world on which the program fails is none that the agent climbed.
+        // A trial whose simulation panics counts as disqualified.
         Ok(steps.unwrap_or_default())
     };
-    let ends: Vec<Option<u32>> =
-        pool.install(|| (0..trials).into_par_iter().map(one).collect::<Result<_, _>>())?;
+    let ends: Vec<Option<u32>> = pool.map(trials as usize, one)?;
     let reached = |steps: u32| ends.iter().flatten().filter(|&&end| end >= steps).count() as u32;
     Ok(Robustness {
         trials,
@@ -90,11 +88,10 @@ impl Share {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::pool;
     use crate::save::shipped_champion;
 
     #[test]
-    fn the_interval_is_wilsons() {
+    fn the_interval_is_the_score_interval_of_wilson() {
         // Newcombe, Statistics in Medicine 17 (1998), table I: 81 of 263 and 15 of 148.
         for (count, of, least, most) in
             [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611)]
@@ -106,11 +103,12 @@ mod tests {
     }
 
     #[test]
-    fn without_perturbation_every_trial_ends_as_recorded_and_with_it_not() {
+    fn only_perturbed_trials_differ_from_the_record() {
         let champion = shipped_champion().expect("well formed").champion;
         let measured = |range: &PerturbationRange, threads| {
-            let pool = pool(threads).expect("a pool");
-            robustness(&champion, range, 12, 1, &pool, &Control::default()).expect("not cancelled")
+            let pool = LocalPool::new(threads).expect("threads");
+            robustness(&champion, range, 12, 1, &pool, &RunControl::default())
+                .expect("not cancelled")
         };
         let none = PerturbationRange {
             friction: 0.0,

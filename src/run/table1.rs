@@ -1,6 +1,8 @@
 //! The report's Table 1 beside ours: the mean fitness of each generation, over several seeds.
 
-use super::{Cancelled, Experiment, GenerationReport};
+use super::experiment::Experiment;
+use super::report::GenerationReport;
+use super::run_control::Cancelled;
 use crate::evolve::RunPlan;
 
 /// The means of the report's Table 1, generation 1 first.
@@ -11,9 +13,9 @@ pub const REPORT_MEANS: [f64; 6] = [-7.23, -5.94, -2.05, 3.84, 5.79, 8.05];
 pub struct SeedResult {
     /// Seed of the run.
     pub seed: u64,
-    /// Mean fitness of each generation; none where all were disqualified.
+    /// Mean fitness of each generation; none where all individuals were disqualified.
     pub means: Vec<Option<f64>>,
-    /// How many agents of each generation were disqualified.
+    /// Number of disqualified individuals in each generation.
     pub disqualified: Vec<u32>,
     /// Hash of the run.
     pub run_hash: u64,
@@ -58,9 +60,9 @@ pub struct Table1 {
     pub seeds: Vec<SeedResult>,
 }
 
-/// A generation over all seeds.
+/// Means of a generation over all seeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
+pub struct SeedSpread {
     /// Mean of the seeds' means.
     pub mean: f64,
     /// Standard deviation between the seeds (divided by n - 1); 0 for one seed.
@@ -73,32 +75,32 @@ pub struct Spread {
 
 impl Table1 {
     /// Mean and spread over the seeds, for each generation; none where no seed has a mean.
-    pub fn spreads(&self) -> Vec<Option<Spread>> {
+    pub fn spreads(&self) -> Vec<Option<SeedSpread>> {
         let generations = self.seeds.iter().map(|seed| seed.means.len()).max().unwrap_or(0);
         (0..generations)
             .map(|generation| {
                 let means = self.seeds.iter().filter_map(|seed| *seed.means.get(generation)?);
-                Spread::of(&means.collect::<Vec<f64>>())
+                SeedSpread::of(&means.collect::<Vec<f64>>())
             })
             .collect()
     }
 
-    /// In how many seeds the mean rises with every generation.
+    /// Number of seeds in which the mean rises with every generation.
     pub fn rising(&self) -> usize {
         self.seeds.iter().filter(|seed| seed.rises()).count()
     }
 
-    /// In how many seeds the last mean is at least the report's.
+    /// Number of seeds in which the last mean is at least the report's.
     pub fn reaching(&self) -> usize {
         self.seeds.iter().filter(|seed| seed.reaches_the_report()).count()
     }
 
-    /// In how many seeds both hold.
+    /// Number of seeds for which both are true.
     pub fn both(&self) -> usize {
         self.seeds.iter().filter(|seed| seed.rises() && seed.reaches_the_report()).count()
     }
 
-    /// The two tables side by side, as text. `meaning` puts a mean into the report's words.
+    /// The two tables side by side, as text. `meaning` expresses a mean in the report's words.
     pub fn text(&self, meaning: impl Fn(f64) -> String) -> String {
         let mut text = format!(
             "{:>10} | {:>7}  {:<18} | {:>7}  {:>9}  {:>7}  {:>7}  {}\n",
@@ -133,7 +135,7 @@ impl Table1 {
         text
     }
 
-    /// The rows of the CSV file, the head first: one row per seed and generation.
+    /// The records of the CSV file, the header first: one per seed and generation.
     pub fn records(&self) -> Vec<Vec<String>> {
         let head = ["seed", "generation", "mean_m", "disqualified", "report_mean_m", "run_hash"];
         let mut records = vec![head.map(str::to_owned).to_vec()];
@@ -155,7 +157,7 @@ impl Table1 {
     }
 }
 
-impl Spread {
+impl SeedSpread {
     fn of(values: &[f64]) -> Option<Self> {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
@@ -170,7 +172,7 @@ impl Spread {
 mod tests {
     use super::*;
     use crate::evolve::Settings;
-    use crate::run::{Control, pool};
+    use crate::run::{LocalPool, RunControl};
 
     fn seed(seed: u64, means: &[f64]) -> SeedResult {
         SeedResult {
@@ -182,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_counts_what_it_claims() {
+    fn the_table_counts_rising_and_reaching_seeds() {
         let table = Table1 {
             seeds: vec![
                 seed(1, &[-7.0, -5.0, -2.0, 3.0, 6.0, 9.0]),
@@ -202,15 +204,15 @@ mod tests {
     }
 
     #[test]
-    fn a_seed_is_the_run_that_the_headless_mode_makes() {
+    fn a_seed_has_the_hash_of_the_same_run_elsewhere() {
         let mut settings = Settings::default();
         settings.evolution.population = 6;
         settings.evolution.generations = 2;
         settings.trial.duration_s = 0.5;
         let plan = RunPlan::new("test", 3, settings);
-        let pool = pool(1).expect("a pool");
-        let mut run =
-            |experiment: &mut Experiment| experiment.run_generation(&pool, &Control::default());
+        let evaluator = LocalPool::new(1).expect("threads");
+        let control = RunControl::default();
+        let mut run = |experiment: &mut Experiment| experiment.run_generation(&evaluator, &control);
         let result = run_seed(plan.clone(), &mut run).expect("not cancelled");
         let mut experiment = Experiment::new(plan);
         while !experiment.is_over() {

@@ -1,13 +1,10 @@
-//! Reading and writing champions, whichever format they are in.
+//! Reading and writing champions.
 
 use std::path::Path;
 
 use super::SaveError;
 use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, write_whole};
-use super::v1::ChampionV1;
-use super::v2::ChampionV2;
-use super::v3::{ChampionV3, KIND};
-use super::v4::{ChampionV4, FORMAT};
+use super::v5::{ChampionV5, FORMAT, KIND};
 use crate::ENGINE_VERSION;
 use crate::evolve::Champion;
 use crate::score::Recording;
@@ -15,27 +12,27 @@ use crate::score::Recording;
 /// A champion read from a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadedChampion {
-    /// The champion, with what was recorded of it.
+    /// The champion with its recorded evaluation.
     pub champion: Champion,
-    /// The engine that recorded it. Another one than [`ENGINE_VERSION`] may compute other bits.
+    /// The engine that recorded it. An engine other than [`ENGINE_VERSION`] may compute other bits.
     pub engine: u32,
-    /// What it looked like there; files before format 3 do not know.
+    /// Its recorded poses, if the file has them.
     pub recording: Option<Recording>,
 }
 
 /// Reads a champion.
 ///
 /// # Errors
-/// The file is unreadable, too large, damaged, of another kind, newer, or has a value out of range.
+/// The file is unreadable, too large, damaged, of another kind or format, or has a value out of range.
 pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
     parse_champion(path, &read_text(path)?)
 }
 
-/// Room for the comment at the top, in bytes.
+/// Bytes reserved for the comment at the top.
 const HEADER: u64 = 10_000;
 
-/// Writes a champion and, if known, what it looks like, so that a person can read it, whole or not at all.
-/// What it looks like is left out of a file that would become too large to be read again.
+/// Writes a champion and, if given, its recorded poses as readable text, atomically. The poses are left out if the file
+/// would become too large to be read again.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -44,7 +41,7 @@ pub fn store_champion(
     champion: &Champion,
     recording: Option<&Recording>,
 ) -> Result<(), SaveError> {
-    let text_with = |recording| pretty(path, &ChampionV4::new(champion.clone(), recording));
+    let text_with = |recording| pretty(path, &ChampionV5::new(champion.clone(), recording));
     let is_readable = |text: &String| text.len() as u64 <= LARGEST_FILE_MIB * 1024 * 1024 - HEADER;
     let mut text = text_with(recording)?;
     if !is_readable(&text) {
@@ -57,7 +54,7 @@ pub fn store_champion(
     let header = format!(
         "// A champion of Snakes & Stairs: preset {}, seed {}, generation {}, individual {}.\n\
          // Fitness ({}): {}.\n\
-         // See it again, exactly: snakes replay FILE (with --no-render to check it in a terminal)\n",
+         // Replay it exactly: snakes replay FILE (add --no-render to check it in a terminal)\n",
         origin.preset,
         origin.seed,
         origin.generation,
@@ -68,25 +65,21 @@ pub fn store_champion(
     write_whole(path, format!("{header}{text}").as_bytes())
 }
 
-/// The champion that the studio opens with.
+/// The champion that the studio shows at its start.
 ///
 /// # Errors
-/// The embedded file is broken, which a test rules out.
+/// The embedded file is broken; a test prevents this.
 pub fn shipped_champion() -> Result<LoadedChampion, SaveError> {
     parse_champion(Path::new("climber.ron"), include_str!("../../saves/climber.ron"))
 }
 
-/// Reads a champion from a text; `path` is what errors call it.
+/// Parses a champion; `path` is the file's name in errors.
 ///
 /// # Errors
-/// As [`load_champion`], apart from reading.
+/// As for [`load_champion`], except for reading the file.
 pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
-    let file: ChampionV4 = match Header::read(path, text, KIND, FORMAT)? {
-        1 => ChampionV3::from(ChampionV2::from(parse::<ChampionV1>(path, text)?)).into(),
-        2 => ChampionV3::from(parse::<ChampionV2>(path, text)?).into(),
-        3 => parse::<ChampionV3>(path, text)?.into(),
-        _ => parse(path, text)?,
-    };
+    Header::check(path, text, KIND, FORMAT)?;
+    let file: ChampionV5 = parse(path, text)?;
     let engine = file.engine;
     let (champion, recording) =
         file.into_parts().map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
@@ -106,7 +99,7 @@ mod tests {
     use std::fs;
 
     use crate::evolve::{RunPlan, Settings};
-    use crate::run::{Control, Experiment, pool};
+    use crate::run::{Experiment, LocalPool, RunControl};
     use crate::score::{Rollout, evaluate};
 
     fn champion() -> Champion {
@@ -114,12 +107,13 @@ mod tests {
         settings.evolution.population = 4;
         settings.trial.duration_s = 1.0;
         let mut experiment = Experiment::new(RunPlan::new("test", 5, settings));
-        let report = experiment.run_generation(&pool(1).expect("a pool"), &Control::default());
-        report.expect("not cancelled").champion.expect("somebody was healthy")
+        let report =
+            experiment.run_generation(&LocalPool::new(1).expect("threads"), &RunControl::default());
+        report.expect("not cancelled").champion.expect("a healthy individual")
     }
 
     #[test]
-    fn a_champion_comes_back_from_its_file_in_every_bit() {
+    fn a_champion_is_read_back_bit_for_bit() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");
         let champion = champion();
@@ -131,11 +125,11 @@ mod tests {
         assert_eq!(frames, recording.frames().len());
         assert!(loaded.is_of_this_engine());
         let files = fs::read_dir(folder.path()).expect("a folder").count();
-        assert_eq!(files, 1, "and nothing else is left in the folder");
+        assert_eq!(files, 1, "no other file is left in the folder");
     }
 
     #[test]
-    fn the_shipped_champion_does_what_it_did_when_it_was_found() {
+    fn the_shipped_champion_matches_its_record_and_climbs_all_steps() {
         let LoadedChampion { champion, engine, .. } = shipped_champion().expect("well formed");
         assert_eq!(engine, ENGINE_VERSION);
         assert!(evaluate(&champion.genome, &champion.trial).agrees_with(&champion.evaluation));
@@ -147,41 +141,7 @@ mod tests {
         assert!(at.x.abs() < 2.5 && at.z > 5.0, "on the landing, not beside it: {at}");
     }
 
-    #[test]
-    fn a_file_of_format_1_loads_for_ever() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/saves/format-1.ron");
-        let LoadedChampion { champion, engine, .. } = load_champion(&path).expect("it loads");
-        assert_eq!(engine, 1);
-        assert_eq!(champion.trial.surface, crate::world::Surface::default());
-        assert_eq!(champion.trial.ground, None);
-        assert_eq!(champion.trial.agent, crate::score::AgentSettings::default());
-        assert!((champion.evaluation.fitness - 10.89).abs() < 0.01);
-        assert_eq!(champion.genome.controller.joints(), 4);
-    }
-
-    #[test]
-    fn a_file_of_format_2_loads_for_ever_and_does_what_it_did() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/saves/format-2.ron");
-        let loaded = load_champion(&path).expect("it loads");
-        assert_eq!((loaded.engine, loaded.recording), (2, None));
-        let Champion { genome, trial, evaluation, .. } = loaded.champion;
-        assert_eq!(evaluation.effort, None, "not measured then");
-        assert!(evaluate(&genome, &trial).agrees_with(&evaluation));
-    }
-
-    #[test]
-    fn a_file_of_format_3_loads_for_ever_and_does_what_it_did() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/saves/format-3.ron");
-        let loaded = load_champion(&path).expect("it loads");
-        assert_eq!(loaded.engine, 2);
-        assert!(loaded.recording.is_some());
-        let Champion { genome, trial, evaluation, .. } = loaded.champion;
-        assert_eq!(evaluation.behaviour, None, "not observed then");
-        assert!(evaluation.effort.is_some());
-        assert!(evaluate(&genome, &trial).agrees_with(&evaluation));
-    }
-
-    /// What `load_champion` says to a champion's text after `edit`.
+    /// The error of `load_champion` for a champion's text after `edit`.
     fn refusal(edit: impl FnOnce(String) -> String) -> String {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");
@@ -202,8 +162,12 @@ mod tests {
         };
         says(refusal(|text| text[..text.len() / 2].to_owned()), &["damaged or incomplete at line"]);
         says(
-            refusal(|text| text.replace("format: 4", "format: 9")),
-            &["format is 9", "allowed: 1 to 4", "newer version"],
+            refusal(|text| text.replace("format: 5", "format: 9")),
+            &["format is 9", "allowed: 5", "newer version"],
+        );
+        says(
+            refusal(|text| text.replace("format: 5", "format: 4")),
+            &["format is 4; allowed: 5 (a version before the first release wrote this file)"],
         );
         says(
             refusal(|text| text.replace("snakes-and-stairs champion", "chess opening")),

@@ -1,4 +1,4 @@
-//! What was changed of a run on its way: `changes.jsonl`, a line per setting.
+//! Settings that were changed during a run: `changes.jsonl`, one line per change.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub const CHANGES_FILE: &str = "changes.jsonl";
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChangeRecord {
-    /// The first generation that it concerns.
+    /// The first generation that uses the new value.
     generation: u32,
     field: String,
     value: String,
@@ -28,16 +28,16 @@ impl From<&SettingChange> for ChangeRecord {
     }
 }
 
-/// The changes of the run in a folder, the earliest first; none of one that was never changed.
+/// Reads the changes of the run in a folder, the earliest first; none if it was never changed.
 pub fn read_changes(folder: &Path, plan: &RunPlan) -> Result<Vec<SettingChange>, SaveError> {
     let path = folder.join(CHANGES_FILE);
     parse_changes(&path, &read_log_bytes(&path)?, plan)
 }
 
-/// Reads the changes of the run that began with `plan` from the bytes of a log; `path` is what errors call it.
+/// Parses the changes of the run that began with `plan`; `path` is the file's name in errors.
 ///
 /// # Errors
-/// A whole line is damaged, out of its order, or changes what may not be changed.
+/// A complete line is damaged, out of order, or changes a setting that may not change during a run.
 pub fn parse_changes(
     path: &Path,
     bytes: &[u8],
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn changes_come_back_in_their_order() {
+    fn changes_are_read_back_in_order() {
         let changes = [
             change(2, "halving.parents", "7"),
             change(3, "halving.mutation_range_nm", "0.1"),
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_could_not_have_been_changed_is_refused_with_the_file_and_the_reason() {
+    fn an_impossible_change_is_refused_with_the_file_and_the_reason() {
         for (changes, complaint) in [
             (vec![change(8, "generations", "9")], "generation is 8; allowed: 1 to 7"),
             (vec![change(0, "population", "9")], "generation is 0; allowed: 1 to 6"),
@@ -102,7 +102,7 @@ mod tests {
             (vec![change(2, "halving.parents", "0")], "evolution.halving.parents is 0; allowed: 1"),
             (
                 vec![change(2, "strategy", "ga")],
-                "a change during a run is \"evolution.strategy\"; allowed: What was learned",
+                "a change during a run is \"evolution.strategy\"; allowed: Takes effect with the next run, because another strategy",
             ),
             (vec![change(2, "halving.parents", "7"); 2001], "changes is 2001; allowed: 0 to 2000"),
         ] {

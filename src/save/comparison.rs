@@ -1,4 +1,4 @@
-//! The result of a comparison of methods, as RON: `compare-*.ron`.
+//! The result of `snakes compare`, as RON: `compare-*.ron`.
 
 use std::path::Path;
 
@@ -15,28 +15,28 @@ use crate::score::{FITNESS_RANGE, Fitness};
 const KIND: &str = "snakes-and-stairs comparison";
 const FORMAT: u32 = 1;
 
-/// The most runs of a comparison: each takes some 2 kB in its file.
-pub const MOST_RUNS: usize = 10_000;
-/// The largest file of a comparison that is read.
+/// Maximum number of runs of a comparison; each takes about 2 kB in the file.
+pub const MAX_COMPARED_RUNS: usize = 10_000;
+/// Maximum size of a comparison's file that is read, in MiB.
 const LARGEST_MIB: u64 = 64;
 
-/// Points of a learning curve: the budget is divided into as many equal parts.
+/// Number of points of a learning curve: the budget is divided into this number of equal parts.
 pub const CURVE_POINTS: usize = 100;
 
-/// Runs of several methods under equal budgets.
+/// Runs of several strategies and controllers under equal budgets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Comparison {
     kind: String,
     format: u32,
     engine: u32,
-    /// Name of the preset that all runs started from.
+    /// Name of the preset of all runs.
     pub preset: String,
-    /// A hash over its settings: a comparison goes on only under the same.
+    /// Fingerprint of its settings; a comparison continues only with the same settings.
     pub settings: String,
-    /// Evaluations that each run could spend.
+    /// Maximum number of evaluations of each run.
     pub evaluations: u32,
-    /// What was rewarded.
+    /// The fitness that was maximised.
     pub fitness: Fitness,
     /// The finished runs, in the order of strategies, controllers and seeds.
     pub runs: Vec<ComparedRun>,
@@ -46,21 +46,21 @@ pub struct Comparison {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ComparedRun {
-    /// The method.
+    /// The search strategy.
     pub strategy: StrategyKind,
-    /// What drove the joints.
+    /// The controller of the joints.
     pub controller: ControllerKind,
     /// The seed.
     pub seed: u64,
-    /// Evaluations that it spent.
+    /// Number of evaluations that it spent.
     pub evaluations: u32,
-    /// The best of the run; none if all agents were disqualified.
+    /// The best individual; none if all were disqualified.
     pub best: Option<ComparedBest>,
-    /// The number of the evaluation, counted from 1, whose agent was the first on the landing at its end.
+    /// The number of the first evaluation, counted from 1, that ended on the landing.
     pub first_on_landing: Option<u32>,
     /// Mean fitness of the last generation.
     pub last_mean: Option<f64>,
-    /// The best fitness so far after each hundredth of the budget.
+    /// Best fitness so far after each hundredth of the budget.
     pub curve: Vec<Option<f32>>,
     /// Hash over the run.
     pub run_hash: String,
@@ -72,9 +72,9 @@ pub struct ComparedRun {
 pub struct ComparedBest {
     /// Its fitness.
     pub fitness: f32,
-    /// Steps under its middle limb at the end.
+    /// Steps that its middle limb had climbed at the end.
     pub steps_climbed: u32,
-    /// Energy per metre of progress, in J/m; none for who made none.
+    /// Energy per metre of progress, in J/m; none without progress.
     pub energy_j_per_m: Option<f64>,
 }
 
@@ -93,21 +93,21 @@ impl Comparison {
         }
     }
 
-    /// Adds a run, in its place.
+    /// Inserts a run in the order of strategy, controller and seed.
     pub fn add(&mut self, run: ComparedRun) {
         self.runs.push(run);
-        let place = |run: &ComparedRun| {
+        let position = |run: &ComparedRun| {
             let strategy = StrategyKind::ALL.iter().position(|kind| *kind == run.strategy);
             let controller = ControllerKind::ALL.iter().position(|kind| *kind == run.controller);
             (strategy, controller, run.seed)
         };
-        self.runs.sort_by_key(place);
+        self.runs.sort_by_key(position);
     }
 
     fn check(&self) -> Result<(), Invalid> {
         within("engine", self.engine, ENGINE_VERSION..=ENGINE_VERSION)?;
         within("evaluations", self.evaluations, 1..=u32::MAX)?;
-        within("runs", self.runs.len(), 0..=MOST_RUNS)?;
+        within("runs", self.runs.len(), 0..=MAX_COMPARED_RUNS)?;
         for run in &self.runs {
             within("curve", run.curve.len(), CURVE_POINTS..=CURVE_POINTS)?;
             let values =
@@ -125,17 +125,17 @@ impl Comparison {
 /// Reads a comparison.
 ///
 /// # Errors
-/// The file is unreadable, damaged, of another kind or engine, or has a value out of range.
+/// The file is unreadable, damaged, of another kind, format or engine, or has a value out of range.
 pub fn load_comparison(path: &Path) -> Result<Comparison, SaveError> {
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
-    Header::read(path, &text, KIND, FORMAT)?;
+    Header::check(path, &text, KIND, FORMAT)?;
     let comparison: Comparison = parse(path, &text)?;
     let checked = comparison.check();
     checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
     Ok(comparison)
 }
 
-/// Writes a comparison, whole or not at all.
+/// Writes a comparison atomically.
 ///
 /// # Errors
 /// The file cannot be written.

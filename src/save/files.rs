@@ -10,7 +10,7 @@ use tempfile::{NamedTempFile, PersistError};
 
 use crate::check::Invalid;
 
-/// What can go wrong with a file. Each message is one line that starts with the file's name.
+/// An error with a file. Each message is one line that starts with the file's name.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
     /// The file could not be opened or read.
@@ -18,7 +18,7 @@ pub enum SaveError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The system's reason.
         source: std::io::Error,
     },
     /// The file or its folder could not be written.
@@ -26,10 +26,10 @@ pub enum SaveError {
     Unwritable {
         /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The system's reason.
         source: std::io::Error,
     },
-    /// The file is larger than any honest one.
+    /// The file is larger than any that this program writes.
     #[error("{}: size is over {limit_mib} MiB; allowed: up to {limit_mib} MiB", path.display())]
     TooLarge {
         /// The file.
@@ -46,72 +46,73 @@ pub enum SaveError {
         line: usize,
         /// Column of the damage; the first is 1.
         column: usize,
-        /// What is wrong there.
+        /// The problem there.
         problem: String,
     },
-    /// Well-formed, but of another kind.
+    /// The file is well-formed, but of another kind.
     #[error("{}: kind is {found}; allowed: {expected:?}", path.display())]
     Foreign {
         /// The file.
         path: PathBuf,
-        /// What the file says it is.
+        /// The kind that the file states.
         found: String,
-        /// What it should say.
+        /// The kind that it should state.
         expected: &'static str,
     },
-    /// Written by a later version of the program.
-    #[error("{}: format is {found}; allowed: 1 to {newest} (a newer version of Snakes & Stairs wrote this file)", path.display())]
-    Newer {
+    /// Written in a format that this version does not read.
+    #[error("{}: format is {found}; allowed: {supported} ({} wrote this file)", path.display(),
+        if found > supported { "a newer version of Snakes & Stairs" } else { "a version before the first release" })]
+    OtherFormat {
         /// The file.
         path: PathBuf,
         /// The format it has.
         found: u32,
-        /// The newest format this version reads.
-        newest: u32,
+        /// The format that this version reads.
+        supported: u32,
     },
     /// Another program writes into the folder.
     #[error("{}: in use by {owner}", path.display())]
     InUse {
         /// The folder.
         path: PathBuf,
-        /// The program's process, and what it is.
+        /// The program's process number and its name.
         owner: String,
     },
-    /// The folder holds the run of another preset, seed or setting.
-    #[error("{}: holds another run; allowed: an empty folder, or one of the same run", path.display())]
+    /// The folder contains a run with another preset, seed or setting.
+    #[error("{}: holds another run; allowed: an empty folder, or the folder of the same run", path.display())]
     OtherRun {
         /// The folder.
         path: PathBuf,
     },
-    /// Neither a preset nor a file has that name.
+    /// No preset and no file has this name.
     #[error("{0}")]
     UnknownPreset(Invalid),
-    /// A value in it is not allowed.
+    /// A value in the file is not allowed.
     #[error("{}: {source}", path.display())]
     Invalid {
         /// The file.
         path: PathBuf,
-        /// The field, its value, and what is allowed.
+        /// The field, its value, and the allowed values.
         source: Invalid,
     },
 }
 
-/// The largest file that is read; what is written stays below.
+/// The largest file that is read, in MiB; files that this program writes stay below.
 pub const LARGEST_FILE_MIB: u64 = 10;
 
-/// Reads a text file, but never more than [`LARGEST_FILE_MIB`].
+/// Reads a text file of at most [`LARGEST_FILE_MIB`].
 pub fn read_text(path: &Path) -> Result<String, SaveError> {
     text_of(path, read_bytes(path, LARGEST_FILE_MIB)?)
 }
 
-/// Reads a file, but never more than a limit, and nothing that is no file: a device has no end, and a
-/// pipe may wait for ever.
+/// Reads a regular file of at most `limit_mib`. A device might never end, and a pipe might block for ever: both are
+/// refused.
 pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
     let unreadable = |source| SaveError::Unreadable { path: path.to_owned(), source };
     let limit = limit_mib * 1024 * 1024;
     let about = fs::metadata(path).map_err(unreadable)?;
     if !about.is_file() {
-        return Err(unreadable(std::io::Error::other("it is no file")));
+        return Err(unreadable(std::io::Error::other("it is not a regular file")));
     }
     if about.len() > limit {
         return Err(SaveError::TooLarge { path: path.to_owned(), limit_mib });
@@ -125,18 +126,18 @@ pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
     Ok(bytes)
 }
 
-/// Refuses a symbolic link and whatever else is there but is no file: within a run's folder, which may be
-/// anybody's, no name leads elsewhere.
+/// Refuses anything that exists and is not a regular file, links included: a run's folder may come from anywhere, and
+/// no name in it may lead out of it.
 pub fn refuse_link(path: &Path) -> std::io::Result<()> {
     match fs::symlink_metadata(path) {
         Ok(about) if about.is_file() => Ok(()),
-        Ok(_) => Err(std::io::Error::other("it is a link or no file")),
+        Ok(_) => Err(std::io::Error::other("it is a link or not a regular file")),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
         Err(error) => Err(error),
     }
 }
 
-/// Text from bytes, or where it stops being text.
+/// Converts bytes to text; the error names the first byte that is not UTF-8.
 pub fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String, SaveError> {
     String::from_utf8(bytes).map_err(|error| SaveError::Damaged {
         path: path.to_owned(),
@@ -146,19 +147,19 @@ pub fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String, SaveError> {
     })
 }
 
-/// Parses RON, turning a failure into an error that names the place.
+/// Parses RON; the error names the line and column.
 pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, SaveError> {
     ron::from_str(text).map_err(|error| SaveError::Damaged {
         path: path.to_owned(),
         line: error.span.start.line,
         column: error.span.start.col,
-        problem: tamed(&error.code.to_string()),
+        problem: single_line(&error.code.to_string()),
     })
 }
 
-/// What a parser says may repeat what stands in the file: a line's worth of it, and nothing that could
-/// write elsewhere in a terminal.
-pub fn tamed(text: &str) -> String {
+/// Shortens a parser's message to one line without control characters: it may quote the file, which must not be able to
+/// control a terminal.
+pub fn single_line(text: &str) -> String {
     let plain = text.chars().map(|c| if c.is_control() { ' ' } else { c });
     plain.take(200).collect()
 }
@@ -173,7 +174,7 @@ pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
     })
 }
 
-/// The part of a file that says what it is; everything else is skipped.
+/// The part of a file that states its kind and format; the rest is skipped.
 #[derive(Deserialize)]
 pub struct Header {
     #[serde(default)]
@@ -183,37 +184,40 @@ pub struct Header {
 }
 
 impl Header {
-    /// Reads what a file is, and returns its format: 1 to `newest`.
-    pub fn read(
+    /// Checks that a file is of the expected kind and in the supported format.
+    pub fn check(
         path: &Path,
         text: &str,
         expected: &'static str,
-        newest: u32,
-    ) -> Result<u32, SaveError> {
+        supported: u32,
+    ) -> Result<(), SaveError> {
         let Self { kind, format } = parse(path, text)?;
-        let path = path.to_owned();
         if kind != expected {
+            let path = path.to_owned();
             let start: String = kind.chars().take(60).collect();
             return Err(SaveError::Foreign { path, found: format!("{start:?}"), expected });
         }
-        match format {
-            0 => {
-                let source = Invalid::new("format", "0 or missing", format!("1 to {newest}"));
-                Err(SaveError::Invalid { path, source })
-            }
-            known if known <= newest => Ok(known),
-            found => Err(SaveError::Newer { path, found, newest }),
-        }
+        check_format(path, format, supported)
     }
 }
 
-/// Writes a file so that at every instant either the old or the whole new one is there: into a
-/// temporary file beside it, flushed to the disk, then renamed.
+/// Checks a file's format; 0 stands for a file that does not state one.
+pub fn check_format(path: &Path, found: u32, supported: u32) -> Result<(), SaveError> {
+    let path = path.to_owned();
+    if found == 0 {
+        let source = Invalid::new("format", "0 or missing", supported.to_string());
+        return Err(SaveError::Invalid { path, source });
+    }
+    if found == supported { Ok(()) } else { Err(SaveError::OtherFormat { path, found, supported }) }
+}
+
+/// Writes a file atomically: at every instant either the old or the complete new one exists. The contents go into a
+/// temporary file in the same folder, are flushed to the disk, and then renamed.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
     write_and(path, contents, |file| file.persist(path))
 }
 
-/// The same for a file that must not be there yet: what has taken its name meanwhile stays.
+/// Writes a new file atomically; fails if a file of this name exists by then.
 pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
     write_and(path, contents, |file| file.persist_noclobber(path))
 }
@@ -228,15 +232,15 @@ fn write_and(
         let folder = folder.unwrap_or(Path::new("."));
         let mut builder = tempfile::Builder::new();
         builder.prefix(UNFINISHED);
-        // Readable by others as far as the person's umask allows; the default is for secrets.
+        // Readable by others as far as the user's umask allows; the library's default is private.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let mut file = builder.tempfile_in(folder)?;
-        // Past the temporary file's own wrapping of errors, which names that file.
+        // Through the inner file: errors of the temporary file itself would name that file.
         file.as_file_mut().write_all(contents)?;
         file.as_file().sync_all()?;
         put(file).map_err(|error| error.error)?;
-        // The file is there by now; that its name survives a power cut too is up to the platform.
+        // The file exists by now. Flushing the folder, so that its name survives a power cut, is best effort.
         #[cfg(unix)]
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
         Ok(())
@@ -244,15 +248,15 @@ fn write_and(
     write().map_err(|error| unwritable(path, error))
 }
 
-/// That a file or folder cannot be written, and why.
+/// The error that a file or folder cannot be written.
 fn unwritable(path: &Path, error: std::io::Error) -> SaveError {
-    // A temporary file's error names that file, which nobody has heard of, and is no error of the system's own.
+    // An error of the temporary file names that file, which the user does not know; keep only its kind.
     let names_another = error.raw_os_error().is_none() && error.kind() != ErrorKind::Other;
     let source = if names_another { error.kind().into() } else { error };
     SaveError::Unwritable { path: path.to_owned(), source }
 }
 
-/// The numbers N for which a folder has a file `<prefix>N.ron`, in no order.
+/// The numbers N for which a folder has a file `<prefix>N.ron`, in no particular order.
 pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
     let unreadable = |source| SaveError::Unreadable { path: folder.to_owned(), source };
     let mut numbers = Vec::new();
@@ -261,7 +265,7 @@ pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
         let number = file.to_str().and_then(|file| {
             let digits = file.strip_prefix(prefix)?.strip_suffix(".ron")?;
             let number = digits.parse::<u32>().ok()?;
-            // Not a copy that a person named `generation-01.ron`.
+            // Not a copy that a user named `generation-01.ron`.
             (number.to_string() == digits).then_some(number)
         });
         numbers.extend(number);
@@ -269,7 +273,7 @@ pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
     Ok(numbers)
 }
 
-/// RON as a person can read it.
+/// RON with line breaks and indentation.
 pub fn pretty(path: &Path, file: &impl Serialize) -> Result<String, SaveError> {
     let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
     ron::ser::to_string_pretty(file, layout).map(|text| text + "\n").map_err(|error| {
@@ -277,39 +281,39 @@ pub fn pretty(path: &Path, file: &impl Serialize) -> Result<String, SaveError> {
     })
 }
 
-/// Writes a file of RON so that a person can read it, whole or not at all.
+/// Writes readable RON atomically.
 pub fn store_ron(path: &Path, file: &impl Serialize) -> Result<(), SaveError> {
     write_whole(path, pretty(path, file)?.as_bytes())
 }
 
-/// How the name of a file begins that is not whole yet.
+/// Prefix of the names of files that are not complete yet.
 pub const UNFINISHED: &str = ".unfinished-";
 
-/// Removes what a kill left half written in a folder into which nobody else writes.
+/// Removes the incomplete files that a kill left in a folder; the caller holds the folder's lock.
 pub fn remove_unfinished(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(UNFINISHED))
     {
-        // One that stays is no harm.
+        // A file that cannot be removed does no harm.
         let _ = fs::remove_file(entry.path());
     }
 }
 
-/// Makes sure that files can be written into `folder`, creating it if need be.
+/// Makes sure that files can be written into `folder`, and creates it if it does not exist.
 pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
     let unwritable = |error| unwritable(folder, error);
     let is_new = !folder.exists();
     fs::create_dir_all(folder).map_err(unwritable)?;
     if is_new {
-        // That the folder's name survives a power cut is up to the platform.
+        // Best effort, so that the folder's name survives a power cut.
         #[cfg(unix)]
         let _ = folder.parent().map(File::open).map(|parent| parent.and_then(|p| p.sync_all()));
     }
-    // Permissions alone do not tell (read-only mounts, quotas): try it. The file goes when dropped.
+    // Permissions alone do not tell (read-only mounts, quotas), so try it. The file is removed when dropped.
     tempfile::tempfile_in(folder).map(drop).map_err(unwritable)
 }
 
-/// The names of what is in a folder, sorted, those that are hidden too: for tests.
+/// The names of all entries of a folder, hidden ones included, sorted.
 #[cfg(test)]
 pub fn names_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");

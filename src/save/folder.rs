@@ -1,26 +1,25 @@
-//! Where saves are.
+//! The folder of saves, and the runs in it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use directories::ProjectDirs;
-use xxhash_rust::xxh3::xxh3_64;
 
 use super::change::read_changes;
 use super::files::{numbered, prepare_folder, refuse_link};
 use super::plan::load_plan;
 use super::record::{count_records, read_records};
+use super::run_name::run_name;
 use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
-use crate::ENGINE_VERSION;
-use crate::evolve::{RunPlan, SettingChange, StrategyKind};
+use crate::evolve::RunPlan;
 
-/// The folder champions are written to.
+/// The folder of saved champions and runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SavesFolder(PathBuf);
 
 impl SavesFolder {
-    /// The folder a person named; else `saves/` in the working directory, if there is one; else the
-    /// platform's data folder.
+    /// The folder that the user named; else `saves/` in the working directory, if it exists; else the platform's data
+    /// folder.
     pub fn find(named: Option<&Path>) -> Self {
         if let Some(named) = named {
             let is_empty = named.as_os_str().is_empty();
@@ -34,10 +33,10 @@ impl SavesFolder {
         Self(data.map_or(here, |data| data.data_dir().join("saves")))
     }
 
-    /// A folder within a run's, which may be anybody's: it must not be a link to elsewhere.
+    /// A folder within a run's folder. The run's folder may come from anywhere, so links in it are not followed.
     ///
     /// # Errors
-    /// It is one.
+    /// The folder is a link.
     pub fn within_run(run: &Path, name: &str) -> Result<Self, SaveError> {
         let path = run.join(name);
         if path.is_symlink() {
@@ -47,19 +46,19 @@ impl SavesFolder {
         Ok(Self(path))
     }
 
-    /// The folder in it for pictures of the stage.
+    /// Its folder for screenshots.
     #[must_use]
     pub fn pictures(&self) -> Self {
         Self(self.0.join("pictures"))
     }
 
-    /// The folder in it for charts that were written as files.
+    /// Its folder for exported files.
     #[must_use]
     pub fn exports(&self) -> Self {
         Self(self.0.join("exports"))
     }
 
-    /// A path in it that is not taken yet: the name and the next number.
+    /// The first free path in it of the form `NAME-NUMBER.EXTENSION`.
     pub fn free_name(&self, name: &str, extension: &str) -> PathBuf {
         let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
         let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
@@ -71,13 +70,12 @@ impl SavesFolder {
         &self.0
     }
 
-    /// The folder in it that belongs to a run.
+    /// Its folder for a run.
     pub fn of_run(&self, plan: &RunPlan) -> PathBuf {
         self.0.join(run_name(plan))
     }
 
-    /// The runs in it that this engine can go on with, by the names of their folders. What cannot be
-    /// read is left out.
+    /// The runs in it that this engine can read, in the order of their folders' names; unreadable ones are left out.
     pub fn runs(&self) -> Vec<RunSummary> {
         let Ok(entries) = fs::read_dir(&self.0) else { return Vec::new() };
         let folders = entries.flatten().filter(|entry| entry.file_type().is_ok_and(|t| t.is_dir()));
@@ -90,25 +88,25 @@ impl SavesFolder {
             let finished = count_records(&folder).ok()?;
             let evolution = &plan.settings.evolution;
             let mut is_stopped = finished < evolution.generations;
-            if is_stopped && finished > 0 && evolution.strategy == StrategyKind::CmaEs {
-                is_stopped = goes_on(&plan, &read_records(&folder, &plan).ok()?);
+            if is_stopped && finished > 0 && evolution.strategy.info().is_budget_driven {
+                is_stopped = has_generations_left(&plan, &read_records(&folder, &plan).ok()?);
             }
             Some(RunSummary { folder, plan, finished, is_stopped })
         };
         folders.into_iter().filter_map(summary).collect()
     }
 
-    /// Makes sure that files can be written into it, creating it if need be.
+    /// Makes sure that files can be written into it, and creates it if it does not exist.
     pub fn prepare(&self) -> Result<(), SaveError> {
         prepare_folder(&self.0)
     }
 }
 
-/// Whether a run with these generations behind it has evaluations left for another.
-pub fn goes_on(plan: &RunPlan, records: &[GenerationRecord]) -> bool {
+/// Whether a run with these finished generations has evaluations left for another one.
+pub fn has_generations_left(plan: &RunPlan, records: &[GenerationRecord]) -> bool {
     let evolution = &plan.settings.evolution;
-    if evolution.strategy == StrategyKind::CmaEs && !records.is_empty() {
-        // Restarts make larger generations, which may use the budget up before.
+    if evolution.strategy.info().is_budget_driven && !records.is_empty() {
+        // Generations may grow, so the budget may be spent before the last generation.
         let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
         let next = records.last().map_or(0, |last| u64::from(last.evaluations));
         if spent + next > plan.budget() {
@@ -118,69 +116,40 @@ pub fn goes_on(plan: &RunPlan, records: &[GenerationRecord]) -> bool {
     (records.len() as u64) < u64::from(evolution.generations)
 }
 
-/// A run that is in a folder of saves.
+/// A run in a folder of saves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSummary {
     /// Its folder.
     pub folder: PathBuf,
-    /// What run it is, after all its changes.
+    /// Its plan, after all its changes.
     pub plan: RunPlan,
-    /// How many generations are finished.
+    /// Number of finished generations.
     pub finished: u32,
-    /// Whether there are evaluations left for another generation.
+    /// Whether evaluations are left for another generation.
     is_stopped: bool,
 }
 
 impl RunSummary {
-    /// Whether there are generations left to evolve.
+    /// Whether generations are left to evolve.
     pub fn is_stopped(&self) -> bool {
         self.is_stopped
     }
 }
 
-/// The name of a run's folder: it names the preset, the seed, and in eight hex digits everything else
-/// that decides the bits. So two folders of one name hold the same run, and no run overwrites another.
-pub fn run_name(plan: &RunPlan) -> String {
-    let plain = plan.preset.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-');
-    let preset: String = plain.take(40).collect();
-    format!("{preset}-seed{}-{}", plan.seed, settings_fingerprint(plan))
-}
-
-/// Eight hexadecimal digits that stand for a plan's settings, its founder and the engine.
-pub fn settings_fingerprint(plan: &RunPlan) -> String {
-    let settings = ron::to_string(&plan.settings).unwrap_or_default();
-    let founder = plan.founder.as_ref().map(|founder| {
-        let genome = founder.genome();
-        format!(" from {} {:016x}", genome.controller.kind(), genome.hash())
-    });
-    let text = format!("{ENGINE_VERSION} {settings}{}", founder.unwrap_or_default());
-    format!("{:08x}", xxh3_64(text.as_bytes()) as u32)
-}
-
-/// Sixteen hexadecimal digits that stand for all that decides a run's bits, up to the generations of its latest
-/// change.
-pub fn fingerprint(plan: &RunPlan) -> String {
-    let mut text = format!("{} {}", plan.seed, settings_fingerprint(plan));
-    for SettingChange { generation, field, value } in plan.changes.made() {
-        text += &format!(" {generation} {field} {value:?}");
-    }
-    format!("{:016x}", xxh3_64(text.as_bytes()))
-}
-
-/// The name of the file, in a run's folder, of the champion of a generation; the first is 1.
+/// Name of the file of a generation's champion; the first generation is 1.
 pub fn champion_file_name(generation: u32) -> String {
     format!("generation-{generation}.ron")
 }
 
-/// The champions of a run's folder with the numbers of their generations, the first generation first.
+/// The champions in a run's folder with the numbers of their generations, in order.
 ///
 /// # Errors
-/// The folder cannot be read, has no champion in it, or one that is damaged.
+/// The folder cannot be read, or contains no champion or a damaged one.
 pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> {
     let mut generations = numbered(folder, "generation-")?;
     generations.sort_unstable();
     if generations.is_empty() {
-        let missing = "no generation-1.ron or later in it; a run's folder is wanted";
+        let missing = "it contains no generation-1.ron or later; give a run's folder";
         let source = std::io::Error::other(missing);
         return Err(SaveError::Unreadable { path: folder.to_owned(), source });
     }
@@ -188,10 +157,10 @@ pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> 
     generations.into_iter().map(load).collect()
 }
 
-/// The champion of a generation of a run's folder; the first generation is 1.
+/// Reads the champion of one generation from a run's folder; the first generation is 1.
 ///
 /// # Errors
-/// It has none, or one that is damaged.
+/// There is none, or it is damaged.
 pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion, SaveError> {
     let path = folder.join(champion_file_name(generation));
     refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
@@ -201,11 +170,10 @@ pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Settings;
 
     #[cfg(unix)]
     #[test]
-    fn no_link_in_a_runs_folder_is_followed() {
+    fn links_in_a_runs_folder_are_not_followed() {
         use std::os::unix::fs::symlink;
         let folder = tempfile::tempdir().expect("a folder");
         let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
@@ -216,21 +184,5 @@ mod tests {
         let error = SavesFolder::within_run(folder.path(), "figures").expect_err("refused");
         assert!(error.to_string().contains("figures: cannot be written: it is a link"), "{error}");
         assert!(SavesFolder::within_run(folder.path(), "other").is_ok());
-    }
-
-    #[test]
-    fn a_folders_name_tells_runs_apart_and_stays_in_its_folder() {
-        let name = |preset: &str, seed, population| {
-            let mut settings = Settings::default();
-            settings.evolution.population = population;
-            run_name(&RunPlan::new(preset, seed, settings))
-        };
-        let first = name("report", 1, 500);
-        assert!(first.starts_with("report-seed1-"), "{first}");
-        assert_eq!(first, name("report", 1, 500));
-        assert_ne!(first, name("report", 2, 500));
-        assert_ne!(first, name("report", 1, 501));
-        let hostile = name("../../etc/x", 1, 500);
-        assert!(hostile.starts_with("etcx-seed1"), "{hostile}");
     }
 }

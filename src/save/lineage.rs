@@ -1,7 +1,7 @@
-//! Who came from whom: a line for each finished generation, so that a run that goes on still knows.
+//! Parents of individuals: `lineage.jsonl`, one line per finished generation, so that a resumed run still knows them.
 //!
-//! Nothing of a run depends on it. What cannot be written, or does not fit the run, is left out: then the lines
-//! of descent begin later.
+//! A run's result does not depend on this file. Lines that cannot be written or do not fit the run are left out; then
+//! lines of descent begin later.
 
 use std::path::Path;
 
@@ -10,46 +10,46 @@ use serde::{Deserialize, Serialize};
 use super::SaveError;
 use super::log::{parse_log, read_log_bytes};
 use crate::check::{Invalid, within};
-use crate::evolve::{Parents, Place, RunPlan};
+use crate::evolve::{IndividualId, Parents, RunPlan};
 use crate::score::FITNESS_RANGE;
 
 pub const LINEAGE_FILE: &str = "lineage.jsonl";
 
-/// The most values of a generation's fitness that are written down.
-pub const MOST_SPREAD: usize = 40;
+/// Maximum number of fitness values that are written per generation.
+pub const MAX_SPREAD: usize = 40;
 
-/// What of a generation is known later.
+/// The fitness values and parents of one generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LineageRecord {
     /// The first is 1.
     pub generation: u32,
-    /// Some of the healthy ones' fitness, from the least to the greatest, spread evenly over them.
+    /// Fitness values of healthy individuals, ascending, sampled evenly.
     pub spread: Vec<f32>,
-    /// Those who may have children, in the strategy's order, and the best if that may have none.
-    pub born: Vec<BornRecord>,
+    /// The individuals that may become parents, in the strategy's order; also the best one.
+    pub born: Vec<IndividualRecord>,
 }
 
-/// An individual: its index, its fitness unless it was disqualified, and whom it comes from.
+/// An individual: its index, its fitness unless it was disqualified, and its parents.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct BornRecord(pub u32, pub Option<f32>, pub ParentsRecord);
+pub struct IndividualRecord(pub u32, pub Option<f32>, pub ParentsRecord);
 
-/// [`Parents`] in few letters: a place is a generation and an index in it.
+/// [`Parents`] in compact form: each parent is a generation and an index in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ParentsRecord {
-    /// Nobody.
+    /// Drawn at random.
     #[serde(rename = "n")]
     Newborn,
-    /// One.
+    /// One parent.
     #[serde(rename = "1")]
     One(u32, u32),
-    /// Two.
+    /// Two parents.
     #[serde(rename = "2")]
     Two(u32, u32, u32, u32),
-    /// Nobody in particular.
+    /// Drawn from a search distribution.
     #[serde(rename = "d")]
     Distribution,
-    /// Not known.
+    /// Unknown.
     #[serde(rename = "u")]
     Unknown,
 }
@@ -57,7 +57,7 @@ pub enum ParentsRecord {
 impl From<Parents> for ParentsRecord {
     fn from(parents: Parents) -> Self {
         match parents {
-            Parents::Newborn => Self::Newborn,
+            Parents::None => Self::Newborn,
             Parents::One(a) => Self::One(a.generation, a.individual),
             Parents::Two(a, b) => Self::Two(a.generation, a.individual, b.generation, b.individual),
             Parents::Distribution => Self::Distribution,
@@ -68,9 +68,9 @@ impl From<Parents> for ParentsRecord {
 
 impl From<ParentsRecord> for Parents {
     fn from(record: ParentsRecord) -> Self {
-        let place = |generation, individual| Place { generation, individual };
+        let place = |generation, individual| IndividualId { generation, individual };
         match record {
-            ParentsRecord::Newborn => Self::Newborn,
+            ParentsRecord::Newborn => Self::None,
             ParentsRecord::One(g, i) => Self::One(place(g, i)),
             ParentsRecord::Two(g, i, h, j) => Self::Two(place(g, i), place(h, j)),
             ParentsRecord::Distribution => Self::Distribution,
@@ -79,7 +79,7 @@ impl From<ParentsRecord> for Parents {
     }
 }
 
-/// What is known of the first `finished` generations of a run's folder; nothing, if it is damaged.
+/// Reads the first `finished` generations' records of a run's folder; none if the file is damaged.
 pub fn read_lineage(folder: &Path, finished: u32, plan: &RunPlan) -> Vec<LineageRecord> {
     let path = folder.join(LINEAGE_FILE);
     let read = read_log_bytes(&path).and_then(|bytes| parse_lineage(&path, &bytes, plan));
@@ -88,10 +88,10 @@ pub fn read_lineage(folder: &Path, finished: u32, plan: &RunPlan) -> Vec<Lineage
     records
 }
 
-/// Reads who came from whom from the bytes of a log; `path` is what errors call it.
+/// Parses lineage records; `path` is the file's name in errors.
 ///
 /// # Errors
-/// A whole line is damaged, out of its order, or has a value that is not allowed.
+/// A complete line is damaged, out of order, or has a value that is not allowed.
 pub fn parse_lineage(
     path: &Path,
     bytes: &[u8],
@@ -104,13 +104,13 @@ pub fn parse_lineage(
         let generation = record.generation;
         within("generation", generation, next..=plan.settings.evolution.generations)?;
         next = generation + 1;
-        within("spread", record.spread.len(), 0..=MOST_SPREAD)?;
+        within("spread", record.spread.len(), 0..=MAX_SPREAD)?;
         record.spread.iter().try_for_each(|&x| within("spread", x, FITNESS_RANGE))?;
-        for BornRecord(individual, fitness, parents) in &record.born {
+        for IndividualRecord(individual, fitness, parents) in &record.born {
             within("individual", u64::from(*individual), 0..=last)?;
             fitness.map_or(Ok(()), |fitness| within("fitness", fitness, FITNESS_RANGE))?;
-            for parent in Parents::from(*parents).places() {
-                // Nobody comes from a generation of its own, or a line of descent would have no end.
+            for parent in Parents::from(*parents).ids() {
+                // A parent is of an earlier generation; otherwise a line of descent would never end.
                 let earlier = 1..=generation.saturating_sub(1);
                 within("parent's generation", parent.generation, earlier)?;
                 within("parent", u64::from(parent.individual), 0..=last)?;
@@ -130,8 +130,10 @@ mod tests {
     use crate::save::log::Log;
 
     fn record(generation: u32, parents: Parents) -> LineageRecord {
-        let born =
-            vec![BornRecord(3, Some(-7.1), parents.into()), BornRecord(0, None, parents.into())];
+        let born = vec![
+            IndividualRecord(3, Some(-7.1), parents.into()),
+            IndividualRecord(0, None, parents.into()),
+        ];
         LineageRecord { generation, spread: vec![-8.0, -7.1], born }
     }
 
@@ -139,17 +141,17 @@ mod tests {
         RunPlan::new("test", 1, Settings::default())
     }
 
-    fn place(generation: u32) -> Place {
-        Place { generation, individual: 3 }
+    fn place(generation: u32) -> IndividualId {
+        IndividualId { generation, individual: 3 }
     }
 
     #[test]
-    fn it_comes_back_as_far_as_the_run_has_come() {
+    fn lineage_is_read_back_up_to_the_last_finished_generation() {
         let folder = tempfile::tempdir().expect("a folder");
         let plan = plan();
         assert_eq!(read_lineage(folder.path(), 9, &plan), []);
         let records = [
-            record(1, Parents::Newborn),
+            record(1, Parents::None),
             record(2, Parents::One(place(1))),
             record(4, Parents::Two(place(1), place(2))),
             record(5, Parents::Unknown),
@@ -162,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_left_out() {
+    fn impossible_records_are_ignored() {
         let plan = plan();
         let whole = |record: &LineageRecord| {
             let folder = tempfile::tempdir().expect("a folder");
@@ -173,8 +175,8 @@ mod tests {
         assert_eq!(whole(&record(2, Parents::One(place(1)))), 1);
         assert_eq!(whole(&record(2, Parents::One(place(2)))), 0, "its own parent");
         assert_eq!(whole(&record(1, Parents::One(place(1)))), 0, "a line without an end");
-        assert_eq!(whole(&record(7, Parents::Newborn)), 0, "a run of six generations");
-        let spread = vec![0.0; MOST_SPREAD + 1];
-        assert_eq!(whole(&LineageRecord { spread, ..record(1, Parents::Newborn) }), 0);
+        assert_eq!(whole(&record(7, Parents::None)), 0, "a run of six generations");
+        let spread = vec![0.0; MAX_SPREAD + 1];
+        assert_eq!(whole(&LineageRecord { spread, ..record(1, Parents::None) }), 0);
     }
 }

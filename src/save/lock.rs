@@ -1,4 +1,4 @@
-//! One program at a time writes into a run's folder.
+//! A lock that lets only one program at a time write into a run's folder.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, Write};
@@ -7,53 +7,55 @@ use std::path::Path;
 use super::SaveError;
 use super::files::refuse_link;
 
-/// The right to write into a folder. The operating system takes it back when the program ends, however
-/// that happens.
+/// The right to write into a folder. The operating system releases it when the program ends, even by a crash.
 #[derive(Debug)]
 pub struct Lock {
-    /// Open, and locked, for as long as this value lives.
+    /// Stays open and locked until this value is dropped.
     _file: File,
 }
 
-/// The lock's file; it says who holds it, for others to read.
+/// Name of the lock's file, which contains the process number and name of its owner.
 pub const LOCK_FILE: &str = "lock";
 
 impl Lock {
-    /// Takes the lock of a folder. `who` is what others are told: "the studio".
+    /// Takes the lock of a folder. `owner` is the name that other programs report, such as "the studio".
     ///
     /// # Errors
-    /// Another program holds it, which is named; or the file cannot be written.
-    pub fn take(folder: &Path, who: &str) -> Result<Self, SaveError> {
+    /// Another program holds the lock, and the error names it; or the file cannot be written.
+    pub fn take(folder: &Path, owner: &str) -> Result<Self, SaveError> {
         let path = folder.join(LOCK_FILE);
         let unwritable = |source| SaveError::Unwritable { path: path.clone(), source };
         refuse_link(&path).map_err(unwritable)?;
         let mut options = OpenOptions::new();
-        // Not truncated: who does not get the lock must not wipe out who has it.
+        // Not truncated: a program that does not get the lock must not erase the owner's name.
         options.read(true).write(true).create(true).truncate(false);
         let mut file = options.open(&path).map_err(unwritable)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                return Err(SaveError::InUse { path: folder.to_owned(), owner: owner(&mut file) });
+                return Err(SaveError::InUse {
+                    path: folder.to_owned(),
+                    owner: read_owner(&mut file),
+                });
             }
             Err(TryLockError::Error(source)) => return Err(unwritable(source)),
         }
-        let owner = format!("process {} ({who})\n", std::process::id());
+        let owner = format!("process {} ({owner})\n", std::process::id());
         let write = |file: &mut File| {
             file.set_len(0)?;
             file.rewind()?;
             file.write_all(owner.as_bytes())
         };
-        // On a full disk the lock still holds; only its owner's name is missing.
+        // On a full disk the lock still works; only the owner's name is missing.
         let _ = write(&mut file);
         Ok(Self { _file: file })
     }
 }
 
-/// Who holds the lock, in the few words it left.
-fn owner(file: &mut File) -> String {
+/// The owner's name from the lock's file.
+fn read_owner(file: &mut File) -> String {
     let mut bytes = Vec::new();
-    // Where a locked file cannot be read by others, nothing is found.
+    // On some systems others cannot read a locked file; then the text is empty.
     let _ = file.take(100).read_to_end(&mut bytes);
     let text = String::from_utf8_lossy(&bytes);
     let text: String = text.trim().chars().filter(|c| !c.is_control()).collect();
@@ -65,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_second_is_refused_with_the_owner_named_until_the_first_lets_go() {
+    fn a_second_lock_is_refused_with_the_owners_name_until_the_first_is_dropped() {
         let folder = tempfile::tempdir().expect("a folder");
         let first = Lock::take(folder.path(), "the studio").expect("free");
         let refusal = Lock::take(folder.path(), "headless").expect_err("held").to_string();

@@ -1,8 +1,7 @@
-//! Lines of JSON that are only ever added to, each with a checksum of its own.
+//! An append-only log: lines of JSON, each with its own checksum.
 //!
-//! The checksum (XXH3, 64 bits) is the last field of the line, over all that stands before it. A line that
-//! was cut off by a kill, a full disk or a power cut is at the end and does not end, and is left out; a whole
-//! line that is wrong is damage.
+//! The checksum (XXH3, 64 bits) is the last field of the line and covers everything before it. A kill, a full disk
+//! or a power cut can only leave an incomplete last line, which is ignored; a wrong complete line is damage.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -13,14 +12,14 @@ use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::SaveError;
-use super::files::{LARGEST_FILE_MIB, read_bytes, refuse_link, tamed};
+use super::files::{LARGEST_FILE_MIB, read_bytes, refuse_link, single_line};
 
 /// A log that is open for writing.
 #[derive(Debug)]
 pub struct Log {
     path: PathBuf,
     file: File,
-    /// Where the last whole line ends: what lies beyond is overwritten.
+    /// Length of the complete lines, in bytes; anything beyond is overwritten.
     end: u64,
 }
 
@@ -29,7 +28,7 @@ const AFTER_SUM: &str = "\"}";
 const SUM_DIGITS: usize = 16;
 
 impl Log {
-    /// Opens a log to go on after its first `kept` lines, which must be whole; makes it, if there is none.
+    /// Opens a log to continue after its first `kept` lines, which must be complete; creates it if there is none.
     pub fn open(path: &Path, kept: usize) -> Result<Self, SaveError> {
         let unwritable = |source| SaveError::Unwritable { path: path.to_owned(), source };
         refuse_link(path).map_err(unwritable)?;
@@ -46,13 +45,13 @@ impl Log {
         Ok(Self { path: path.to_owned(), file, end: end as u64 })
     }
 
-    /// Adds a line that survives a power cut. If that fails, the next line takes its place.
+    /// Adds a line and flushes it to the disk, so that it survives a power cut. If that fails, the next line replaces it.
     pub fn append(&mut self, entry: &impl Serialize) -> Result<(), SaveError> {
         self.write(entry, true)
     }
 
-    /// Adds a line that survives a kill, and a power cut only with luck; none, if the log would become too
-    /// long to be read again.
+    /// Adds a line without flushing it: it survives a kill, but perhaps not a power cut. Fails if the log would become
+    /// too long to be read again.
     pub fn append_lightly(&mut self, entry: &impl Serialize) -> Result<(), SaveError> {
         self.write(entry, false)
     }
@@ -69,7 +68,7 @@ impl Log {
         let written = self.file.write_all(line.as_bytes());
         let written = written.and_then(|()| if to_disk { self.file.sync_data() } else { Ok(()) });
         if let Err(error) = written {
-            // What was said not to be written shall not count later.
+            // The line is reported as not written, so it must not count later.
             let _ = self.file.set_len(self.end);
             return Err(unwritable(error));
         }
@@ -78,7 +77,7 @@ impl Log {
     }
 }
 
-/// Reads the bytes of a log. A log that is not there has none.
+/// Reads the bytes of a log; none if there is no such file.
 ///
 /// # Errors
 /// The file is unreadable or too large.
@@ -87,16 +86,16 @@ pub fn read_log_bytes(path: &Path) -> Result<Vec<u8>, SaveError> {
     if path.exists() { read_bytes(path, LARGEST_FILE_MIB) } else { Ok(Vec::new()) }
 }
 
-/// Reads the whole lines of a log's bytes; `path` is what errors call it.
+/// Parses the complete lines of a log; `path` is its name in errors.
 ///
 /// # Errors
-/// A whole line is damaged.
+/// A complete line is damaged.
 pub fn parse_log<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<Vec<T>, SaveError> {
     let mut entries = Vec::new();
     for (index, line) in bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
         match entry_of(line) {
             Ok(entry) => entries.push(entry),
-            // Cut off while it was written.
+            // The program was stopped while it wrote this line.
             Err(_) if !line.ends_with(b"\n") => break,
             Err(problem) => {
                 let path = path.to_owned();
@@ -109,7 +108,7 @@ pub fn parse_log<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<Vec<T
 
 fn line_of(entry: &impl Serialize) -> serde_json::Result<String> {
     let mut line = serde_json::to_string(entry)?;
-    // Every entry is an object: its brace is opened again for one more field.
+    // Every line is an object: remove its closing brace to add one more field.
     line.pop();
     let sum = xxh3_64(line.as_bytes());
     line += &format!("{BEFORE_SUM}{sum:016x}{AFTER_SUM}\n");
@@ -123,8 +122,8 @@ fn entry_of<T: DeserializeOwned>(line: &[u8]) -> Result<T, String> {
         let line = line.strip_suffix(BEFORE_SUM)?;
         (u64::from_str_radix(sum, 16) == Ok(xxh3_64(line.as_bytes()))).then_some(line)
     };
-    let line = checked().ok_or("the line does not fit its checksum")?;
-    serde_json::from_str(&format!("{line}}}")).map_err(|error| tamed(&error.to_string()))
+    let line = checked().ok_or("the line does not match its checksum")?;
+    serde_json::from_str(&format!("{line}}}")).map_err(|error| single_line(&error.to_string()))
 }
 
 #[cfg(test)]
@@ -134,7 +133,7 @@ mod tests {
     use std::fs;
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    struct Entry {
+    struct TestLine {
         number: u32,
         mean: f64,
     }
@@ -143,16 +142,16 @@ mod tests {
         parse_log(path, &read_log_bytes(path)?)
     }
 
-    fn entries() -> Vec<Entry> {
+    fn entries() -> Vec<TestLine> {
         [0.1 + 0.2, f64::MIN_POSITIVE, -7.233_333_333_333_333]
             .into_iter()
             .zip(1..)
-            .map(|(mean, number)| Entry { number, mean })
+            .map(|(mean, number)| TestLine { number, mean })
             .collect()
     }
 
     #[test]
-    fn a_log_does_not_grow_beyond_what_is_read_again() {
+    fn a_log_stops_growing_at_the_largest_size_that_is_read() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("log.jsonl");
         let mut log = Log::open(&path, 0).expect("opened");
@@ -177,11 +176,11 @@ mod tests {
     }
 
     #[test]
-    fn entries_come_back_in_every_bit_and_a_reader_of_json_lines_understands_them() {
+    fn lines_are_read_back_bit_for_bit_and_are_valid_json() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = written(&folder);
-        assert_eq!(read_log::<Entry>(&path).expect("read"), entries());
-        assert_eq!(read_log::<Entry>(&folder.path().join("none")).expect("none"), []);
+        assert_eq!(read_log::<TestLine>(&path).expect("read"), entries());
+        assert_eq!(read_log::<TestLine>(&folder.path().join("none")).expect("none"), []);
         let text = fs::read_to_string(&path).expect("read");
         let values = text.lines().map(|line| serde_json::from_str(line).expect("JSON"));
         let values: Vec<serde_json::Value> = values.collect();
@@ -189,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn wherever_the_last_line_is_cut_off_the_others_are_kept_and_it_is_written_anew() {
+    fn an_incomplete_last_line_is_ignored_and_overwritten() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = written(&folder);
         let whole = fs::read(&path).expect("read");
@@ -197,7 +196,7 @@ mod tests {
             whole.len() - whole.split_inclusive(|b| *b == b'\n').next_back().map_or(0, <[u8]>::len);
         for length in two..whole.len() {
             fs::write(&path, &whole[..length]).expect("written");
-            let kept = read_log::<Entry>(&path).expect("read");
+            let kept = read_log::<TestLine>(&path).expect("read");
             assert_eq!(kept, entries()[..2], "cut off at {length}");
             let mut log = Log::open(&path, kept.len()).expect("opened");
             log.append(&entries()[2]).expect("written");
@@ -206,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flipped_bit_in_the_middle_is_damage_with_its_line() {
+    fn a_flipped_bit_in_a_complete_line_is_damage() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = written(&folder);
         let whole = fs::read(&path).expect("read");
@@ -214,7 +213,7 @@ mod tests {
         for place in (0..first).chain(whole.len() - first / 2..whole.len() - 1) {
             let mut bytes = whole.clone();
             bytes[place] ^= 1;
-            let error = parse_log::<Entry>(&path, &bytes).expect_err("damaged").to_string();
+            let error = parse_log::<TestLine>(&path, &bytes).expect_err("damaged").to_string();
             assert!(error.contains("damaged or incomplete at line"), "{error}");
             assert_eq!(error.lines().count(), 1, "{error}");
         }

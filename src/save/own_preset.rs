@@ -1,4 +1,4 @@
-//! A person's own presets: files in the folder `presets` within the saves, named after their presets.
+//! The user's own presets: files in the folder `presets` within the saves, named after their presets.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -9,58 +9,58 @@ use super::preset::{Preset, parse_preset, shipped_presets, store_new_preset};
 use super::{SaveError, SavesFolder};
 use crate::check::{self, Invalid};
 
-/// A file that should be a person's own preset.
-#[derive(Debug)]
+/// A file in the folder of the user's own presets.
+#[derive(Debug, Clone, PartialEq)]
 pub struct OwnPreset {
     /// The file's name without its ending.
     pub name: String,
-    /// What is in it, under that name; or what is wrong with it.
-    pub preset: Result<Preset, SaveError>,
+    /// The preset under that name, or the error in one line.
+    pub preset: Result<Preset, String>,
 }
 
-/// More than so many of a person's own presets are not listed: nobody would find one among them.
-const MOST_OWN_PRESETS: usize = 200;
-/// The largest preset of a person's own, in MiB: a shipped one has some 3 KiB.
+/// Maximum number of own presets that are listed.
+const MAX_OWN_PRESETS: usize = 200;
+/// Maximum size of an own preset, in MiB; a shipped one has about 3 KiB.
 const LARGEST_MIB: u64 = 1;
 
 impl SavesFolder {
-    /// The folder in it for a person's own presets.
+    /// Its folder for the user's own presets.
     #[must_use]
     pub fn presets(&self) -> PathBuf {
         self.path().join("presets")
     }
 
-    /// A person's own presets by name, the damaged ones too; nothing if there is no folder of them.
+    /// The user's own presets by name, damaged ones included; none if their folder does not exist.
     pub fn own_presets(&self) -> Vec<OwnPreset> {
         let Ok(entries) = fs::read_dir(self.presets()) else { return Vec::new() };
         let mut names: Vec<String> = entries
             .flatten()
             .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".ron")?.to_owned()))
-            // What is half written begins with a point.
+            // The names of incomplete files begin with a dot.
             .filter(|name| !name.starts_with('.'))
             .collect();
         names.sort();
-        names.truncate(MOST_OWN_PRESETS);
+        names.truncate(MAX_OWN_PRESETS);
         let read = |name: String| {
             let preset = read_own(&self.own_preset_path(&name), &name);
-            OwnPreset { name, preset }
+            OwnPreset { name, preset: preset.map_err(|error| error.to_string()) }
         };
         names.into_iter().map(read).collect()
     }
 
-    /// Keeps a preset among a person's own. What is there under its name stays there.
+    /// Adds a preset to the user's own; never overwrites one.
     ///
     /// # Errors
-    /// The name cannot be that of a file, or is taken; or the file cannot be written.
+    /// The name is not allowed or taken, or the file cannot be written.
     pub fn store_own_preset(&self, preset: &Preset) -> Result<PathBuf, SaveError> {
         let path = self.own_preset_path(&preset.name);
         let invalid = |source| SaveError::Invalid { path: self.presets(), source };
         check_own_name(&preset.name).map_err(invalid)?;
         prepare_folder(&self.presets())?;
-        // Whether the name is free is asked by the writing itself: another program may take it at any time.
+        // Writing itself checks that the name is free: another program may take it at any time.
         store_new_preset(&path, preset).map_err(|error| match error {
             SaveError::Unwritable { path, source } if source.kind() == ErrorKind::AlreadyExists => {
-                let source = std::io::Error::other("there is a preset of that name already");
+                let source = std::io::Error::other("a preset of this name already exists");
                 SaveError::Unwritable { path, source }
             }
             other => other,
@@ -73,15 +73,15 @@ impl SavesFolder {
     }
 }
 
-/// Accepts what a person may call a preset: a plain name that no shipped one has.
+/// Checks the name of an own preset.
 ///
 /// # Errors
-/// It is not plain, or taken.
+/// The name has a character that is not allowed, or a shipped preset has it.
 pub fn check_own_name(name: &str) -> Result<(), Invalid> {
     check::name("name", name)?;
     let shipped = shipped_presets().unwrap_or_default();
     if shipped.iter().any(|preset| preset.name == name) {
-        let allowed = "a name that no preset of the program has";
+        let allowed = "a name that no shipped preset has";
         return Err(Invalid::new("name", format!("{name:?}"), allowed));
     }
     Ok(())
@@ -93,7 +93,7 @@ fn read_own(path: &Path, name: &str) -> Result<Preset, SaveError> {
     refuse_link(path).map_err(|source| SaveError::Unreadable { path: path.to_owned(), source })?;
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
     let preset = parse_preset(path, &text)?;
-    // A copy by hand has a new name outside and the old one inside.
+    // The file's name counts: in a copied file the preset still has the old name.
     Ok(Preset { name: name.to_owned(), ..preset })
 }
 
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn an_own_preset_comes_back_and_is_never_overwritten() {
+    fn an_own_preset_is_read_back_and_never_overwritten() {
         let (_folder, saves) = saves();
         assert!(saves.own_presets().is_empty(), "no folder yet");
         saves.store_own_preset(&own("my-ice")).expect("written");
@@ -121,22 +121,22 @@ mod tests {
         assert_eq!(listed.len(), 1);
         assert_eq!(listed[0].preset.as_ref().expect("well formed"), &own("my-ice"));
         let taken = saves.store_own_preset(&own("my-ice")).expect_err("taken").to_string();
-        assert!(taken.contains("there is a preset of that name already"), "{taken}");
+        assert!(taken.contains("a preset of this name already exists"), "{taken}");
     }
 
     #[test]
-    fn what_took_a_presets_name_a_moment_before_stays() {
+    fn a_file_that_took_the_presets_name_is_not_overwritten() {
         let (folder, _saves) = saves();
         let path = folder.path().join("mine.ron");
-        fs::write(&path, "somebody else's").expect("written");
+        fs::write(&path, "another file").expect("written");
         let refused = store_new_preset(&path, &own("mine")).expect_err("taken");
         assert!(refused.to_string().contains("cannot be written"), "{refused}");
-        assert_eq!(fs::read_to_string(&path).expect("there"), "somebody else's");
+        assert_eq!(fs::read_to_string(&path).expect("there"), "another file");
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is left");
     }
 
     #[test]
-    fn a_name_that_is_none_or_is_shipped_is_refused() {
+    fn a_name_that_is_invalid_or_shipped_is_refused() {
         let (_folder, saves) = saves();
         let long = "x".repeat(300);
         for name in ["a/b", "../up", "", "Ice", long.as_str(), "climb"] {
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_preset_is_listed_with_its_reason_and_stops_no_other() {
+    fn a_damaged_preset_is_listed_with_its_error_beside_the_others() {
         let (_folder, saves) = saves();
         saves.store_own_preset(&own("good")).expect("written");
         fs::write(saves.presets().join("broken.ron"), "(name: \"broken\", about").expect("written");
@@ -159,21 +159,21 @@ mod tests {
         let names: Vec<(&str, bool)> =
             listed.iter().map(|own| (own.name.as_str(), own.preset.is_ok())).collect();
         assert_eq!(names, [("Bad Name", false), ("broken", false), ("copy", true), ("good", true)]);
-        let reason = listed[1].preset.as_ref().expect_err("damaged").to_string();
+        let reason = listed[1].preset.as_ref().expect_err("damaged");
         assert!(reason.contains("damaged or incomplete at line 1"), "{reason}");
         assert_eq!(listed[2].preset.as_ref().expect("a copy").name, "copy");
     }
 
     #[cfg(unix)]
     #[test]
-    fn a_link_among_own_presets_is_not_followed() {
+    fn a_link_in_the_folder_of_presets_is_not_followed() {
         let (folder, saves) = saves();
         saves.store_own_preset(&own("good")).expect("written");
         let elsewhere = folder.path().join("elsewhere.ron");
         fs::rename(saves.presets().join("good.ron"), &elsewhere).expect("moved");
         std::os::unix::fs::symlink(&elsewhere, saves.presets().join("good.ron")).expect("linked");
         let listed = saves.own_presets();
-        let reason = listed[0].preset.as_ref().expect_err("a link").to_string();
+        let reason = listed[0].preset.as_ref().expect_err("a link");
         assert!(reason.contains("it is a link"), "{reason}");
     }
 }

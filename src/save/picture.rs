@@ -1,11 +1,11 @@
-//! Pictures as PNG, tables as CSV, and plain texts.
+//! Writes pictures as PNG, tables as CSV, and plain text.
 
 use std::path::Path;
 
 use super::SaveError;
 use super::files::write_whole;
 
-/// A picture of red, green and blue bytes, row by row from the top left.
+/// A picture of red, green and blue bytes, row by row from the top left pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picture {
     /// Width in pixels.
@@ -23,7 +23,7 @@ impl Picture {
     }
 }
 
-/// Writes a picture as PNG, whole or not at all.
+/// Writes a picture as PNG, atomically.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -42,7 +42,7 @@ pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     write_whole(path, &bytes)
 }
 
-/// Writes a text, whole or not at all.
+/// Writes a text atomically.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -50,7 +50,7 @@ pub fn store_text(path: &Path, text: &str) -> Result<(), SaveError> {
     write_whole(path, text.as_bytes())
 }
 
-/// Writes records as CSV (RFC 4180), whole or not at all.
+/// Writes records as CSV (RFC 4180), atomically.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -73,7 +73,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn a_picture_comes_back_from_its_file() {
+    fn a_picture_is_read_back_from_its_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.png");
         let mut picture = Picture::new(3, 2);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_needs_quotes_in_a_table_gets_them() {
+    fn fields_with_commas_or_quotes_are_quoted() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.csv");
         let record = |words: [&str; 2]| words.map(str::to_owned).to_vec();

@@ -1,9 +1,9 @@
 //! Recorded poses as compact text: base64 of small numbers.
 //!
-//! Each pose is its place, then its turn. A coordinate is in whole millimetres, as the difference to the
-//! same limb's in the frame before, in zigzag and then LEB128 (the variable-length integers of DWARF and
-//! Protocol Buffers). A turn is the three smaller components of its unit quaternion with ten bits each,
-//! and two bits that say which is missing ("smallest three"): 32 bits, little-endian, right to 0.1°.
+//! Each pose is a position, then a rotation. A coordinate is in whole millimetres, as the difference from the same limb
+//! in the previous frame, in zigzag and LEB128 encoding (the variable-length integers of DWARF and Protocol Buffers).
+//! A rotation is the three smaller components of its unit quaternion with ten bits each, and two bits for the index of
+//! the largest ("smallest three"): 32 bits, little-endian, accurate to 0.1°.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD as BASE64;
@@ -13,10 +13,10 @@ use crate::check::{Invalid, within};
 use crate::score::Recording;
 use crate::world::{Pose, Rotation, Vector};
 
-/// A recording as it stands in files.
+/// A recording as files contain it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PosesV3 {
+pub struct PosesV5 {
     pub every_steps: u32,
     pub limbs: u32,
     pub frames: u32,
@@ -24,15 +24,15 @@ pub struct PosesV3 {
 }
 
 const MM_PER_M: f32 = 1000.0;
-/// Farther than any limb gets: ten minutes at the highest speed that a trial allows are 600 km.
+/// Farther than any limb can get: ten minutes at the highest speed that a trial allows are 600 km.
 const LARGEST_MM: i64 = 10_000_000_000;
-/// The least bytes a pose takes: one for each coordinate, four for the turn.
-const LEAST_POSE_BYTES: usize = 7;
-/// Ten bits on either side of the middle.
+/// Minimum size of a pose: one byte per coordinate, four bytes for the rotation.
+const MIN_POSE_BYTES: usize = 7;
+/// Steps on either side of zero that fit into ten bits.
 const TURN_STEPS: f32 = 511.0;
 const TURN_MASK: u32 = 0x3ff;
 
-impl From<&Recording> for PosesV3 {
+impl From<&Recording> for PosesV5 {
     #[expect(clippy::cast_possible_truncation, reason = "rounded to whole millimetres on purpose")]
     fn from(recording: &Recording) -> Self {
         let mut bytes = Vec::new();
@@ -56,11 +56,11 @@ impl From<&Recording> for PosesV3 {
     }
 }
 
-impl PosesV3 {
-    /// The recording of a snake with so many limbs.
+impl PosesV5 {
+    /// Decodes the recording of a snake with `limbs` limbs.
     ///
     /// # Errors
-    /// The counts do not fit each other, the data end too early or late, or a limb is out of this world.
+    /// The counts do not match, the data are too short or too long, or a limb is impossibly far away.
     pub fn recording(&self, limbs: u32) -> Result<Recording, Invalid> {
         within("every_steps", self.every_steps, 1..=1_000_000)?;
         within("limbs", self.limbs, limbs..=limbs)?;
@@ -69,8 +69,8 @@ impl PosesV3 {
         within("frames", self.frames as usize, 1..=most)?;
         let poses = limbs * self.frames as usize;
         let wrong = |value: &str| Invalid::new("data", value, format!("{poses} poses in base64"));
-        let bytes = BASE64.decode(&self.data).map_err(|_| wrong("no base64"))?;
-        if bytes.len() < poses * LEAST_POSE_BYTES {
+        let bytes = BASE64.decode(&self.data).map_err(|_| wrong("not base64"))?;
+        if bytes.len() < poses * MIN_POSE_BYTES {
             return Err(wrong("too short"));
         }
         let mut rest = bytes.as_slice();
@@ -99,7 +99,7 @@ impl PosesV3 {
 }
 
 fn write_number(number: i64, bytes: &mut Vec<u8>) {
-    // Zigzag: small numbers of either sign are small.
+    // Zigzag encoding: small numbers of either sign stay small.
     let mut rest = (number.wrapping_shl(1) ^ (number >> 63)).cast_unsigned();
     loop {
         let [low, ..] = (rest & 0x7f).to_le_bytes();
@@ -111,7 +111,7 @@ fn write_number(number: i64, bytes: &mut Vec<u8>) {
     }
 }
 
-/// None, if the bytes end within the number or it is longer than 63 bits, which no sum of them is.
+/// None if the bytes end within the number, or the number is longer than 63 bits.
 fn read_number(bytes: &mut &[u8]) -> Option<i64> {
     let mut number = 0_u64;
     for shift in (0..63).step_by(7) {
@@ -131,7 +131,7 @@ fn packed(turn: Rotation) -> u32 {
     let largest = (1..4).fold(0, |largest, index| {
         if components[index].abs() > components[largest].abs() { index } else { largest }
     });
-    // A quaternion and its negative are the same turn: the missing component is positive.
+    // A quaternion and its negative are the same rotation: choose the one whose largest component is positive.
     let sign = if components[largest] < 0.0 { -1.0 } else { 1.0 };
     let others = (0..4).filter(|&index| index != largest).map(|index| components[index] * sign);
     others.fold(largest as u32, |bits, component| {
@@ -142,7 +142,7 @@ fn packed(turn: Rotation) -> u32 {
     })
 }
 
-/// None, if the three components are too large to belong to a unit quaternion.
+/// None if the three components are too large for a unit quaternion.
 fn unpacked(bits: u32) -> Option<Rotation> {
     let largest = (bits >> 30) as usize;
     let mut components = [0.0; 4];
@@ -168,14 +168,14 @@ mod tests {
     fn recording() -> Recording {
         let trial = Trial::default();
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = GenomeSpace::default().birth(trial.descent(), &mut rng);
+        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
         Recording::of(&genome, &trial)
     }
 
     #[test]
-    fn poses_come_back_within_a_millimetre_and_a_fifth_of_a_degree() {
+    fn poses_are_read_back_within_a_millimetre_and_a_fifth_of_a_degree() {
         let recording = recording();
-        let file = PosesV3::from(&recording);
+        let file = PosesV5::from(&recording);
         assert!(file.data.len() < 16_000, "{} bytes for five seconds", file.data.len());
         let read = file.recording(5).expect("as written");
         assert_eq!(read.frames().len(), recording.frames().len());
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_any_size_come_back() {
+    fn numbers_of_any_size_are_read_back() {
         for number in [0, 1, -1, 63, -64, 64, 300, -100_000, i64::MAX / 2, i64::MIN / 2] {
             let mut bytes = Vec::new();
             write_number(number, &mut bytes);
@@ -199,9 +199,9 @@ mod tests {
     }
 
     #[test]
-    fn poses_that_are_not_what_was_written_are_refused() {
-        let good = PosesV3::from(&recording());
-        let says = |edit: fn(&mut PosesV3), message: &str| {
+    fn damaged_poses_are_refused() {
+        let good = PosesV5::from(&recording());
+        let says = |edit: fn(&mut PosesV5), message: &str| {
             let mut file = good.clone();
             edit(&mut file);
             let found = file.recording(5).expect_err("refused").to_string();
@@ -213,7 +213,7 @@ mod tests {
         says(|file| file.frames -= 1, "data is too long");
         says(|file| file.frames *= 100, "data is too short");
         says(|file| file.every_steps = 0, "every_steps is 0");
-        says(|file| file.data.push('*'), "data is no base64");
+        says(|file| file.data.push('*'), "data is not base64");
         says(|file| file.data = BASE64.encode([0xff; 7000]), "data is damaged");
     }
 }

@@ -1,7 +1,6 @@
-//! What a person has chosen for the window: format 1. Kept apart from everything that decides the bits of a run.
+//! The user's preferences for the window: format 1. Nothing in them can change the bits of a run.
 //!
-//! The file is a convenience: one that cannot be read is put aside under another name, said plainly, and the window
-//! opens as it does for the first time.
+//! An unreadable file is renamed and reported, and the window opens with the defaults.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,32 +14,32 @@ use crate::check::{Invalid, within};
 
 const KIND: &str = "snakes-and-stairs preferences";
 const FORMAT: u32 = 1;
-/// How much larger or smaller than usual panels may be drawn.
+/// The scales of the panels that the user can choose.
 pub const UI_SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
-/// The longest description of where panels are, in bytes.
+/// Maximum length of the panels' layout, in bytes.
 const LONGEST_LAYOUT: usize = 100_000;
 
-/// What a person has chosen for the window.
+/// The user's preferences for the window.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
     /// `light` or `dark`.
     pub theme: String,
-    /// How large the panels are drawn: see [`UI_SCALES`].
+    /// Scale of the panels: see [`UI_SCALES`].
     pub ui_scale: f32,
-    /// Size of the window, in logical pixels; none: the usual one.
+    /// Size of the window, in logical pixels; none for the default.
     pub window_size: Option<(u32, u32)>,
-    /// Where the panels are, in the window's own words; empty: where they are at first.
+    /// Layout of the panels, in the studio's own text form; empty for the default.
     pub layout: String,
-    /// What is drawn over the scene, by name.
+    /// Names of the overlays that are drawn over the scene.
     pub overlays: Vec<String>,
-    /// Simulated seconds in a second.
+    /// Playback speed, in simulated seconds per second.
     pub speed: f32,
-    /// Whether the stage begins again after the end.
+    /// Whether playback repeats.
     pub loops: bool,
-    /// Whether edges are smoothed; none: as suits the machine.
+    /// Whether edges are smoothed; none to decide by the machine.
     pub smooth_edges: Option<bool>,
-    /// Whether the tour was taken or skipped.
+    /// Whether the tour was finished or skipped.
     pub tour_is_over: bool,
 }
 
@@ -64,7 +63,7 @@ impl Preferences {
     /// Checks every field against its range.
     ///
     /// # Errors
-    /// One is out of it.
+    /// A field is out of its range.
     pub fn check(&self) -> Result<(), Invalid> {
         if !["light", "dark"].contains(&self.theme.as_str()) {
             let start: String = self.theme.chars().take(40).collect();
@@ -81,59 +80,59 @@ impl Preferences {
     }
 }
 
-/// Where the preferences are kept.
+/// The file of the preferences, or none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PreferencesFile(Option<PathBuf>);
 
 #[derive(Serialize, Deserialize)]
-struct File {
+struct PreferencesContents {
     kind: String,
     format: u32,
     preferences: Preferences,
 }
 
 impl PreferencesFile {
-    /// The file in the platform's folder for settings; nowhere, if the platform has none.
+    /// The file in the platform's folder for settings; none if the platform has no such folder.
     pub fn find() -> Self {
         let folders = ProjectDirs::from("", "", "snakes-and-stairs");
         Self(folders.map(|folders| folders.config_dir().join("studio.ron")))
     }
 
-    /// A file at this place.
+    /// The file at this path.
     pub fn at(path: &Path) -> Self {
         Self(Some(path.to_owned()))
     }
 
-    /// Kept nowhere: every window opens as for the first time.
+    /// No file: every window opens with the defaults.
     pub fn nowhere() -> Self {
         Self(None)
     }
 
-    /// Reads them; none, if there is no such file yet.
+    /// Reads the preferences; none if the file does not exist yet.
     ///
     /// # Errors
-    /// The file is there and cannot be read, or something in it is not allowed.
+    /// The file exists but cannot be read, or a value in it is not allowed.
     pub fn load(&self) -> Result<Option<Preferences>, SaveError> {
         let Some(path) = self.0.as_deref().filter(|path| path.symlink_metadata().is_ok()) else {
             return Ok(None);
         };
         let text = read_text(path)?;
-        Header::read(path, &text, KIND, FORMAT)?;
-        let File { preferences, .. } = parse(path, &text)?;
+        Header::check(path, &text, KIND, FORMAT)?;
+        let PreferencesContents { preferences, .. } = parse(path, &text)?;
         preferences
             .check()
             .map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
         Ok(Some(preferences))
     }
 
-    /// Puts a file aside that cannot be read, so that it is not written over. Says where it is now.
+    /// Renames an unreadable file, so that it is not overwritten; returns its new path.
     pub fn put_aside(&self) -> Option<PathBuf> {
         let path = self.0.as_deref()?;
         let aside = path.with_extension("ron.unreadable");
         fs::rename(path, &aside).ok().map(|()| aside)
     }
 
-    /// Writes them, whole or not at all.
+    /// Writes the preferences atomically.
     ///
     /// # Errors
     /// The file or its folder cannot be written.
@@ -142,7 +141,8 @@ impl PreferencesFile {
         if let Some(folder) = path.parent() {
             prepare_folder(folder)?;
         }
-        let file = File { kind: KIND.to_owned(), format: FORMAT, preferences: preferences.clone() };
+        let kind = KIND.to_owned();
+        let file = PreferencesContents { kind, format: FORMAT, preferences: preferences.clone() };
         store_ron(path, &file)
     }
 }
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn preferences_come_back_and_what_is_missing_is_usual() {
+    fn preferences_are_read_back_and_missing_fields_have_their_defaults() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("deep/studio.ron");
         let file = PreferencesFile::at(&path);
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_cannot_be_read_says_why_and_is_put_aside_not_written_over() {
+    fn an_unreadable_file_is_reported_and_renamed() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("studio.ron");
         let file = PreferencesFile::at(&path);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn where_they_are_kept_nowhere_nothing_is_written() {
+    fn without_a_file_nothing_is_written() {
         let file = PreferencesFile::nowhere();
         file.store(&Preferences::default()).expect("nothing to do");
         assert_eq!(file.load().expect("nothing"), None);

@@ -1,44 +1,37 @@
-//! Presets: named, explained settings, as RON. The shipped ones are embedded in the program.
+//! Presets: named and described settings, as RON. The shipped ones are embedded in the program.
 
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 use super::SaveError;
-use super::files::{parse, pretty, read_text, store_ron, write_new};
-use super::settings::{SettingsV1, SettingsV2};
+use super::files::{check_format, parse, pretty, read_text, store_ron, write_new};
 use crate::check::{self, Invalid, within};
 use crate::evolve::Settings;
 
-/// Named, explained settings.
+/// Named and described settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preset {
-    /// A short name, for the command line and for file names.
+    /// A short name for the command line and for file names.
     pub name: String,
-    /// A paragraph for a person.
+    /// A paragraph that describes it.
     pub about: String,
     /// All settings.
     pub settings: Settings,
 }
 
-/// A preset's file: of format 1 or 2, which differ in their settings. Never changed once released.
+/// The whole file. Once released, it never changes: see `super::v5`.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PresetFile<S> {
-    /// People write presets by hand: one that does not say its format has the first.
-    #[serde(default = "first_format")]
+struct PresetFile {
     format: u32,
     name: String,
     about: String,
-    settings: S,
+    settings: Settings,
 }
 
 const FORMAT: u32 = 2;
 
-fn first_format() -> u32 {
-    1
-}
-
-/// The preset used when none is named.
+/// The preset that is used when none is named.
 pub const DEFAULT_PRESET: &str = "climb";
 
 /// Lists the shipped presets by their file names.
@@ -64,18 +57,18 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "trampoline",
 ];
 
-/// The presets that come with the program, the default first.
+/// The shipped presets, the default first.
 ///
 /// # Errors
-/// An embedded preset is broken, which a test rules out.
+/// An embedded preset is broken; a test prevents this.
 pub fn shipped_presets() -> Result<Vec<Preset>, SaveError> {
     SHIPPED.iter().map(|(file, text)| parse_preset(Path::new(file), text)).collect()
 }
 
-/// Loads a preset by the name of a shipped one, or by the path of a person's own file.
+/// Loads a preset by the name of a shipped one, or by the path of a file.
 ///
 /// # Errors
-/// There is no such preset or file, or something in it is not allowed.
+/// There is no such preset or file, or a value in it is not allowed.
 pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
     let shipped = shipped_presets()?;
     if let Some(preset) = shipped.iter().find(|preset| preset.name == name_or_path) {
@@ -90,7 +83,7 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
     Err(SaveError::UnknownPreset(Invalid::new("preset", format!("{name_or_path:?}"), allowed)))
 }
 
-/// Writes a preset so that a person can read and change it, whole or not at all.
+/// Writes a preset as readable text, atomically.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -98,58 +91,52 @@ pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
     store_ron(path, &file_of(preset))
 }
 
-/// The same where there is no file of that name yet: what has taken the name meanwhile stays.
+/// Writes a preset to a new file; never overwrites one.
 ///
 /// # Errors
-/// There is one, or the file cannot be written.
+/// The file exists, or cannot be written.
 pub fn store_new_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
     write_new(path, pretty(path, &file_of(preset))?.as_bytes())
 }
 
-fn file_of(preset: &Preset) -> PresetFile<SettingsV2> {
+fn file_of(preset: &Preset) -> PresetFile {
     let Preset { name, about, settings } = preset.clone();
-    PresetFile { format: FORMAT, name, about, settings: SettingsV2::from(settings) }
+    PresetFile { format: FORMAT, name, about, settings }
 }
 
-/// Reads a preset from a text; `path` is what errors call it.
+/// Parses a preset; `path` is the file's name in errors.
 ///
 /// # Errors
-/// It is damaged, or something in it is not allowed.
+/// The text is damaged, or a value in it is not allowed.
 pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
     #[derive(Deserialize)]
-    struct Format {
-        #[serde(default = "first_format")]
+    struct PresetHeader {
+        #[serde(default)]
         format: u32,
-        /// Saves and runs have one.
+        /// Champions and runs have one, presets have none.
         kind: Option<String>,
     }
     let invalid = |source| SaveError::Invalid { path: path.to_owned(), source };
-    let Format { format, kind } = parse(path, text)?;
+    let PresetHeader { format, kind } = parse(path, text)?;
     if let Some(kind) = kind {
         let start: String = kind.chars().take(60).collect();
-        return Err(invalid(Invalid::new("kind", format!("{start:?}"), "none: it is no preset")));
+        return Err(invalid(Invalid::new(
+            "kind",
+            format!("{start:?}"),
+            "none; this file is not a preset",
+        )));
     }
-    let PresetFile { name, about, settings, .. } = match format {
-        1 => {
-            let PresetFile { format, name, about, settings }: PresetFile<SettingsV1> =
-                parse(path, text)?;
-            PresetFile { format, name, about, settings: SettingsV2::from(settings) }
-        }
-        FORMAT => parse(path, text)?,
-        0 => return Err(invalid(Invalid::new("format", 0, format!("1 to {FORMAT}")))),
-        found => {
-            return Err(SaveError::Newer { path: path.to_owned(), found, newest: FORMAT });
-        }
-    };
-    let preset = Preset { name, about, settings: settings.into() };
+    check_format(path, format, FORMAT)?;
+    let PresetFile { name, about, settings, .. } = parse(path, text)?;
+    let preset = Preset { name, about, settings };
     check::name("name", &preset.name).map_err(invalid)?;
-    within("about", preset.about.len(), 0..=LONGEST_ABOUT).map_err(invalid)?;
+    within("about", preset.about.len(), 0..=MAX_ABOUT_BYTES).map_err(invalid)?;
     preset.settings.check().map_err(invalid)?;
     Ok(preset)
 }
 
-/// The longest explanation of a preset, in bytes.
-const LONGEST_ABOUT: usize = 10_000;
+/// Maximum length of a preset's description, in bytes.
+const MAX_ABOUT_BYTES: usize = 10_000;
 
 #[cfg(test)]
 mod tests {
@@ -163,7 +150,7 @@ mod tests {
         assert_eq!(presets[0].name, DEFAULT_PRESET);
         for (preset, (file, _)) in presets.iter().zip(SHIPPED) {
             assert_eq!(format!("{}.ron", preset.name), *file);
-            assert!(preset.about.len() > 60, "{file} has no paragraph for a person");
+            assert!(preset.about.len() > 60, "{file} has no description");
         }
     }
 
@@ -180,12 +167,12 @@ mod tests {
     }
 
     #[test]
-    fn every_preset_lets_one_genome_go_another_way() {
+    fn one_genome_moves_differently_in_every_preset() {
         let presets = shipped_presets().expect("well formed");
         let report = &load_preset("report").expect("shipped").settings;
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = report.genome.birth(report.trial.descent(), &mut rng);
-        // `quick` has the world of the report, and only evolves for a shorter time.
+        let genome = report.genome.random_genome(report.trial.genome_shape(), &mut rng);
+        // `quick` has the world of `report` and differs only in the search.
         let worlds = presets.iter().filter(|preset| preset.name != "quick");
         let mut traces: Vec<u64> =
             worlds.map(|preset| evaluate(&genome, &preset.settings.trial).trace_hash).collect();
@@ -196,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_preset_comes_back_from_its_file() {
+    fn a_preset_is_read_back_from_its_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("own.ron");
         let mut preset = load_preset("ice").expect("it is shipped");

@@ -1,4 +1,4 @@
-//! Lines of a run's logs: finished generations, and the evaluations of the one under way.
+//! Lines of a run's logs: finished generations, and the evaluations of the current one.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::SaveError;
 use super::change::{CHANGES_FILE, read_changes};
 use super::files::{hash_of, refuse_link};
-use super::folder::fingerprint;
 use super::log::{parse_log, read_log_bytes};
 use super::plan::load_plan;
-use super::v4::RecordedV4;
+use super::run_name::fingerprint;
+use super::v5::RecordedV5;
 use crate::check::{Invalid, within};
 use crate::evolve::RunPlan;
 use crate::score::{Evaluation, FITNESS_RANGE};
@@ -25,25 +25,25 @@ pub const EVALUATIONS_FILE: &str = "evaluations.jsonl";
 pub struct GenerationRecord {
     /// The first is 1.
     pub generation: u32,
-    /// Individuals that were evaluated.
+    /// Number of individuals that were evaluated.
     pub evaluations: u32,
-    /// How many of them were disqualified, for whatever reason.
+    /// Number of these that were disqualified, for any reason.
     pub disqualified: u32,
-    /// On how many of them the program failed.
+    /// Number of these on which the program panicked.
     pub crashed: u32,
-    /// How many ended on the landing.
+    /// Number of these that ended on the landing.
     pub on_landing: u32,
-    /// The first of these; none if there are none.
+    /// Index of the first one on the landing; none if there is none.
     pub first_on_landing: Option<u32>,
-    /// Fitness statistics over the healthy ones; none if there were none.
+    /// Fitness statistics of the healthy individuals; none if all were disqualified.
     pub statistics: Option<StatisticsRecord>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
     pub hash: String,
-    /// Wall-clock time it took since the program was started or the generation began, in seconds.
+    /// Wall-clock time since the generation began or the program was started, in seconds.
     pub elapsed_s: f64,
 }
 
-/// Fitness statistics of a generation, as in the log.
+/// Fitness statistics of a generation in the log.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(missing_docs, reason = "the fields are those of run::Statistics, which explains them")]
@@ -54,36 +54,36 @@ pub struct StatisticsRecord {
     pub std: f64,
     pub worst: f64,
     pub mean_centre_y_m: f64,
-    /// Logs of earlier versions do not have them.
+    /// Absent in the oldest logs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_quartile: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper_quartile: Option<f64>,
 }
 
-/// An evaluation of the generation under way.
+/// An evaluation of the current generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EvaluationRecord {
-    /// Hash over the plan of the run.
+    /// Fingerprint of the run's plan.
     pub plan: String,
     pub generation: u32,
     pub individual: u32,
     pub disqualified: Option<Disqualification>,
-    pub recorded: RecordedV4,
+    pub recorded: RecordedV5,
 }
 
 impl GenerationRecord {
     /// Hash over the bits of every evaluation.
     ///
     /// # Errors
-    /// It is not written as a hash.
+    /// The field is not a hash.
     pub fn generation_hash(&self) -> Result<u64, Invalid> {
         hash_of("hash", &self.hash)
     }
 }
 
-/// How many generations of a run's folder are finished: the whole lines of its log, which are not read.
+/// Counts the finished generations of a run's folder: the complete lines of its log, without parsing them.
 pub fn count_records(folder: &Path) -> Result<u32, SaveError> {
     let bytes = read_log_bytes(&folder.join(LOG_FILE))?;
     Ok(bytes.iter().filter(|byte| **byte == b'\n').count() as u32)
@@ -95,15 +95,15 @@ pub fn read_records(folder: &Path, plan: &RunPlan) -> Result<Vec<GenerationRecor
     parse_records(&path, &read_log_bytes(&path)?, plan)
 }
 
-/// What run a folder holds, with what was changed on its way, and its finished generations: its log alone, without
+/// Reads the plan of the run in a folder after all its changes, and the log of its finished generations, without the
 /// champions.
 ///
 /// # Errors
-/// There is no run in it, it was recorded by another engine, or something in it is damaged.
+/// The folder contains no run, another engine recorded it, or a file is damaged.
 pub fn load_log(folder: &Path) -> Result<(RunPlan, Vec<GenerationRecord>), SaveError> {
     let plan = load_plan(folder)?;
     let changes = read_changes(folder, &plan)?;
-    // Reading the changes has checked this.
+    // Reading the changes has already checked this.
     let changed = plan
         .in_generation(u32::MAX, &changes)
         .map_err(|source| SaveError::Invalid { path: folder.join(CHANGES_FILE), source })?;
@@ -113,11 +113,10 @@ pub fn load_log(folder: &Path) -> Result<(RunPlan, Vec<GenerationRecord>), SaveE
     Ok((changed, records))
 }
 
-/// Reads finished generations from the bytes of a log; `path` is what errors call it. The plan is that after all
-/// changes.
+/// Parses finished generations; `path` is the log's name in errors, and `plan` is the plan after all changes.
 ///
 /// # Errors
-/// A whole line is damaged, out of its order, or beyond the end of the run.
+/// A complete line is damaged, out of order, or beyond the end of the run.
 pub fn parse_records(
     path: &Path,
     bytes: &[u8],
@@ -154,9 +153,8 @@ pub fn parse_records(
     Ok(records)
 }
 
-/// The evaluations of the generation under way, in the order in which they were written.
-///
-/// They are no more than a saving: where they are damaged, they are computed again.
+/// Reads the evaluations of the current generation in the order in which they were written. Damaged ones are ignored:
+/// they will be computed again.
 pub fn read_evaluations(
     folder: &Path,
     generation: u32,
@@ -168,11 +166,11 @@ pub fn read_evaluations(
     Ok(parse_evaluations(&path, &bytes, generation, plan).unwrap_or_default())
 }
 
-/// Reads the evaluations of a generation from the bytes of a log; `path` is what errors call it. Those of
-/// another generation or another run are none of this one.
+/// Parses the evaluations of a generation; `path` is the log's name in errors. None are returned if the log belongs to
+/// another generation or run.
 ///
 /// # Errors
-/// A whole line is damaged, or has a value that is not allowed.
+/// A complete line is damaged, or has a value that is not allowed.
 pub fn parse_evaluations(
     path: &Path,
     bytes: &[u8],

@@ -1,19 +1,19 @@
-//! A run as a folder: what run it is, a log of its generations, checkpoints, champions.
+//! A run's folder: its plan, the logs of its generations, its checkpoints and champions.
 //!
-//! | file | what it holds | written |
+//! | file | contents | written |
 //! |---|---|---|
-//! | `run.ron` | preset, seed, settings, founder, engine | once, whole |
-//! | `changes.jsonl` | a line per setting that was changed on the way | added to, before the generation that it concerns |
-//! | `generation-N.ron` | the champion of generation N | whole, before the log's line |
-//! | `checkpoint-N.ron` | what the strategy knew after generation N | whole, before the log's line |
-//! | `log.jsonl` | a line per finished generation | added to; a generation is finished once its line stands |
-//! | `lineage.jsonl` | who came from whom, a line per finished generation | added to, before the log's line |
-//! | `evaluations.jsonl` | the evaluations of the generation under way | added to, begun anew with each |
-//! | `crashed-N-I.ron` | a genome on which the program failed | whole |
-//! | `lock` | who writes into the folder | while somebody does |
+//! | `run.ron` | preset, seed, settings, founder, engine | once, atomically |
+//! | `changes.jsonl` | a line per changed setting | appended, before the first generation that uses it |
+//! | `generation-N.ron` | the champion of generation N | atomically, before the log's line |
+//! | `checkpoint-N.ron` | the state of the search after generation N | atomically, before the log's line |
+//! | `log.jsonl` | a line per finished generation | appended; this line makes a generation finished |
+//! | `lineage.jsonl` | the individuals' parents, a line per finished generation | appended, before the log's line |
+//! | `evaluations.jsonl` | the evaluations of the current generation | appended; emptied after each generation |
+//! | `crashed-N-I.ron` | a genome on which the program panicked | atomically |
+//! | `lock` | the program that writes into the folder | while it does |
 //!
-//! So a kill at any instant leaves a log whose last whole line has its checkpoint beside it. What is lost
-//! is computed again, with the same bits.
+//! So a kill at any instant leaves a log whose last complete line has its checkpoint. Lost evaluations are computed
+//! again, with the same bits.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -22,92 +22,94 @@ use std::sync::{Mutex, PoisonError};
 
 use super::champion::{load_champion, store_champion};
 use super::change::{CHANGES_FILE, ChangeRecord, read_changes};
-use super::checkpoint::{Knowledge, checkpoints, load_checkpoint, store_checkpoint, thin};
+use super::checkpoint::{
+    SearchState, checkpoints, load_checkpoint, remove_old_checkpoints, store_checkpoint,
+};
 use super::files::{prepare_folder, refuse_link, remove_unfinished};
-use super::folder::{champion_file_name, fingerprint};
+use super::folder::champion_file_name;
 use super::lineage::{LINEAGE_FILE, LineageRecord, read_lineage};
 use super::lock::Lock;
 use super::log::Log;
 use super::plan::{RUN_FILE, load_plan, store_plan};
 use super::record::{EVALUATIONS_FILE, EvaluationRecord, LOG_FILE, read_evaluations, read_records};
+use super::run_name::fingerprint;
 use super::{GenerationRecord, SaveError};
 use crate::check::Invalid;
 use crate::evolve::{Champion, RunPlan, SettingChange};
 use crate::score::{Evaluation, Recording};
 
-/// A run keeps so many genomes on which the program failed.
-const MOST_CRASHED: usize = 30;
+/// Maximum number of crashed genomes that a run keeps.
+const MAX_CRASHED: usize = 30;
 
-/// What a run has behind it.
+/// The saved progress of a run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Progress {
-    /// What was changed of it, the earliest first. If finished generations were lost, some changes may be ahead.
+pub struct SavedProgress {
+    /// Its changes, the earliest first. If finished generations were lost, some changes may be in the future.
     pub changes: Vec<SettingChange>,
     /// The finished generations, the first first.
     pub records: Vec<GenerationRecord>,
-    /// The champion of each of them; none, if it had none or its file is gone.
+    /// The champion of each finished generation; none if it had none or the file is missing.
     pub champions: Vec<Option<Champion>>,
-    /// What had been learned; none before the first generation is finished.
-    pub knowledge: Option<Knowledge>,
-    /// What is known of the generation under way: individuals and their evaluations.
+    /// The state of the search; none before the first generation is finished.
+    pub knowledge: Option<SearchState>,
+    /// Known evaluations of the current generation, with the individuals' indices.
     pub evaluations: Vec<(u32, Evaluation)>,
-    /// Who came from whom, as far as it was written down; nothing of a run depends on it.
+    /// The individuals' parents, as far as they were written; a run's result does not depend on them.
     pub lineage: Vec<LineageRecord>,
 }
 
-/// A run's folder, open for writing. Nobody else can open it meanwhile.
+/// A run's folder, locked and open for writing.
 #[derive(Debug)]
 pub struct RunFolder {
     path: PathBuf,
     log: Log,
-    /// The generation under way, and the evaluations written of it.
-    evaluations: Mutex<Option<Notes>>,
-    /// What the run began with, and what was changed since: what is written is tied to both.
+    /// The log of the current generation's evaluations.
+    evaluations: Mutex<Option<EvaluationLog>>,
+    /// The plan that the run began with.
     plan: RunPlan,
     changes: Vec<SettingChange>,
-    /// Who came from whom, and the last generation of which it tells. None, if it cannot be written.
+    /// The log of parents, and the last generation in it. None if it cannot be written.
     lineage: Option<(u32, Log)>,
     _lock: Lock,
 }
 
-/// The evaluations of a generation under way.
+/// The log of the current generation's evaluations.
 #[derive(Debug)]
-struct Notes {
+struct EvaluationLog {
     generation: u32,
-    /// Ties them to the plan of the run in that generation.
+    /// Fingerprint of the run's plan in that generation.
     plan: String,
     log: Log,
 }
 
-/// What to do with what a folder already holds of a run.
+/// The way to treat what a folder already contains of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Earlier {
-    /// Go on with it; if it is finished, there is nothing left to do.
+pub enum ExistingRun {
+    /// Continue it; if it is finished, nothing is left to do.
     Keep,
-    /// Begin anew.
+    /// Start over.
     Discard,
 }
 
 impl RunFolder {
-    /// Opens the folder of a run, making it if need be. `who` is what others are told who want it too.
+    /// Opens the folder of a run, and creates it if it does not exist. `owner` is the name that other programs report.
     ///
     /// # Errors
-    /// Another program writes into the folder; it holds another run; something in it is damaged; it cannot
-    /// be written.
+    /// Another program writes into the folder; the folder contains another run; a file is damaged or cannot be written.
     pub fn open(
         path: &Path,
         plan: &RunPlan,
-        earlier: Earlier,
-        who: &str,
-    ) -> Result<(Self, Progress), SaveError> {
+        earlier: ExistingRun,
+        owner: &str,
+    ) -> Result<(Self, SavedProgress), SaveError> {
         prepare_folder(path)?;
-        let lock = Lock::take(path, who)?;
+        let lock = Lock::take(path, owner)?;
         remove_unfinished(path);
         let file = path.join(RUN_FILE);
         let unreadable = |source| SaveError::Unreadable { path: file.clone(), source };
         refuse_link(&file).map_err(unreadable)?;
-        // Whatever stands there, a run that begins anew is what was asked for.
-        if file.exists() && earlier == Earlier::Keep {
+        // A run that starts over replaces the plan without reading it.
+        if file.exists() && earlier == ExistingRun::Keep {
             let stored = load_plan(path)?;
             if stored != *plan {
                 return Err(SaveError::OtherRun { path: path.to_owned() });
@@ -116,13 +118,13 @@ impl RunFolder {
             store_plan(&file, plan)?;
         }
         let log_path = path.join(LOG_FILE);
-        if earlier == Earlier::Discard {
-            // First: without them, what is left of the earlier run is known to be of another.
+        if earlier == ExistingRun::Discard {
+            // First, so that files of the earlier run cannot be mistaken for this one's after a kill.
             discard(&path.join(CHANGES_FILE))?;
         }
         let progress = match earlier {
-            Earlier::Keep => Progress::read(path, plan)?,
-            Earlier::Discard => Progress::none(),
+            ExistingRun::Keep => SavedProgress::read(path, plan)?,
+            ExistingRun::Discard => SavedProgress::none(),
         };
         let folder = Self {
             path: path.to_owned(),
@@ -139,15 +141,15 @@ impl RunFolder {
         };
         let next = progress.records.len() as u32 + 1;
         if progress.evaluations.is_empty() {
-            // Those of another generation.
+            // The file belongs to another generation.
             let _ = fs::remove_file(path.join(EVALUATIONS_FILE));
         } else {
             let log = Log::open(&path.join(EVALUATIONS_FILE), progress.evaluations.len())?;
             let plan = folder.fingerprint(next)?;
-            folder.evaluations_log().replace(Notes { generation: next, plan, log });
+            folder.evaluations_log().replace(EvaluationLog { generation: next, plan, log });
         }
-        if earlier == Earlier::Discard {
-            thin(path, 0);
+        if earlier == ExistingRun::Discard {
+            remove_old_checkpoints(path, 0);
         }
         Ok((folder, progress))
     }
@@ -162,16 +164,16 @@ impl RunFolder {
         self.path.join(champion_file_name(generation))
     }
 
-    /// Notes an evaluation of the generation under way, so that not even that is computed twice. What
-    /// cannot be noted is computed again: that is no error.
+    /// Logs an evaluation of the current generation, so that a resumed run need not compute it again. A failure is not
+    /// an error: the evaluation would only be computed again.
     pub fn note(&self, generation: u32, individual: u32, evaluation: &Evaluation) {
         let mut log = self.evaluations_log();
         if log.as_ref().is_none_or(|notes| notes.generation != generation) {
             let fresh = Log::open(&self.path.join(EVALUATIONS_FILE), 0);
             let plan = self.fingerprint(generation).ok();
-            *log = fresh.ok().zip(plan).map(|(log, plan)| Notes { generation, plan, log });
+            *log = fresh.ok().zip(plan).map(|(log, plan)| EvaluationLog { generation, plan, log });
         }
-        if let Some(Notes { plan, log, .. }) = log.as_mut() {
+        if let Some(EvaluationLog { plan, log, .. }) = log.as_mut() {
             let _ = log.append_lightly(&EvaluationRecord {
                 plan: plan.clone(),
                 generation,
@@ -182,26 +184,26 @@ impl RunFolder {
         }
     }
 
-    /// Notes who came from whom in a generation that is about to be finished. What cannot be noted is not known
-    /// later: that is no error.
+    /// Logs the parents of a generation that is about to be finished. A failure is not an error: the parents are then
+    /// unknown later.
     pub fn note_lineage(&mut self, record: &LineageRecord) {
         let Some((last, log)) = &mut self.lineage else { return };
-        // A generation that could not be saved comes again.
+        // A generation that could not be saved is offered again.
         if record.generation > *last && log.append_lightly(record).is_ok() {
             *last = record.generation;
         }
     }
 
-    /// Writes a finished generation down. If that fails, it is not finished yet, and may be tried again.
-    /// Returns the champion's file.
+    /// Writes a finished generation, and returns the champion's file. If that fails, the generation is not finished yet,
+    /// and writing may be tried again.
     ///
     /// # Errors
-    /// Something cannot be written.
+    /// A file cannot be written.
     pub fn finish_generation(
         &mut self,
         record: &GenerationRecord,
         champion: Option<(&Champion, &Recording)>,
-        knowledge: &Knowledge,
+        knowledge: &SearchState,
         run_hash: u64,
     ) -> Result<Option<PathBuf>, SaveError> {
         let champion_path = self.champion_path(record.generation);
@@ -211,23 +213,23 @@ impl RunFolder {
         let plan = self.fingerprint(record.generation)?;
         store_checkpoint(&self.path, &plan, record.generation, run_hash, knowledge)?;
         self.log.append(record)?;
-        // They are in the champion, the checkpoint and the log now.
+        // The evaluations are no longer needed.
         self.evaluations_log().take();
         let _ = fs::remove_file(self.path.join(EVALUATIONS_FILE));
-        thin(&self.path, record.generation);
+        remove_old_checkpoints(&self.path, record.generation);
         Ok(champion.map(|_| champion_path))
     }
 
-    /// Writes down, before the generation that it concerns, that a setting is changed. Evaluations of that
-    /// generation that are known already were made under the old one, and are forgotten.
+    /// Logs the change of a setting before the first generation that uses it. Known evaluations of that generation used
+    /// the old value, and are discarded.
     ///
     /// # Errors
-    /// It cannot be written; it then is not made.
+    /// The log cannot be written; then the change is not made.
     pub fn change(&mut self, change: &SettingChange) -> Result<(), SaveError> {
         let mut log = Log::open(&self.path.join(CHANGES_FILE), self.changes.len())?;
         log.append(&ChangeRecord::from(change))?;
         if self.changes.is_empty() {
-            // That the name of a new file survives a power cut is up to the platform.
+            // Best effort, so that the new file's name survives a power cut.
             #[cfg(unix)]
             let _ = fs::File::open(&self.path).and_then(|folder| folder.sync_all());
         }
@@ -236,29 +238,29 @@ impl RunFolder {
         Ok(())
     }
 
-    /// What was changed of the run, the earliest first.
+    /// The run's changes, the earliest first.
     pub fn changes(&self) -> &[SettingChange] {
         &self.changes
     }
 
-    /// Ties what is written to the plan of the run in a generation.
+    /// Fingerprint of the run's plan in a generation.
     fn fingerprint(&self, generation: u32) -> Result<String, SaveError> {
         let path = || self.path.join(CHANGES_FILE);
         Ok(fingerprint(&in_generation(&self.plan, generation, &self.changes, path)?))
     }
 
-    /// Writes a genome down on which the program failed, to be looked into.
+    /// Saves a genome on which the program panicked, for debugging.
     ///
     /// # Errors
-    /// The file cannot be written, or there are enough of them.
+    /// The file cannot be written, or [`MAX_CRASHED`] are saved already.
     pub fn keep_crashed(&self, crashed: &Champion) -> Result<PathBuf, SaveError> {
         let origin = &crashed.origin;
         let name = format!("crashed-{}-{}.ron", origin.generation, origin.individual);
         let unwritable = |source| SaveError::Unwritable { path: self.path.clone(), source };
         let entries = fs::read_dir(&self.path).map_err(unwritable)?.flatten();
         let is_crash = |name: &OsStr| name.to_string_lossy().starts_with("crashed-");
-        if entries.filter(|entry| is_crash(&entry.file_name())).count() >= MOST_CRASHED {
-            let enough = format!("{MOST_CRASHED} crashed genomes are enough");
+        if entries.filter(|entry| is_crash(&entry.file_name())).count() >= MAX_CRASHED {
+            let enough = format!("it already contains {MAX_CRASHED} crashed genomes");
             return Err(unwritable(std::io::Error::other(enough)));
         }
         let path = self.path.join(name);
@@ -266,12 +268,12 @@ impl RunFolder {
         Ok(path)
     }
 
-    fn evaluations_log(&self) -> std::sync::MutexGuard<'_, Option<Notes>> {
+    fn evaluations_log(&self) -> std::sync::MutexGuard<'_, Option<EvaluationLog>> {
         self.evaluations.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// The plan of a run in a generation; `path` is what errors call the changes.
+/// The plan of a run in a generation; `path` is the name of the changes' file in errors.
 fn in_generation(
     plan: &RunPlan,
     generation: u32,
@@ -282,7 +284,7 @@ fn in_generation(
     plan.in_generation(generation, changes).map_err(invalid)
 }
 
-/// Removes what an earlier run has left.
+/// Removes a file of an earlier run, if it exists.
 fn discard(path: &Path) -> Result<(), SaveError> {
     match fs::remove_file(path) {
         Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
@@ -292,7 +294,7 @@ fn discard(path: &Path) -> Result<(), SaveError> {
     }
 }
 
-impl Progress {
+impl SavedProgress {
     fn none() -> Self {
         Self {
             changes: Vec::new(),
@@ -304,7 +306,7 @@ impl Progress {
         }
     }
 
-    /// Reads what a folder has of a run.
+    /// Reads the progress of a run from its folder.
     pub fn read(folder: &Path, plan: &RunPlan) -> Result<Self, SaveError> {
         let changes = read_changes(folder, plan)?;
         let plan_in =

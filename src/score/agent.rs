@@ -1,14 +1,14 @@
-//! What is given of the snake: its limbs, its joints, its skin.
+//! Settings of the snake's body: its limbs, its joints, its skin.
 
 use serde::{Deserialize, Serialize};
 
-use super::PerPart;
-use crate::check::{Invalid, within};
 use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD};
+use crate::schema::{Parts, PerPart, Section, SettingGroup, Walk};
+use crate::schema::{number, optional_per_part, per_part, whole};
 use crate::world::{BodyPlan, JointPlan, LimbPlan, Skin};
 
-/// The parts of the snake that do not evolve. Sizes are one per limb, the rest one per joint, from the
-/// head, or one for all.
+/// The properties of the snake that do not evolve. Sizes have one value per limb, the rest one per joint, from
+/// the head, or one value for all.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AgentSettings {
@@ -30,8 +30,8 @@ pub struct AgentSettings {
     pub max_bend_torque_nm: PerPart,
     /// Largest torque on the joints' twist axes, in N·m.
     pub max_twist_torque_nm: PerPart,
-    /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic and a
-    /// child lands anywhere, whatever its parent did.
+    /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic, and where a
+    /// child ends up says nothing about its parent.
     pub joint_damping_nms_per_rad: PerPart,
     /// Constraint force mixing of the joints, in m/s per N: 0 is rigid, larger is softer.
     pub joint_cfm_m_s_per_n: PerPart,
@@ -61,70 +61,181 @@ impl Default for AgentSettings {
     }
 }
 
-impl AgentSettings {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
+impl SettingGroup for AgentSettings {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let (limb_count, joint_count) = (self.limbs as usize, self.joints());
+        let (each_limb, each_joint) = (Parts::Limbs(limb_count), Parts::Joints(joint_count));
+        let Self {
+            limbs,
+            limb_width_m,
+            limb_length_m,
+            limb_height_m,
+            density_kg_m3,
+            bend_limit_rad,
+            twist_limit_rad,
+            max_bend_torque_nm,
+            max_twist_torque_nm,
+            joint_damping_nms_per_rad,
+            joint_cfm_m_s_per_n,
+            angular_damping_per_s,
+            skin,
+        } = self;
+        walk.section(Self::SKIN);
+        walk.group("skin", skin);
+        walk.section(Self::BODY);
         // Two limbs make a joint; with more than twelve the snake is longer than the arena.
-        within("limbs", self.limbs, 2..=12)?;
+        walk.setting(
+            whole("limbs", "Limbs", 2..=12)
+                .hint("Number of blocks, each joined to the next. Genomes for other numbers do not fit")
+                .slider(2.0, 12.0),
+            limbs,
+        );
         // From a finger to a bus: the engine's tolerances are made for sizes around a metre.
-        for (field, sizes) in [
-            ("limb_width_m", &self.limb_width_m),
-            ("limb_length_m", &self.limb_length_m),
-            ("limb_height_m", &self.limb_height_m),
-        ] {
-            sizes.check(field, self.limbs as usize, 0.1..=10.0)?;
-        }
-        if let Some(densities) = &self.density_kg_m3 {
-            densities.check("density_kg_m3", self.limbs as usize, DENSITY_RANGE_KG_M3)?;
-        }
-        let joints = self.joints();
-        for (field, limits) in
-            [("bend_limit_rad", &self.bend_limit_rad), ("twist_limit_rad", &self.twist_limit_rad)]
-        {
-            if let Some(limits) = limits {
-                limits.check(field, joints, 0.0..=LARGEST_LIMIT_RAD)?;
-            }
-        }
-        // A thousand times the report's torque; more would only disqualify.
-        self.max_bend_torque_nm.check("max_bend_torque_nm", joints, 0.0..=1.0e6)?;
-        self.max_twist_torque_nm.check("max_twist_torque_nm", joints, 0.0..=1.0e6)?;
-        // At 1e5 a torque of 1000 N·m turns a joint by half a degree a second.
-        self.joint_damping_nms_per_rad.check("joint_damping_nms_per_rad", joints, 0.0..=1.0e5)?;
-        // At 0.1 m/s per N a report's snake comes apart under its own weight.
-        self.joint_cfm_m_s_per_n.check("joint_cfm_m_s_per_n", joints, 0.0..=0.1)?;
+        walk.setting(
+            per_part("limb_width_m", "Limb width", 0.1..=10.0, each_limb)
+                .unit("m")
+                .hint("Size of a block across the stairs. Wide blocks do not roll over")
+                .slider(0.2, 3.0),
+            limb_width_m,
+        );
+        walk.setting(
+            per_part("limb_length_m", "Limb length", 0.1..=10.0, each_limb)
+                .unit("m")
+                .hint("Size of a block along the snake. Long blocks reach further and bend less")
+                .slider(0.2, 5.0),
+            limb_length_m,
+        );
+        walk.setting(
+            per_part("limb_height_m", "Limb height", 0.1..=10.0, each_limb)
+                .unit("m")
+                .hint("Size of a block upwards. High blocks reach the next step more easily")
+                .slider(0.2, 3.0),
+            limb_height_m,
+        );
+        walk.setting(
+            optional_per_part("density_kg_m3", "Density", DENSITY_RANGE_KG_M3, each_limb, 2.2)
+                .unit("kg/m³")
+                .hint(
+                    "Mass per volume of the blocks. Heavy snakes press harder and need more torque. \
+                     Without a value, each snake has its own, and it evolves",
+                )
+                .slider(0.1, 50.0)
+                .logarithmic_from(0.1),
+            density_kg_m3,
+        );
         // At 1000 a spin is gone within a millisecond, as in tar.
-        within("angular_damping_per_s", self.angular_damping_per_s, 0.0..=1000.0)?;
-        self.skin.check().map_err(|error| error.inside("skin"))
+        walk.setting(
+            number("angular_damping_per_s", "Angular damping", 0.0..=1000.0)
+                .unit("1/s")
+                .hint("Share of its spin that a block loses per second, as in thick air")
+                .slider(0.0, 500.0)
+                .logarithmic_from(0.1),
+            angular_damping_per_s,
+        );
+        walk.section(Self::JOINTS);
+        let limits = 0.0..=LARGEST_LIMIT_RAD;
+        walk.setting(
+            optional_per_part("bend_limit_rad", "Bend limit", limits.clone(), each_joint, 1.0)
+                .unit("rad")
+                .hint(
+                    "Largest bend to either side, like snapping a stick. Without a value, each snake has its own, \
+                     drawn from a list",
+                )
+                .slider(0.0, 3.0),
+            bend_limit_rad,
+        );
+        walk.setting(
+            optional_per_part("twist_limit_rad", "Twist limit", limits, each_joint, 1.0)
+                .unit("rad")
+                .hint(
+                    "Largest twist to either side, like wringing a sponge. Without a value, each snake has its own, \
+                     drawn from a list",
+                )
+                .slider(0.0, 3.0),
+            twist_limit_rad,
+        );
+        // A thousand times the report's torque; more would only disqualify.
+        walk.setting(
+            per_part("max_bend_torque_nm", "Largest bend torque", 0.0..=1.0e6, each_joint)
+                .unit("N·m")
+                .hint("How strongly a joint can bend. Whatever is asked of it beyond is cut off")
+                .slider(0.0, 2000.0),
+            max_bend_torque_nm,
+        );
+        walk.setting(
+            per_part("max_twist_torque_nm", "Largest twist torque", 0.0..=1.0e6, each_joint)
+                .unit("N·m")
+                .hint("How strongly a joint can twist. Whatever is asked of it beyond is cut off")
+                .slider(0.0, 2000.0),
+            max_twist_torque_nm,
+        );
+        // At 1e5 a torque of 1000 N·m turns a joint by half a degree a second.
+        walk.setting(
+            per_part("joint_damping_nms_per_rad", "Joint damping", 0.0..=1.0e5, each_joint)
+                .unit("N·m·s/rad")
+                .hint(
+                    "Torque that resists a turning joint. Without it the motion is chaotic, and children are \
+                     nothing like their parents",
+                )
+                .slider(0.0, 500.0)
+                .logarithmic_from(1.0),
+            joint_damping_nms_per_rad,
+        );
+        // At 0.1 m/s per N a report's snake comes apart under its own weight.
+        walk.setting(
+            per_part("joint_cfm_m_s_per_n", "Joint CFM", 0.0..=0.1, each_joint)
+                .unit("m/s per N")
+                .hint("0 is rigid; the larger, the more the joints give way under load")
+                .slider(0.0, 0.1)
+                .logarithmic_from(1.0e-6),
+            joint_cfm_m_s_per_n,
+        );
     }
+}
+
+impl AgentSettings {
+    /// The section of the limbs.
+    pub const BODY: Section = Section {
+        title: "Body",
+        about: "How many blocks the snake has, how large and how heavy they are.",
+    };
+    /// The section of the joints.
+    pub const JOINTS: Section = Section {
+        title: "Joints",
+        about: "How far the joints turn, how strong they are, how much they resist.",
+    };
+    /// The section of the skin.
+    pub const SKIN: Section = Section {
+        title: "Skin",
+        about: "The material of the snake itself, where it touches something.",
+    };
 
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {
         self.limbs.saturating_sub(1) as usize
     }
 
-    /// Length of the straight snake, in metres.
+    /// Length of the straight snake, in metres: the same for every genome.
     pub fn length_m(&self) -> f32 {
         (0..self.limbs as usize).map(|limb| self.limb_length_m.at(limb)).sum()
     }
 
-    /// Size of a limb across x, along y and along z, in metres; the head is 0.
-    pub fn limb_size_m(&self, limb: usize) -> [f32; 3] {
-        [&self.limb_width_m, &self.limb_length_m, &self.limb_height_m].map(|size| size.at(limb))
-    }
-
-    /// The body that these settings and a genome make together.
+    /// The body that these settings and a genome make together: the one place where both meet.
     pub fn body_plan(&self, genome: &Genome) -> BodyPlan {
         let given = |part: &Option<PerPart>, index: usize, of_genome: f32| {
             part.as_ref().map_or(of_genome, |part| part.at(index))
         };
-        let limb = |index| {
-            let [width_m, length_m, height_m] = self.limb_size_m(index);
-            let density_kg_m3 = given(&self.density_kg_m3, index, genome.density_kg_m3);
-            LimbPlan { width_m, length_m, height_m, density_kg_m3 }
+        let limb = |index| LimbPlan {
+            width_m: self.limb_width_m.at(index),
+            length_m: self.limb_length_m.at(index),
+            height_m: self.limb_height_m.at(index),
+            density_kg_m3: given(&self.density_kg_m3, index, genome.body.density_kg_m3),
         };
         let joint = |index| JointPlan {
-            bend_limit_rad: given(&self.bend_limit_rad, index, genome.bend_limit_rad),
-            twist_limit_rad: given(&self.twist_limit_rad, index, genome.twist_limit_rad),
+            parent: index,
+            child: index + 1,
+            bend_limit_rad: given(&self.bend_limit_rad, index, genome.body.bend_limit_rad),
+            twist_limit_rad: given(&self.twist_limit_rad, index, genome.body.twist_limit_rad),
             max_bend_torque_nm: self.max_bend_torque_nm.at(index),
             max_twist_torque_nm: self.max_twist_torque_nm.at(index),
             damping_nms_per_rad: self.joint_damping_nms_per_rad.at(index),

@@ -1,8 +1,8 @@
-//! How a snake went about it: what tells a roller from an inchworm.
+//! Measures of how a snake moves, which distinguish a roller from an inchworm.
 
 use crate::world::{Simulation, Stairs};
 
-/// How an agent behaved over a rollout.
+/// Measures of an agent's motion over a rollout.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Behaviour {
     /// Steps under the middle limb at the end: see [`Stairs::steps_under`].
@@ -13,22 +13,23 @@ pub struct Behaviour {
     pub mean_sideways_m: f32,
     /// Share of limbs that touch ground or stairs, from 0 to 1, on average.
     pub contact_duty: f32,
-    /// How often the controller's motion repeats, in Hz.
+    /// Frequency at which the controller's motion repeats, in Hz.
     pub frequency_hz: f32,
 }
 
-/// Sums up a behaviour, step by step.
+/// Accumulates a [`Behaviour`] step by step.
 #[derive(Debug, Clone, Default)]
-pub struct Observer {
+pub struct BehaviourObserver {
     height_m: f64,
     sideways_m: f64,
     contacts: f64,
     steps: u32,
 }
 
-impl Observer {
-    /// Looks at the world after a healthy step.
-    pub fn see(&mut self, simulation: &Simulation, stairs: &Stairs, middle_limb: usize) {
+impl BehaviourObserver {
+    /// Takes in the state of the world after a healthy step.
+    pub fn observe(&mut self, simulation: &Simulation, stairs: &Stairs) {
+        let middle_limb = simulation.body().middle_limb();
         let (mut sum_z_m, mut middle, mut limbs) = (0.0, [0.0; 3], 0);
         for (index, pose) in simulation.poses().enumerate() {
             let at = pose.translation;
@@ -45,7 +46,7 @@ impl Observer {
         self.steps += 1;
     }
 
-    /// What was seen so far. `middle_m` is where the middle limb's centre is now.
+    /// The behaviour so far. `middle_m` is the present position of the middle limb's centre.
     pub fn behaviour(&self, stairs: &Stairs, middle_m: [f32; 3], frequency_hz: f32) -> Behaviour {
         let mean = |sum: f64| (sum / f64::from(self.steps.max(1))) as f32;
         Behaviour {

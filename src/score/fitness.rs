@@ -1,27 +1,28 @@
-//! What is rewarded.
+//! The fitness measures: what a trial rewards.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
 use crate::check::Invalid;
-use crate::world::{Pose, Stairs};
+use crate::schema::{Choice, Choices};
+use crate::world::{BodyPlan, Pose, Stairs};
 
-/// The range of every fitness in a file: that of a trial in which energy costs most is within it.
+/// Allowed range of a fitness in a file. Even with the highest cost of energy a fitness lies within it.
 pub const FITNESS_RANGE: std::ops::RangeInclusive<f32> = -1.0e15..=1.0e15;
 
-/// What a rollout is scored by. The report chose the first and considered the next three.
+/// The measure by which a rollout is scored. The report chose the first and considered the next three.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fitness {
     /// y of the middle limb's centre at the end, in m. The report's choice. Rewards wrongly: flying past
-    /// the stairs at their side, and a leap that the end of the time catches in the air.
+    /// the stairs at their side, and being in mid-leap at the end.
     #[default]
     Centre,
     /// y of the head's centre at the end, in m. Rewards wrongly: stretching the neck, or throwing the
     /// head forward, instead of going anywhere.
     Head,
-    /// y of the centre of mass at the end, in m. Rewards wrongly: what the centre does; a curled snake
+    /// y of the centre of mass at the end, in m. Rewards wrongly: the same as the centre; and a curled snake
     /// scores less than a straight one that did not get further.
     CentreOfMass,
     /// z of the middle limb's centre at the end, in m. Rewards wrongly: jumping, and rearing on the spot.
@@ -30,18 +31,17 @@ pub enum Fitness {
     /// falls back; where the snake ends does not count.
     FurthestY,
     /// Number of steps climbed at the end: the middle limb's centre is past the riser, over the tread,
-    /// and within the width. Rewards wrongly: nothing in between, so that all who have not reached
-    /// the first step are equal and evolution searches blindly at first.
+    /// and within the width. Rewards nothing before the first step: all snakes that have not reached it
+    /// are equal, and evolution searches blindly at first.
     StepsClimbed,
-    /// y of the middle limb's centre at the end, in m, as far as it is on the stairs: beside them, inside
-    /// them, or behind them it counts as having come to the first riser and no further, and who stands on the
-    /// landing with its whole length has arrived. Rewards wrongly: a leap that the end of the time catches
-    /// over the stairs.
+    /// y of the middle limb's centre at the end, in m, as far as it is on the stairs. Beside, inside or behind
+    /// them it counts only up to the first riser; on the landing it counts up to where the whole snake stands
+    /// there. Rewards wrongly: being in mid-leap over the stairs at the end.
     Climb,
 }
 
 impl Fitness {
-    /// All of them, the default first.
+    /// All measures, the default first.
     pub const ALL: [Self; 7] = [
         Self::Centre,
         Self::Head,
@@ -65,7 +65,7 @@ impl Fitness {
         }
     }
 
-    /// What is measured, in a few words that follow "fitness: ".
+    /// A short description, to follow "fitness: ".
     pub fn words(self) -> &'static str {
         match self {
             Self::Centre => "y of the middle block at the end",
@@ -78,27 +78,45 @@ impl Fitness {
         }
     }
 
-    /// What it rewards that nobody meant.
+    /// Unwanted behaviour that the measure rewards, in a sentence.
     pub fn rewards_wrongly(self) -> &'static str {
         match self {
             Self::Centre => "Passing the stairs at their side, and being in mid-leap at the end.",
             Self::Climb => "Being in mid-leap over the stairs at the end.",
             Self::Head => "Stretching or throwing the head forward instead of going anywhere.",
-            Self::CentreOfMass => "What the centre does; and a curled snake counts for less.",
+            Self::CentreOfMass => "The same as the centre; and a curled snake scores less.",
             Self::Height => "Jumping and rearing on the spot.",
             Self::FurthestY => "A leap that falls back.",
-            Self::StepsClimbed => "Nothing before the first step, so the search begins blindly.",
+            Self::StepsClimbed => "Nothing before the first step, so the search starts blindly.",
         }
     }
 
-    /// Whether it is a place on the y axis.
+    /// Whether the measure is a position on the y axis.
     pub fn is_along_y(self) -> bool {
         !matches!(self, Self::Height | Self::StepsClimbed)
     }
 
-    /// The unit, with a space before it, or nothing for a count.
+    /// The unit with a leading space, or nothing for a count.
     pub fn unit(self) -> &'static str {
         if self == Self::StepsClimbed { "" } else { " m" }
+    }
+}
+
+impl Choices for Fitness {
+    const OPTIONS: &'static [Self] = &Self::ALL;
+
+    fn choice(self) -> Choice {
+        let title = match self {
+            Self::Centre => "Centre, y",
+            Self::Head => "Head, y",
+            Self::CentreOfMass => "Centre of mass, y",
+            Self::Height => "Height",
+            Self::FurthestY => "Furthest y ever",
+            Self::StepsClimbed => "Steps climbed",
+            Self::Climb => "Climb: y on the stairs",
+        };
+        let about = format!("The {}.\nRewards wrongly: {}", self.words(), self.rewards_wrongly());
+        Choice::new(self.name(), title, about)
     }
 }
 
@@ -120,41 +138,38 @@ impl FromStr for Fitness {
     }
 }
 
-/// What a fitness is worked out from, at the end of a rollout.
+/// State at the end of a rollout, from which every fitness is computed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ending<'a> {
+pub(super) struct FinalState<'a> {
+    /// The built body.
+    pub body: &'a BodyPlan,
     /// Poses of the limbs, head first.
     pub poses: &'a [Pose],
-    /// Masses of the limbs, in kg, head first.
-    pub masses_kg: &'a [f32],
-    /// Which limb is the middle one.
-    pub middle_limb: usize,
     /// The furthest y that the middle limb's centre had, in m.
     pub furthest_y_m: f32,
-    /// Length of the straight snake, in m.
-    pub length_m: f32,
     /// The stairs.
     pub stairs: &'a Stairs,
 }
 
-impl Ending<'_> {
+impl FinalState<'_> {
     /// The score.
     pub fn score(&self, fitness: Fitness) -> f32 {
-        let middle = self.poses[self.middle_limb].translation;
+        let middle = self.poses[self.body.middle_limb()].translation;
         match fitness {
             Fitness::Centre => middle.y,
             Fitness::Climb => {
                 let is_up = self.stairs.steps_under(middle.to_array()) > 0;
                 let landing_y_m = self.stairs.riser_y_m(self.stairs.steps.saturating_sub(1));
-                let arrived_y_m = landing_y_m + self.length_m / 2.0;
-                let most = if is_up { arrived_y_m } else { self.stairs.first_riser_y_m };
-                middle.y.min(most)
+                let arrived_y_m = landing_y_m + self.body.length_m() / 2.0;
+                let max_y_m = if is_up { arrived_y_m } else { self.stairs.first_riser_y_m };
+                middle.y.min(max_y_m)
             }
             Fitness::Head => self.poses[0].translation.y,
             Fitness::CentreOfMass => {
-                let pairs = self.poses.iter().zip(self.masses_kg);
-                let moment: f32 = pairs.map(|(pose, mass_kg)| pose.translation.y * mass_kg).sum();
-                moment / self.masses_kg.iter().sum::<f32>()
+                let limbs = self.poses.iter().zip(&self.body.limbs);
+                let moment: f32 =
+                    limbs.map(|(pose, limb)| pose.translation.y * limb.mass_kg()).sum();
+                moment / self.body.mass_kg()
             }
             Fitness::Height => middle.z,
             Fitness::FurthestY => self.furthest_y_m,
@@ -166,23 +181,27 @@ impl Ending<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{Rotation, Vector};
+    use crate::world::{LimbPlan, Rotation, Vector};
 
     #[test]
-    fn each_fitness_measures_what_it_says() {
+    fn each_fitness_follows_its_description() {
         let stairs = Stairs::default();
+        let limb = |length_m, mass_kg: f32| LimbPlan {
+            width_m: 1.0,
+            length_m,
+            height_m: 1.0,
+            density_kg_m3: mass_kg / length_m,
+        };
+        let body = BodyPlan {
+            limbs: vec![limb(4.0, 1.0), limb(4.0, 1.0), limb(2.0, 2.0)],
+            joints: Vec::new(),
+            angular_damping_per_s: 0.0,
+        };
         let pose = |x, y, z| Pose::from_parts(Vector::new(x, y, z), Rotation::IDENTITY);
         let score = |fitness, x, z| {
             let poses = [pose(0.0, 10.0, 1.0), pose(x, 6.0, z), pose(0.0, 4.0, 1.0)];
-            let ending = Ending {
-                poses: &poses,
-                masses_kg: &[1.0, 1.0, 2.0],
-                middle_limb: 1,
-                furthest_y_m: 9.5,
-                length_m: 10.0,
-                stairs: &stairs,
-            };
-            ending.score(fitness)
+            FinalState { body: &body, poses: &poses, furthest_y_m: 9.5, stairs: &stairs }
+                .score(fitness)
         };
         for (fitness, expected) in [
             (Fitness::Centre, 6.0),
@@ -201,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn names_come_back() {
+    fn each_name_parses_to_its_fitness() {
         for fitness in Fitness::ALL {
             assert_eq!(fitness.name().parse(), Ok(fitness));
             let text = serde_json::to_string(&fitness).expect("serialisable");

@@ -1,36 +1,36 @@
-//! A whole rollout, looked through beforehand: its torques and its way from the start to the end, and keyframes
-//! from which any moment of it is simulated again, bit for bit.
+//! A whole rollout, computed in advance: its torques, its path, and keyframes from which any moment of it is
+//! simulated again, bit for bit.
 
 use super::{Evaluation, Rollout, Trial};
 use crate::genome::Genome;
 use crate::world::{JointTorque, Vector};
 
-/// A rollout from its start to its end.
-pub struct History {
+/// A rollout from its start to its end, with keyframes for seeking.
+pub struct KeyframeHistory {
     /// Rollouts held at [`Self::keyframe_steps`], 0 first.
     keyframes: Vec<Rollout>,
     keyframe_steps: u32,
     sample_steps: u32,
     joints: usize,
-    /// Sample by sample, in each the joints from the head.
+    /// Torques of each sample, joint by joint.
     torques: Vec<JointTorque>,
-    /// Where the middle limb was, sample by sample, the start first.
+    /// Positions of the middle limb's centre, sample by sample, the start first.
     middles_m: Vec<Vector>,
     landed_at_step: Option<u32>,
     evaluation: Evaluation,
 }
 
-/// Between two keyframes there are at least so many steps. A quarter of a second at the report's 60 a second is
+/// Minimum number of steps between two keyframes. A quarter of a second at the report's 60 a second is
 /// simulated again within a millisecond.
-const FEWEST_STEPS_BETWEEN_KEYFRAMES: u32 = 15;
-/// More keyframes than this would take too much memory: each holds a whole physics world.
-const MOST_KEYFRAMES: u32 = 60;
-/// More samples than this nobody can tell apart on a screen.
-const MOST_SAMPLES: u32 = 6000;
+const MIN_STEPS_BETWEEN_KEYFRAMES: u32 = 15;
+/// Maximum number of keyframes. Each holds a whole physics world in memory.
+const MAX_KEYFRAMES: u32 = 60;
+/// Maximum number of samples. More cannot be told apart on a screen.
+const MAX_SAMPLES: u32 = 6000;
 
-impl History {
-    /// Runs a genome's rollout to its end. Both must have passed their checks. `goes_on` is asked with the number
-    /// of every step that is done; none if it says no.
+impl KeyframeHistory {
+    /// Runs a genome's rollout to its end. Both must have passed their checks. `goes_on` is called after every
+    /// step with the step's number; if it returns `false`, the result is `None`.
     pub fn of(
         genome: &Genome,
         trial: &Trial,
@@ -38,13 +38,13 @@ impl History {
     ) -> Option<Self> {
         let mut rollout = Rollout::new(genome, trial);
         let steps = trial.steps();
-        let keyframe_steps = steps.div_ceil(MOST_KEYFRAMES).max(FEWEST_STEPS_BETWEEN_KEYFRAMES);
-        let sample_steps = steps.div_ceil(MOST_SAMPLES);
+        let keyframe_steps = steps.div_ceil(MAX_KEYFRAMES).max(MIN_STEPS_BETWEEN_KEYFRAMES);
+        let sample_steps = steps.div_ceil(MAX_SAMPLES);
         let mut history = Self {
             keyframes: vec![rollout.clone()],
             keyframe_steps,
             sample_steps,
-            joints: trial.agent.joints(),
+            joints: rollout.body().joints.len(),
             torques: Vec::new(),
             middles_m: vec![rollout.middle_m()],
             landed_at_step: None,
@@ -72,7 +72,7 @@ impl History {
         Some(history)
     }
 
-    /// The rollout as it is after `step` healthy steps, or at its end if that comes before.
+    /// The rollout after `step` healthy steps, or at its end if that comes before.
     pub fn rollout_at(&self, step: u32) -> Rollout {
         let last = self.keyframes.len() - 1;
         let index = ((step / self.keyframe_steps) as usize).min(last);
@@ -81,18 +81,18 @@ impl History {
         rollout
     }
 
-    /// After how many steps the last keyframe is from which `step` can be reached.
+    /// Step of the last keyframe at or before `step`.
     pub fn keyframe_before(&self, step: u32) -> u32 {
         let last = self.keyframes.len() as u32 - 1;
         (step / self.keyframe_steps).min(last) * self.keyframe_steps
     }
 
-    /// What the rollout ends with.
+    /// The evaluation at the end of the rollout.
     pub fn evaluation(&self) -> &Evaluation {
         &self.evaluation
     }
 
-    /// After which step the middle limb first stood on the landing, if it ever does.
+    /// Step after which the middle limb first stood on the landing, if it ever did.
     pub fn landed_at_step(&self) -> Option<u32> {
         self.landed_at_step
     }
@@ -102,12 +102,12 @@ impl History {
         self.sample_steps
     }
 
-    /// The torques on the joints, from the head, sample by sample: those of the step that begins there.
+    /// The torques on the joints, sample by sample: those of the step that begins there.
     pub fn torques(&self) -> impl ExactSizeIterator<Item = &[JointTorque]> {
         self.torques.chunks_exact(self.joints.max(1))
     }
 
-    /// Where the middle limb is, sample by sample, the start first, in metres.
+    /// Positions of the middle limb's centre, sample by sample, the start first, in metres.
     pub fn middles_m(&self) -> &[Vector] {
         &self.middles_m
     }
@@ -119,17 +119,15 @@ mod tests {
     use crate::save::shipped_champion;
     use crate::score::evaluate;
 
-    fn whole(genome: &Genome, trial: &Trial) -> History {
-        History::of(genome, trial, |_| true).expect("nobody stopped it")
+    fn whole(genome: &Genome, trial: &Trial) -> KeyframeHistory {
+        KeyframeHistory::of(genome, trial, |_| true).expect("not stopped")
     }
 
-    /// Every bit of the limbs' motion.
+    /// Every bit of the bodies' motion.
     fn state(rollout: &Rollout) -> Vec<[u32; 13]> {
-        let physics = rollout.simulation().physics();
-        let limbs = rollout.simulation().limb_handles().iter();
-        limbs
-            .map(|&limb| {
-                let body = &physics.bodies[limb];
+        let bodies = rollout.simulation().physics().bodies.iter();
+        bodies
+            .map(|(_, body)| {
                 let (at, turn) = (body.translation(), body.rotation());
                 let (speed, spin) = (body.linvel(), body.angvel());
                 [
@@ -142,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moment_that_is_sought_has_the_bits_of_the_played_one_and_so_has_what_follows() {
+    fn seeking_to_a_step_gives_the_bits_of_playing_to_it_and_of_all_later_steps() {
         let champion = shipped_champion().expect("well formed").champion;
         let history = whole(&champion.genome, &champion.trial);
         let mut played = Rollout::new(&champion.genome, &champion.trial);
@@ -163,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn it_knows_the_torques_and_the_way() {
+    fn a_history_holds_the_torques_the_path_and_the_landing() {
         let champion = shipped_champion().expect("well formed").champion;
         let history = whole(&champion.genome, &champion.trial);
         let steps = champion.trial.steps() as usize;
@@ -181,18 +179,18 @@ mod tests {
     }
 
     #[test]
-    fn it_can_be_stopped_and_a_long_one_takes_no_more_memory_than_a_short_one() {
+    fn a_history_can_be_stopped_and_a_long_one_has_no_more_keyframes_than_a_short_one() {
         let champion = shipped_champion().expect("well formed").champion;
-        let stopped = History::of(&champion.genome, &champion.trial, |step| step < 7);
+        let stopped = KeyframeHistory::of(&champion.genome, &champion.trial, |step| step < 7);
         assert!(stopped.is_none());
         let long = Trial { duration_s: 120.0, ..champion.trial };
         let history = whole(&champion.genome, &long);
-        assert!(history.keyframes.len() as u32 <= MOST_KEYFRAMES + 1);
-        assert!(history.middles_m().len() as u32 <= MOST_SAMPLES + 1);
+        assert!(history.keyframes.len() as u32 <= MAX_KEYFRAMES + 1);
+        assert!(history.middles_m().len() as u32 <= MAX_SAMPLES + 1);
     }
 
     #[test]
-    fn a_hand_disturbs_and_only_from_when_it_pulls() {
+    fn a_pull_disturbs_a_rollout_from_its_first_step_on() {
         let champion = shipped_champion().expect("well formed").champion;
         let history = whole(&champion.genome, &champion.trial);
         let mut rollout = history.rollout_at(60);

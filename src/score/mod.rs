@@ -1,14 +1,13 @@
-//! Scoring: a [`Trial`] says where, how long and on which surface; a [`Rollout`] is one genome going
-//! through it; [`evaluate`] runs a rollout to its end.
+//! Scoring: a [`Trial`] defines place, duration and surfaces; a [`Rollout`] is one genome in such a trial;
+//! [`evaluate`] runs a rollout to its end.
 //!
-//! This is the only scoring path there is. A headless run, the studio's stage, a replay and a test all
-//! advance the same [`Rollout`]; they differ in who watches.
+//! This is the only scoring path. A headless run, the studio's stage, a replay and a test all advance the
+//! same [`Rollout`].
 
 mod agent;
 mod behaviour;
 mod fitness;
 mod history;
-mod per_part;
 mod perturbation;
 mod recording;
 mod repeats;
@@ -18,10 +17,11 @@ mod trial;
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
 pub use fitness::{FITNESS_RANGE, Fitness};
-pub use history::History;
-pub use per_part::PerPart;
+pub use history::KeyframeHistory;
 pub use perturbation::{Perturbation, PerturbationRange};
 pub use recording::Recording;
-pub use repeats::{Counts, Repeats};
+pub use repeats::{RepeatAggregate, Repeats};
 pub use rollout::{Evaluation, Rollout, evaluate};
 pub use trial::Trial;
+
+pub use crate::schema::PerPart;

@@ -1,23 +1,24 @@
-//! A trial that is a little otherwise than it should be: who climbs only on this very stair has learned little.
+//! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use crate::check::{Invalid, within};
+use crate::check::Invalid;
+use crate::schema::{self, SettingGroup, Walk, number};
 use crate::world::WorldPlan;
 
-/// How far trials may be off. Each value is drawn evenly from both sides.
+/// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PerturbationRange {
-    /// Share by which the friction of stairs and ground is larger or smaller.
+    /// Relative change of the friction of stairs and ground.
     pub friction: f32,
-    /// Share by which the steps are higher or lower.
+    /// Relative change of the height of the steps.
     pub rise: f32,
-    /// Share by which the limbs are heavier or lighter.
+    /// Relative change of the density of the limbs.
     pub density: f32,
-    /// Distance of the start, along and across, in metres.
+    /// Shift of the start, along and across, in metres.
     pub start_m: f32,
     /// Turn of the snake at the start, in degrees.
     pub turn_deg: f32,
@@ -29,50 +30,87 @@ impl Default for PerturbationRange {
     }
 }
 
+impl SettingGroup for PerturbationRange {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { friction, rise, density, start_m, turn_deg } = self;
+        // No factor may become zero or negative.
+        walk.setting(
+            number("friction", "Friction variation", 0.0..=0.9)
+                .hint("Share by which friction is larger or smaller: 0.2 is a fifth to either side")
+                .slider(0.0, 0.9),
+            friction,
+        );
+        walk.setting(
+            number("rise", "Rise variation", 0.0..=0.9)
+                .hint("Share by which the steps are higher or lower: 0.1 is a tenth to either side")
+                .slider(0.0, 0.9),
+            rise,
+        );
+        walk.setting(
+            number("density", "Density variation", 0.0..=0.9)
+                .hint("Share by which the limbs are heavier or lighter")
+                .slider(0.0, 0.9),
+            density,
+        );
+        walk.setting(
+            number("start_m", "Start variation", 0.0..=5.0)
+                .unit("m")
+                .hint("How far ahead, behind or aside the snake starts")
+                .slider(0.0, 2.0),
+            start_m,
+        );
+        walk.setting(
+            number("turn_deg", "Start turned by", 0.0..=180.0)
+                .unit("°")
+                .hint("How far the snake is turned to either side at the start")
+                .slider(0.0, 45.0),
+            turn_deg,
+        );
+    }
+}
+
 impl PerturbationRange {
     /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// The first that is out of range.
     pub fn check(&self) -> Result<(), Invalid> {
-        // Nothing may become nothing, let alone less.
-        within("friction", self.friction, 0.0..=0.9)?;
-        within("rise", self.rise, 0.0..=0.9)?;
-        within("density", self.density, 0.0..=0.9)?;
-        within("start_m", self.start_m, 0.0..=5.0)?;
-        within("turn_deg", self.turn_deg, 0.0..=180.0)
+        schema::check(self)
     }
 
-    /// Draws one.
+    /// Draws a perturbation.
     pub fn draw(&self, rng: &mut ChaCha8Rng) -> Perturbation {
-        let mut off = |range: f32| rng.random_range(-range..=range);
+        let mut draw = |range: f32| rng.random_range(-range..=range);
         Perturbation {
-            friction: 1.0 + off(self.friction),
-            rise: 1.0 + off(self.rise),
-            density: 1.0 + off(self.density),
-            ahead_m: off(self.start_m),
-            aside_m: off(self.start_m),
-            turn_rad: off(self.turn_deg).to_radians(),
+            friction: 1.0 + draw(self.friction),
+            rise: 1.0 + draw(self.rise),
+            density: 1.0 + draw(self.density),
+            ahead_m: draw(self.start_m),
+            aside_m: draw(self.start_m),
+            turn_rad: draw(self.turn_deg).to_radians(),
         }
     }
 }
 
-/// By how much a trial is off.
+/// Deviation of one trial from the nominal one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Perturbation {
-    /// Factor of the frictions of stairs and ground.
+    /// Factor on the friction of stairs and ground.
     pub friction: f32,
-    /// Factor of the height of the steps.
+    /// Factor on the height of the steps.
     pub rise: f32,
-    /// Factor of the density of the limbs.
+    /// Factor on the density of the limbs.
     pub density: f32,
-    /// How much nearer to the stairs the snake starts, in metres.
+    /// Shift of the start towards the stairs, in metres.
     pub ahead_m: f32,
-    /// How far to the side it starts, in metres.
+    /// Shift of the start along x, in metres.
     pub aside_m: f32,
-    /// How far it is turned at the start, in radians.
+    /// Turn of the snake at the start, in radians.
     pub turn_rad: f32,
 }
 
 impl Perturbation {
-    /// Puts the world off by it.
+    /// Applies the perturbation to a world.
     pub fn apply(&self, plan: &mut WorldPlan) {
         plan.surface.friction *= self.friction;
         plan.ground.friction *= self.friction;
@@ -92,7 +130,7 @@ mod tests {
     use crate::rng::{Purpose, stream};
 
     #[test]
-    fn what_is_drawn_fills_its_range_on_both_sides() {
+    fn drawn_perturbations_fill_their_range_on_both_sides() {
         let range = PerturbationRange { density: 0.3, ..PerturbationRange::default() };
         let mut rng = stream(1, 0, 0, Purpose::Perturbation);
         let drawn: Vec<Perturbation> = (0..1000).map(|_| range.draw(&mut rng)).collect();
@@ -111,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_that_could_turn_the_world_inside_out_is_refused() {
+    fn a_range_that_allows_a_negative_factor_is_refused() {
         let range = PerturbationRange { friction: 1.5, ..PerturbationRange::default() };
         let error = range.check().expect_err("refused").to_string();
         assert_eq!(error, "friction is 1.5; allowed: 0 to 0.9");

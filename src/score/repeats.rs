@@ -1,61 +1,82 @@
-//! Several trials per evaluation, each a little otherwise: who does well in all of them has learned more.
+//! Several trials per evaluation, all but the first perturbed, which rewards robust gaits.
 
 use serde::{Deserialize, Serialize};
 
 use super::PerturbationRange;
-use crate::check::{Invalid, within};
+use crate::schema::{Choice, Choices, Section, SettingGroup, Walk, choice, whole};
 
-/// How many trials make an evaluation, and how they differ.
+/// Number of trials per evaluation, and how they differ.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Repeats {
-    /// Trials per evaluation. The first is as it should be, the others are off.
+    /// Trials per evaluation. The first is the nominal one, the others are perturbed.
     pub trials: u32,
-    /// What of their fitnesses counts.
-    pub counts: Counts,
-    /// How far the others may be off.
+    /// Fitness of the evaluation, made from those of its trials.
+    pub counts: RepeatAggregate,
+    /// Maximum perturbation of the other trials.
     pub off: PerturbationRange,
 }
 
-/// What of several fitnesses counts.
+/// How the fitness of an evaluation is made from those of its trials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Counts {
+pub enum RepeatAggregate {
     /// Their mean.
     #[default]
     Mean,
-    /// The least of them.
+    /// The lowest of them.
     Worst,
 }
 
 impl Default for Repeats {
     fn default() -> Self {
-        Self { trials: 1, counts: Counts::Mean, off: PerturbationRange::default() }
+        Self { trials: 1, counts: RepeatAggregate::Mean, off: PerturbationRange::default() }
     }
 }
 
 impl Repeats {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
+    /// The section of these settings.
+    pub const SECTION: Section = Section {
+        title: "Repeated trials",
+        about: "A snake that does well in several trials, each a little different, has learned more.",
+    };
+}
+
+impl SettingGroup for Repeats {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { trials, counts, off } = self;
+        walk.section(Self::SECTION);
         // A hundred trials of 15 s are a second and a half.
-        within("trials", self.trials, 1..=100)?;
-        self.off.check().map_err(|error| error.inside("off"))
+        walk.setting(
+            whole("trials", "Trials for each snake", 1..=100)
+                .hint("The first is exact, the others are off by the values below. Each takes its time")
+                .slider(1.0, 10.0),
+            trials,
+        );
+        walk.setting(
+            choice("counts", "What counts")
+                .hint("Which of the trials' results a snake is scored by"),
+            counts,
+        );
+        walk.group("off", off);
     }
 }
 
-impl Counts {
-    /// Both of them.
-    pub const ALL: [Self; 2] = [Self::Mean, Self::Worst];
+impl Choices for RepeatAggregate {
+    const OPTIONS: &'static [Self] = &[Self::Mean, Self::Worst];
 
-    /// The name in flags and files.
-    pub fn name(self) -> &'static str {
+    fn choice(self) -> Choice {
         match self {
-            Self::Mean => "mean",
-            Self::Worst => "worst",
+            Self::Mean => Choice::new("mean", "Their mean", "All trials count alike."),
+            Self::Worst => {
+                Choice::new("worst", "The worst of them", "A snake is as good as its worst trial.")
+            }
         }
     }
+}
 
-    /// What counts of these fitnesses.
+impl RepeatAggregate {
+    /// The fitness of an evaluation whose trials have these fitnesses.
     pub(super) fn of(self, fitnesses: &[f32]) -> f32 {
         match self {
             Self::Mean => {

@@ -1,41 +1,41 @@
-//! One genome going through one trial, step by step.
+//! One genome in one trial, step by step.
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::behaviour::Observer;
-use super::fitness::Ending;
+use super::behaviour::BehaviourObserver;
+use super::fitness::FinalState;
 use super::{Behaviour, Fitness, Perturbation, Trial};
-use crate::control::Driver;
+use crate::control::ControlLoop;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
 use crate::world::{
-    Disqualification, Effort, JointState, JointTorque, LimbPlan, Pose, Pull, Simulation, Stairs,
-    Vector, WorldPlan,
+    BodyPlan, Disqualification, Effort, JointTorque, Pose, Pull, Simulation, Stairs, Vector,
+    WorldPlan,
 };
 
-/// What a rollout ended with.
+/// The result of a rollout.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evaluation {
-    /// What the trial rewards: see [`Fitness`] for the unit. For a disqualified agent, what it had when
-    /// it was last seen in good health.
+    /// The fitness by the trial's measure: see [`Fitness`] for the unit. For a disqualified agent, the fitness
+    /// after its last healthy step.
     pub fitness: f32,
-    /// y of the middle limb's centre at the end, in metres, whatever is rewarded.
+    /// y of the middle limb's centre at the end, in metres, for every measure of fitness.
     pub centre_y_m: f32,
-    /// Why the agent was disqualified, if it was.
+    /// The reason of the disqualification, if there was one.
     pub disqualified: Option<Disqualification>,
     /// Hash (XXH3, 64 bits) over the bits of every limb's pose after every healthy step, the final
     /// one included.
     pub trace_hash: u64,
     /// Healthy physics steps taken.
     pub steps: u32,
-    /// What these steps demanded of the snake. None in what was recorded before it was measured.
+    /// Energy, speeds and distances over these steps. `None` in records from before they were measured.
     pub effort: Option<Effort>,
-    /// How it went about it. None in what was recorded before it was observed.
+    /// Measures of the motion. `None` in records from before they were measured.
     pub behaviour: Option<Behaviour>,
 }
 
 impl Evaluation {
-    /// What somebody healthy has who reached so far, and of whom nothing else is known: for tests.
+    /// A healthy evaluation with this fitness, for tests.
     #[cfg(test)]
     pub fn of_fitness(fitness: f32) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Evaluation {
         }
     }
 
-    /// Whether both are of the same bits. What one of them did not measure does not count.
+    /// Whether both have the same bits. A value that one of them lacks is not compared.
     pub fn agrees_with(&self, other: &Self) -> bool {
         fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
             a.is_none() || b.is_none() || a == b
@@ -60,29 +60,25 @@ impl Evaluation {
             && agree(self.behaviour, other.behaviour)
     }
 
-    /// Whether the agent ended in good health with all steps of the stairs under its middle limb.
+    /// Whether the agent was not disqualified and ended with all steps of the stairs under its middle limb.
     pub fn is_on_landing(&self, stairs: &Stairs) -> bool {
         let climbed = self.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
         self.disqualified.is_none() && stairs.steps > 0 && climbed == stairs.steps
     }
 }
 
-/// A rollout on its way. A clone goes on with the bits of the original.
+/// A rollout in progress. A clone continues with the bits of the original.
 #[derive(Clone)]
 pub struct Rollout {
     simulation: Simulation,
-    driver: Driver,
-    felt: Vec<JointState>,
+    control: ControlLoop,
     torques: Vec<JointTorque>,
     poses: Vec<Pose>,
     fitness: Fitness,
     energy_cost_per_kj: f32,
     frequency_hz: f32,
-    observer: Observer,
+    observer: BehaviourObserver,
     stairs: Stairs,
-    masses_kg: Vec<f32>,
-    length_m: f32,
-    middle_limb: usize,
     furthest_y_m: f32,
     trace: Xxh3Default,
     step: u32,
@@ -92,12 +88,12 @@ pub struct Rollout {
 }
 
 impl Rollout {
-    /// Builds the trial's world around the genome. Both must have passed their checks.
+    /// Builds the trial's world with the genome's body. Both must have passed their checks.
     pub fn new(genome: &Genome, trial: &Trial) -> Self {
         Self::in_world(genome, trial, trial.world_plan(genome))
     }
 
-    /// The same in a world that is a little otherwise.
+    /// The same in a slightly different world.
     pub fn perturbed(genome: &Genome, trial: &Trial, perturbation: &Perturbation) -> Self {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
@@ -107,19 +103,15 @@ impl Rollout {
     fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
         let simulation = Simulation::new(&plan);
         let mut rollout = Self {
-            driver: Driver::new(genome, trial.physics.steps_per_s),
-            felt: Vec::new(),
+            control: ControlLoop::new(&genome.controller, trial.physics.steps_per_s),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
             simulation,
             fitness: trial.fitness,
             energy_cost_per_kj: trial.energy_cost_per_kj,
             frequency_hz: genome.controller.frequency_hz(),
-            observer: Observer::default(),
+            observer: BehaviourObserver::default(),
             stairs: plan.stairs,
-            masses_kg: plan.body.limbs.iter().map(LimbPlan::mass_kg).collect(),
-            length_m: plan.body.length_m(),
-            middle_limb: plan.body.middle_limb(),
             furthest_y_m: f32::MIN,
             trace: Xxh3Default::new(),
             step: 0,
@@ -127,20 +119,16 @@ impl Rollout {
             disqualified: None,
             is_disturbed: false,
         };
-        rollout.furthest_y_m = rollout.poses[rollout.middle_limb].translation.y;
+        rollout.furthest_y_m = rollout.middle_m().y;
         rollout
     }
 
-    /// Takes one step, unless the rollout is over. Returns whether it took a healthy one.
+    /// Takes one step, unless the rollout is over. Returns whether it took a healthy step.
     pub fn advance(&mut self) -> bool {
         if self.is_over() {
             return false;
         }
-        if self.driver.feels() {
-            self.felt.clear();
-            self.felt.extend(self.simulation.joint_states());
-        }
-        self.driver.torques(self.step, &self.felt, &mut self.torques);
+        self.control.act(self.step, &self.simulation, &mut self.torques);
         if let Err(reason) = self.simulation.step(&self.torques) {
             self.disqualified = Some(reason);
             return false;
@@ -156,8 +144,8 @@ impl Rollout {
             }
             self.trace.update(&bytes);
         }
-        self.furthest_y_m = self.furthest_y_m.max(self.poses[self.middle_limb].translation.y);
-        self.observer.see(&self.simulation, &self.stairs, self.middle_limb);
+        self.furthest_y_m = self.furthest_y_m.max(self.middle_m().y);
+        self.observer.observe(&self.simulation, &self.stairs);
         true
     }
 
@@ -176,22 +164,20 @@ impl Rollout {
         self.step
     }
 
-    /// What there is to say so far; after the end, the result.
+    /// The evaluation so far; after the end, the result.
     pub fn evaluation(&self) -> Evaluation {
-        let ending = Ending {
+        let state = FinalState {
+            body: self.body(),
             poses: &self.poses,
-            masses_kg: &self.masses_kg,
-            middle_limb: self.middle_limb,
             furthest_y_m: self.furthest_y_m,
-            length_m: self.length_m,
             stairs: &self.stairs,
         };
         let effort = self.simulation.effort();
-        let middle = self.poses[self.middle_limb].translation;
+        let middle = self.middle_m();
         let cost = self.energy_cost_per_kj * effort.energy_j / 1000.0;
         let behaviour = self.observer.behaviour(&self.stairs, middle.to_array(), self.frequency_hz);
         Evaluation {
-            fitness: ending.score(self.fitness) - cost,
+            fitness: state.score(self.fitness) - cost,
             centre_y_m: middle.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
@@ -201,26 +187,31 @@ impl Rollout {
         }
     }
 
-    /// Lets a hand pull a limb from the next step on, or no more. From then on the rollout is disturbed: it
-    /// says nothing of the genome any more.
+    /// Sets or ends the user's pull on a limb, from the next step on. A pull disturbs the rollout for good: its
+    /// result no longer describes the genome.
     pub fn pull(&mut self, pull: Option<Pull>) {
         self.is_disturbed |= pull.is_some();
         self.simulation.pull(pull);
     }
 
-    /// Whether a hand has interfered.
+    /// Whether the user has pulled a limb.
     pub fn is_disturbed(&self) -> bool {
         self.is_disturbed
     }
 
-    /// How many steps it lasts, unless the agent is disqualified before.
+    /// Number of steps of the whole rollout, unless the agent is disqualified before.
     pub fn last_step(&self) -> u32 {
         self.last_step
     }
 
-    /// Where the middle limb's centre is after the last healthy step, in metres.
+    /// The built body.
+    pub fn body(&self) -> &BodyPlan {
+        self.simulation.body()
+    }
+
+    /// Position of the middle limb's centre after the last healthy step, in metres.
     pub fn middle_m(&self) -> Vector {
-        self.poses[self.middle_limb].translation
+        self.poses[self.body().middle_limb()].translation
     }
 
     /// Whether all steps of the stairs are under the middle limb now.
@@ -229,22 +220,17 @@ impl Rollout {
         steps > 0 && self.stairs.steps_under(self.middle_m().to_array()) == steps
     }
 
-    /// The world, to look at.
+    /// The world, for reading.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
-
-    /// The world, to be lent out between steps: see [`Simulation::physics_mut`].
-    pub fn simulation_mut(&mut self) -> &mut Simulation {
-        &mut self.simulation
-    }
 }
 
-/// Scores a genome: runs its rollout to the end, and those of the trials that are off, if there are any.
+/// Scores a genome: runs its rollout to the end, and then its perturbed trials, if the settings ask for them.
 /// Of these only the fitness counts: see [`super::Repeats`].
 ///
-/// How they are off is derived from the genome's own bits, so that a champion's file is enough to score it
-/// again, and no two genomes have learned the same few exceptions by heart.
+/// The perturbations are derived from the genome's own bits. A champion's file is therefore enough to score it
+/// again, and genomes cannot adapt to a few fixed perturbations.
 pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
     let nominal = finished(Rollout::new(genome, trial));
     let repeats = &trial.repeats;
@@ -259,7 +245,7 @@ pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
         let at_start = rollout.evaluation().fitness;
         while rollout.advance() {}
         let evaluation = rollout.evaluation();
-        // Who is disqualified there has got nowhere; nor does it pay where energy costs.
+        // A disqualified trial scores at most its starting fitness. It may score less where energy costs.
         if evaluation.disqualified.is_some() {
             at_start.min(evaluation.fitness)
         } else {
@@ -277,19 +263,19 @@ fn finished(mut rollout: Rollout) -> Evaluation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::{Controller, GenomeSpace};
+    use crate::genome::{ControllerGenes, GenomeSpace};
     use crate::rng::{Purpose, stream};
 
-    fn newborn(individual: u32, trial: &Trial) -> Genome {
+    fn random_genome(individual: u32, trial: &Trial) -> Genome {
         let mut rng = stream(1, 1, individual, Purpose::Birth);
-        GenomeSpace::default().birth(trial.descent(), &mut rng)
+        GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng)
     }
 
     #[test]
     fn scoring_twice_gives_the_same_bits() {
         let trial = Trial::default();
         for individual in 0..5 {
-            let genome = newborn(individual, &trial);
+            let genome = random_genome(individual, &trial);
             assert_eq!(evaluate(&genome, &trial), evaluate(&genome, &trial));
         }
     }
@@ -297,16 +283,16 @@ mod tests {
     #[test]
     fn different_genomes_leave_different_traces() {
         let trial = Trial::default();
-        let first = evaluate(&newborn(0, &trial), &trial);
-        let second = evaluate(&newborn(1, &trial), &trial);
+        let first = evaluate(&random_genome(0, &trial), &trial);
+        let second = evaluate(&random_genome(1, &trial), &trial);
         assert_ne!(first.trace_hash, second.trace_hash);
     }
 
     #[test]
     fn without_torque_the_snake_stays_where_it_starts() {
         let trial = Trial::default();
-        let mut genome = newborn(0, &trial);
-        let Controller::Signal(signals) = &mut genome.controller else { panic!("no signals") };
+        let mut genome = random_genome(0, &trial);
+        let ControllerGenes::Signal(signals) = &mut genome.controller else { panic!("no signals") };
         signals.all_mut().for_each(|signal| signal.fill(0.0));
         let evaluation = evaluate(&genome, &trial);
         assert_eq!(evaluation.disqualified, None);

@@ -1,40 +1,39 @@
-//! The conditions of an evaluation: everything that is not in the genome.
+//! The conditions of an evaluation: everything outside the genome.
 
 use serde::{Deserialize, Serialize};
 
 use super::{AgentSettings, Fitness, Repeats};
-use crate::check::{Invalid, within};
-use crate::genome::{
-    Controller, DENSITY_RANGE_KG_M3, Descent, Genome, LARGEST_LIMIT_RAD, LARGEST_TORQUE_NM,
-};
+use crate::check::Invalid;
+use crate::genome::{Genome, GenomeShape};
+use crate::schema::{self, Section, SettingGroup, Walk, absent, choice, number};
 use crate::world::{HealthLimits, PhysicsSettings, Stairs, Surface, WorldPlan};
 
-/// Where, how long, on which surface, with which body.
+/// Place, duration, surfaces, body, and measure of fitness.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trial {
     /// Length of the simulation, in simulated seconds.
     pub duration_s: f32,
-    /// Where the centre of the snake starts on the y axis, in metres. The report's first
-    /// generation, which goes nowhere, stands at -7.23.
+    /// Position of the snake's centre on the y axis at the start, in metres. The report's first
+    /// generation, which does not move, stands at -7.23.
     pub start_y_m: f32,
     /// Step length, substeps, gravity.
     pub physics: PhysicsSettings,
     /// The staircase.
     pub stairs: Stairs,
-    /// The material of the stairs, and of the ground if that has none of its own.
+    /// The material of the stairs, and of the ground if `ground` is `None`.
     pub surface: Surface,
     /// The material of the ground, if it differs from that of the stairs.
     pub ground: Option<Surface>,
-    /// What is given of the snake.
+    /// The properties of the snake that do not evolve.
     pub agent: AgentSettings,
-    /// What is rewarded.
+    /// The measure of fitness.
     pub fitness: Fitness,
-    /// What energy costs, in units of the fitness per kJ: it is taken off. Without it all effort is free.
+    /// Cost of energy, in units of the fitness per kJ; it is subtracted from the fitness.
     pub energy_cost_per_kj: f32,
-    /// How many trials make an evaluation.
+    /// The number of trials per evaluation, and their perturbations.
     pub repeats: Repeats,
-    /// When the snake is disqualified.
+    /// Limits beyond which the snake is disqualified.
     pub health: HealthLimits,
 }
 
@@ -56,51 +55,110 @@ impl Default for Trial {
     }
 }
 
-impl Trial {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        // Ten minutes are a third of a second to compute; longer genomes make unreadable saves.
-        within("duration_s", self.duration_s, 0.1..=600.0)?;
-        within("start_y_m", self.start_y_m, -100.0..=100.0)?;
-        self.physics.check().map_err(|error| error.inside("physics"))?;
-        self.stairs.check().map_err(|error| error.inside("stairs"))?;
-        self.surface.check().map_err(|error| error.inside("surface"))?;
-        if let Some(ground) = &self.ground {
-            ground.check().map_err(|error| error.inside("ground"))?;
+impl SettingGroup for Trial {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self {
+            duration_s,
+            start_y_m,
+            physics,
+            stairs,
+            surface,
+            ground,
+            agent,
+            fitness,
+            energy_cost_per_kj,
+            repeats,
+            health,
+        } = self;
+        walk.section(Self::SURFACE);
+        walk.group("surface", surface);
+        walk.section(Self::GROUND);
+        match ground {
+            Some(ground) => walk.group("ground", ground),
+            None => walk.setting(
+                absent("ground", "Ground", "none, or set ground.friction and its like")
+                    .hint("Without a surface of its own the ground has that of the stairs"),
+                &mut (),
+            ),
         }
-        self.agent.check().map_err(|error| error.inside("agent"))?;
+        walk.group("agent", agent);
+        walk.group("stairs", stairs);
+        walk.section(Self::TIME);
+        // Ten minutes are a third of a second to compute; longer genomes make unreadable saves.
+        walk.setting(
+            number("duration_s", "Time", 0.1..=600.0)
+                .unit("s")
+                .hint("How long each snake has. Longer trials take longer to evaluate")
+                .slider(1.0, 30.0),
+            duration_s,
+        );
+        walk.setting(
+            number("start_y_m", "Start at y", -100.0..=100.0)
+                .unit("m")
+                .hint("Where the snake's middle stands at first; the stairs are in the direction of larger y")
+                .slider(-20.0, 10.0),
+            start_y_m,
+        );
+        walk.group("physics", physics);
+        walk.section(Self::REWARD);
+        walk.setting(choice("fitness", "Fitness").hint("What a snake is scored by"), fitness);
         // At 1000 a joule costs a metre.
-        within("energy_cost_per_kj", self.energy_cost_per_kj, 0.0..=1000.0)?;
-        self.repeats.check().map_err(|error| error.inside("repeats"))?;
-        self.health.check().map_err(|error| error.inside("health"))
+        walk.setting(
+            number("energy_cost_per_kj", "Cost of energy", 0.0..=1000.0)
+                .unit("per kJ")
+                .hint("Taken off the fitness for each kJ that the joints spend. At 0 all effort is free")
+                .slider(0.0, 10.0)
+                .logarithmic_from(0.01),
+            energy_cost_per_kj,
+        );
+        walk.group("repeats", repeats);
+        walk.group("health", health);
+    }
+}
+
+impl Trial {
+    /// The section of the material of the stairs.
+    pub const SURFACE: Section = Section {
+        title: "Surface",
+        about: "The material of the stairs, and of the ground too if it has no surface of its own.",
+    };
+    /// The section of the material of the ground.
+    pub const GROUND: Section =
+        Section { title: "Ground", about: "The material of the ground before the stairs." };
+    /// The section of duration and start.
+    pub const TIME: Section =
+        Section { title: "Time and start", about: "How long each snake has, and where it begins." };
+    /// The section of the reward.
+    pub const REWARD: Section =
+        Section { title: "Reward", about: "What the search tries to make large." };
+
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub fn check(&self) -> Result<(), Invalid> {
+        schema::check(self)
     }
 
-    /// How many physics steps the trial lasts: the duration, rounded to the nearest step.
+    /// Number of physics steps of the trial: its duration, rounded to the nearest step.
     pub fn steps(&self) -> u32 {
         let steps = f64::from(self.duration_s) * f64::from(self.physics.steps_per_s);
         libm::round(steps).max(1.0) as u32
     }
 
-    /// Checks that a genome, wherever it comes from, can be built and driven under this trial.
+    /// Checks that a genome can be built and controlled in this trial.
     pub fn check_genome(&self, genome: &Genome) -> Result<(), Invalid> {
-        within("bend_limit_rad", genome.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("twist_limit_rad", genome.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("density_kg_m3", genome.density_kg_m3, DENSITY_RANGE_KG_M3)?;
-        let (joints, expected) = (genome.controller.joints(), self.agent.joints());
+        genome.body.check()?;
+        let body = self.agent.body_plan(genome);
+        let (joints, expected) = (genome.controller.joints(), body.joints.len());
         if joints != expected {
-            let allowed = format!("{expected}, one per joint of {} limbs", self.agent.limbs);
+            let allowed = format!("{expected}, one per joint of {} limbs", body.limbs.len());
             return Err(Invalid::new("controller joints", format!("{joints} joints"), allowed));
         }
-        match &genome.controller {
-            Controller::Signal(signals) => signals.check().map_err(|e| e.inside("signals")),
-            Controller::Wave(waves) => {
-                waves.check(LARGEST_TORQUE_NM).map_err(|e| e.inside("waves"))
-            }
-            Controller::Gait(gait) => gait.check().map_err(|e| e.inside("gait")),
-        }
+        genome.controller.check()
     }
 
-    /// The world in which this trial puts a genome.
+    /// The world in which this trial evaluates a genome.
     pub fn world_plan(&self, genome: &Genome) -> WorldPlan {
         WorldPlan {
             physics: self.physics.clone(),
@@ -116,9 +174,9 @@ impl Trial {
         }
     }
 
-    /// For whom this trial's genomes are.
-    pub fn descent(&self) -> Descent {
-        Descent { joints: self.agent.joints(), duration_s: self.duration_s }
+    /// The shape of the genomes for this trial.
+    pub fn genome_shape(&self) -> GenomeShape {
+        GenomeShape { joints: self.agent.joints(), duration_s: self.duration_s }
     }
 
     /// The material of the ground.
@@ -126,7 +184,7 @@ impl Trial {
         self.ground.as_ref().unwrap_or(&self.surface)
     }
 
-    /// What it means that the centre stands at `y_m`, alone or on average, in the words of the report's Table 1.
+    /// Describes the centre position `y_m`, of one snake or on average, in the words of the report's Table 1.
     pub fn meaning(&self, y_m: f64) -> String {
         let length_m = f64::from(self.agent.length_m());
         self.stairs.meaning(y_m, f64::from(self.start_y_m), length_m)
@@ -136,11 +194,11 @@ impl Trial {
 #[cfg(test)]
 mod tests {
     use crate::evolve::{Settings, with_fields};
-    use crate::genome::{Descent, GenomeSpace};
+    use crate::genome::{GenomeShape, GenomeSpace};
     use crate::rng::{Purpose, stream};
     use crate::score::evaluate;
 
-    /// A world in which everything acts a little, so that nothing is without effect.
+    /// A world in which every parameter has an effect.
     fn lively() -> Settings {
         let changes = [
             ("surface.bounce", "0.3"),
@@ -155,7 +213,7 @@ mod tests {
             // Within reach at once.
             ("first_riser_y_m", "-1.5"),
             ("trial.duration_s", "5"),
-            // Whatever happens, it goes on to the end.
+            // Limits wide enough to reach the end.
             ("joint_drift_m", "10"),
             ("speed_m_s", "1000"),
             ("arena_half_width_m", "1000"),
@@ -164,14 +222,15 @@ mod tests {
         with_fields(&Settings::default(), changes).expect("allowed")
     }
 
-    /// A newborn that touches ground and stairs, and lands on both.
-    const A_TRAVELLER: u32 = 19;
+    /// Index of a random genome that touches ground and stairs, and lands on both.
+    const TRAVELLER: u32 = 19;
 
     fn trace(settings: &Settings) -> u64 {
         let joints = settings.trial.agent.joints();
-        let mut rng = stream(1, 1, A_TRAVELLER, Purpose::Birth);
+        let mut rng = stream(1, 1, TRAVELLER, Purpose::Birth);
         evaluate(
-            &GenomeSpace::default().birth(Descent { joints, duration_s: 5.0 }, &mut rng),
+            &GenomeSpace::default()
+                .random_genome(GenomeShape { joints, duration_s: 5.0 }, &mut rng),
             &settings.trial,
         )
         .trace_hash
@@ -230,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_for_each_part_goes_to_that_part() {
+    fn a_list_of_values_sets_the_parts_in_order() {
         let changes = [
             ("agent.limbs", "3"),
             ("limb_width_m", "[1, 2, 3]"),
@@ -241,7 +300,8 @@ mod tests {
         ];
         let settings = with_fields(&Settings::default(), changes).expect("allowed");
         let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = GenomeSpace::default().birth(Descent { joints: 2, duration_s: 1.0 }, &mut rng);
+        let genome = GenomeSpace::default()
+            .random_genome(GenomeShape { joints: 2, duration_s: 1.0 }, &mut rng);
         let body = settings.trial.world_plan(&genome).body;
         let limbs: Vec<_> =
             body.limbs.iter().map(|limb| (limb.width_m, limb.density_kg_m3)).collect();
@@ -254,6 +314,6 @@ mod tests {
             })
             .collect();
         assert_eq!(joints, [(0.1, 7.0, 9.0), (0.2, 8.0, 10.0)]);
-        assert_eq!(body.joints[0].twist_limit_rad, genome.twist_limit_rad, "the genome's own");
+        assert_eq!(body.joints[0].twist_limit_rad, genome.body.twist_limit_rad, "the genome's own");
     }
 }

@@ -1,14 +1,15 @@
-//! The snake as a physical plan: a row of box limbs with universal joints between neighbours.
+//! The snake as a physical plan: box-shaped limbs and the universal joints between them.
 //!
-//! A plan holds plain numbers. What of them evolves is decided in `genome`, what a person sets in
-//! the trial's agent settings; the world only builds what the plan says.
+//! The built body is the only source of facts about limbs and joints: their number, sizes, masses and
+//! torque limits, and which limb represents the whole. It is made from the trial's agent settings and one
+//! genome, because either may determine any of these numbers.
 
 /// The whole body. Limb 0 is the head: the foremost limb, nearest to the stairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPlan {
-    /// The limbs from head to tail.
+    /// The limbs. The world inserts them in this order and lays them out in a row, head first.
     pub limbs: Vec<LimbPlan>,
-    /// The joints; `joints[i]` holds limb `i` and limb `i + 1` together.
+    /// The joints, in the order in which the world inserts them. A joint's parent comes before its child.
     pub joints: Vec<JointPlan>,
     /// Share of a limb's angular velocity lost per second to the air, in 1/s.
     pub angular_damping_per_s: f32,
@@ -27,10 +28,15 @@ pub struct LimbPlan {
     pub density_kg_m3: f32,
 }
 
-/// One universal joint: bend about the front limb's x axis (snapping a stick), twist about its y
-/// axis (wringing a sponge), no other relative motion.
+/// One universal joint between the rear face of its parent and the front face of its child: bend about
+/// the parent's x axis (snapping a stick), twist about its y axis (wringing a sponge), no other relative
+/// motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPlan {
+    /// Index of the limb in front of the joint.
+    pub parent: usize,
+    /// Index of the limb behind the joint; larger than `parent`.
+    pub child: usize,
     /// Largest bend to either side, in radians.
     pub bend_limit_rad: f32,
     /// Largest twist to either side, in radians.
@@ -48,6 +54,11 @@ pub struct JointPlan {
 }
 
 impl LimbPlan {
+    /// Size across x, along y and along z, in metres.
+    pub fn size_m(&self) -> [f32; 3] {
+        [self.width_m, self.length_m, self.height_m]
+    }
+
     /// Mass of the limb, in kg.
     pub fn mass_kg(&self) -> f32 {
         self.width_m * self.length_m * self.height_m * self.density_kg_m3
@@ -60,17 +71,22 @@ impl BodyPlan {
         self.limbs.iter().map(|limb| limb.length_m).sum()
     }
 
+    /// Width of the widest limb, in metres.
+    pub fn width_m(&self) -> f32 {
+        self.limbs.iter().map(|limb| limb.width_m).fold(0.0, f32::max)
+    }
+
     /// Mass of the whole body, in kg.
     pub fn mass_kg(&self) -> f32 {
         self.limbs.iter().map(LimbPlan::mass_kg).sum()
     }
 
-    /// Height of the line on which the joints lie at the start, in metres: the tallest limb's middle.
+    /// Height of the line on which the joints lie at the start, in metres: the centre of the tallest limb.
     pub fn axis_height_m(&self) -> f32 {
         self.limbs.iter().map(|limb| limb.height_m).fold(0.0, f32::max) / 2.0
     }
 
-    /// Which limb is the middle one: the third of five. Its centre is "the centre of the snake".
+    /// Index of the limb whose centre counts as the centre of the snake: the third of five.
     pub fn middle_limb(&self) -> usize {
         self.limbs.len() / 2
     }

@@ -1,48 +1,53 @@
-//! Lets a bounce come out right where a limb lands on a whole face.
+//! Corrects the bounce of a limb that lands on a whole face.
 //!
-//! Rapier applies restitution once, corner after corner, at the end of a step. Each corner spoils what
-//! the one before had got, so a block that lands flat leaves a tenth too slow, and spinning. A few
-//! more rounds over the same corners make them agree.
+//! Rapier applies restitution once, corner after corner, at the end of a step. Each corner disturbs the
+//! result of the corner before, so a block that lands flat leaves a tenth too slow, and spinning.
+//! Repeating the restitution over the same corners makes them agree.
 
 use rapier3d::geometry::{ContactPair, NEW_CONTACT_BIT};
 use rapier3d::prelude::*;
 
-/// Velocity of a limb, as it was before the step.
+use super::contact::other_collider;
+
+/// Velocity of a limb before the step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Velocity {
+pub(super) struct LimbVelocity {
     pub linear: Vector,
     pub angular: Vector,
 }
 
 /// A corner that bounces in this step.
-struct Corner {
+struct BouncingCorner {
     /// From the limb's centre, in m.
     lever: Vector,
-    /// The direction in which the surface pushes the limb.
+    /// Unit vector along which the surface pushes the limb.
     direction: Vector,
-    /// The speed at which it has to leave, in m/s.
+    /// Required speed after the bounce, in m/s.
     leaving_m_s: f32,
-    /// What pushed it in this step so far, in N·s; in the end it must not have been pulled.
+    /// Total impulse on the corner in this step so far, in N·s. It never becomes negative: a surface does not pull.
     impulse_ns: f32,
 }
 
-/// Rounds over the corners. Four corners of a block agree to a thousandth after ten.
+/// Number of passes over the corners. The four corners of a block agree to a thousandth after ten.
 const ROUNDS: u32 = 16;
 
-/// Continues the engine's restitution of a limb's contacts with the world until they agree.
-pub(super) fn finish_bounce(physics: &mut PhysicsWorld, limb: RigidBodyHandle, before: Velocity) {
+/// Repeats the engine's restitution of a limb's contacts with the world until all corners agree.
+pub(super) fn finish_bounce(
+    physics: &mut PhysicsWorld,
+    limb: RigidBodyHandle,
+    before: LimbVelocity,
+) {
     let body = &physics.bodies[limb];
     let collider = body.colliders()[0];
     let pose = *body.position();
     let corners = physics.narrow_phase.contact_pairs_with(collider).flat_map(|pair| {
         let is_first = pair.collider1 == collider;
-        let other = if is_first { pair.collider2 } else { pair.collider1 };
-        let owner = physics.colliders[other].parent();
+        let owner = physics.colliders[other_collider(pair, collider)].parent();
         let is_world = owner.is_none_or(|owner| physics.bodies[owner].mass() == 0.0);
         let pair = is_world.then_some(pair);
         pair.into_iter().flat_map(move |pair| bouncing(pair, is_first, pose, before))
     });
-    let mut corners: Vec<Corner> = corners.collect();
+    let mut corners: Vec<BouncingCorner> = corners.collect();
     if corners.is_empty() {
         return;
     }
@@ -66,13 +71,13 @@ pub(super) fn finish_bounce(physics: &mut PhysicsWorld, limb: RigidBodyHandle, b
     body.set_angvel(angular, false);
 }
 
-/// The corners of a pair that the engine has just bounced.
+/// The corners of a contact pair to which the engine has just applied restitution.
 fn bouncing(
     pair: &ContactPair,
     limb_is_first: bool,
     pose: Pose,
-    before: Velocity,
-) -> impl Iterator<Item = Corner> + '_ {
+    before: LimbVelocity,
+) -> impl Iterator<Item = BouncingCorner> + '_ {
     pair.solver_manifolds().iter().filter(|manifold| manifold.data.restitution > 0.0).flat_map(
         move |manifold| {
             // The engine's normal points from the first body to the second.
@@ -86,7 +91,7 @@ fn bouncing(
                 let coming_m_s = -(before.linear + before.angular.cross(lever)).dot(direction);
                 let bounces =
                     id & NEW_CONTACT_BIT != 0 && point.data.impulse > 0.0 && coming_m_s > 0.0;
-                bounces.then_some(Corner {
+                bounces.then_some(BouncingCorner {
                     lever,
                     direction,
                     leaving_m_s: manifold.data.restitution * coming_m_s,

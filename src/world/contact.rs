@@ -1,13 +1,18 @@
-//! The surface parameters that rapier does not have of its own, put into its terms.
+//! Translates the surface parameters that rapier lacks into terms that it knows.
 //!
 //! Softness becomes contact springs of the solver ([`soften`]); bounce velocity and slip act through
-//! contact hooks ([`Hooks`]), which are switched on only where a contact needs them.
+//! contact hooks ([`ContactHooks`]), which are switched on only where a contact needs them.
 
 use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
 
-use super::surface::{ContactLaw, Give, spring};
+use super::surface::{ContactLaw, Softness, spring};
 use super::{LimbPlan, PhysicsSettings};
+
+/// The collider of a contact pair that is not `collider`.
+pub(super) fn other_collider(pair: &ContactPair, collider: ColliderHandle) -> ColliderHandle {
+    if pair.collider1 == collider { pair.collider2 } else { pair.collider1 }
+}
 
 /// The laws of all contacts in a world.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,38 +32,37 @@ impl ContactLaws {
     /// which would make every contact rigid again and let every soft joint drift apart.
     pub fn has_springs(&self) -> bool {
         self.joints_are_soft
-            || [self.stairs, self.ground, self.limbs].iter().any(|law| law.give.is_soft())
+            || [self.stairs, self.ground, self.limbs].iter().any(|law| law.softness.is_soft())
     }
 
-    /// Whether ground and stairs give way differently. Rapier knows two softnesses, one for contacts
+    /// Whether ground and stairs differ in softness. Rapier knows two softnesses, one for contacts
     /// with fixed bodies and one for the others, so the ground then is an immovable body of the other
-    /// kind, and limbs that touch each other do it as softly as they touch the ground.
+    /// kind, and contacts between limbs are as soft as contacts with the ground.
     pub fn ground_is_apart(&self) -> bool {
-        self.ground.give != self.stairs.give
+        self.ground.softness != self.stairs.softness
     }
 }
 
-/// Sets up the solver for these laws. `reference` is the limb whose weight the springs are worked out
-/// for.
+/// Sets up the solver for these laws. The springs are computed for the weight of the limb `reference`.
 pub(super) fn soften(
     parameters: &mut IntegrationParameters,
     laws: &ContactLaws,
     physics: &PhysicsSettings,
     reference: &LimbPlan,
 ) {
-    let coefficients = |give: Give| {
-        if give.is_soft() {
-            soft_coefficients(give, physics.step_s(), corner_mass_kg(reference))
+    let coefficients = |softness: Softness| {
+        if softness.is_soft() {
+            soft_coefficients(softness, physics.step_s(), corner_mass_kg(reference))
         } else if laws.has_springs() {
-            // A wall beside springs. It has to be a very stiff spring, because the solver has one mode.
-            let give = Give { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..give };
-            soft_coefficients(give, physics.step_s(), corner_mass_kg(reference))
+            // A rigid contact beside soft ones must be a very stiff spring: the solver has one mode for all.
+            let softness = Softness { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..softness };
+            soft_coefficients(softness, physics.step_s(), corner_mass_kg(reference))
         } else {
-            hard_coefficients(give.erp, physics)
+            hard_coefficients(softness.erp, physics)
         }
     };
-    parameters.static_contact_softness = coefficients(laws.stairs.give);
-    let others = if laws.ground_is_apart() { laws.ground.give } else { laws.limbs.give };
+    parameters.static_contact_softness = coefficients(laws.stairs.softness);
+    let others = if laws.ground_is_apart() { laws.ground.softness } else { laws.limbs.softness };
     parameters.contact_softness = coefficients(others);
     if laws.has_springs() {
         parameters.num_internal_stabilization_iterations = 0;
@@ -86,17 +90,17 @@ fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<
     }
 }
 
-/// Rapier's softness for a contact with the spring and damper that ERP and CFM stand for (see
+/// Rapier's softness for a contact with the spring and damper that ERP and CFM describe (see
 /// [`spring`]).
 ///
 /// Rapier scales its springs with the effective mass at each contact, `w² m` and `2 z w m`; so the
 /// conversion holds exactly for one mass, `mass_kg`: see [`corner_mass_kg`].
 ///
-/// Without any damping (an ERP of 1) rapier would divide zero by zero, and close to it lose its digits;
-/// so the damping ratio is at least a little, far too small to see.
-fn soft_coefficients(give: Give, step_s: f32, mass_kg: f32) -> SpringCoefficients<Real> {
+/// Without any damping (an ERP of 1) rapier would divide zero by zero, and close to it lose precision.
+/// The damping ratio therefore has a lower limit, far too small to be visible.
+fn soft_coefficients(softness: Softness, step_s: f32, mass_kg: f32) -> SpringCoefficients<Real> {
     const LEAST_DAMPING: f32 = 1.0e-3;
-    let spring = spring(give, step_s);
+    let spring = spring(softness, step_s);
     let angular_frequency = (spring.kp_n_per_m / mass_kg).sqrt();
     let damping_ratio = spring.kd_ns_per_m / (2.0 * angular_frequency * mass_kg);
     SpringCoefficients {
@@ -117,22 +121,22 @@ pub(super) fn joint_coefficients(
         return SpringCoefficients::joint_defaults();
     }
     let reduced_kg = front_kg * rear_kg / (front_kg + rear_kg);
-    soft_coefficients(Give { erp: JOINT_ERP, cfm_m_s_per_n }, step_s, reduced_kg)
+    soft_coefficients(Softness { erp: JOINT_ERP, cfm_m_s_per_n }, step_s, reduced_kg)
 }
 
 /// The share of a soft joint's error that is corrected in one step: ODE's default.
 pub(super) const JOINT_ERP: f32 = 0.2;
 
-/// The effective mass, in kg, that a contact at the corner of a flat lying limb pushes against:
+/// Effective mass, in kg, at a contact in a corner of a limb that lies flat:
 /// `1 / m_eff = (1 + 3 l² / (l² + h²) + 3 w² / (w² + h²)) / m`, from the inertia of a box. A limb of the
 /// report, 1 by 2 by 1, has 4.9 / m.
 fn corner_mass_kg(limb: &LimbPlan) -> f32 {
-    let [w2, l2, h2] = [limb.width_m, limb.length_m, limb.height_m].map(|size| size * size);
+    let [w2, l2, h2] = limb.size_m().map(|size| size * size);
     limb.mass_kg() / (1.0 + 3.0 * l2 / (l2 + h2) + 3.0 * w2 / (w2 + h2))
 }
 
-/// What looks at the contacts of a world before they are solved.
-pub(super) struct Hooks<'a> {
+/// Adjusts the contacts of a world before they are solved.
+pub(super) struct ContactHooks<'a> {
     pub laws: &'a ContactLaws,
     pub ground: ColliderHandle,
     pub step_s: f32,
@@ -141,7 +145,7 @@ pub(super) struct Hooks<'a> {
     pub snake_kg: f32,
 }
 
-impl PhysicsHooks for Hooks<'_> {
+impl PhysicsHooks for ContactHooks<'_> {
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
         let law = if context.collider1 == self.ground || context.collider2 == self.ground {
             &self.laws.ground
@@ -156,9 +160,9 @@ impl PhysicsHooks for Hooks<'_> {
         } else {
             &self.laws.stairs
         };
-        if law.give.is_soft() {
-            // The engine meets a coming contact halfway and stops it rigidly; a spring begins to push
-            // when it is touched.
+        if law.softness.is_soft() {
+            // The engine stops an approaching contact rigidly before it touches; a spring pushes only
+            // once it is touched.
             context.solver_contacts.retain(|contact| contact.dist <= 0.0);
         }
         if law.bounce_velocity_m_s > 0.0 && incoming_m_s(context) < law.bounce_velocity_m_s {
@@ -186,7 +190,7 @@ fn incoming_m_s(context: &ContactModificationContext) -> f32 {
     context.solver_contacts.iter().map(approach).fold(0.0, f32::max)
 }
 
-impl Hooks<'_> {
+impl ContactHooks<'_> {
     /// Lets a contact patch creep at slip times its tangential force, by lowering the friction.
     ///
     /// Inside the cone the patch should behave as a viscous contact, F = v / slip. The solver can only
@@ -195,26 +199,26 @@ impl Hooks<'_> {
     /// patch would have without friction, v + u F (from the last step's F),
     /// `F' = |v + u F| / (slip + u)`. A steady push P then creeps at slip · P; the roots of
     /// `x² - x + u / (slip + u)`, the deviations' growth per step, lie within the unit circle for every
-    /// slip. Because friction never does more than stop, it cannot feed energy in, whatever the estimates
-    /// are worth in a fall.
+    /// slip. Friction never does more than stop a motion, so it cannot add energy, even where the
+    /// estimates are poor, as in a fall.
     fn let_slip(&self, slip_m_s_per_n: f32, context: &mut ContactModificationContext) {
         let count = context.solver_contacts.len() as f32;
         if count == 0.0 {
             return;
         }
-        // Points that only come near are in the manifold too, with what they carried when they touched.
+        // The manifold also holds points that are only near, with the impulses of their last touch.
         let touching = context.solver_contacts.iter().filter_map(|contact| {
             context.manifold.points.get((contact.contact_id[0] & !NEW_CONTACT_BIT) as usize)
         });
-        // The engine keeps what the last substep pressed and rubbed: each point its own pressure, but the
-        // friction of the whole patch. (Its sum over a step counts a persistent contact once too often.)
+        // The engine keeps the impulses of the last substep: the pressure of each point, but the friction
+        // of the whole patch. (Its sum over a step counts a persistent contact once too often.)
         let per_s = self.substeps as f32 / self.step_s;
-        let (mut rubbed, mut pressed_ns) = (Vector::ZERO, 0.0);
+        let (mut friction_ns, mut pressed_ns) = (Vector::ZERO, 0.0);
         for point in touching {
-            rubbed += point.data.warmstart_tangent_world;
+            friction_ns += point.data.warmstart_tangent_world;
             pressed_ns += point.data.warmstart_impulse;
         }
-        let (force_n, pressed_n) = (rubbed * (per_s / count), pressed_ns * per_s);
+        let (force_n, pressed_n) = (friction_ns * (per_s / count), pressed_ns * per_s);
 
         let anchors = context.solver_contacts.iter().map(|contact| contact.anchor2);
         let centre = anchors.sum::<Vector>() / count;
@@ -224,10 +228,10 @@ impl Hooks<'_> {
 
         let mass_kg = self.limb_mass_kg(context);
         let per_mass = self.step_s / (mass_kg * PATCH_SHARE_OF_MASS);
-        // The friction opposes the sliding, so that taking it away adds to it.
+        // Friction opposes the sliding, so that without it the patch slides faster.
         let free_m_s = (sliding - force_n * per_mass).length();
         let viscous_n = free_m_s / (slip_m_s_per_n + per_mass);
-        // A patch that lands is pressed by its impact too.
+        // The impact of a landing patch adds to the pressure.
         let impact_n = mass_kg * along_normal.max(0.0) / self.step_s;
         let pressed_n = pressed_n + impact_n;
         if pressed_n > 0.0 {
@@ -235,7 +239,7 @@ impl Hooks<'_> {
         }
     }
 
-    /// Mass of the limb that touches, in kg; of the lighter, if two do.
+    /// Mass of the touching limb, in kg; if two limbs touch, of the lighter one.
     fn limb_mass_kg(&self, context: &ContactModificationContext) -> f32 {
         let bodies = [context.rigid_body1, context.rigid_body2];
         let masses = bodies.iter().flatten().map(|body| context.bodies[*body].mass());
@@ -243,6 +247,6 @@ impl Hooks<'_> {
     }
 }
 
-/// The share of a limb's mass that a push along the surface at its underside has to move, because the
-/// limb gives way by turning too. Too large a share would be unstable, too small a one only slower.
+/// Share of a limb's mass that a push along the surface at its underside has to move: less than all,
+/// because the limb also turns. Too large a share would be unstable, too small a share only slower.
 const PATCH_SHARE_OF_MASS: f32 = 0.3;

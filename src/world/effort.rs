@@ -1,10 +1,10 @@
-//! What a run demanded of the snake, and how near it came to being disqualified.
+//! Energy, speeds and distances of a rollout, which show how near it came to disqualification.
 
-/// What the healthy steps so far demanded.
+/// Totals and maxima over the healthy steps so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Effort {
     /// Energy that the joints spent, in J: the integral of |torque × joint rate| over both axes of all
-    /// joints. What flows back from a joint that is driven against its torque is spent, too.
+    /// joints. Energy that flows back from a joint driven against its torque counts as spent, too.
     pub energy_j: f32,
     /// Greatest speed of a limb's centre, in m/s.
     pub top_speed_m_s: f32,
@@ -15,7 +15,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Both one after the other.
+    /// The effort of two consecutive parts of a rollout.
     pub fn and(self, later: Self) -> Self {
         Self {
             energy_j: self.energy_j + later.energy_j,

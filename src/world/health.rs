@@ -1,14 +1,14 @@
-//! When a run no longer counts: the physics broke, or was broken.
+//! Limits beyond which a rollout no longer counts, because the physics broke or was exploited.
 //!
-//! A learning method finds every crack of an engine. A snake that tears its joints apart, gets shot
-//! across the hall by a bad contact, or leaves the arena has not climbed; it is disqualified at the
-//! step in which that shows, and everybody is told why.
+//! A learning method finds every weakness of an engine. A snake that tears its joints apart, is shot
+//! across the arena by a bad contact, or leaves the arena has not climbed; it is disqualified in the
+//! step in which that shows, and every report states the reason.
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::{Invalid, within};
+use crate::schema::{Section, SettingGroup, Walk, number};
 
-/// Why an agent was taken out of the competition.
+/// Reason for which an agent was disqualified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Disqualification {
     /// A pose or a velocity was not finite.
@@ -48,7 +48,7 @@ pub struct HealthLimits {
     pub speed_m_s: f32,
     /// Largest |x| of a limb's centre, in metres.
     pub arena_half_width_m: f32,
-    /// How far behind the start of the axis the arena goes, in metres: a limb's least y is minus this.
+    /// Extent of the arena behind the origin of the y axis, in metres: a limb's least y is minus this.
     pub arena_back_m: f32,
 }
 
@@ -59,12 +59,46 @@ impl Default for HealthLimits {
 }
 
 impl HealthLimits {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        // From what the solver itself leaves open to what is no limit at all; so with the others.
-        within("joint_drift_m", self.joint_drift_m, 0.001..=10.0)?;
-        within("speed_m_s", self.speed_m_s, 1.0..=1000.0)?;
-        within("arena_half_width_m", self.arena_half_width_m, 1.0..=1000.0)?;
-        within("arena_back_m", self.arena_back_m, 1.0..=1000.0)
+    /// The section of these settings.
+    pub const SECTION: Section = Section {
+        title: "Disqualification",
+        about: "A snake that breaks the physics instead of climbing is taken out.",
+    };
+}
+
+impl SettingGroup for HealthLimits {
+    /// Each range goes from the error that the solver itself leaves to a value that limits nothing.
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { joint_drift_m, speed_m_s, arena_half_width_m, arena_back_m } = self;
+        walk.section(Self::SECTION);
+        walk.setting(
+            number("joint_drift_m", "Joint gap", 0.001..=10.0)
+                .unit("m")
+                .hint("A snake whose joint comes apart further than this is disqualified")
+                .slider(0.01, 1.0)
+                .logarithmic_from(0.01),
+            joint_drift_m,
+        );
+        walk.setting(
+            number("speed_m_s", "Speed limit", 1.0..=1000.0)
+                .unit("m/s")
+                .hint("A snake with a limb faster than this is disqualified: only an explosion is that fast")
+                .slider(1.0, 100.0),
+            speed_m_s,
+        );
+        walk.setting(
+            number("arena_half_width_m", "Arena to either side", 1.0..=1000.0)
+                .unit("m")
+                .hint("A snake that is further off the middle is disqualified")
+                .slider(2.0, 50.0),
+            arena_half_width_m,
+        );
+        walk.setting(
+            number("arena_back_m", "Arena backwards", 1.0..=1000.0)
+                .unit("m")
+                .hint("A snake with a limb behind minus this y is disqualified")
+                .slider(5.0, 100.0),
+            arena_back_m,
+        );
     }
 }

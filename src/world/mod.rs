@@ -2,7 +2,7 @@
 //!
 //! Axes: x across the stairs, y towards and up the stairs, z up. Units: metres, kilograms, seconds,
 //! radians, newton metres. Built on rapier3d with every body, collider and joint inserted in a fixed
-//! order. What never enters here: a window, a file, a thread, a clock, a hash-ordered loop.
+//! order. This module never uses a window, a file, a thread, a clock, or iteration in hash order.
 
 mod body;
 mod bounce;
@@ -24,6 +24,4 @@ pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
 pub use simulation::{ContactForce, JointState, JointTorque, Simulation, WorldPlan};
 pub use stairs::{StairBox, Stairs};
-pub use surface::{BOUNCE_RANGE, BOUNCE_VELOCITY_RANGE, DAMPEN_RANGE, FRICTION_RANGE};
-pub use surface::{SLIP_RANGE, SOFT_CFM_RANGE, SOFT_ERP_RANGE};
 pub use surface::{Skin, Surface};

@@ -1,8 +1,8 @@
-//! How time passes: the constant step, the solver's substeps, gravity.
+//! Settings of the physics engine: the constant step, the solver's substeps, gravity.
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::{Invalid, within};
+use crate::schema::{Section, SettingGroup, Walk, number, whole};
 
 /// Settings of the physics engine. They belong to the trial, because they change the bits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,15 +22,38 @@ impl Default for PhysicsSettings {
     }
 }
 
-impl PhysicsSettings {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        // Slower than 20 a second bodies pass through each other; faster than 1000 nothing changes.
-        within("steps_per_s", self.steps_per_s, 20..=1000)?;
-        within("substeps", self.substeps, 1..=32)?;
+impl SettingGroup for PhysicsSettings {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { steps_per_s, substeps, gravity_m_s2 } = self;
+        walk.section(Self::SECTION);
         // From weightlessness to four times Jupiter.
-        within("gravity_m_s2", self.gravity_m_s2, 0.0..=100.0)
+        walk.setting(
+            number("gravity_m_s2", "Gravity", 0.0..=100.0)
+                .unit("m/s²")
+                .hint("How strongly everything is pulled down: 9.81 on earth, 1.62 on the moon")
+                .slider(0.0, 20.0),
+            gravity_m_s2,
+        );
+        // Below 20 a second bodies pass through each other; above 1000 nothing changes.
+        walk.setting(
+            whole("steps_per_s", "Physics steps per second", 20..=1000)
+                .hint("More are more exact and take longer. Other numbers make other motions")
+                .slider(20.0, 240.0),
+            steps_per_s,
+        );
+        walk.setting(
+            whole("substeps", "Substeps in a step", 1..=32)
+                .hint("How often contacts and joints are solved within a step. More are stiffer and take longer")
+                .slider(1.0, 16.0),
+            substeps,
+        );
     }
+}
+
+impl PhysicsSettings {
+    /// The section of these settings.
+    pub const SECTION: Section =
+        Section { title: "Physics", about: "Gravity, and how finely time is cut." };
 
     /// Length of one physics step, in seconds.
     pub fn step_s(&self) -> f32 {

@@ -7,8 +7,8 @@ use rapier3d::prelude::*;
 mod build;
 mod observe;
 
-use super::bounce::{Velocity, finish_bounce};
-use super::contact::{ContactLaws, Hooks, soften};
+use super::bounce::{LimbVelocity, finish_bounce};
+use super::contact::{ContactHooks, ContactLaws, other_collider, soften};
 use super::surface::ContactLaw;
 use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld,
@@ -17,7 +17,7 @@ use super::{
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 pub use observe::{ContactForce, JointState};
 
-/// All that determines a world: build it twice and step it with the same torques, and the two agree
+/// Everything that determines a world: two worlds built from it and stepped with the same torques agree
 /// in every bit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorldPlan {
@@ -35,58 +35,56 @@ pub struct WorldPlan {
     pub health: HealthLimits,
     /// The snake.
     pub body: BodyPlan,
-    /// Where the middle of the straight snake starts on the y axis, in metres.
+    /// Position of the middle of the straight snake on the y axis at the start, in metres.
     pub start_y_m: f32,
-    /// Where it starts on the x axis, in metres; 0 is in front of the middle of the stairs.
+    /// Its position on the x axis at the start, in metres; 0 is in front of the middle of the stairs.
     pub start_x_m: f32,
-    /// How far the snake is turned at the start, in radians, counterclockwise seen from above; at 0 it heads for the
+    /// Turn of the snake at the start, in radians, counterclockwise seen from above; at 0 it heads for the
     /// stairs.
     pub start_turn_rad: f32,
 }
 
 /// The torques a controller commands at one joint, in N·m, positive by the right-hand rule about the
-/// joint's own axes. They act on the rear limb, and their opposites on the front limb.
+/// joint's own axes. They act on the joint's child, and their opposites on its parent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointTorque {
-    /// About the front limb's x axis.
+    /// About the parent's x axis.
     pub bend_nm: f32,
-    /// About the front limb's y axis.
+    /// About the parent's y axis.
     pub twist_nm: f32,
 }
 
-/// A running world. A clone goes on with the bits of the original.
+/// A running world. A clone continues with the bits of the original.
 pub struct Simulation {
     physics: PhysicsWorld,
-    contacts: Contacts,
-    /// Bodies of the limbs, head first.
+    contacts: ContactSettings,
+    body: BodyPlan,
+    /// The engine's bodies of the limbs, in the order of the plan.
     limbs: Vec<RigidBodyHandle>,
-    joints: Vec<JointPlan>,
-    /// Distance from a limb's centre to its front and rear joint anchors, in metres.
-    half_lengths_m: Vec<f32>,
     health: HealthLimits,
     arena_front_y_m: f32,
     torques_in_world: Vec<Vector>,
-    /// The torques of this step after clamping, joint by joint, and the turns of the front limbs about whose
-    /// axes they act.
+    /// For each joint, the rotation of its parent, about whose axes the torques act, and the torques of this
+    /// step after clamping.
     applied: Vec<(Rotation, JointTorque)>,
     effort: Effort,
-    /// What pulls a limb beside the joints, and whether anything did in the last step.
+    /// The user's pull on a limb, and whether there was one in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
 }
 
-/// What a step needs to know of the contacts.
+/// Settings of the contacts, needed in each step.
 #[derive(Debug, Clone)]
-struct Contacts {
+struct ContactSettings {
     laws: ContactLaws,
-    /// Whether anything bounces.
+    /// Whether any material bounces.
     bounces: bool,
     ground: ColliderHandle,
     substeps: u32,
     snake_kg: f32,
 }
 
-/// A snake this far below the ground has fallen through it; only a broken contact does that.
+/// Height below which a snake has fallen through the ground, in metres; only a broken contact allows that.
 const LOWEST_Z_M: f32 = -2.0;
 
 impl Simulation {
@@ -116,7 +114,7 @@ impl Simulation {
             .iter()
             .any(|&bounce| bounce > 0.0);
         if bounces {
-            // Contacts that the engine recycles keep saying that they are new: see `bounce`.
+            // Recycled contacts keep their mark as new, on which the bounce correction relies.
             physics.integration_parameters.contact_recycling = false;
         }
         let ground = insert_ground(&mut physics, plan, &laws);
@@ -126,7 +124,7 @@ impl Simulation {
 
         Self {
             physics,
-            contacts: Contacts {
+            contacts: ContactSettings {
                 laws,
                 bounces,
                 ground,
@@ -139,18 +137,17 @@ impl Simulation {
             pull: None,
             was_pulled: false,
             limbs,
-            joints: plan.body.joints.clone(),
-            half_lengths_m: plan.body.limbs.iter().map(|limb| limb.length_m / 2.0).collect(),
+            body: plan.body.clone(),
             health: plan.health.clone(),
             arena_front_y_m: plan.stairs.end_y_m() + 10.0,
         }
     }
 
-    /// Applies the torques, one per joint from the head, clamped to each joint's limits, and advances
-    /// the world by one step.
+    /// Applies the torques, one per joint, clamped to each joint's limits, and advances the world by one
+    /// step.
     ///
     /// # Errors
-    /// The reason why this step disqualified the agent. The world must not be stepped further then.
+    /// The reason for which this step disqualified the agent. The world must not be stepped further then.
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
         self.advance();
@@ -160,7 +157,12 @@ impl Simulation {
         Ok(())
     }
 
-    /// What the healthy steps so far demanded.
+    /// The built body: its limbs, joints, sizes, masses and limits.
+    pub fn body(&self) -> &BodyPlan {
+        &self.body
+    }
+
+    /// The effort of the healthy steps so far.
     pub fn effort(&self) -> Effort {
         self.effort
     }
@@ -169,19 +171,19 @@ impl Simulation {
     /// axes at its start, and the engine moves limbs by their velocity at its end; so this is the
     /// rectangle rule with the rates at the end.
     fn energy_j(&self) -> f32 {
-        let turn = |index: usize| self.physics.bodies[self.limbs[index]].angvel();
-        let joints = self.applied.iter().enumerate();
-        let power_w = joints.map(|(index, (front, torque))| {
-            let rate = front.inverse() * (turn(index + 1) - turn(index));
+        let turn = |limb: usize| self.physics.bodies[self.limbs[limb]].angvel();
+        let joints = self.body.joints.iter().zip(&self.applied);
+        let power_w = joints.map(|(joint, (parent, torque))| {
+            let rate = parent.inverse() * (turn(joint.child) - turn(joint.parent));
             (torque.bend_nm * rate.x).abs() + (torque.twist_nm * rate.y).abs()
         });
         power_w.sum::<f32>() * self.physics.integration_parameters.dt
     }
 
-    /// Lets the engine take one step, and what touches a damping surface slow down.
+    /// Lets the engine take one step, and slows limbs that touch a damping surface.
     pub(crate) fn advance(&mut self) {
-        let Contacts { laws, ground, substeps, snake_kg, .. } = &self.contacts;
-        let hooks = Hooks {
+        let ContactSettings { laws, ground, substeps, snake_kg, .. } = &self.contacts;
+        let hooks = ContactHooks {
             laws,
             ground: *ground,
             step_s: self.physics.integration_parameters.dt,
@@ -193,9 +195,9 @@ impl Simulation {
         } else {
             let velocity = |&limb: &RigidBodyHandle| {
                 let body = &self.physics.bodies[limb];
-                Velocity { linear: body.linvel(), angular: body.angvel() }
+                LimbVelocity { linear: body.linvel(), angular: body.angvel() }
             };
-            let before: Vec<Velocity> = self.limbs.iter().map(velocity).collect();
+            let before: Vec<LimbVelocity> = self.limbs.iter().map(velocity).collect();
             self.physics.step_with_events(&hooks, &());
             for (&limb, before) in self.limbs.iter().zip(before) {
                 finish_bounce(&mut self.physics, limb, before);
@@ -206,9 +208,9 @@ impl Simulation {
         }
     }
 
-    /// Slows each limb that touches a damping surface, once, by the stronger one that it touches.
+    /// Slows each limb that touches a damping surface, once, by the strongest damping that it touches.
     fn dampen(&mut self) {
-        let Contacts { laws, ground, .. } = &self.contacts;
+        let ContactSettings { laws, ground, .. } = &self.contacts;
         let step_s = self.physics.integration_parameters.dt;
         for &limb in &self.limbs {
             let collider = self.physics.bodies[limb].colliders()[0];
@@ -216,8 +218,7 @@ impl Simulation {
             let dampen_per_s = touched
                 .filter(|pair| pair.has_any_active_contact())
                 .map(|pair| {
-                    let other =
-                        if pair.collider1 == collider { pair.collider2 } else { pair.collider1 };
+                    let other = other_collider(pair, collider);
                     if other == *ground {
                         laws.ground.dampen_per_s
                     } else if self.physics.colliders[other].parent().is_none() {
@@ -236,18 +237,12 @@ impl Simulation {
         }
     }
 
-    /// Handles of the limbs in the physics world's body set, head first.
-    pub fn limb_handles(&self) -> &[RigidBodyHandle] {
-        &self.limbs
-    }
-
-    /// The engine's state, for those who look: debug drawing, picking, the bench.
+    /// The engine's state, for reading: debug drawing, picking, the bench.
     pub fn physics(&self) -> &PhysicsWorld {
         &self.physics
     }
 
-    /// The engine's state, to be lent to another owner between steps and given back unchanged. The
-    /// stage keeps it in its rapier context so that the window's tools see the very world that scores.
+    /// The engine's state, for the bench, which steps rapier alone.
     pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
         &mut self.physics
     }
@@ -255,15 +250,15 @@ impl Simulation {
     /// Sets the torque of each limb: the sum of the couples of its joints.
     pub(crate) fn apply(&mut self, torques: &[JointTorque]) {
         self.torques_in_world.fill(Vector::ZERO);
-        for (index, (joint, torque)) in self.joints.iter().zip(torques).enumerate() {
+        for (index, (joint, torque)) in self.body.joints.iter().zip(torques).enumerate() {
             let bend_nm = torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
             let twist_nm =
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
-            let front = self.physics.bodies[self.limbs[index]].rotation();
-            let couple = *front * Vector::new(bend_nm, twist_nm, 0.0);
-            self.applied[index] = (*front, JointTorque { bend_nm, twist_nm });
-            self.torques_in_world[index] -= couple;
-            self.torques_in_world[index + 1] += couple;
+            let parent = *self.physics.bodies[self.limbs[joint.parent]].rotation();
+            let couple = parent * Vector::new(bend_nm, twist_nm, 0.0);
+            self.applied[index] = (parent, JointTorque { bend_nm, twist_nm });
+            self.torques_in_world[joint.parent] -= couple;
+            self.torques_in_world[joint.child] += couple;
         }
         for (&limb, &torque) in self.limbs.iter().zip(&self.torques_in_world) {
             let body = &mut self.physics.bodies[limb];
@@ -275,7 +270,7 @@ impl Simulation {
         }
     }
 
-    /// Lets a spring pull a limb from the next step on, or no more. What is pulled is no trial any more.
+    /// Sets or ends the pull on a limb, from the next step on. A pulled snake is no longer in its trial.
     pub fn pull(&mut self, pull: Option<Pull>) {
         self.pull = pull;
     }
@@ -294,7 +289,21 @@ impl Simulation {
         self.was_pulled = true;
     }
 
-    /// Looks for what disqualifies: see [`HealthLimits`].
+    /// Half the length of a limb, as a vector in the world from its centre to its front face, in metres.
+    fn centre_to_front(&self, limb: usize) -> Vector {
+        let half_length = Vector::new(0.0, self.body.limbs[limb].length_m / 2.0, 0.0);
+        *self.physics.bodies[self.limbs[limb]].rotation() * half_length
+    }
+
+    /// Squared distance between the two anchors of a joint, in m².
+    fn drift_squared(&self, joint: &JointPlan) -> f32 {
+        let centre = |limb: usize| self.physics.bodies[self.limbs[limb]].translation();
+        let parent_rear = centre(joint.parent) - self.centre_to_front(joint.parent);
+        let child_front = centre(joint.child) + self.centre_to_front(joint.child);
+        parent_rear.distance_squared(child_front)
+    }
+
+    /// Checks the state after a step against the [`HealthLimits`] and returns its speeds and distances.
     fn check_health(&self) -> Result<Effort, Disqualification> {
         let mut seen = Effort::default();
         // Rapier rolls a body with a non-finite state back and reports it here.
@@ -303,8 +312,7 @@ impl Simulation {
         }
         let speed_limit_squared = self.health.speed_m_s * self.health.speed_m_s;
         let drift_limit_squared = self.health.joint_drift_m * self.health.joint_drift_m;
-        let mut rear_anchor_of_previous: Option<Vector> = None;
-        for (&limb, &half_length_m) in self.limbs.iter().zip(&self.half_lengths_m) {
+        for (index, &limb) in self.limbs.iter().enumerate() {
             let body = &self.physics.bodies[limb];
             let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
             if !(centre.is_finite() && speed_squared.is_finite()) {
@@ -320,9 +328,10 @@ impl Simulation {
             {
                 return Err(Disqualification::LeftArena);
             }
-            let forward = *body.rotation() * Vector::new(0.0, half_length_m, 0.0);
-            let drift_squared = rear_anchor_of_previous
-                .map_or(0.0, |rear_anchor| rear_anchor.distance_squared(centre + forward));
+            // The order of these checks is part of the bits of a run: it decides which reason is reported.
+            let to_parents = self.body.joints.iter().filter(|joint| joint.child == index);
+            let drift_squared =
+                to_parents.map(|joint| self.drift_squared(joint)).fold(0.0, f32::max);
             if drift_squared > drift_limit_squared {
                 return Err(Disqualification::JointBroke);
             }
@@ -332,7 +341,6 @@ impl Simulation {
                 joint_drift_m: drift_squared.sqrt(),
                 sideways_m: centre.x.abs(),
             });
-            rear_anchor_of_previous = Some(centre - forward);
         }
         Ok(seen)
     }
@@ -345,7 +353,7 @@ impl Clone for Simulation {
             physics: PhysicsWorld {
                 gravity: physics.gravity,
                 integration_parameters: physics.integration_parameters,
-                // It holds working memory only; a new one reads everything from the rest.
+                // It holds working memory only; a new one gives the same bits.
                 physics_pipeline: PhysicsPipeline::new(),
                 islands: physics.islands.clone(),
                 broad_phase: physics.broad_phase.clone(),
@@ -357,9 +365,8 @@ impl Clone for Simulation {
                 ccd_solver: physics.ccd_solver.clone(),
             },
             contacts: self.contacts.clone(),
+            body: self.body.clone(),
             limbs: self.limbs.clone(),
-            joints: self.joints.clone(),
-            half_lengths_m: self.half_lengths_m.clone(),
             health: self.health.clone(),
             arena_front_y_m: self.arena_front_y_m,
             torques_in_world: self.torques_in_world.clone(),

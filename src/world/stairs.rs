@@ -1,8 +1,8 @@
-//! The staircase: its shape, and what a position on it means.
+//! The staircase: its shape, and the meaning of a position on it.
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::{Invalid, within};
+use crate::schema::{Section, SettingGroup, Walk, number, whole};
 
 /// A straight staircase that rises towards +y, with a landing behind its last step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -16,7 +16,7 @@ pub struct Stairs {
     pub tread_m: f32,
     /// Width across x, in metres. The report has 5.
     pub width_m: f32,
-    /// Where the first riser stands on the y axis, in metres. From Table 1: the snake, 10 m long,
+    /// Position of the first riser on the y axis, in metres. From Table 1: the snake, 10 m long,
     /// touches the stairs with its centre at -2, so the riser is at 3.
     pub first_riser_y_m: f32,
     /// Depth of the landing behind the last tread, in metres. Long enough by default that the
@@ -46,35 +46,77 @@ pub struct StairBox {
     pub max_m: [f32; 3],
 }
 
-impl Stairs {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        // None is flat ground; a hundred is far more than any snake climbs, and still quick.
-        within("steps", self.steps, 0..=100)?;
+impl SettingGroup for Stairs {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { steps, rise_m, tread_m, width_m, first_riser_y_m, landing_m } = self;
+        walk.section(Self::SECTION);
+        // A hundred steps are far more than any snake climbs, and still quick.
+        walk.setting(
+            whole("steps", "Steps", 0..=100)
+                .hint("Number of steps. Without any there is flat ground")
+                .slider(0.0, 20.0),
+            steps,
+        );
         // From a doorsill to a wall. Below a centimetre the engine's tolerances are as high as the step.
-        within("rise_m", self.rise_m, 0.01..=5.0)?;
-        within("tread_m", self.tread_m, 0.1..=20.0)?;
+        walk.setting(
+            number("rise_m", "Rise", 0.01..=5.0)
+                .unit("m")
+                .hint("Height of a step. Higher is harder")
+                .slider(0.05, 2.0),
+            rise_m,
+        );
+        walk.setting(
+            number("tread_m", "Tread", 0.1..=20.0)
+                .unit("m")
+                .hint("Depth of a step. On a deep one there is room to gather")
+                .slider(0.2, 5.0),
+            tread_m,
+        );
         // From a block's own width to a hall's.
-        within("width_m", self.width_m, 1.0..=100.0)?;
+        walk.setting(
+            number("width_m", "Width", 1.0..=100.0)
+                .unit("m")
+                .hint("Width of the stairs. From narrow ones a snake that drifts falls off")
+                .slider(1.0, 20.0),
+            width_m,
+        );
         // Within a hundred metres floats still resolve a hundredth of a millimetre.
-        within("first_riser_y_m", self.first_riser_y_m, -100.0..=100.0)?;
-        within("landing_m", self.landing_m, 0.0..=100.0)
+        walk.setting(
+            number("first_riser_y_m", "First riser at y", -100.0..=100.0)
+                .unit("m")
+                .hint("Where the stairs begin. The further away, the longer the way to them")
+                .slider(0.0, 20.0),
+            first_riser_y_m,
+        );
+        walk.setting(
+            number("landing_m", "Landing", 0.0..=100.0)
+                .unit("m")
+                .hint("Depth of the landing behind the last step, on which a snake that has climbed stands")
+                .slider(0.0, 60.0),
+            landing_m,
+        );
     }
+}
 
-    /// Where riser number `index` (0 is the first) stands on the y axis, in metres.
+impl Stairs {
+    /// The section of these settings.
+    pub const SECTION: Section =
+        Section { title: "Stairs", about: "The shape of the staircase, and where it begins." };
+
+    /// Position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {
         self.first_riser_y_m + index as f32 * self.tread_m
     }
 
-    /// Where the landing ends on the y axis, in metres.
+    /// Position of the end of the landing on the y axis, in metres.
     pub fn end_y_m(&self) -> f32 {
         self.riser_y_m(self.steps) + self.landing_m
     }
 
     /// The steps as solid boxes that stand on the ground, lowest first.
     ///
-    /// The landing belongs to the box of the last step: a seam between two level boxes would let
-    /// a sliding block trip over an edge that is not there.
+    /// The landing belongs to the box of the last step: at a seam between two level boxes a sliding
+    /// block would trip over an edge that does not exist.
     pub fn boxes(&self) -> Vec<StairBox> {
         (0..self.steps)
             .map(|index| {
@@ -88,17 +130,17 @@ impl Stairs {
             .collect()
     }
 
-    /// How many steps a snake has climbed whose centre stands at `y_m`.
+    /// Number of steps climbed by a snake whose centre stands at `y_m`.
     ///
-    /// A step counts as climbed where the centre has passed its riser; that is the rule behind
-    /// Table 1 of the report: 3.84 is one step, 5.79 two, 8.05 three. It looks at y alone, as the
-    /// report does: a snake that crawls past the stairs at their side would count too.
+    /// A step counts as climbed once the centre has passed its riser; that is the rule behind
+    /// Table 1 of the report: 3.84 is one step, 5.79 two, 8.05 three. Only y counts, as in the
+    /// report: a snake that crawls past the stairs at their side would count too.
     pub fn steps_climbed(&self, y_m: f64) -> u32 {
         (0..self.steps).filter(|&index| y_m >= f64::from(self.riser_y_m(index))).count() as u32
     }
 
-    /// How many steps are under a point at `at_m`, in metres: it is past their risers, over the last one's
-    /// tread, and within the width. A point beside the stairs has none under it.
+    /// Number of steps under a point at `at_m`, in metres: the point is past their risers, above the tread
+    /// of the last of them, and within the width. A point beside the stairs has none under it.
     pub fn steps_under(&self, at_m: [f32; 3]) -> u32 {
         let [x_m, y_m, z_m] = at_m;
         let climbed = self.steps_climbed(f64::from(y_m));
@@ -106,7 +148,7 @@ impl Stairs {
         if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
     }
 
-    /// Height of what is below a point of the floor plan, in metres: a tread, the landing, or the ground.
+    /// Height of the tread, the landing or the ground at a point of the floor plan, in metres.
     pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
         if x_m.abs() <= self.width_m / 2.0 && y_m <= self.end_y_m() {
             self.rise_m * self.steps_climbed(f64::from(y_m)) as f32
@@ -115,8 +157,8 @@ impl Stairs {
         }
     }
 
-    /// What it means, in words, that the centre of a snake `snake_length_m` long that started at
-    /// `start_y_m` now stands at `y_m`. These are the words of the report's Table 1.
+    /// Describes in words the centre position `y_m` of a snake of length `snake_length_m` that started at
+    /// `start_y_m`. These are the words of the report's Table 1.
     pub fn meaning(&self, y_m: f64, start_y_m: f64, snake_length_m: f64) -> String {
         let to_first_riser_m = f64::from(self.first_riser_y_m) - snake_length_m / 2.0;
         let climbed = self.steps_climbed(y_m);
@@ -148,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_words_of_table_1_follow_from_the_geometry() {
+    fn the_descriptions_of_table_1_follow_from_the_geometry() {
         let stairs = Stairs::default();
         let table_1 = [
             (-7.23, "starting position"),
@@ -167,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn ten_boxes_rise_half_a_metre_every_two() {
+    fn ten_boxes_rise_by_half_a_metre_every_two_metres() {
         let boxes = Stairs::default().boxes();
         assert_eq!(boxes.len(), 10);
         assert_eq!(boxes[0].min_m, [-2.5, 3.0, 0.0]);

@@ -1,9 +1,8 @@
-//! What the snake crawls on, what its skin is like, and how the two meet.
+//! The materials of the surfaces and of the snake's skin, and how they combine in a contact.
 
 use serde::{Deserialize, Serialize};
-use std::ops::RangeInclusive;
 
-use crate::check::{Invalid, within};
+use crate::schema::{SettingGroup, Walk, number};
 
 /// The material of the ground or the stairs: the seven parameters of the report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,7 +17,7 @@ pub struct Surface {
     /// Error reduction parameter: the share of a penetration that is corrected in one physics step.
     pub soft_erp: f32,
     /// Constraint force mixing, in m/s per N (ODE's unit, s/kg): 0 is hard, larger is softer. See
-    /// [`spring`] for what it means physically.
+    /// [`spring`] for the physical meaning.
     pub soft_cfm_m_s_per_n: f32,
     /// Force-dependent slip, in m/s per N: under a tangential force F inside the friction cone a
     /// contact creeps at slip times F.
@@ -43,35 +42,80 @@ impl Default for Surface {
     }
 }
 
-/// From ice without any friction to beyond the 150 of the report's engine manual.
-pub const FRICTION_RANGE: RangeInclusive<f32> = 0.0..=1000.0;
-/// More than 1 would create energy.
-pub const BOUNCE_RANGE: RangeInclusive<f32> = 0.0..=1.0;
-/// Up to the speed at which an agent is disqualified by default, and beyond.
-pub const BOUNCE_VELOCITY_RANGE: RangeInclusive<f32> = 0.0..=1000.0;
-/// At 0 nothing would ever be pushed out again and the snake would sink through the ground.
-pub const SOFT_ERP_RANGE: RangeInclusive<f32> = 0.01..=1.0;
-/// At 1 m/s per N the snake's own weight pushes it through a step in less than a second.
-pub const SOFT_CFM_RANGE: RangeInclusive<f32> = 0.0..=1.0;
-/// At 10 m/s per N a surface does not hold anything that a limb's weight could feel.
-pub const SLIP_RANGE: RangeInclusive<f32> = 0.0..=10.0;
-/// At 20 1/s and the longest step (1/20 s) everything stops at once; more would turn it around.
-pub const DAMPEN_RANGE: RangeInclusive<f32> = 0.0..=20.0;
-
-impl Surface {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        within("friction", self.friction, FRICTION_RANGE)?;
-        within("bounce", self.bounce, BOUNCE_RANGE)?;
-        within("bounce_velocity_m_s", self.bounce_velocity_m_s, BOUNCE_VELOCITY_RANGE)?;
-        within("soft_erp", self.soft_erp, SOFT_ERP_RANGE)?;
-        within("soft_cfm_m_s_per_n", self.soft_cfm_m_s_per_n, SOFT_CFM_RANGE)?;
-        within("slip_m_s_per_n", self.slip_m_s_per_n, SLIP_RANGE)?;
-        within("dampen_per_s", self.dampen_per_s, DAMPEN_RANGE)
+impl SettingGroup for Surface {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self {
+            friction,
+            bounce,
+            bounce_velocity_m_s,
+            soft_erp,
+            soft_cfm_m_s_per_n,
+            slip_m_s_per_n,
+            dampen_per_s,
+        } = self;
+        // From ice without any friction to beyond the 150 of the report's engine manual.
+        walk.setting(
+            number("friction", "Friction", 0.0..=1000.0)
+                .hint(
+                    "Grip: largest sideways force divided by the force that presses down. 0 is no grip at all",
+                )
+                .slider(0.0, 5.0),
+            friction,
+        );
+        // More than 1 would create energy.
+        walk.setting(
+            number("bounce", "Bounce", 0.0..=1.0)
+                .hint("Share of the speed kept after an impact: 0 does not bounce, 1 bounces back to full height")
+                .slider(0.0, 1.0),
+            bounce,
+        );
+        // Up to the speed at which an agent is disqualified by default, and beyond.
+        walk.setting(
+            number("bounce_velocity_m_s", "Bounce velocity", 0.0..=1000.0)
+                .unit("m/s")
+                .hint(
+                    "Impacts slower than this do not bounce, so that a snake at rest stays at rest",
+                )
+                .slider(0.0, 10.0),
+            bounce_velocity_m_s,
+        );
+        // At 0 nothing would ever be pushed out again and the snake would sink through the ground.
+        walk.setting(
+            number("soft_erp", "Springiness (ERP)", 0.01..=1.0)
+                .hint("How quickly a soft surface springs back: the share of a dent that is pushed out in one step")
+                .slider(0.01, 1.0),
+            soft_erp,
+        );
+        // At 1 m/s per N the snake's own weight pushes it through a step in less than a second.
+        walk.setting(
+            number("soft_cfm_m_s_per_n", "Softness (CFM)", 0.0..=1.0)
+                .unit("m/s per N")
+                .hint("0 is hard; the larger, the deeper the snake sinks in")
+                .slider(0.0, 1.0)
+                .logarithmic_from(1.0e-5),
+            soft_cfm_m_s_per_n,
+        );
+        // At 10 m/s per N a limb's own weight is too much for the surface's hold.
+        walk.setting(
+            number("slip_m_s_per_n", "Slip", 0.0..=10.0)
+                .unit("m/s per N")
+                .hint("How fast a limb creeps under a push that friction would hold, as on oil")
+                .slider(0.0, 1.0)
+                .logarithmic_from(1.0e-4),
+            slip_m_s_per_n,
+        );
+        // At 20 1/s and the longest step (1/20 s) everything stops at once; more would turn it around.
+        walk.setting(
+            number("dampen_per_s", "Damping", 0.0..=20.0)
+                .unit("1/s")
+                .hint("Share of its speed that a limb loses per second while it touches, as in mud")
+                .slider(0.0, 20.0),
+            dampen_per_s,
+        );
     }
 }
 
-/// The snake's own material. The default is neutral: with it, a surface's numbers are the contact's.
+/// The snake's own material. The default is neutral: a contact then has the numbers of the surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Skin {
@@ -91,32 +135,56 @@ impl Default for Skin {
     }
 }
 
-impl Skin {
-    /// Checks every field against its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        within("friction", self.friction, FRICTION_RANGE)?;
-        within("bounce", self.bounce, BOUNCE_RANGE)?;
-        within("soft_erp", self.soft_erp, SOFT_ERP_RANGE)?;
-        within("soft_cfm_m_s_per_n", self.soft_cfm_m_s_per_n, SOFT_CFM_RANGE)
-    }
-
-    fn give(&self) -> Give {
-        Give { erp: self.soft_erp, cfm_m_s_per_n: self.soft_cfm_m_s_per_n }
+impl SettingGroup for Skin {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { friction, bounce, soft_erp, soft_cfm_m_s_per_n } = self;
+        walk.setting(
+            number("friction", "Skin friction", 0.0..=1000.0)
+                .hint("Multiplies the friction of whatever the snake touches. 1 leaves it as it is")
+                .slider(0.0, 5.0),
+            friction,
+        );
+        walk.setting(
+            number("bounce", "Skin bounce", 0.0..=1.0)
+                .hint("Share of the speed kept after an impact. The bouncier of skin and surface counts")
+                .slider(0.0, 1.0),
+            bounce,
+        );
+        walk.setting(
+            number("soft_erp", "Skin springiness (ERP)", 0.01..=1.0)
+                .hint("How quickly a soft skin springs back: the share of a dent that is pushed out in one step")
+                .slider(0.01, 1.0),
+            soft_erp,
+        );
+        walk.setting(
+            number("soft_cfm_m_s_per_n", "Skin softness (CFM)", 0.0..=1.0)
+                .unit("m/s per N")
+                .hint("0 is hard; the larger, the squishier the blocks")
+                .slider(0.0, 1.0)
+                .logarithmic_from(1.0e-5),
+            soft_cfm_m_s_per_n,
+        );
     }
 }
 
-/// How much a contact gives way under load, as ODE says it.
+impl Skin {
+    fn softness(&self) -> Softness {
+        Softness { erp: self.soft_erp, cfm_m_s_per_n: self.soft_cfm_m_s_per_n }
+    }
+}
+
+/// Softness of a material or a contact under load, in the terms of ODE.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Give {
+pub(super) struct Softness {
     /// Share of the penetration that is corrected in one step.
     pub erp: f32,
     /// Constraint force mixing, in m/s per N.
     pub cfm_m_s_per_n: f32,
 }
 
-/// What happens where a surface and a skin touch.
+/// Behaviour of a contact between a surface and a skin.
 ///
-/// The combine rules: the frictions multiply; of the bounces the larger counts; two soft materials are
+/// The combine rules: frictions multiply; the larger bounce counts; two soft materials are
 /// springs in series, so their CFMs add and the softer one's ERP weighs more. Bounce velocity, slip
 /// and dampen are the surface's alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,24 +192,24 @@ pub(super) struct ContactLaw {
     pub bounce_velocity_m_s: f32,
     pub slip_m_s_per_n: f32,
     pub dampen_per_s: f32,
-    pub give: Give,
+    pub softness: Softness,
 }
 
 impl ContactLaw {
     /// Between a surface and the snake. Friction and bounce are combined by the engine itself.
     pub fn between(surface: &Surface, skin: &Skin) -> Self {
-        let surface_gives =
-            Give { erp: surface.soft_erp, cfm_m_s_per_n: surface.soft_cfm_m_s_per_n };
-        let skin_gives = skin.give();
+        let surface_softness =
+            Softness { erp: surface.soft_erp, cfm_m_s_per_n: surface.soft_cfm_m_s_per_n };
+        let skin_softness = skin.softness();
         Self {
             bounce_velocity_m_s: surface.bounce_velocity_m_s,
             slip_m_s_per_n: surface.slip_m_s_per_n,
             dampen_per_s: surface.dampen_per_s,
-            // A hard skin leaves a surface as it is; a soft one is all there is on a hard surface.
-            give: if skin_gives.is_soft() {
-                surface_gives.in_series_with(skin_gives)
+            // A hard skin does not change a surface; on a hard surface only a soft skin counts.
+            softness: if skin_softness.is_soft() {
+                surface_softness.in_series_with(skin_softness)
             } else {
-                surface_gives
+                surface_softness
             },
         }
     }
@@ -152,17 +220,17 @@ impl ContactLaw {
             bounce_velocity_m_s: 0.0,
             slip_m_s_per_n: 0.0,
             dampen_per_s: 0.0,
-            give: skin.give().in_series_with(skin.give()),
+            softness: skin.softness().in_series_with(skin.softness()),
         }
     }
 
-    /// Whether a contact under this law has to be looked at before it is solved.
+    /// Whether a contact under this law must pass the hooks before it is solved.
     pub fn needs_hook(&self) -> bool {
-        self.bounce_velocity_m_s > 0.0 || self.slip_m_s_per_n > 0.0 || self.give.is_soft()
+        self.bounce_velocity_m_s > 0.0 || self.slip_m_s_per_n > 0.0 || self.softness.is_soft()
     }
 }
 
-impl Give {
+impl Softness {
     /// Whether the contact is a spring instead of a wall.
     pub fn is_soft(self) -> bool {
         self.cfm_m_s_per_n > 0.0
@@ -190,12 +258,12 @@ pub(super) struct Spring {
     pub kd_ns_per_m: f32,
 }
 
-/// What ERP and CFM are physically, for a physics step of `step_s`: `kp = ERP / (h · CFM)` and
+/// The spring and damper that ERP and CFM describe, for a physics step of `step_s`: `kp = ERP / (h · CFM)` and
 /// `kd = (1 - ERP) / CFM` (Open Dynamics Engine manual, section "How to use ERP and CFM").
-pub(super) fn spring(give: Give, step_s: f32) -> Spring {
+pub(super) fn spring(softness: Softness, step_s: f32) -> Spring {
     Spring {
-        kp_n_per_m: give.erp / (step_s * give.cfm_m_s_per_n),
-        kd_ns_per_m: (1.0 - give.erp) / give.cfm_m_s_per_n,
+        kp_n_per_m: softness.erp / (step_s * softness.cfm_m_s_per_n),
+        kd_ns_per_m: (1.0 - softness.erp) / softness.cfm_m_s_per_n,
     }
 }
 
@@ -204,11 +272,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_neutral_skin_leaves_the_surface_as_it_is() {
+    fn a_neutral_skin_does_not_change_the_surface() {
         for soft_cfm_m_s_per_n in [0.0, 0.02] {
             let surface = Surface { soft_erp: 0.7, soft_cfm_m_s_per_n, ..Default::default() };
             let law = ContactLaw::between(&surface, &Skin::default());
-            assert_eq!(law.give, Give { erp: 0.7, cfm_m_s_per_n: soft_cfm_m_s_per_n });
+            assert_eq!(law.softness, Softness { erp: 0.7, cfm_m_s_per_n: soft_cfm_m_s_per_n });
         }
     }
 
@@ -217,18 +285,19 @@ mod tests {
         let skin = Skin { soft_erp: 0.2, soft_cfm_m_s_per_n: 0.01, ..Default::default() };
         let surface = Surface { soft_erp: 0.5, soft_cfm_m_s_per_n: 0.03, ..Default::default() };
         let law = ContactLaw::between(&surface, &skin);
-        let kp = |erp, cfm_m_s_per_n| spring(Give { erp, cfm_m_s_per_n }, 1.0 / 60.0).kp_n_per_m;
+        let kp =
+            |erp, cfm_m_s_per_n| spring(Softness { erp, cfm_m_s_per_n }, 1.0 / 60.0).kp_n_per_m;
         let series = 1.0 / (1.0 / kp(0.2, 0.01) + 1.0 / kp(0.5, 0.03));
-        let found = spring(law.give, 1.0 / 60.0).kp_n_per_m;
+        let found = spring(law.softness, 1.0 / 60.0).kp_n_per_m;
         assert!((found / series - 1.0).abs() < 1e-5, "{found} for {series}");
     }
 
     #[test]
-    fn each_field_has_a_range_that_is_named() {
+    fn a_field_out_of_range_is_refused_with_its_name_and_range() {
         let broken = |change: fn(&mut Surface)| {
             let mut surface = Surface::default();
             change(&mut surface);
-            surface.check().unwrap_err().to_string()
+            crate::schema::check(&surface).unwrap_err().to_string()
         };
         for (message, expected) in [
             (broken(|s| s.friction = -1.0), "friction is -1; allowed: 0 to 1000"),

@@ -1,13 +1,18 @@
 //! The invariants of `src/lib.rs` that a scan of the source can check.
 
+mod imports;
+mod tokens;
+
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use imports::import_graph;
 
 fn source() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// Every source file: its path below `src/` with forward slashes, and its text.
+/// All source files: the path below `src/` with forward slashes, and the text.
 fn all_files() -> Vec<(String, String)> {
     fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).expect("a folder") {
@@ -29,15 +34,18 @@ fn all_files() -> Vec<(String, String)> {
     paths.iter().map(|path| (relative(path), fs::read_to_string(path).expect("read"))).collect()
 }
 
-/// The same without tests.
+/// All source files without tests.
 fn files() -> Vec<(String, String)> {
     let texts = all_files();
     let of_tests: Vec<String> =
         texts.iter().flat_map(|(path, text)| test_files(path, text)).collect();
     for path in &of_tests {
-        assert!(texts.iter().any(|(of, _)| of == path), "src/{path} is declared, and not there");
+        assert!(
+            texts.iter().any(|(of, _)| of == path),
+            "src/{path} is declared but does not exist"
+        );
     }
-    // What is below a file of tests is of tests, too.
+    // The submodules of a test module are tests, too.
     let is_of_tests = |path: &String| {
         let is_below = |of: &String| path.starts_with(&of.replace(".rs", "/"));
         of_tests.iter().any(|of| path == of || is_below(of))
@@ -60,7 +68,7 @@ fn test_files(path: &str, text: &str) -> Vec<String> {
     declared.collect()
 }
 
-/// A file's text without its modules of tests. What else is only there in tests stays.
+/// A file's text without its test modules. Other items that exist only in tests stay.
 fn without_tests(text: &str) -> String {
     let mut rest = text;
     let mut kept = String::new();
@@ -68,7 +76,7 @@ fn without_tests(text: &str) -> String {
         kept += before;
         let head = after.lines().next().unwrap_or_default();
         let is_module = head.contains("mod ") && head.ends_with('{');
-        // Its closing brace is the first that stands at the margin.
+        // The module ends at the first closing brace without indentation.
         rest = match after.split_once("\n}\n") {
             Some((_, after_it)) if is_module => after_it,
             _ => after,
@@ -78,7 +86,7 @@ fn without_tests(text: &str) -> String {
 }
 
 #[test]
-fn a_file_is_scanned_to_its_end_but_for_its_tests() {
+fn test_modules_are_removed_and_the_rest_of_a_file_is_scanned() {
     let text = "a\n#[cfg(test)]\nfn b() {\n}\n#[cfg(test)]\nmod tests {\n    c\n}\nd\n";
     assert_eq!(without_tests(text), "a\nfn b() {\n}\nd\n");
     let text = "mod a;\n#[cfg(test)]\npub(super) mod tests;\nmod b;\n";
@@ -86,19 +94,19 @@ fn a_file_is_scanned_to_its_end_but_for_its_tests() {
     assert_eq!(test_files("studio/lane.rs", text), ["studio/lane/tests.rs"]);
 }
 
-/// The modules in the order of the pipeline: each may use those before it, none after it.
-const PIPELINE: [&str; 12] = [
-    "check", "rng", "world", "genome", "control", "score", "evolve", "save", "run", "plot",
-    "studio", "cli",
+/// The modules in the order of the pipeline: each may use only those before it.
+const PIPELINE: [&str; 13] = [
+    "check", "rng", "schema", "world", "genome", "control", "score", "evolve", "save", "run",
+    "plot", "studio", "cli",
 ];
 
-/// Lines that are code, not comment.
+/// Lines without those that are only comments.
 fn code(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.trim_start().starts_with("//"))
 }
 
 #[test]
-fn imports_are_written_so_that_a_scan_sees_them() {
+fn imports_are_written_one_use_per_module() {
     for (path, text) in files() {
         for grouped in ["use crate::{", "use std::{"] {
             let found = code(&text).find(|line| line.trim_start().starts_with(grouped));
@@ -112,35 +120,79 @@ fn imports_are_written_so_that_a_scan_sees_them() {
 
 #[test]
 fn every_module_uses_only_those_before_it() {
-    for (path, text) in files() {
-        let module = path.split(['/', '.']).next().unwrap_or_default();
-        let Some(place) = PIPELINE.iter().position(|known| *known == module) else {
-            assert!(["lib", "main"].contains(&module), "{path} is in no module of the pipeline");
+    let module_of = |path: &str| path.split(['/', '.']).next().unwrap_or_default().to_owned();
+    let place_of = |module: &str| PIPELINE.iter().position(|known| *known == module);
+    for (path, targets) in import_graph(&files()) {
+        let module = module_of(&path);
+        let Some(place) = place_of(&module) else {
+            assert!(
+                ["lib", "bin"].contains(&&*module),
+                "src/{path} is in no module of the pipeline"
+            );
             continue;
         };
-        for later in &PIPELINE[place + 1..] {
-            let uses = code(&text).any(|line| line.contains(&format!("crate::{later}")));
-            assert!(!uses, "src/{path} uses crate::{later}, which comes after {module}");
+        for target in targets {
+            let is_before = place_of(&module_of(&target)).is_none_or(|of| of <= place);
+            assert!(is_before, "src/{path} uses src/{target}, which comes after {module}");
         }
     }
 }
 
-/// Which words may stand in which modules only: word, modules, reason.
-const HOMES: [(&str, &[&str], &str); 10] = [
-    ("bevy", &["studio"], "the core builds without Bevy"),
-    ("egui", &["studio"], "the core builds without egui"),
-    ("rapier3d", &["world", "studio"], "only the world knows the physics engine"),
-    ("rayon", &["run", "studio"], "a strategy or a world that knew threads could depend on them"),
-    ("std::thread", &["run"], "as above"),
-    ("std::fs", &["save"], "one place touches files"),
-    ("Instant", &["run", "studio"], "a clock must not decide a result"),
-    ("SystemTime", &[], "a clock must not decide a result"),
-    ("HashMap", &[], "its order differs from run to run"),
-    ("HashSet", &[], "its order differs from run to run"),
+/// The wings of the studio, lowest level first: each may use only wings of lower levels, so those of one level do not
+/// use each other.
+const WINGS: [&[&str]; 8] = [
+    &["commands", "schedule", "error"],
+    &["ui"],
+    &["stage"],
+    &["state"],
+    &["workspace", "failure", "scene"],
+    &["pictures", "panels"],
+    &["app"],
+    &["mod"],
 ];
 
 #[test]
-fn what_does_not_belong_into_a_module_is_not_there() {
+fn every_wing_of_the_studio_uses_only_lower_wings() {
+    let wing_of = |path: &str| {
+        let below_studio = path.strip_prefix("studio/")?;
+        below_studio.split(['/', '.']).next().map(str::to_owned)
+    };
+    let level_of = |wing: &str| WINGS.iter().position(|level| level.contains(&wing));
+    for (path, targets) in import_graph(&files()) {
+        let Some(wing) = wing_of(&path) else { continue };
+        let level = level_of(&wing);
+        assert!(level.is_some(), "src/{path} is in no wing of the studio");
+        for target in targets {
+            let other = wing_of(&target).filter(|other| *other != wing);
+            let is_lower = other.is_none_or(|other| level_of(&other) < level);
+            assert!(is_lower, "src/{path} uses src/{target}, which is not in a lower wing");
+        }
+    }
+}
+
+/// Words that may be used only in certain modules: word, modules, reason.
+const HOMES: [(&str, &[&str], &str); 13] = [
+    ("bevy", &["studio"], "the core builds without Bevy"),
+    ("egui", &["studio"], "the core builds without egui"),
+    ("rapier3d", &["world", "studio"], "only the world knows the physics engine"),
+    ("rayon", &["run"], "results of a strategy or a world could depend on threads"),
+    ("std::thread", &["run"], "as above"),
+    ("crossbeam", &["run"], "as above"),
+    ("std::net", &["run"], "only an evaluator connects to other machines"),
+    (
+        "process::Command",
+        &["run", "studio"],
+        "child processes evaluate, or replace a failed studio",
+    ),
+    ("std::fs", &["save"], "only one module accesses files"),
+    ("Instant", &["run", "studio"], "a clock must not decide a result"),
+    ("SystemTime", &[], "a clock must not decide a result"),
+    ("HashMap", &[], "its iteration order differs between runs"),
+    ("HashSet", &[], "its iteration order differs between runs"),
+];
+
+#[test]
+fn restricted_words_are_used_only_in_their_modules() {
     for (path, text) in files() {
         let module = path.split(['/', '.']).next().unwrap_or_default();
         for (word, homes, reason) in HOMES {
@@ -155,7 +207,7 @@ fn what_does_not_belong_into_a_module_is_not_there() {
 #[test]
 fn only_the_simulation_steps_the_engine() {
     for (path, text) in files() {
-        // The bench steps rapier bare on purpose: it is what we compare with.
+        // The bench steps bare rapier on purpose, for comparison.
         let allowed = ["world/simulation.rs", "run/bench.rs"].contains(&path.as_str());
         for step in
             ["physics.step(", "physics_mut().step(", ".step_with_events(", ".step_simulation("]
@@ -167,7 +219,7 @@ fn only_the_simulation_steps_the_engine() {
 }
 
 #[test]
-fn every_file_opens_with_what_it_is_for() {
+fn every_file_opens_with_a_module_comment() {
     for (path, text) in all_files() {
         assert!(text.starts_with("//!"), "src/{path} does not open with //!");
     }

@@ -1,5 +1,5 @@
-//! Bad input: one line that names the field, the value and what is allowed; exit code 2 for wrong
-//! usage, 1 for failure; nothing overwritten, nothing half-written.
+//! Bad input gives one line that names the field, the value and the allowed values; exit code 2 for wrong usage, 1 for
+//! failure; no file is overwritten or left incomplete.
 
 use std::fs;
 use std::path::Path;
@@ -18,7 +18,7 @@ fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
 }
 
 #[test]
-fn an_unknown_preset() {
+fn an_unknown_preset_is_refused_with_the_list_of_presets() {
     let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
     assert_eq!(
         message,
@@ -27,23 +27,23 @@ fn an_unknown_preset() {
 }
 
 #[test]
-fn a_population_of_zero() {
+fn a_population_of_zero_is_refused() {
     let message = refusal(folder().path(), "--no-render --population 0", 2);
     assert_eq!(message, "error: evolution.population is 0; allowed: 1 to 100000");
 }
 
 #[test]
-fn a_negative_duration() {
+fn a_negative_duration_is_refused() {
     let message = refusal(folder().path(), "--no-render --duration -2", 2);
     assert_eq!(message, "error: trial.duration_s is -2; allowed: 0.1 to 600");
 }
 
 #[test]
-fn a_setting_that_does_not_exist_or_is_out_of_range() {
+fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
     let folder = folder();
     let message = refusal(folder.path(), "--no-render --set surface.fricton=0.8", 2);
     assert!(
-        message.starts_with("error: set is \"surface.fricton\", which is no setting"),
+        message.starts_with("error: set is \"surface.fricton\", an unknown setting"),
         "{message}"
     );
     assert!(message.contains("trial.surface.friction"), "{message}");
@@ -63,17 +63,17 @@ fn a_setting_that_does_not_exist_or_is_out_of_range() {
 
 #[cfg(feature = "studio")]
 #[test]
-fn figures_of_a_folder_without_a_run() {
+fn figures_of_a_folder_without_a_run_are_refused() {
     let folder = folder();
     let message = refusal(folder.path(), "figures nosuch", 1);
     assert!(message.starts_with("error: nosuch: cannot be read: "), "{message}");
     let message = refusal(folder.path(), "figures .", 1);
-    assert!(message.contains("no generation-1.ron or later in it"), "{message}");
+    assert!(message.contains("it contains no generation-1.ron or later"), "{message}");
 }
 
 #[cfg(feature = "studio")]
 #[test]
-fn a_moment_a_size_or_a_camera_that_is_none() {
+fn wrong_values_of_render_are_refused_before_anything_is_drawn() {
     let folder = folder();
     let climber = concat!("render ", env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
     for (arguments, message) in [
@@ -89,37 +89,37 @@ fn a_moment_a_size_or_a_camera_that_is_none() {
         let said = refusal(folder.path(), &format!("{climber} {arguments}"), 2);
         assert_eq!(said, format!("error: {message}"));
     }
-    let said = refusal(folder.path(), "render nobody.ron", 1);
-    assert!(said.contains("nobody.ron"), "{said}");
+    let said = refusal(folder.path(), "render missing.ron", 1);
+    assert!(said.contains("missing.ron"), "{said}");
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing is drawn");
 }
 
 #[test]
-fn a_seed_that_is_no_number() {
+fn a_seed_that_is_not_a_number_is_refused() {
     let message = refusal(folder().path(), "--no-render --seed twelve", 2);
     let allowed = "allowed: a whole number from 0 to 18446744073709551615";
     assert_eq!(message, format!("error: seed is \"twelve\"; {allowed}"));
 }
 
 #[test]
-fn an_unknown_flag() {
+fn an_unknown_flag_is_refused() {
     let message = refusal(folder().path(), "--no-render --polulation 3", 2);
     assert!(message.contains("--polulation"), "{message}");
 }
 
 #[test]
-fn a_save_that_is_not_there() {
+fn a_missing_save_is_refused() {
     let message = refusal(folder().path(), "replay nosuch.ron --no-render", 1);
     assert!(message.starts_with("error: nosuch.ron: cannot be read: "), "{message}");
 }
 
 #[test]
-fn a_save_that_is_a_folder() {
+fn a_folder_in_place_of_a_save_is_refused() {
     let message = refusal(folder().path(), "replay . --no-render", 1);
     assert!(message.starts_with("error: .: cannot be read: "), "{message}");
 }
 
-/// What replaying the shipped champion says after `edit`.
+/// The error of replaying a shipped champion after `edit`.
 fn refusal_of_save(edit: impl FnOnce(&str) -> String) -> String {
     let folder = folder();
     let edited = edit(include_str!("../../saves/first-climber.ron"));
@@ -131,13 +131,13 @@ fn refusal_of_save(edit: impl FnOnce(&str) -> String) -> String {
 }
 
 #[test]
-fn a_truncated_save() {
+fn a_truncated_save_is_refused() {
     let message = refusal_of_save(|text| text[..text.len() * 2 / 3].to_owned());
     assert!(message.starts_with("error: save.ron: damaged or incomplete at line "), "{message}");
 }
 
 #[test]
-fn a_foreign_save() {
+fn a_file_of_another_kind_is_refused() {
     let message = refusal_of_save(|_| "(name: \"opening\", moves: [\"e4\", \"e5\"])".to_owned());
     let allowed = "allowed: \"snakes-and-stairs champion\"";
     assert_eq!(message, format!("error: save.ron: kind is \"\"; {allowed}"));
@@ -146,23 +146,30 @@ fn a_foreign_save() {
 }
 
 #[test]
-fn a_newer_save() {
-    let message = refusal_of_save(|text| text.replace("format: 3,", "format: 5,"));
+fn a_save_of_a_newer_version_is_refused() {
+    let message = refusal_of_save(|text| text.replace("format: 5,", "format: 6,"));
     let reason = "(a newer version of Snakes & Stairs wrote this file)";
-    assert_eq!(message, format!("error: save.ron: format is 5; allowed: 1 to 4 {reason}"));
+    assert_eq!(message, format!("error: save.ron: format is 6; allowed: 5 {reason}"));
 }
 
 #[test]
-fn a_save_with_a_value_out_of_range() {
+fn a_save_of_an_older_format_is_refused() {
+    let message = refusal_of_save(|text| text.replace("format: 5,", "format: 4,"));
+    let reason = "(a version before the first release wrote this file)";
+    assert_eq!(message, format!("error: save.ron: format is 4; allowed: 5 {reason}"));
+}
+
+#[test]
+fn a_save_with_a_value_out_of_range_is_refused() {
     let message = refusal_of_save(|text| text.replace("steps_per_s: 60", "steps_per_s: 0"));
     assert_eq!(message, "error: save.ron: trial.physics.steps_per_s is 0; allowed: 20 to 1000");
 }
 
 #[test]
-fn an_output_folder_that_cannot_be_written() {
+fn an_output_folder_that_cannot_be_written_is_refused() {
     let folder = folder();
     fs::write(folder.path().join("taken"), "a file, no folder").expect("written");
-    // What is refused is refused before the first evaluation: standard output stays empty.
+    // It is refused before the first evaluation: standard output stays empty.
     let message = {
         let output = run(folder.path(), "--no-render --json --out taken");
         assert_eq!(output.status.code(), Some(1));
@@ -179,7 +186,7 @@ fn an_output_folder_that_cannot_be_written() {
 }
 
 #[test]
-fn a_preset_file_with_an_unknown_and_with_a_missing_field() {
+fn a_preset_file_with_an_unknown_missing_or_wrong_field_is_refused() {
     let folder = folder();
     let quick = include_str!("../../assets/presets/quick.ron");
     for (edit, complaint) in [
@@ -201,7 +208,7 @@ fn a_preset_file_with_an_unknown_and_with_a_missing_field() {
 }
 
 #[test]
-fn running_twice_overwrites_nothing_else() {
+fn the_same_run_writes_the_same_folder_and_another_run_another() {
     let folder = folder();
     let run_with = |population: u32| {
         let arguments = format!(
@@ -212,14 +219,14 @@ fn running_twice_overwrites_nothing_else() {
         files.count()
     };
     assert_eq!(run_with(4), 1);
-    assert_eq!(run_with(4), 1, "the same run writes the same file");
+    assert_eq!(run_with(4), 1, "the same run writes the same folder");
     assert_eq!(run_with(5), 2, "another run writes another");
 }
 
-/// Elsewhere there is always a display.
+/// Other systems always have a display.
 #[cfg(target_os = "linux")]
 #[test]
-fn without_a_display_the_studio_says_so_in_one_line() {
+fn without_a_display_the_studio_fails_with_one_line() {
     let message = refusal(folder().path(), "", 1);
     assert!(message.contains("--no-render"), "{message}");
     #[cfg(feature = "studio")]

@@ -1,4 +1,4 @@
-//! The champions in `saves/`: each does what its save says, stands on the landing, and wins by no exploit.
+//! The champions in `saves/`: each replays as recorded, stands on the landing, and uses no exploit.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use snakes_and_stairs::save::{LoadedChampion, load_champion};
 use snakes_and_stairs::score::evaluate;
 
-/// The report's own climber, which has come to the fourth step.
+/// A climber in the setting of the report; it reaches the fourth step.
 const REPORT: &str = "first-climber.ron";
 
 fn saves() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves");
     let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
-    // Runs that were made here are no part of the project.
+    // Runs in this folder were made by the developer and are no part of the project.
     let mut files: Vec<PathBuf> =
         entries.map(|entry| entry.path()).filter(|path| path.is_file()).collect();
     files.sort();
@@ -20,14 +20,14 @@ fn saves() -> Vec<PathBuf> {
 }
 
 #[test]
-fn every_shipped_champion_stands_on_the_landing_and_wins_by_no_exploit() {
+fn every_shipped_champion_stands_on_the_landing_and_uses_no_exploit() {
     let (mut climbers, mut traces) = (0, Vec::new());
     for path in saves() {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         let LoadedChampion { champion, recording, .. } = load_champion(&path).expect(&name);
         assert!(recording.is_some(), "{name}");
         let seen = evaluate(&champion.genome, &champion.trial);
-        assert!(seen.agrees_with(&champion.evaluation), "{name} does not do what it did");
+        assert!(seen.agrees_with(&champion.evaluation), "{name} does not replay as recorded");
         if name == REPORT {
             continue;
         }
@@ -35,7 +35,7 @@ fn every_shipped_champion_stands_on_the_landing_and_wins_by_no_exploit() {
         traces.push(seen.trace_hash);
         let recorded = champion.evaluation;
         assert!(recorded.is_on_landing(&champion.trial.stairs), "{name}");
-        // Far from every limit at which it would be disqualified.
+        // Far from every limit of disqualification.
         let (effort, limits) = (recorded.effort.expect("measured"), &champion.trial.health);
         assert!(effort.joint_drift_m < 0.8 * limits.joint_drift_m, "{name}: {effort:?}");
         assert!(effort.top_speed_m_s < 0.8 * limits.speed_m_s, "{name}: {effort:?}");

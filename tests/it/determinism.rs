@@ -1,17 +1,17 @@
 //! The same seed and settings give the same bits.
 //!
-//! The golden values were made with `cargo test --no-default-features --test it golden -- --ignored`,
-//! which rewrites `assets/golden.ron`. They hold for debug and release, with and without the
-//! studio: this same test runs in all of them.
+//! `cargo test --no-default-features --test it golden -- --ignored` writes the golden values to
+//! `assets/golden.ron`. They hold for debug and release, with and without the studio: this test runs in
+//! all of these builds.
 
 use snakes_and_stairs::run::verify::Trajectories;
-use snakes_and_stairs::run::{Control, pool};
+use snakes_and_stairs::run::{LocalPool, RunControl};
 
 use super::program::{folder, json_lines, stdout_of};
 
 fn computed() -> Trajectories {
-    let pool = pool(2).expect("a pool");
-    Trajectories::computed(&pool, &Control::default(), |_, _| ()).expect("not cancelled")
+    let pool = LocalPool::new(2).expect("threads");
+    Trajectories::computed(&pool, &RunControl::default(), |_, _| ()).expect("not cancelled")
 }
 
 #[test]
@@ -21,16 +21,16 @@ fn runs_have_the_golden_bits() {
         computed(),
         golden,
         "\n\nThis build computes other bits than the golden ones (right).\n\
-         If you did not mean to change what is computed, your change is the bug: every save would replay\n\
+         If you did not intend to change results, your change is the bug: every save would replay\n\
          differently. If you did: raise ENGINE_VERSION in src/lib.rs, regenerate with\n    \
          cargo test --no-default-features --test it golden -- --ignored\n\
-         find new champions for saves/, and say so in CHANGELOG.md.\n\
-         If only this machine differs, a float function of its C library was reached: see invariant 3.\n"
+         find new champions for saves/, and describe the change in CHANGELOG.md.\n\
+         If only this machine differs, a step called a float function of its C library: see invariant 3.\n"
     );
 }
 
 #[test]
-#[ignore = "rewrites assets/golden.ron; run it by hand after a change of bits that was meant"]
+#[ignore = "rewrites assets/golden.ron; run it by hand after an intended change of bits"]
 fn regenerate_golden() {
     let layout = ron::ser::PrettyConfig::new();
     let text = ron::ser::to_string_pretty(&computed(), layout).expect("serialisable");
@@ -50,10 +50,10 @@ fn verify_prints_a_table_and_the_fingerprint_of_the_reference() {
     assert_eq!(agreeing, reference.trajectories.len());
 }
 
-/// Without the variants of its float functions that the C library chooses by processor.
+/// Runs without the variants of float functions that the C library selects by processor.
 #[cfg(target_os = "linux")]
 #[test]
-fn the_c_librarys_vector_and_fma_variants_change_no_bit() {
+fn the_vector_and_fma_variants_of_the_c_library_change_no_bit() {
     let folder = folder();
     let mut command = super::program::snakes(folder.path(), "verify --json");
     command.env("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-SSE4_2,-SSE4_1");

@@ -1,5 +1,5 @@
-//! A bounded fuzz run over everything that reads a file. `fuzz/` goes on without a bound; both begin with
-//! the files in `fuzz/corpus`.
+//! A bounded fuzz run over every parser of a file. The targets in `fuzz/` run without a bound; both begin with the
+//! files in `fuzz/corpus`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ enum Edit {
     Repeat(Index, usize, Index),
 }
 
-/// What a grammar may stumble over.
+/// Tokens that are likely to reach unusual paths of a parser.
 const TOKENS: [&str; 24] = [
     "(",
     ")",
@@ -95,24 +95,40 @@ fn edited(mut bytes: Vec<u8>, edits: &[Edit]) -> Vec<u8> {
     bytes
 }
 
-/// The files that fuzzing begins with, and edits to one of them.
-fn inputs(target: &str) -> impl Strategy<Value = Vec<u8>> + use<> {
+/// The files that fuzzing begins with, sorted.
+fn corpus(target: &str) -> Vec<PathBuf> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
     let mut files: Vec<PathBuf> =
         fs::read_dir(folder).expect("a corpus").map(|file| file.expect("a file").path()).collect();
     files.sort();
-    let files: Vec<Vec<u8>> = files.iter().map(|file| fs::read(file).expect("read")).collect();
+    files
+}
+
+/// Edited files of the corpus.
+fn inputs(target: &str) -> impl Strategy<Value = Vec<u8>> + use<> {
+    let files: Vec<Vec<u8>> =
+        corpus(target).iter().map(|file| fs::read(file).expect("read")).collect();
     (select(files), prop::collection::vec(edit(), 1..6))
         .prop_map(|(file, edits)| edited(file, &edits))
 }
 
 fn rules(cases: u32) -> ProptestConfig {
-    // Failures become tests by hand, with a name that says what was wrong.
+    // A failure becomes a named test by hand.
     let failure_persistence = Some(Box::new(FileFailurePersistence::Off) as Box<_>);
     ProptestConfig { cases, failure_persistence, ..ProptestConfig::default() }
 }
 
-/// Whatever stands in the bytes: an answer, and of errors a line.
+/// Parses every file of the corpus, which must succeed, then edited ones.
+fn read_corpus<T, E: ToString>(target: &str, parse: impl Fn(&Path, &str) -> Result<T, E>) {
+    for file in corpus(target) {
+        let text = fs::read_to_string(&file).expect("text");
+        let error = parse(&file, &text).err().map(|error| error.to_string());
+        assert_eq!(error, None);
+    }
+    read_all(target, parse);
+}
+
+/// Parses edited files of the corpus: any bytes give a value or an error of one line.
 fn read_all<T, E: ToString>(target: &str, parse: impl Fn(&Path, &str) -> Result<T, E>) {
     proptest!(rules(3000), |(bytes in inputs(target))| {
         if let Ok(text) = String::from_utf8(bytes)
@@ -126,21 +142,21 @@ fn read_all<T, E: ToString>(target: &str, parse: impl Fn(&Path, &str) -> Result<
 }
 
 #[test]
-fn no_champion_stops_the_program() {
-    read_all("champion", parse_champion);
+fn every_champion_file_gives_a_champion_or_one_line() {
+    read_corpus("champion", parse_champion);
 }
 
 #[test]
-fn no_preset_stops_the_program() {
-    read_all("preset", parse_preset);
+fn every_preset_file_gives_a_preset_or_one_line() {
+    read_corpus("preset", parse_preset);
 }
 
 #[test]
-fn no_plan_of_a_run_stops_the_program() {
-    read_all("plan", parse_plan);
+fn every_plan_file_gives_a_plan_or_one_line() {
+    read_corpus("plan", parse_plan);
 }
 
-/// A plan, and the word by which the corpus names its fingerprint, which another engine would change.
+/// A plan and its fingerprint, which replaces the word PLAN in the corpus.
 fn plan() -> (RunPlan, String) {
     let plan = RunPlan::new("x", 1, Settings::default());
     let fingerprint = fingerprint(&plan);
@@ -148,7 +164,7 @@ fn plan() -> (RunPlan, String) {
 }
 
 #[test]
-fn no_checkpoint_stops_the_program() {
+fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
     for (strategy, controller, untouched) in [
         (StrategyKind::Halving, ControllerKind::Signal, "two-parents"),
         (StrategyKind::Ga, ControllerKind::Gait, "ga"),
@@ -164,9 +180,9 @@ fn no_checkpoint_stops_the_program() {
         let fingerprint = fingerprint(&plan);
         let read = |path: &Path, text: &str| {
             parse_checkpoint(path, &text.replace("PLAN", &fingerprint), &plan).map(|read| {
-                // What is accepted can be gone on with.
+                // An accepted state can be resumed.
                 let (generation, _, knowledge) = read;
-                let strategy = resume(&plan, generation, knowledge.strategy);
+                let strategy = resume(&plan, generation, &knowledge.strategy);
                 drop(strategy.expect("it passed the same check").ask());
             })
         };
@@ -177,7 +193,7 @@ fn no_checkpoint_stops_the_program() {
     }
 }
 
-/// The lines with true checksums, without which hardly any would get past them.
+/// The lines with correct checksums, so that more of them reach the parser.
 fn summed(bytes: &[u8]) -> Vec<u8> {
     let lines = bytes.split(|byte| *byte == b'\n').map(|line| {
         let sum = format!(",\"sum\":\"{:016x}\"}}\n", xxh3_64(line));
@@ -187,9 +203,9 @@ fn summed(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn no_log_stops_the_program() {
+fn every_log_gives_records_or_one_line() {
     let (plan, fingerprint) = plan();
-    // The first byte tells the fuzz target of the same name what to do.
+    // The first byte only matters for the fuzz target of the same name.
     let lines =
         |text: &str| summed(text.replace("PLAN", &fingerprint).get(1..).unwrap_or("").as_bytes());
     let records = |path: &Path, text: &str| parse_records(path, &lines(text), &plan);
@@ -212,7 +228,7 @@ fn no_log_stops_the_program() {
 }
 
 #[test]
-fn no_value_of_a_setting_stops_the_program() {
+fn every_value_of_a_setting_is_accepted_or_gives_one_line() {
     let settings = Settings::default();
     read_all("field", |_, text| {
         let (field, value) = text.split_once('=').unwrap_or((text, ""));

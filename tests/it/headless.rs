@@ -1,4 +1,4 @@
-//! The program without a window, from the outside.
+//! The program without a window, run as a child process.
 
 use serde_json::json;
 
@@ -8,7 +8,7 @@ const SMALL: &str =
     "--no-render --set newborns=0 --population 8 --generations 3 --duration 1 --seed 4";
 
 #[test]
-fn a_run_prints_a_table_and_ends_with_a_champion_that_replay_confirms() {
+fn a_run_prints_a_table_and_saves_a_champion_that_replays_exactly() {
     let folder = folder();
     let table = stdout_of(folder.path(), &format!("{SMALL} --out out"));
     let rows: Vec<&str> = table.lines().collect();
@@ -81,7 +81,7 @@ fn a_replay_that_differs_from_its_record_fails() {
 }
 
 #[test]
-fn saves_in_the_working_directory_are_used_if_there_are_some_else_the_data_folder() {
+fn saves_go_to_the_working_directorys_saves_folder_or_else_to_the_data_folder() {
     let folder = folder();
     let champion = |folder| {
         let lines = json_lines(folder, &format!("{SMALL} --json"));
@@ -98,7 +98,7 @@ fn saves_in_the_working_directory_are_used_if_there_are_some_else_the_data_folde
 const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 
 #[test]
-fn a_run_from_a_champion_loses_nothing_is_told_so_and_can_be_gone_on_with() {
+fn a_run_from_a_champion_is_at_least_as_good_and_can_be_resumed() {
     let folder = folder();
     let small = "--set newborns=0 --population 6 --generations 2 --out out";
     let arguments = format!("--no-render --json --from {CLIMBER} --set strategy=halving {small}");
@@ -121,7 +121,7 @@ fn a_run_from_a_champion_loses_nothing_is_told_so_and_can_be_gone_on_with() {
     std::fs::write(&log, text.split_inclusive('\n').next().expect("a line")).expect("written");
     let resumed = json_lines(folder.path(), &format!("--no-render --json --resume {its_folder}"));
     assert_eq!(resumed[2]["run_hash"], lines[2]["run_hash"]);
-    // Another run than the one from nothing.
+    // A run without the champion is another run.
     let without = format!("--no-render --json --set strategy=halving {small}");
     let without = json_lines(folder.path(), &without);
     assert_ne!(
@@ -131,7 +131,7 @@ fn a_run_from_a_champion_loses_nothing_is_told_so_and_can_be_gone_on_with() {
 }
 
 #[test]
-fn a_run_from_a_champion_begins_with_any_method() {
+fn a_run_from_a_champion_works_with_every_strategy() {
     let folder = folder();
     for strategy in ["halving", "ga", "cma_es", "map_elites", "novelty", "random"] {
         let small = "--population 8 --generations 2 --duration 1 --out out";
@@ -143,7 +143,7 @@ fn a_run_from_a_champion_begins_with_any_method() {
 }
 
 #[test]
-fn whom_a_run_cannot_begin_from_is_refused_with_what_does_not_fit() {
+fn a_file_that_a_run_cannot_begin_from_is_refused_with_the_reason() {
     let folder = folder();
     let no_champion = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/presets/mud.ron");
     for (arguments, code, complaint) in [
@@ -166,12 +166,12 @@ fn whom_a_run_cannot_begin_from_is_refused_with_what_does_not_fit() {
         assert!(message.contains(complaint), "{message}");
         assert_eq!(message.lines().count(), 1, "{message}");
         assert_eq!(output.status.code(), Some(code), "{message}");
-        assert!(!folder.path().join("out").exists(), "nothing was begun");
+        assert!(!folder.path().join("out").exists(), "no run was started");
     }
 }
 
 #[test]
-fn presets_are_listed_with_what_they_are() {
+fn presets_are_listed_with_their_descriptions() {
     let folder = folder();
     let list = stdout_of(folder.path(), "presets");
     assert!(list.lines().any(|line| line.starts_with("report") && line.len() > 80), "{list}");
@@ -179,7 +179,7 @@ fn presets_are_listed_with_what_they_are() {
 }
 
 #[test]
-fn a_persons_own_preset_file_is_used() {
+fn the_users_own_preset_file_is_used() {
     let folder = folder();
     let quick = include_str!("../../assets/presets/quick.ron");
     let own = quick
@@ -224,7 +224,7 @@ fn table_1_is_printed_and_written_as_csv_and_png() {
     let folder = folder();
     let arguments = "table1 --seeds 2 --population 6 --generations 2 --duration 0.5 --out out";
     let text = stdout_of(folder.path(), arguments);
-    assert!(text.lines().next().expect("a head").contains("report"), "{text}");
+    assert!(text.lines().next().expect("a header").contains("report"), "{text}");
     assert!(text.contains("-5.94  slightly forward"), "{text}");
     assert!(text.contains("of 2 seeds"), "{text}");
     let written = |kind: &str| {
@@ -259,17 +259,6 @@ fn robustness_prints_a_share_with_its_interval_for_each_step() {
 }
 
 #[test]
-fn calibration_writes_its_best_as_a_preset_that_runs() {
-    let folder = folder();
-    let small = "--preset ice --duration 1 --population 4 --generations 2";
-    let text =
-        stdout_of(folder.path(), &format!("calibrate --tries 2 --seeds 1 {small} --out out"));
-    let path = text.trim_end().rsplit_once("preset: ").expect("a path").1;
-    let arguments = format!("--no-render --json --preset {path} --generations 1 --out out");
-    assert_eq!(json_lines(folder.path(), &arguments)[0]["evaluations"], json!(4));
-}
-
-#[test]
 fn the_bench_reports_its_figures() {
     let folder = folder();
     let figures = &json_lines(folder.path(), "bench --threads 1 --json")[0];
@@ -280,7 +269,7 @@ fn the_bench_reports_its_figures() {
 
 #[cfg(unix)]
 #[test]
-fn the_interrupt_key_ends_a_run_in_good_order_and_keeps_its_best() {
+fn the_interrupt_key_ends_a_run_and_keeps_its_finished_generations() {
     use super::program::snakes;
     use std::io::{BufRead, BufReader, Read};
     use std::process::Stdio;
@@ -303,7 +292,7 @@ fn the_interrupt_key_ends_a_run_in_good_order_and_keeps_its_best() {
     assert_eq!(child.wait().expect("ended").code(), Some(1), "{stderr}");
     assert!(
         stderr.contains("cancelled after generation ")
-            && stderr.contains("it goes on with --resume out/climb-seed1-"),
+            && stderr.contains("continue it with --resume out/climb-seed1-"),
         "{stderr}"
     );
     assert!(std::fs::read_dir(folder.path().join("out")).expect("a folder").count() >= 1);

@@ -1,4 +1,4 @@
-//! Files that mean harm, or look like it: each gets one line of complaint, and is left as it was.
+//! Hostile and damaged files: each gives one line of error, and is left unchanged.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,44 +12,48 @@ use super::program::{folder, run};
 const CHAMPION: &str = include_str!("../../saves/first-climber.ron");
 const PRESET: &str = include_str!("../../assets/presets/mud.ron");
 
-/// What the program is asked to do with a hostile file.
+/// The way the program opens a hostile file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum As {
+enum OpenedAs {
     Champion,
     Preset,
     Run,
 }
 
-/// A hostile file: what is wrong with it, how it is opened, its place below the test's folder, its bytes.
+/// A hostile file: a description, the way it is opened, its path below the test's folder, its bytes.
 struct Hostile {
     what: String,
-    opened: As,
+    opened: OpenedAs,
     path: PathBuf,
     bytes: Vec<u8>,
 }
 
-/// All of them; those of a run lie in a copy of a good run each.
+/// All hostile files; each file of a run gets its own copy of a good run.
 #[derive(Default)]
 struct Collection(Vec<Hostile>);
 
 impl Collection {
-    fn add(&mut self, what: impl Into<String>, opened: As, bytes: impl Into<Vec<u8>>) {
+    fn add(&mut self, what: impl Into<String>, opened: OpenedAs, bytes: impl Into<Vec<u8>>) {
         let path = PathBuf::from(format!("hostile-{}.ron", self.0.len()));
         self.0.push(Hostile { what: what.into(), opened, path, bytes: bytes.into() });
     }
 
-    /// One of the files of a run.
+    /// Adds one of the files of a run.
     fn add_to_run(&mut self, what: impl Into<String>, file: &str, bytes: impl Into<Vec<u8>>) {
         let path = Path::new(&format!("run-{}", self.0.len())).join(file);
-        self.0.push(Hostile { what: what.into(), opened: As::Run, path, bytes: bytes.into() });
+        self.0.push(Hostile {
+            what: what.into(),
+            opened: OpenedAs::Run,
+            path,
+            bytes: bytes.into(),
+        });
     }
 
-    /// The text cut off at the beginning of each of its lines, and within it.
-    fn cut_everywhere(&mut self, opened: As, text: &str, every: usize) {
+    /// Adds the text cut off at the beginning or in the middle of every `every`th line.
+    fn cut_everywhere(&mut self, opened: OpenedAs, text: &str, every: usize) {
         let mut at = 0;
         for (number, line) in text.split_inclusive('\n').enumerate() {
             let place = if number % 2 == 0 { at } else { at + line.len() / 2 };
-            // Comments may be cut off anywhere: what follows them is what is missed.
             if number % every == 0 && (1..text.trim_end().len()).contains(&place) {
                 self.add(format!("cut off at {place}"), opened, &text.as_bytes()[..place]);
             }
@@ -57,8 +61,8 @@ impl Collection {
         }
     }
 
-    /// Each number of the text in turn replaced by each of `others`.
-    fn replace_numbers(&mut self, opened: As, text: &str, others: &[&str]) {
+    /// Adds the text with each number in turn replaced by each of `others`.
+    fn replace_numbers(&mut self, opened: OpenedAs, text: &str, others: &[&str]) {
         for (number, line) in text.lines().enumerate() {
             let Some((field, value)) = line.trim_end_matches(',').split_once(": ") else {
                 continue;
@@ -76,10 +80,10 @@ impl Collection {
         }
     }
 
-    /// Each line that has a field in turn left out.
-    fn leave_out_fields(&mut self, opened: As, text: &str) {
+    /// Adds the text without each required field in turn.
+    fn leave_out_fields(&mut self, opened: OpenedAs, text: &str) {
         for (number, line) in text.lines().enumerate() {
-            // What is not there is none of what may be none.
+            // An optional field that is None may be left out.
             let is_needed = !line.contains("//") && !line.ends_with(": None,");
             if line.ends_with(',') && line.contains(": ") && is_needed {
                 let lines = text.lines().enumerate().filter(|(n, _)| *n != number);
@@ -89,15 +93,15 @@ impl Collection {
         }
     }
 
-    fn replace(&mut self, opened: As, text: &str, from: &str, to: &str) {
+    fn replace(&mut self, opened: OpenedAs, text: &str, from: &str, to: &str) {
         assert!(text.contains(from), "{from}");
         let what = format!("{from} -> {}", to.chars().take(60).collect::<String>());
         self.add(what, opened, text.replacen(from, to, 1));
     }
 }
 
-/// What is wrong in general: damaged, nested, huge, foreign.
-fn of_any_kind(all: &mut Collection, opened: As, text: &str) {
+/// Files that are wrong in any place: damaged, nested, huge, of another kind.
+fn add_general(all: &mut Collection, opened: OpenedAs, text: &str) {
     all.add("empty", opened, "");
     all.add("white space", opened, " \n\t\n");
     all.add("a byte order mark only", opened, "\u{feff}");
@@ -106,12 +110,12 @@ fn of_any_kind(all: &mut Collection, opened: As, text: &str) {
         opened,
         text.replacen("engine", "eng\0ine", 1).replacen("about", "ab\0out", 1),
     );
-    all.add("no text", opened, [0xff, 0xfe, 0x00, 0x80].repeat(100));
+    all.add("not text", opened, [0xff, 0xfe, 0x00, 0x80].repeat(100));
     all.add("not quite text", opened, [text.as_bytes(), &[0xc3]].concat());
     all.add("an executable", opened, [b"\x7fELF\x02\x01\x01".as_slice(), &[0; 500]].concat());
     all.add("JSON", opened, "{\"kind\": \"snakes-and-stairs champion\", \"format\": 3}");
     all.add("XML", opened, "<!DOCTYPE x [<!ENTITY a SYSTEM \"file:///etc/passwd\">]><x>&a;</x>");
-    all.add("something behind the end", opened, format!("{text}\n()"));
+    all.add("text after the end", opened, format!("{text}\n()"));
     all.add("twice", opened, format!("{text}\n{text}"));
     for (name, open) in [
         ("parentheses", "("),
@@ -129,11 +133,11 @@ fn of_any_kind(all: &mut Collection, opened: As, text: &str) {
                 .replacen("kind: ", &format!("kind: {}", open.repeat(100_000)), 1),
         );
     }
-    all.add("ten million of nothing", opened, "[(),".repeat(2_600_000));
+    all.add("ten million empty values", opened, "[(),".repeat(2_600_000));
     all.add("a name of ten megabytes", opened, format!("({}: 1)", "a".repeat(10_000_000)));
     all.add("a text of ten megabytes", opened, format!("(kind: \"{}\")", "a".repeat(10_000_000)));
     all.add("a number of ten megabytes", opened, format!("(format: {})", "9".repeat(10_000_000)));
-    all.add("white space without end", opened, " ".repeat(11 * 1024 * 1024));
+    all.add("eleven megabytes of white space", opened, " ".repeat(11 * 1024 * 1024));
     all.add("terminal controls", opened, "(\u{1b}[2J\u{1b}[31mkind\u{7}: \"\u{9b}31m\")");
     all.add(
         "a field twice",
@@ -153,17 +157,23 @@ fn of_any_kind(all: &mut Collection, opened: As, text: &str) {
 }
 
 fn champions(all: &mut Collection) {
-    of_any_kind(all, As::Champion, CHAMPION);
-    all.cut_everywhere(As::Champion, CHAMPION, 3);
-    all.replace_numbers(As::Champion, CHAMPION, &["NaN", "inf", "-1.0e30", "\"1\""]);
-    all.leave_out_fields(As::Champion, CHAMPION);
-    for format in ["4", "4294967295", "99999999999999999999", "-1", "1.5", "\"3\"", "0"] {
-        all.replace(As::Champion, CHAMPION, "format: 3", &format!("format: {format}"));
+    add_general(all, OpenedAs::Champion, CHAMPION);
+    all.cut_everywhere(OpenedAs::Champion, CHAMPION, 3);
+    all.replace_numbers(OpenedAs::Champion, CHAMPION, &["NaN", "inf", "-1.0e30", "\"1\""]);
+    all.leave_out_fields(OpenedAs::Champion, CHAMPION);
+    let formats = ["1", "4", "6", "4294967295", "99999999999999999999", "-1", "1.5", "\"5\"", "0"];
+    for format in formats {
+        all.replace(OpenedAs::Champion, CHAMPION, "format: 5", &format!("format: {format}"));
     }
     for preset in
         ["../../etc/passwd", "/etc/passwd", "..", "", "a b", "C:\\\\x", "x\\n", "\u{202e}x"]
     {
-        all.replace(As::Champion, CHAMPION, "preset: \"report\"", &format!("preset: \"{preset}\""));
+        all.replace(
+            OpenedAs::Champion,
+            CHAMPION,
+            "preset: \"report\"",
+            &format!("preset: \"{preset}\""),
+        );
     }
     for (from, to) in [
         ("frames: 85", "frames: 4294967295"),
@@ -173,10 +183,10 @@ fn champions(all: &mut Collection) {
         ("data: \"", "data: \"****"),
         ("data: \"", "data: \"AAAA"),
         ("limbs: 5,\n        frames", "limbs: 4294967295,\n        frames"),
-        ("torques_nm: [", "torques_nm: [(bend: [], twist: []),"),
-        ("bend: [", "bend: [NaN, "),
-        ("bend: [", "bend: [1.0e39, "),
-        ("bend: [", "bend: [], was: ["),
+        ("joints: [", "joints: [(bend_nm: [], twist_nm: []),"),
+        ("bend_nm: [", "bend_nm: [NaN, "),
+        ("bend_nm: [", "bend_nm: [1.0e39, "),
+        ("bend_nm: [", "bend_nm: [], was: ["),
         ("fitness: centre", "fitness: kilos"),
         ("ground: None", "ground: Some(1)"),
         ("trace_hash: \"", "trace_hash: \"g"),
@@ -185,23 +195,23 @@ fn champions(all: &mut Collection) {
         ("limbs: 5", "limbs: 6"),
         ("kind: \"snakes-and-stairs champion\"", "kind: \"snakes-and-stairs run\""),
     ] {
-        all.replace(As::Champion, CHAMPION, from, to);
+        all.replace(OpenedAs::Champion, CHAMPION, from, to);
     }
-    let joints = "(bend: [0.0], twist: [0.0]),".repeat(350_000);
-    all.replace(As::Champion, CHAMPION, "torques_nm: [", &format!("torques_nm: [{joints}"));
+    let joints = "(bend_nm: [0.0], twist_nm: [0.0]),".repeat(350_000);
+    all.replace(OpenedAs::Champion, CHAMPION, "joints: [", &format!("joints: [{joints}"));
     let points = "0,".repeat(5_000_000);
-    all.replace(As::Champion, CHAMPION, "bend: [", &format!("bend: [{points}"));
-    // What a flipped bit turns into something else that can be read does something else, which is said.
-    // Digits before a point: behind it they may be too small to matter.
+    all.replace(OpenedAs::Champion, CHAMPION, "bend_nm: [", &format!("bend_nm: [{points}"));
+    // A flipped bit that leaves the file readable makes the champion move differently, which is reported. Only digits
+    // before a decimal point: later ones may be too small to matter.
     let bytes = CHAMPION.as_bytes();
     let digits = (600..CHAMPION.len() - 1)
         .filter(|&place| bytes[place].is_ascii_digit() && bytes[place + 1] == b'.');
-    let torques = CHAMPION.find("torques_nm").expect("a genome");
+    let torques = CHAMPION.find("joints: [").expect("a genome");
     let poses = CHAMPION.find("poses").expect("poses");
     for place in digits.filter(|place| (torques..poses).contains(place)).step_by(3) {
         let mut bytes = CHAMPION.as_bytes().to_vec();
         bytes[place] ^= 1;
-        all.add(format!("the last bit of byte {place} flipped"), As::Champion, bytes);
+        all.add(format!("the last bit of byte {place} flipped"), OpenedAs::Champion, bytes);
     }
     for (place, byte) in
         CHAMPION.bytes().enumerate().skip(500).filter(|(_, b)| b"(),:[]\"".contains(b)).step_by(9)
@@ -210,27 +220,34 @@ fn champions(all: &mut Collection) {
         bytes[place] = byte ^ 0x40;
         all.add(
             format!("a bit of the {:?} at byte {place} flipped", char::from(byte)),
-            As::Champion,
+            OpenedAs::Champion,
             bytes,
         );
     }
 }
 
 fn presets(all: &mut Collection) {
-    of_any_kind(all, As::Preset, PRESET);
-    all.cut_everywhere(As::Preset, PRESET, 7);
-    all.replace_numbers(As::Preset, PRESET, &["NaN", "-1.0e30"]);
+    add_general(all, OpenedAs::Preset, PRESET);
+    all.cut_everywhere(OpenedAs::Preset, PRESET, 7);
+    all.replace_numbers(OpenedAs::Preset, PRESET, &["NaN", "-1.0e30"]);
     for name in ["../x", "/tmp/x", "", ".", "mud/../../x", "MUD", "m\\u{0}d"] {
-        all.replace(As::Preset, PRESET, "name: \"mud\"", &format!("name: \"{name}\""));
+        all.replace(OpenedAs::Preset, PRESET, "name: \"mud\"", &format!("name: \"{name}\""));
     }
-    all.replace(As::Preset, PRESET, "name: \"mud\"", "format: 2, name: \"mud\"");
-    all.replace(As::Preset, PRESET, "population: 500", "population: 100000, x: ");
+    for format in ["format: 0", "format: 1", "format: 3", "format: 2, format: 2"] {
+        all.replace(OpenedAs::Preset, PRESET, "format: 2", format);
+    }
+    all.replace(OpenedAs::Preset, PRESET, "population: 500", "population: 100000, x: ");
     let limits = "0.5,".repeat(2_500_000);
-    all.replace(As::Preset, PRESET, "bend_limits_rad: [", &format!("bend_limits_rad: [{limits}"));
+    all.replace(
+        OpenedAs::Preset,
+        PRESET,
+        "bend_limits_rad: [",
+        &format!("bend_limits_rad: [{limits}"),
+    );
     let widths = format!("limb_width_m: [{}1.0]", "1.0,".repeat(2_500_000));
-    all.replace(As::Preset, PRESET, "limb_width_m: 1.0", &widths);
+    all.replace(OpenedAs::Preset, PRESET, "limb_width_m: 1.0", &widths);
     let about = format!("about: \"{}", "very ".repeat(10_000));
-    all.replace(As::Preset, PRESET, "about: \"", &about);
+    all.replace(OpenedAs::Preset, PRESET, "about: \"", &about);
 }
 
 /// A line of a log with the checksum that belongs to it.
@@ -243,9 +260,9 @@ fn runs(all: &mut Collection, good: &Path) {
     let read = |file: &str| fs::read_to_string(good.join(file)).expect("a file of the good run");
     let (plan, log, checkpoint) = (read("run.ron"), read("log.jsonl"), read("checkpoint-2.ron"));
     for (from, to) in [
-        ("format: 3", "format: 1"),
-        ("format: 3", "format: 2"),
-        ("format: 3", "format: 4"),
+        ("format: 4", "format: 1"),
+        ("format: 4", "format: 3"),
+        ("format: 4", "format: 5"),
         ("engine: 2", "engine: 1"),
         ("engine: 2", "engine: 3"),
         ("founder: None", "founder: Some(())"),
@@ -268,16 +285,16 @@ fn runs(all: &mut Collection, good: &Path) {
         all.add_to_run(format!("run.ron cut off at {place}"), "run.ron", &plan.as_bytes()[..place]);
     }
     for (from, to) in [
-        ("format: 2", "format: 1"),
-        ("format: 2", "format: 3"),
+        ("format: 3", "format: 2"),
+        ("format: 3", "format: 4"),
         ("engine: 2", "engine: 1"),
         ("generation: 2", "generation: 1"),
         ("run_hash: \"", "run_hash: \"0"),
         ("run_hash: \"", "run_hash: \"x"),
-        ("Halving(", "Points("),
-        ("parents: [", "parents: [1, "),
-        ("parents: [", "parents: [], was: ["),
-        ("bend: [", "bend: [NaN, "),
+        ("strategy: [(", "strategy: [(step: 0.1, point: [0.5]), ("),
+        ("strategy: [", "strategy: [1, "),
+        ("strategy: [", "strategy: [], was: ["),
+        ("bend_nm: [", "bend_nm: [NaN, "),
         ("bend_limit_rad: ", "bend_limit_rad: -"),
         ("density_kg_m3: ", "density_kg_m3: 1.0e38, x: "),
     ] {
@@ -347,7 +364,7 @@ fn runs(all: &mut Collection, good: &Path) {
     all.add_to_run("another file as champion", "generation-2.ron", plan);
 }
 
-/// What somebody who means harm could write down as changed.
+/// Changes that are impossible or hostile.
 fn changes(all: &mut Collection) {
     let change = |generation: &str, field: &str, value: &str| {
         line(&format!("{{\"generation\":{generation},\"field\":{field:?},\"value\":{value:?}}}"))
@@ -393,21 +410,21 @@ fn changes(all: &mut Collection) {
     for (what, text) in files {
         all.add_to_run(format!("changes {what}"), "changes.jsonl", text);
     }
-    // Allowed by itself, but the checkpoint after generation 2 was written without it.
+    // The change is valid, but the checkpoint of generation 2 was written without it.
     all.add_to_run("a change that was not made", "changes.jsonl", good);
 }
 
-/// Founders that do not fit, or mean harm.
+/// Founders that do not fit or are hostile.
 fn founders(all: &mut Collection, plan: &str) {
     let genome = CHAMPION.split_once("    genome: ").expect("a genome").1;
     let genome =
         genome.split_once("    poses: ").expect("poses").0.trim_end_matches([',', ' ', '\n']);
-    let torques =
-        genome.split_once("torques_nm").expect("torques").1.trim_end().trim_end_matches(')');
+    let torques = genome.split_once("joints: [").expect("torques").1;
+    let torques = torques.trim_end_matches([')', ',', ' ', '\n']);
     let genome = |points: &str| {
         format!(
-            "(bend_limit_rad: 0.6, twist_limit_rad: 0.9, density_kg_m3: 2.2, controller: \
-             Signal(points_per_s: {points}, torques_nm{torques}))"
+            "(body: (bend_limit_rad: 0.6, twist_limit_rad: 0.9, density_kg_m3: 2.2), controller: \
+             Signal((points_per_s: {points}, joints: [{torques})))"
         )
     };
     for (what, name, genome) in [
@@ -416,7 +433,7 @@ fn founders(all: &mut Collection, plan: &str) {
         ("of a hostile name", "../\\u{1b}[2J", genome("10.0")),
         ("of an endless name", &*"x".repeat(5_000_000), genome("10.0")),
         ("of no name", "", genome("10.0")),
-        ("without a controller", "x", "(bend_limit_rad: 0.6)".to_owned()),
+        ("without a controller", "x", "(body: (bend_limit_rad: 0.6))".to_owned()),
         ("of numbers that are none", "x", genome("NaN")),
     ] {
         let founder = format!("founder: Some((name: \"{name}\", genome: {genome}))");
@@ -426,11 +443,11 @@ fn founders(all: &mut Collection, plan: &str) {
     }
 }
 
-/// Runs the program within 200 MiB, apart from its own code.
+/// Runs the program with at most 200 MiB of memory besides its own code.
 fn in_little_memory(folder: &Path, arguments: &str) -> Output {
     let program = env!("CARGO_BIN_EXE_snakes");
     let code_kib = fs::metadata(program).expect("the program").len() / 1024;
-    // One arena for all threads: what an arena reserves without using counts here, too.
+    // One arena for all threads, because memory that an arena reserves without using it counts here.
     let script = format!("ulimit -v {}; exec {program} {arguments}", 200 * 1024 + code_kib);
     let mut command = Command::new("sh");
     command.args(["-c", &script]).current_dir(folder).env("MALLOC_ARENA_MAX", "1");
@@ -459,12 +476,16 @@ fn good_run(folder: &Path, settings: &str) -> PathBuf {
     good
 }
 
-/// What is wrong with how the program takes a hostile file, if anything is.
-fn fault(folder: &Path, opened: As, path: &Path) -> Option<String> {
+/// The fault in the program's reaction to a hostile file, if there is one.
+fn fault(folder: &Path, opened: OpenedAs, path: &Path) -> Option<String> {
     let arguments = match opened {
-        As::Champion => format!("replay {} --no-render", path.display()),
-        As::Preset => format!("--no-render --generations 1 --out out --preset {}", path.display()),
-        As::Run => format!("--no-render --resume {}", path.parent().expect("a run").display()),
+        OpenedAs::Champion => format!("replay {} --no-render", path.display()),
+        OpenedAs::Preset => {
+            format!("--no-render --generations 1 --out out --preset {}", path.display())
+        }
+        OpenedAs::Run => {
+            format!("--no-render --resume {}", path.parent().expect("a run").display())
+        }
     };
     let output = in_little_memory(folder, &arguments);
     let stderr = String::from_utf8_lossy(&output.stderr);
@@ -476,7 +497,7 @@ fn fault(folder: &Path, opened: As, path: &Path) -> Option<String> {
         format!("{} bytes of error", stderr.len())
     } else if stderr.trim_end().contains(char::is_control) {
         "control characters".to_owned()
-    } else if opened == As::Run && !stderr.contains("run-") {
+    } else if opened == OpenedAs::Run && !stderr.contains("run-") {
         "the file is not named".to_owned()
     } else {
         return None;
@@ -498,7 +519,7 @@ fn every_hostile_file_gets_one_line_of_error_within_200_mib() {
         .par_iter()
         .filter_map(|Hostile { what, opened, path, bytes }| {
             let place = folder.path().join(path);
-            if *opened == As::Run {
+            if *opened == OpenedAs::Run {
                 copy(&good, place.parent().expect("a run"));
             }
             fs::write(&place, bytes).expect("written");
@@ -513,11 +534,11 @@ fn every_hostile_file_gets_one_line_of_error_within_200_mib() {
     println!("{} hostile files", all.0.len());
     assert!(all.0.len() >= 200);
     assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), all.0.len(), faults.concat());
-    assert!(!folder.path().join("out").exists(), "nothing was begun");
+    assert!(!folder.path().join("out").exists(), "no run was started");
 }
 
 #[test]
-fn damage_to_what_any_strategy_knows_is_refused() {
+fn damaged_checkpoints_of_every_strategy_are_refused() {
     let nonsense = [
         ("point: [", "point: [1.0, "),
         ("point: [", "point: [NaN, "),
@@ -544,7 +565,7 @@ fn damage_to_what_any_strategy_knows_is_refused() {
     let mut tried = 0;
     for strategy in ["ga", "cma_es", "map_elites", "novelty", "random"] {
         let folder = folder();
-        // A smaller budget than CMA-ES with restarts could ask for.
+        // The budget is smaller than CMA-ES with restarts could use.
         let settings = format!(
             "--set controller=gait --set strategy={strategy} --set cma_share=1 --set health.joint_drift_m=1"
         );
@@ -558,18 +579,17 @@ fn damage_to_what_any_strategy_knows_is_refused() {
             let place = folder.path().join(&path);
             copy(&good, place.parent().expect("a run"));
             fs::write(&place, checkpoint.replacen(from, to, 1)).expect("written");
-            let fault = fault(folder.path(), As::Run, &path);
+            let fault = fault(folder.path(), OpenedAs::Run, &path);
             assert_eq!(fault, None, "{strategy}: {to}");
             tried += 1;
         }
     }
-    assert!(tried >= 30, "only {tried} of the replacements met anything");
+    assert!(tried >= 30, "only {tried} replacements applied");
 }
 
-/// What is no file, or leads elsewhere.
 #[cfg(unix)]
 #[test]
-fn links_folders_and_pipes_in_the_place_of_files_are_refused_and_not_followed() {
+fn links_folders_and_pipes_in_place_of_files_are_refused() {
     use std::os::unix::fs::symlink;
 
     let folder = folder();
@@ -602,17 +622,17 @@ fn links_folders_and_pipes_in_the_place_of_files_are_refused_and_not_followed() 
                     assert!(Command::new("mkfifo").arg(&place).status().expect("mkfifo").success())
                 }
             }
-            let fault = fault(folder.path(), As::Run, &path);
+            let fault = fault(folder.path(), OpenedAs::Run, &path);
             assert_eq!(fault, None, "{file} is a {kind}");
         }
     }
     assert_eq!(fs::read_to_string(&secret).expect("read"), "do not touch");
-    // A person may name a link, but neither a folder nor a pipe, which might never end.
+    // A user may name a link to a file, but neither a folder nor a pipe, which might never end.
     assert!(
         Command::new("mkfifo").arg(folder.path().join("pipe")).status().expect("mkfifo").success()
     );
     for path in ["pipe", "good", "/dev/zero"] {
-        for opened in [As::Champion, As::Preset] {
+        for opened in [OpenedAs::Champion, OpenedAs::Preset] {
             assert_eq!(fault(folder.path(), opened, Path::new(path)), None, "{path}");
         }
     }

@@ -1,4 +1,4 @@
-//! No finished generation is lost: to a kill, a full disk, or a second program.
+//! Finished generations survive a kill, a full disk, and a second program.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -12,8 +12,8 @@ use rand::RngExt;
 use serde_json::{Value, json};
 use snakes_and_stairs::evolve::{RunPlan, Settings};
 use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::run::{Control, KeptRun, RunSource, pool};
-use snakes_and_stairs::save::{Earlier, SavesFolder};
+use snakes_and_stairs::run::{LocalPool, RecordedRun, RunControl, RunSource};
+use snakes_and_stairs::save::{ExistingRun, SavesFolder};
 
 use super::program::{folder, json_lines, run, snakes};
 
@@ -29,15 +29,15 @@ fn run_in(saves: &Path) -> Option<PathBuf> {
     Some(run)
 }
 
-/// The whole lines of a run's log.
+/// Number of complete lines of a run's log.
 fn finished(run: &Path) -> usize {
     let log = fs::read_to_string(run.join("log.jsonl")).unwrap_or_default();
     log.split_inclusive('\n').filter(|line| line.ends_with("\"}\n")).count()
 }
 
-/// Starts the program and kills it a while after it has reported so many generations. Returns how many it
-/// has reported in the end.
-fn kill_after(generations: usize, and_then: Duration, folder: &Path, arguments: &str) -> usize {
+/// Starts the program and kills it `delay` after it has reported `generations`. Returns the number of generations that it
+/// has reported by then.
+fn kill_after(generations: usize, delay: Duration, folder: &Path, arguments: &str) -> usize {
     let mut child = snakes(folder, arguments)
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -49,7 +49,7 @@ fn kill_after(generations: usize, and_then: Duration, folder: &Path, arguments: 
     let reader = thread::spawn(move || {
         let reports =
             lines.filter(|line| line.as_ref().is_ok_and(|line| line.contains("\"hash\"")));
-        // Nobody listens for the later ones.
+        // The receiver is gone for the later ones.
         reports
             .inspect(|_| {
                 let _ = sender.send(());
@@ -57,15 +57,15 @@ fn kill_after(generations: usize, and_then: Duration, folder: &Path, arguments: 
             .count()
     });
     reported.iter().take(generations).for_each(drop);
-    thread::sleep(and_then);
-    // SIGKILL: the program cannot do anything about it.
+    thread::sleep(delay);
+    // SIGKILL, which the program cannot handle.
     child.kill().expect("killed");
     child.wait().expect("ended");
     reader.join().expect("read")
 }
 
 #[test]
-fn a_run_that_is_killed_at_any_instant_goes_on_and_ends_with_the_same_hash() {
+fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let saves = folder();
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
     let tiny = |strategy: &str| format!("{TINY} --set strategy={strategy}");
@@ -80,24 +80,24 @@ fn a_run_that_is_killed_at_any_instant_goes_on_and_ends_with_the_same_hash() {
         // Each strategy in turn.
         let (strategy, expected) =
             (strategies[round % strategies.len()], &expected[round % strategies.len()]);
-        // A generation takes a few milliseconds, most of which it writes.
+        // A generation takes a few milliseconds, mostly for writing.
         let mut instant =
             || (rng.random_range(0..39), Duration::from_micros(rng.random_range(0..8000)));
-        let (generations, and_then) = instant();
+        let (generations, delay) = instant();
         let command = format!("{} --out {out}", tiny(strategy));
-        let reported = kill_after(generations, and_then, saves.path(), &command);
+        let reported = kill_after(generations, delay, saves.path(), &command);
         let Some(run) = run_in(&saves.path().join(&out)) else { continue };
         let after_first = finished(&run);
         assert!(after_first >= reported, "{reported} were reported, {after_first} are left");
         killed_on_the_way += usize::from((1..40).contains(&after_first));
-        // And once more, while it goes on; unless it was killed before it could say what it is.
+        // Kill it once more after it has resumed, unless the first kill came before its plan was written.
         if !run.join("run.ron").exists() {
             let lines = json_lines(saves.path(), &command);
             assert_eq!(lines.last().expect("lines")["run_hash"], *expected);
         } else {
             let resume = format!("--no-render --json --resume {} --threads 2", run.display());
-            let (generations, and_then) = instant();
-            kill_after(generations, and_then, saves.path(), &resume);
+            let (generations, delay) = instant();
+            kill_after(generations, delay, saves.path(), &resume);
             let after_second = finished(&run);
             assert!(after_second >= after_first, "{after_first} became {after_second}");
             let lines = json_lines(saves.path(), &resume);
@@ -107,13 +107,13 @@ fn a_run_that_is_killed_at_any_instant_goes_on_and_ends_with_the_same_hash() {
         let unfinished = fs::read_dir(&run).expect("a folder").map(|file| file.expect("a file"));
         let unfinished =
             unfinished.filter(|file| file.file_name().to_string_lossy().starts_with('.'));
-        assert_eq!(unfinished.count(), 0, "what a kill left half written is tidied up");
+        assert_eq!(unfinished.count(), 0, "incomplete files of a kill are removed");
     }
     assert!(killed_on_the_way >= 40, "only {killed_on_the_way} of 50 were killed on the way");
     println!("killed on the way: {killed_on_the_way} of 50");
 }
 
-/// Settings of a tiny run that change on its way: before which generation, what, to what.
+/// Changes during a tiny run: the first generation that uses it, the setting, the value.
 const CHANGES: [(u32, &str, &str); 5] = [
     (2, "halving.parents", "2"),
     (9, "halving.mutation_range_nm", "300"),
@@ -122,22 +122,24 @@ const CHANGES: [(u32, &str, &str); 5] = [
     (38, "generations", "44"),
 ];
 
-/// Evolves a kept run until so many generations are finished, and makes the changes on the way.
-fn evolve_changing(run: &mut KeptRun, last: u32) {
-    let pool = pool(2).expect("a pool");
+/// Evolves a saved run until `last` generations are finished, and makes the changes meanwhile.
+fn evolve_changing(run: &mut RecordedRun, last: u32) {
+    let pool = LocalPool::new(2).expect("threads");
     while !run.experiment.is_over() && run.experiment.finished() < last {
         let next = run.experiment.finished() + 1;
         for (_, field, value) in CHANGES.iter().filter(|(of, _, _)| *of == next) {
             let field = format!("evolution.{field}");
-            run.keeper.amend(&mut run.experiment, &field, value).expect("allowed");
+            run.recorder.change_setting(&mut run.experiment, &field, value).expect("allowed");
         }
-        let report = run.experiment.run_generation(&pool, &Control::default());
-        run.keeper.keep(&run.experiment, &report.expect("not cancelled")).expect("kept");
+        let report = run.experiment.run_generation(&pool, &RunControl::default());
+        run.recorder
+            .record_generation(&run.experiment, &report.expect("not cancelled"))
+            .expect("kept");
     }
 }
 
 #[test]
-fn a_run_that_was_changed_and_is_killed_at_any_instant_makes_its_changes_again() {
+fn a_changed_run_killed_at_any_instant_repeats_its_changes() {
     let saves = folder();
     let mut settings: Settings =
         snakes_and_stairs::save::load_preset("report").expect("shipped").settings;
@@ -147,37 +149,39 @@ fn a_run_that_was_changed_and_is_killed_at_any_instant_makes_its_changes_again()
     let plan = RunPlan::new("report", 1, settings);
     let open = |name: &str| {
         let folder = SavesFolder::find(Some(&saves.path().join(name)));
-        RunSource::in_saves(&folder, plan.clone(), Earlier::Keep).open("a test").expect("opened")
+        RunSource::in_saves(&folder, plan.clone(), ExistingRun::Keep)
+            .open("a test")
+            .expect("opened")
     };
     let mut whole = open("whole");
     evolve_changing(&mut whole, u32::MAX);
     assert_eq!(whole.experiment.finished(), 44);
     let expected = json!(format!("{:016x}", whole.experiment.run_hash()));
-    let changes = fs::read(whole.keeper.folder().join("changes.jsonl")).expect("read");
+    let changes = fs::read(whole.recorder.folder().join("changes.jsonl")).expect("read");
     assert_eq!(changes.iter().filter(|byte| **byte == b'\n').count(), CHANGES.len());
     let mut rng = stream(2, 0, 0, Purpose::Calibration);
     for round in 0..12 {
         let mut begun = open(&format!("out-{round}"));
-        // After the first change, after the third, after none.
+        // Before the first change, after it, after the third, and before the first generation.
         evolve_changing(&mut begun, [1, 3, 12, 0][round % 4]);
-        let run_folder = begun.keeper.folder().to_owned();
+        let run_folder = begun.recorder.folder().to_owned();
         drop(begun);
         // As if a disk had lost the latest generations: all changes are known, some are still ahead.
         fs::write(run_folder.join("changes.jsonl"), &changes).expect("written");
         if [2, 3].contains(&(round % 4)) {
-            // Of those that count already none was left out.
+            // Without a log, every change is still in the future.
             fs::remove_file(run_folder.join("log.jsonl")).expect("removed");
         }
         let resume = format!("--no-render --json --resume {} --threads 2", run_folder.display());
         for _ in 0..2 {
-            let and_then = Duration::from_micros(rng.random_range(0..8000));
-            kill_after(rng.random_range(1..43), and_then, saves.path(), &resume);
+            let delay = Duration::from_micros(rng.random_range(0..8000));
+            kill_after(rng.random_range(1..43), delay, saves.path(), &resume);
         }
         let output = run(saves.path(), &resume);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "round {round}: {stderr}");
         let second = stderr.lines().nth(1).unwrap_or_default();
-        let told = "changed on the way: halving.parents 2 from generation 2, halving.mutation_range_nm 300";
+        let told = "changed during the run: halving.parents 2 from generation 2, halving.mutation_range_nm 300";
         assert!(second.starts_with(told), "{stderr}");
         let stdout = String::from_utf8_lossy(&output.stdout);
         let last = stdout.lines().last().expect("lines");
@@ -185,12 +189,12 @@ fn a_run_that_was_changed_and_is_killed_at_any_instant_makes_its_changes_again()
         assert_eq!(last["run_hash"], expected, "round {round}");
         assert_eq!(stdout.lines().count(), 45, "44 generations");
         let kept = fs::read(run_folder.join("changes.jsonl")).expect("read");
-        assert_eq!(kept, changes, "nothing is written down twice");
+        assert_eq!(kept, changes, "no change is written twice");
     }
 }
 
 #[test]
-fn the_same_command_goes_on_with_a_run_that_was_stopped_and_restart_begins_it_anew() {
+fn the_same_command_continues_a_stopped_run_and_restart_starts_over() {
     let saves = folder();
     let whole = json_lines(saves.path(), &format!("{TINY} --out whole"));
     json_lines(saves.path(), &format!("{TINY} --out out"));
@@ -205,7 +209,7 @@ fn the_same_command_goes_on_with_a_run_that_was_stopped_and_restart_begins_it_an
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{stderr}");
         // By the end of the run checkpoint 3 was thinned away; 2 is there.
-        assert_eq!(stderr.contains("goes on after generation 2"), goes_on, "{stderr}");
+        assert_eq!(stderr.contains("continues after generation 2"), goes_on, "{stderr}");
         let stdout = String::from_utf8_lossy(&output.stdout);
         let last: Value =
             serde_json::from_str(stdout.lines().last().expect("lines")).expect("JSON");
@@ -215,7 +219,7 @@ fn the_same_command_goes_on_with_a_run_that_was_stopped_and_restart_begins_it_an
 }
 
 #[test]
-fn a_second_program_on_the_same_run_is_refused_and_the_owner_named() {
+fn a_second_program_on_the_same_run_is_refused_with_the_owners_name() {
     let saves = folder();
     let arguments = "--no-render --preset report --population 4 --generations 2 --duration 0.2 --out out --seed 3";
     let mut settings: Settings =
@@ -225,7 +229,8 @@ fn a_second_program_on_the_same_run_is_refused_and_the_owner_named() {
     settings.trial.duration_s = 0.2;
     let plan = RunPlan::new("report", 3, settings);
     let out = SavesFolder::find(Some(&saves.path().join("out")));
-    let held = RunSource::in_saves(&out, plan, Earlier::Keep).open("the studio").expect("opened");
+    let held =
+        RunSource::in_saves(&out, plan, ExistingRun::Keep).open("the studio").expect("opened");
     let output = run(saves.path(), arguments);
     assert_eq!(output.status.code(), Some(1));
     let message = String::from_utf8_lossy(&output.stderr);
@@ -248,18 +253,18 @@ fn error_of(output: &std::process::Output) -> String {
     errors[0].to_owned()
 }
 
-/// Resumes a run to its end, which must be that of an undisturbed one.
-fn goes_on_to_the_same_end(saves: &Path, run: &Path) {
-    assert!((1..40).contains(&finished(run)), "it was stopped on the way: {}", finished(run));
+/// Resumes a run, which must end like an undisturbed one.
+fn resumes_to_the_same_end(saves: &Path, run: &Path) {
+    assert!((1..40).contains(&finished(run)), "it was stopped before its end: {}", finished(run));
     let resumed = json_lines(saves, &format!("--no-render --json --resume {}", run.display()));
     let whole = json_lines(saves, &format!("{TINY} --out whole"));
     assert_eq!(resumed[40]["run_hash"], whole[40]["run_hash"]);
 }
 
-/// A quota: no file may grow beyond a limit, which the log reaches in the middle of the run.
+/// A limit on the size of files, which the log reaches in the middle of the run.
 #[cfg(unix)]
 #[test]
-fn a_log_that_can_grow_no_more_ends_the_run_with_an_error_and_it_can_go_on() {
+fn a_log_that_cannot_grow_ends_the_run_with_an_error_and_the_run_can_be_resumed() {
     let saves = folder();
     let program = env!("CARGO_BIN_EXE_snakes");
     // In units of 512 bytes. A refused write must be an error, not a signal.
@@ -272,16 +277,18 @@ fn a_log_that_can_grow_no_more_ends_the_run_with_an_error_and_it_can_go_on() {
     let run = run_in(&saves.path().join("out")).expect("a run");
     let error = error_of(&output);
     assert!(error.contains("log.jsonl: cannot be written: File too large"), "{error}");
-    let safe = format!("generations up to {} are safe", finished(&run));
-    assert!(error.contains(&safe) && error.contains("goes on with --resume out/"), "{error}");
-    goes_on_to_the_same_end(saves.path(), &run);
+    let safe = format!("generations up to {} are saved", finished(&run));
+    assert!(
+        error.contains(&safe) && error.contains("continue the run with --resume out/"),
+        "{error}"
+    );
+    resumes_to_the_same_end(saves.path(), &run);
 }
 
-/// A disk that is really full. It takes a mount of one's own; where the system does not give one, the test
-/// above has to do.
+/// A disk that is really full. It needs a private mount; where the system does not allow one, the test is skipped.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_disk_that_fills_up_ends_the_run_with_an_error_and_it_can_go_on() {
+fn a_full_disk_ends_the_run_with_an_error_and_the_run_can_be_resumed() {
     let saves = folder();
     let program = env!("CARGO_BIN_EXE_snakes");
     let script = format!(
@@ -299,17 +306,17 @@ fn a_disk_that_fills_up_ends_the_run_with_an_error_and_it_can_go_on() {
     };
     let output = match output {
         Ok(output) if !refused(&output) => output,
-        other => return eprintln!("no mount of one's own here, skipped: {other:?}"),
+        other => return eprintln!("no private mount here, skipped: {other:?}"),
     };
     let error = error_of(&output);
     assert!(error.contains("No space left on device"), "{error}");
-    assert!(error.contains("are safe, the run goes on with --resume small/out/"), "{error}");
+    assert!(error.contains("are saved, continue the run with --resume small/out/"), "{error}");
     let run = run_in(&saves.path().join("kept")).expect("a run");
-    goes_on_to_the_same_end(saves.path(), &run);
+    resumes_to_the_same_end(saves.path(), &run);
 }
 
 #[test]
-fn a_run_is_a_folder_of_settings_logs_checkpoints_and_champions() {
+fn a_runs_folder_contains_its_plan_logs_checkpoints_and_champions() {
     let saves = folder();
     let lines = json_lines(saves.path(), &format!("{TINY} --out out"));
     let run = run_in(&saves.path().join("out")).expect("a run");

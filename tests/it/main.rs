@@ -5,6 +5,9 @@ mod architecture;
 mod bad_input;
 mod champions;
 mod determinism;
+mod docs;
+#[cfg(feature = "studio")]
+mod features;
 mod fuzz;
 mod headless;
 mod hostile;

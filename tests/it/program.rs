@@ -1,21 +1,21 @@
-//! Running the program and reading what it says.
+//! Runs the program and reads its output.
 
 use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// A command line of the program under test, in a folder of its own.
+/// A command line of the program under test, in its own folder.
 pub fn snakes(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_snakes"));
     command.args(arguments.split_whitespace()).current_dir(folder);
-    // A test must not find the display or the saves of the person who runs it.
+    // A test must not use the display or the saves of the user who runs it.
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
     command.env("HOME", folder).env("XDG_DATA_HOME", folder.join("data"));
     command
 }
 
-/// Runs the program to its end.
+/// Runs the program until it ends.
 pub fn run(folder: &Path, arguments: &str) -> Output {
     snakes(folder, arguments).output().expect("the program starts")
 }
@@ -28,13 +28,13 @@ pub fn stdout_of(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// The JSON objects of a run's standard output, one a line.
+/// The JSON objects on a run's standard output, one per line.
 pub fn json_lines(folder: &Path, arguments: &str) -> Vec<Value> {
     let text = stdout_of(folder, arguments);
     text.lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
 }
 
-/// A fresh folder that goes away with the value.
+/// A new folder, which is removed when dropped.
 pub fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }

@@ -1,11 +1,11 @@
-//! The same bits from other compilers' settings, other processors, and under a memory checker.
+//! The same bits with other compiler settings, on other processors, and under a memory checker.
 //!
-//! It builds the program several times and runs it in emulation, which takes some ten minutes:
+//! The test builds the program several times and runs it in emulation, which takes about ten minutes:
 //!
 //!     cargo test --release --no-default-features --test it same_bits -- --ignored --nocapture
 //!
-//! What needs a tool that is not there (Debian's `qemu-user` and `valgrind`) is left out, and said; with
-//! `SNAKES_SAME_BITS=required` it fails instead.
+//! Cases that need a missing tool (Debian's `qemu-user` and `valgrind`) are skipped; with
+//! `SNAKES_SAME_BITS=required` the test fails instead.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use std::process::Command;
 use serde_json::Value;
 use snakes_and_stairs::run::verify::Trajectories;
 
-/// Builds the program anew into a folder of its own, and returns it.
+/// Builds the program into a separate folder and returns its path.
 fn build(name: &str, profile: &str, rustflags: &str, settings: &[String]) -> PathBuf {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let mut command = Command::new(env!("CARGO"));
@@ -30,7 +30,7 @@ fn build(name: &str, profile: &str, rustflags: &str, settings: &[String]) -> Pat
     target.join(if profile == "dev" { "debug" } else { profile }).join("snakes")
 }
 
-/// Without any optimisation, here and in the dependencies.
+/// Settings for a build without any optimisation, in this package and in its dependencies.
 fn unoptimised() -> Vec<String> {
     let packages = ["\"*\"", "rapier3d", "parry3d", "nalgebra", "simba", "glam"];
     let package = |name| format!("profile.dev.package.{name}.opt-level=0");
@@ -40,21 +40,21 @@ fn unoptimised() -> Vec<String> {
 
 fn is_installed(program: &str) -> bool {
     let version = Command::new(program).arg("--version").output();
-    let is_there = version.is_ok_and(|output| output.status.success());
+    let is_found = version.is_ok_and(|output| output.status.success());
     let required = env::var("SNAKES_SAME_BITS").is_ok_and(|value| value == "required");
-    assert!(is_there || !required, "{program} is not installed");
-    is_there
+    assert!(is_found || !required, "{program} is not installed");
+    is_found
 }
 
-/// The fingerprint that `snakes verify` prints when it is run by `before`, with `variables`.
-fn fingerprint(program: &Path, before: &[&str], variables: &[(&str, &str)]) -> String {
-    let words = before.iter().map(Path::new).chain([program]).collect::<Vec<&Path>>();
+/// The fingerprint that `snakes verify` prints when the command `runner` runs it with these environment variables.
+fn fingerprint(program: &Path, runner: &[&str], variables: &[(&str, &str)]) -> String {
+    let words = runner.iter().map(Path::new).chain([program]).collect::<Vec<&Path>>();
     let mut command = Command::new(words[0]);
     command.args(&words[1..]).args(["verify", "--json"]).envs(variables.iter().copied());
     let output = command.output().expect("the program starts");
     let stdout = String::from_utf8_lossy(&output.stdout);
     let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{before:?}: {:?}\n{stdout}\n{stderr}", output.status);
+    assert!(output.status.success(), "{runner:?}: {:?}\n{stdout}\n{stderr}", output.status);
     let last: Value = serde_json::from_str(stdout.lines().last().expect("a line")).expect("JSON");
     last["fingerprint"].as_str().expect("a fingerprint").to_owned()
 }
@@ -89,7 +89,7 @@ fn every_build_and_every_processor_gives_the_fingerprint_of_the_reference() {
             vec![],
         ));
         cases.push((
-            "emulated, all that is known",
+            "emulated, all features known to QEMU",
             &release,
             vec!["qemu-x86_64", "-cpu", "max"],
             vec![],
@@ -101,9 +101,9 @@ fn every_build_and_every_processor_gives_the_fingerprint_of_the_reference() {
         cases.push(("under valgrind's memory checker", &release, checker, vec![]));
     }
     println!("{reference}  the reference");
-    for (what, program, before, variables) in cases {
-        let found = fingerprint(program, &before, &variables);
-        println!("{found}  {what}");
-        assert_eq!(found, reference, "{what}");
+    for (case, program, runner, variables) in cases {
+        let found = fingerprint(program, &runner, &variables);
+        println!("{found}  {case}");
+        assert_eq!(found, reference, "{case}");
     }
 }

@@ -1,9 +1,9 @@
-//! Half an hour without a break: memory stays flat, logs stay small.
+//! A long run of half an hour: memory stays flat, logs stay small.
 //!
 //!     cargo test --release --no-default-features --test it soak -- --ignored --nocapture
 //!
-//! `SNAKES_SOAK_MINUTES` makes it shorter or longer. More than a million evaluations need some fifteen
-//! minutes of two cores, or thirty of one.
+//! `SNAKES_SOAK_MINUTES` changes the duration. A million evaluations take about fifteen minutes on two
+//! cores, or thirty on one.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -17,21 +17,21 @@ use std::time::{Duration, Instant};
 
 use super::program::{folder, snakes};
 
-const BETWEEN_LOOKS: Duration = Duration::from_secs(5);
-/// Threads, caches and the allocator have grown to their size by then.
+const SAMPLING_INTERVAL: Duration = Duration::from_secs(5);
+/// Time after which threads, caches and the allocator have grown to their final size.
 const WARM_UP: Duration = Duration::from_secs(30);
-/// The allocator's noise. A leak of 20 bytes an evaluation would show in a million of them.
-const MOST_GROWTH_KIB: u64 = 16 * 1024;
+/// Noise of the allocator. A leak of 20 bytes per evaluation would show in a million of them.
+const MAX_GROWTH_KIB: u64 = 16 * 1024;
 
-/// A figure of `/proc/PID/status`, in KiB.
+/// A value of `/proc/PID/status`, in KiB.
 fn status_kib(process: u32, field: &str) -> u64 {
     let status = fs::read_to_string(format!("/proc/{process}/status")).expect("it runs");
     let line = status.lines().find(|line| line.starts_with(field)).expect(field);
     line.split_whitespace().nth(1).and_then(|kib| kib.parse().ok()).expect("a number")
 }
 
-/// Sizes of all files in the folder whose names begin so, in bytes.
-fn bytes_of(run: &Path, prefix: &str) -> (usize, u64) {
+/// Number and total size, in bytes, of the files in the folder whose names begin with `prefix`.
+fn count_and_bytes(run: &Path, prefix: &str) -> (usize, u64) {
     let files = fs::read_dir(run).expect("a folder").map(|file| file.expect("a file"));
     let files = files.filter(|file| file.file_name().to_string_lossy().starts_with(prefix));
     files.fold((0, 0), |(count, bytes), file| {
@@ -65,7 +65,7 @@ fn memory_stays_flat_and_logs_small() {
     let started = Instant::now();
     let mut seen = Vec::new();
     while started.elapsed().as_secs_f64() < minutes * 60.0 {
-        thread::sleep(BETWEEN_LOOKS);
+        thread::sleep(SAMPLING_INTERVAL);
         let rss = status_kib(child.id(), "VmRSS:");
         let elapsed = started.elapsed();
         if elapsed > WARM_UP {
@@ -79,9 +79,9 @@ fn memory_stays_flat_and_logs_small() {
     reader.join().expect("read");
     let runs = fs::read_dir(saves.path().join("out")).expect("saves");
     let run = runs.map(|run| run.expect("a run").path()).next().expect("a run");
-    let (_, log_bytes) = bytes_of(&run, "log.jsonl");
-    let (checkpoints, checkpoint_bytes) = bytes_of(&run, "checkpoint-");
-    let (champions, champion_bytes) = bytes_of(&run, "generation-");
+    let (_, log_bytes) = count_and_bytes(&run, "log.jsonl");
+    let (checkpoints, checkpoint_bytes) = count_and_bytes(&run, "checkpoint-");
+    let (champions, champion_bytes) = count_and_bytes(&run, "generation-");
     let (first, last) = (seen[0], seen[seen.len() - 1]);
     for (evaluations, rss) in seen.iter().step_by((seen.len() / 12).max(1)).chain([&last]) {
         println!("{evaluations:>9} evaluations  {rss:>7} KiB");
@@ -90,7 +90,7 @@ fn memory_stays_flat_and_logs_small() {
         "peak {peak} KiB; log {log_bytes} bytes; {checkpoints} checkpoints, {checkpoint_bytes} bytes; \
          {champions} champions, {champion_bytes} bytes"
     );
-    assert!(last.1 <= first.1 + MOST_GROWTH_KIB, "from {} to {} KiB", first.1, last.1);
+    assert!(last.1 <= first.1 + MAX_GROWTH_KIB, "from {} to {} KiB", first.1, last.1);
     assert!(checkpoints <= 16, "{checkpoints} checkpoints");
     assert!(log_bytes < 1000 * champions as u64, "{log_bytes} bytes of log");
 }

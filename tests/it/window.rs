@@ -22,11 +22,11 @@ use picture::{Picture, difference, is_blue, is_red};
 use places::{Area, Place};
 use std::time::Duration;
 
-/// A champion of the report's world.
+/// A champion in the report's world.
 const REPORTS_CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
 
 #[test]
-fn it_opens_on_a_red_and_blue_snake_that_moves_while_a_run_evolves() {
+fn it_opens_with_a_moving_red_and_blue_snake_while_a_run_evolves() {
     let Some(studio) = Studio::open("opens", "--preset quick") else { return };
     let first =
         studio.picture_with(|picture| picture.count(is_red) > 300 && picture.count(is_blue) > 300);
@@ -35,21 +35,21 @@ fn it_opens_on_a_red_and_blue_snake_that_moves_while_a_run_evolves() {
 }
 
 #[test]
-fn space_holds_the_stage_and_lets_it_go() {
+fn space_pauses_and_plays_the_stage() {
     let Some(studio) = Studio::open("space", "--preset quick") else { return };
     studio.pause_evolution();
     studio.key("space");
     studio.wait_for_title(", held");
     let held = studio.still_picture();
     std::thread::sleep(Duration::from_secs(1));
-    assert_eq!(difference(&held, &studio.picture()), 0, "what is held does not move");
+    assert_eq!(difference(&held, &studio.picture()), 0, "a paused stage does not move");
     studio.key("space");
     studio.wait_for_title_without(", held");
     studio.picture_with(|picture| difference(&held, picture) > 500);
 }
 
 #[test]
-fn the_keys_of_evolution_start_pause_and_single_step_it() {
+fn keys_start_pause_and_single_step_evolution() {
     let Some(studio) = Studio::open("evolution-keys", "--preset quick --generations 1000") else {
         return;
     };
@@ -69,7 +69,7 @@ fn the_keys_of_evolution_start_pause_and_single_step_it() {
 }
 
 #[test]
-fn the_buttons_and_the_list_do_what_they_say() {
+fn buttons_and_champion_list_control_run_and_stage() {
     let Some(studio) = Studio::open("buttons", "--preset quick --generations 1000") else { return };
     studio.wait_for_title("running");
     studio.click_label("Pause");
@@ -101,14 +101,14 @@ fn figures_are_drawn_without_a_display() {
     for name in ["signal.png", "generation-1.png", "generation-2.png"] {
         let bytes = std::fs::read(folder.path().join("figures").join(name)).expect(name);
         assert!(bytes.starts_with(b"\x89PNG"), "{name}");
-        // A picture of nothing would be packed into a few thousand bytes.
+        // An empty picture would compress to a few thousand bytes.
         assert!(bytes.len() > 15_000, "{name} has {} bytes", bytes.len());
     }
 }
 
 #[test]
-fn a_typed_seed_begins_another_run() {
-    // In the world of its run, so that it stays on the stage unless somebody is better.
+fn a_typed_seed_starts_another_run() {
+    // The champion comes from the run's world, so it stays on the stage unless a better one is found.
     let arguments = format!("replay {REPORTS_CLIMBER} --preset quick");
     let Some(studio) = Studio::open("seed", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
@@ -116,8 +116,7 @@ fn a_typed_seed_begins_another_run() {
     studio.click_label("Reset");
     studio.wait_for_title("seed 77 - 0 of 4 generations, ready");
     assert!(studio.title().ends_with("showing saved champion"), "{}", studio.title());
-    // The keys of the stage must not react to what is typed into a field: generation 1 is there to be
-    // shown by the key, and is not.
+    // Stage shortcuts must ignore text typed into a field: the key for generation 1 must not show it.
     studio.click_label("Start");
     studio.wait_for_title("4 of 4 generations, finished");
     studio.key("0");
@@ -127,7 +126,7 @@ fn a_typed_seed_begins_another_run() {
 }
 
 #[test]
-fn the_mouse_moves_the_camera_and_home_puts_it_back() {
+fn the_mouse_moves_the_camera_and_home_resets_it() {
     let Some(studio) = Studio::open("camera", "--preset quick") else { return };
     studio.pause_evolution();
     studio.key("space");
@@ -144,7 +143,7 @@ fn the_mouse_moves_the_camera_and_home_puts_it_back() {
     studio.wheel(true, title);
     studio.drag(1, title, (x, y));
     let unmoved = studio.still_picture();
-    assert_eq!(difference(&moved, &unmoved), 0, "wheel and drag on the panel are the panel's");
+    assert_eq!(difference(&moved, &unmoved), 0, "wheel and drag on a panel do not move the camera");
     studio.wheel(true, (x, y));
     let zoomed = studio.still_picture();
     assert!(difference(&moved, &zoomed) > 2000, "the wheel zooms");
@@ -157,11 +156,11 @@ fn the_mouse_moves_the_camera_and_home_puts_it_back() {
 }
 
 #[test]
-fn r_plays_from_the_start_and_f_lets_the_snake_go() {
+fn r_plays_from_the_start_and_f_stops_following() {
     let Some(studio) = Studio::open("restart", "--preset quick") else { return };
     studio.pause_evolution();
     let start = studio.picture();
-    // The snake is far from its start when the stage is held, and back near it after R.
+    // The snake is far from its start when the stage is paused, and back near it after R.
     std::thread::sleep(Duration::from_secs(3));
     studio.key("f");
     studio.key("space");
@@ -171,7 +170,7 @@ fn r_plays_from_the_start_and_f_lets_the_snake_go() {
     studio.key("r");
     studio.wait_for_title_without(", held");
     studio.picture_with(|picture| difference(&held, picture) > 1000);
-    // Without following, what the snake has left stays where it is: the stairs do not move. The sky
+    // Without following, the stairs do not move on the screen. The sky and the far ground at the top of the stage
     // and the far ground at the top of the stage show it.
     let far = |picture: &Picture| {
         let scene = picture.scene();
@@ -183,7 +182,7 @@ fn r_plays_from_the_start_and_f_lets_the_snake_go() {
 }
 
 #[test]
-fn a_better_champion_takes_the_stage() {
+fn a_better_champion_is_shown_on_the_stage() {
     // This seed's run finds a better one than the report's climber within four generations.
     let arguments =
         format!("replay {REPORTS_CLIMBER} --preset report --seed 5 --generations 4 --threads 2");
@@ -192,7 +191,7 @@ fn a_better_champion_takes_the_stage() {
 }
 
 #[test]
-fn the_quit_key_ends_the_program_well() {
+fn the_quit_key_ends_the_program_with_success() {
     let Some(studio) = Studio::open("quit", "--preset quick") else { return };
     assert_eq!(studio.quit(), Some(0));
 }
@@ -207,7 +206,7 @@ fn a_saved_champion_opens_in_the_studio() {
 }
 
 #[test]
-fn what_another_engine_found_is_shown_as_recorded_and_can_be_simulated_here() {
+fn a_champion_of_another_engine_is_shown_as_recorded_and_can_be_simulated() {
     let folder = folder();
     let save = folder.path().join("elsewhere.ron");
     let text = include_str!("../../saves/first-climber.ron").replace("engine: 2", "engine: 1");
@@ -222,19 +221,19 @@ fn what_another_engine_found_is_shown_as_recorded_and_can_be_simulated_here() {
     studio.wait_for_title("showing saved champion as recorded");
 }
 
-/// A run that would go on for hours, so that what ends it is the test.
+/// A run that takes hours, so that only the test ends it.
 const ENDLESS: &str = "--preset quick --generations 10000";
 
 #[test]
-fn a_studio_that_was_killed_goes_on_with_its_run_and_headless_mode_goes_on_with_it_too() {
+fn a_killed_studio_continues_its_run_and_so_does_headless_mode() {
     let folder = folder();
     let saves = folder.path().join("saves");
-    // A generation takes longer than a window to say that it is done, on a quick machine too.
+    // A generation takes longer than the window takes to show the previous one, even on a fast machine.
     let run = "--preset quick --population 500";
     let arguments = format!("{run} --saves {}", saves.display());
     let Some(studio) = Studio::open("killed", &arguments) else { return };
     studio.wait_for_title("2 of 4 generations");
-    // Dropping it kills it.
+    // Dropping the studio kills it.
     drop(studio);
     let log = std::fs::read_dir(&saves).expect("saves").next().expect("a run").expect("a run");
     let text = std::fs::read_to_string(log.path().join("log.jsonl")).expect("a log");
@@ -250,7 +249,7 @@ fn a_studio_that_was_killed_goes_on_with_its_run_and_headless_mode_goes_on_with_
 }
 
 #[test]
-fn a_headless_run_in_the_studios_folder_is_refused_and_the_studio_named_and_the_other_way_round() {
+fn studio_and_headless_run_refuse_each_others_folder_and_name_the_owner() {
     let folder = folder();
     let arguments = format!("{ENDLESS} --saves {}", folder.path().join("saves").display());
     let Some(studio) = Studio::open("locked", &arguments) else { return };
@@ -268,7 +267,7 @@ fn a_headless_run_in_the_studios_folder_is_refused_and_the_studio_named_and_the_
         .expect("the program starts");
     std::thread::sleep(Duration::from_secs(1));
     let studio = Studio::open("refused", &arguments).expect("it opened before");
-    // It opens, shows its champion, and evolves nothing.
+    // It opens and shows its champion, but does not evolve.
     studio.wait_for_title("generations, ready");
     headless.kill().expect("killed");
     headless.wait().expect("ended");
@@ -277,7 +276,7 @@ fn a_headless_run_in_the_studios_folder_is_refused_and_the_studio_named_and_the_
 }
 
 #[test]
-fn a_run_that_was_stopped_goes_on_from_the_list() {
+fn a_stopped_run_can_be_resumed_from_the_list() {
     let folder = folder();
     let saves = folder.path().join("saves");
     std::fs::create_dir(&saves).expect("created");
@@ -290,7 +289,7 @@ fn a_run_that_was_stopped_goes_on_from_the_list() {
     std::fs::write(&log, two).expect("written");
     let Some(studio) = Studio::open("continue", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
-    studio.scroll_and_click("Button", "Continue a stopped run");
+    studio.scroll_and_click("Button", "Resume a stopped run");
     let is_it = |place: &Place| place.role == "Button" && place.label.starts_with("quick, seed 7");
     studio.click_at(studio.scrolled_to_where("the stopped run", is_it).area.middle());
     studio.wait_for_title("seed 7 - 4 of 4 generations, finished");

@@ -1,9 +1,9 @@
-//! What a window is told of a run, and when.
+//! Events of a run in the background, and their order.
 
 use super::*;
 use crate::evolve::{RunPlan, Settings, with_field};
-use crate::run::pool;
-use crate::save::{Earlier, SavesFolder};
+use crate::run::LocalPool;
+use crate::save::{ExistingRun, SavesFolder};
 
 fn plan() -> RunPlan {
     let mut settings = Settings::default();
@@ -13,77 +13,83 @@ fn plan() -> RunPlan {
     RunPlan::new("test", 1, settings)
 }
 
-fn start(folder: &tempfile::TempDir) -> Background {
+fn start(folder: &tempfile::TempDir) -> BackgroundRun {
     let background = start_after(folder, None);
-    assert_eq!(next(&background), Event::Opened(Vec::new()));
+    let opened = opened(&background);
+    assert_eq!((opened.plan_at_start, opened.reports), (plan(), Vec::new()));
     background
 }
 
-fn start_after(folder: &tempfile::TempDir, before: Option<Background>) -> Background {
-    let pool = Arc::new(pool(2).expect("a pool"));
+fn start_after(folder: &tempfile::TempDir, before: Option<BackgroundRun>) -> BackgroundRun {
+    let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
     let saves = SavesFolder::find(Some(folder.path()));
-    let source = RunSource::in_saves(&saves, plan(), Earlier::Keep);
-    Background::start(source, pool, before).expect("a thread")
+    let source = RunSource::in_saves(&saves, plan(), ExistingRun::Keep);
+    BackgroundRun::start(source, evaluator, before).expect("a thread")
 }
 
 /// The next event of any kind.
-fn next_of_all(background: &Background) -> Event {
-    let events = background.events.lock().expect("no panic");
-    events.recv_timeout(Duration::from_secs(60)).expect("an event in time")
+fn next_of_all(background: &BackgroundRun) -> RunEvent {
+    background.events.recv_timeout(Duration::from_secs(60)).expect("an event in time")
 }
 
-/// The next event that is not about what was explored.
-fn next(background: &Background) -> Event {
+/// The next event, which says that the run was opened.
+fn opened(background: &BackgroundRun) -> OpenedRun {
+    let RunEvent::Opened(opened) = next_of_all(background) else { panic!("not opened") };
+    *opened
+}
+
+/// The next event that is not [`RunEvent::Explored`].
+fn next(background: &BackgroundRun) -> RunEvent {
     loop {
         match next_of_all(background) {
-            Event::Explored(_) => {}
+            RunEvent::Explored(_) => {}
             event => return event,
         }
     }
 }
 
 #[test]
-fn it_waits_until_it_is_told_to_go_and_pauses_after_a_single_generation() {
+fn it_is_held_until_resumed_and_pauses_after_a_single_generation() {
     let folder = tempfile::tempdir().expect("a folder");
     let background = start(&folder);
     thread::sleep(Duration::from_millis(30));
     assert_eq!((background.poll(), background.progress()), (None, (0, 8)));
     background.run_single_generation();
-    assert!(matches!(next(&background), Event::Generation(report) if report.generation == 1));
+    assert!(matches!(next(&background), RunEvent::Generation(report) if report.generation == 1));
     assert!(background.is_paused());
     thread::sleep(Duration::from_millis(30));
-    assert_eq!(background.poll(), None, "nothing more until it is told");
+    assert_eq!(background.poll(), None, "nothing more until it is resumed");
 }
 
 #[test]
-fn a_run_whose_thread_is_gone_says_so_once() {
+fn a_run_whose_thread_is_gone_reports_it_once() {
     let folder = tempfile::tempdir().expect("a folder");
     let background = start(&folder);
-    background.control.cancel();
+    background.shared.control.cancel();
     let event = std::iter::from_fn(|| {
         thread::sleep(Duration::from_millis(5));
         Some(background.poll())
     });
-    assert_eq!(event.take(2000).flatten().next(), Some(Event::BrokeOff));
+    assert_eq!(event.take(2000).flatten().next(), Some(RunEvent::Failed));
     assert_eq!(background.poll(), None);
 }
 
 #[test]
-fn a_run_that_was_stopped_goes_on_once_the_one_before_has_let_go_of_its_folder() {
+fn a_stopped_run_continues_once_the_one_before_has_released_its_folder() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = start(&folder);
     first.run_single_generation();
-    let Event::Generation(report) = next(&first) else { panic!("no generation") };
+    let RunEvent::Generation(report) = next(&first) else { panic!("no generation") };
     let refused = next(&start_after(&folder, None));
     let owner = format!("in use by process {} (the studio)", std::process::id());
-    assert!(matches!(refused, Event::Refused(text) if text.contains(&owner)));
+    assert!(matches!(refused, RunEvent::Refused(text) if text.contains(&owner)));
     let second = start_after(&folder, Some(first));
-    let Event::Opened(behind) = next(&second) else { panic!("not opened") };
+    let behind = opened(&second).reports;
     assert_eq!((behind.len(), &behind[0].champion), (1, &report.champion));
 }
 
 #[test]
-fn a_generation_that_cannot_be_saved_holds_the_run_and_is_saved_when_it_goes_on() {
+fn a_generation_that_cannot_be_saved_holds_the_run_and_is_saved_on_resume() {
     let folder = tempfile::tempdir().expect("a folder");
     let background = start(&folder);
     let saves = SavesFolder::find(Some(folder.path()));
@@ -91,41 +97,41 @@ fn a_generation_that_cannot_be_saved_holds_the_run_and_is_saved_when_it_goes_on(
     std::fs::create_dir(&in_the_way).expect("created");
     background.resume();
     assert!(
-        matches!(next(&background), Event::NotSaved(text) if text.contains("cannot be written"))
+        matches!(next(&background), RunEvent::NotSaved(text) if text.contains("cannot be written"))
     );
     assert!(background.is_paused());
     std::fs::remove_dir(&in_the_way).expect("removed");
     background.resume();
-    assert!(matches!(next(&background), Event::Generation(report) if report.generation == 1));
+    assert!(matches!(next(&background), RunEvent::Generation(report) if report.generation == 1));
     assert!(in_the_way.is_file());
 }
 
 #[test]
-fn before_each_generation_it_tells_what_was_explored_and_of_a_run_that_goes_on_at_once() {
+fn exploration_is_sent_before_each_generation_and_after_reopening() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = start(&folder);
     first.run_single_generation();
-    let Event::Explored(explored) = next_of_all(&first) else { panic!("not explored") };
+    let RunEvent::Explored(explored) = next_of_all(&first) else { panic!("not explored") };
     assert_eq!(explored.archive, None, "the report's method keeps none");
-    assert!(matches!(next_of_all(&first), Event::Generation(_)));
+    assert!(matches!(next_of_all(&first), RunEvent::Generation(_)));
     let second = start_after(&folder, Some(first));
-    assert!(matches!(next_of_all(&second), Event::Opened(behind) if behind.len() == 1));
-    // Who else was in the generation is not kept.
+    assert_eq!(opened(&second).reports.len(), 1);
+    // The other individuals of the generation are not saved.
     assert_eq!(explored.leaders.len(), 8);
     assert_eq!(explored.generation.as_ref().map(|of| of.genomes.len()), Some(8));
-    let Event::Explored(known) = next_of_all(&second) else { panic!("not explored") };
+    let RunEvent::Explored(known) = next_of_all(&second) else { panic!("not explored") };
     assert_eq!((known.leaders.len(), &known.generation), (0, &None));
     assert_eq!((&known.front, &known.archive), (&explored.front, &explored.archive));
     let places = |explored: &Exploration| -> Vec<_> {
         let parents = explored.parents.iter().map(|(parent, _)| parent.place);
-        parents.chain(explored.descent.line.iter().map(|ancestor| ancestor.place)).collect()
+        parents.chain(explored.ancestry.line.iter().map(|ancestor| ancestor.place)).collect()
     };
     assert_eq!(places(&known), places(&explored));
     assert_eq!(places(&known).len(), 4 + 1, "four parents, and the best");
 }
 
 #[test]
-fn progress_counts_the_generation_under_way_whatever_its_size() {
+fn progress_counts_the_current_generation_of_any_size() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut plan = plan();
     let changes = [("cma_es.newborns", "20"), ("strategy", "cma_es"), ("generations", "20")];
@@ -133,62 +139,77 @@ fn progress_counts_the_generation_under_way_whatever_its_size() {
         let field = format!("evolution.{field}");
         plan.settings = with_field(&plan.settings, &field, value).expect("allowed");
     }
-    let pool = Arc::new(pool(2).expect("a pool"));
+    let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
     let saves = SavesFolder::find(Some(folder.path()));
-    let source = RunSource::in_saves(&saves, plan, Earlier::Keep);
-    let background = Background::start(source, pool, None).expect("a thread");
-    assert!(matches!(next(&background), Event::Opened(_)));
+    let source = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
+    let background = BackgroundRun::start(source, evaluator, None).expect("a thread");
+    assert!(matches!(next(&background), RunEvent::Opened(_)));
     assert_eq!(background.progress(), (0, 20));
     // The newborns, then generations of the population.
     background.resume();
-    while !matches!(next(&background), Event::Finished { .. }) {}
+    while !matches!(next(&background), RunEvent::Finished { .. }) {}
     assert_eq!(background.progress(), (8, 8));
 }
 
 #[test]
-fn a_change_counts_from_the_next_generation_on_and_at_once_while_the_run_is_held_between_two() {
+fn a_change_takes_effect_with_the_next_generation_and_at_once_while_held() {
     let folder = tempfile::tempdir().expect("a folder");
     let background = start(&folder);
-    let wish = |field: &str, value: &str| (format!("evolution.{field}"), value.to_owned());
+    let setting = |field: &str, value: &str| (format!("evolution.{field}"), value.to_owned());
     background.run_single_generation();
-    assert!(matches!(next(&background), Event::Generation(_)));
-    background.amend([
-        wish("halving.parents", "2"),
-        wish("halving.parents", "2"),
-        wish("halving.parents", "0"),
-        wish("strategy", "ga"),
-        wish("population", "5"),
-        wish("generations", "4"),
+    assert!(matches!(next(&background), RunEvent::Generation(_)));
+    background.request_changes([
+        setting("halving.parents", "2"),
+        setting("halving.parents", "2"),
+        setting("halving.parents", "0"),
+        setting("strategy", "ga"),
+        setting("population", "5"),
+        setting("generations", "4"),
     ]);
-    let change = |generation, field: &str, value: &str| {
-        let (field, value) = wish(field, value);
-        Event::Changed(SettingChange { generation, field, value })
+    let mut plan_now = plan();
+    let mut assert_changed = |field: &str, value: &str| {
+        let (field, value) = setting(field, value);
+        let expected = SettingChange { generation: 2, field, value };
+        let RunEvent::SettingChanged { change, plan_now: changed } = next(&background) else {
+            panic!("not changed");
+        };
+        assert_eq!(change, expected);
+        plan_now.change(&change).expect("allowed");
+        assert_eq!(*changed, plan_now);
     };
-    let is_refused = |event: Event, of: &str, why: &str| matches!(event, Event::NotChanged { field, reason } if field.ends_with(of) && reason.contains(why));
-    assert_eq!(next(&background), change(2, "halving.parents", "2"));
-    assert!(is_refused(next(&background), "parents", "is 0; allowed: 1 to"));
-    assert!(is_refused(next(&background), "strategy", "means nothing to another method"));
-    assert_eq!(next(&background), change(2, "population", "5"));
-    assert_eq!(next(&background), change(2, "generations", "4"));
+    let assert_refused = |of: &str, why: &str| {
+        let RunEvent::SettingNotChanged { field, reason } = next(&background) else {
+            panic!("not refused");
+        };
+        assert!(field.ends_with(of) && reason.contains(why), "{field}: {reason}");
+    };
+    assert_changed("halving.parents", "2");
+    assert_refused("parents", "is 0; allowed: 1 to");
+    assert_refused("strategy", "another strategy cannot use");
+    assert_changed("population", "5");
+    assert_changed("generations", "4");
     assert_eq!(background.poll(), None, "and nothing more");
     assert!(background.is_paused());
     assert_eq!(background.progress(), (0, 5));
-    background.set_pool(Arc::new(pool(1).expect("a pool")));
+    background.set_evaluator(Arc::new(LocalPool::new(1).expect("threads")));
     background.resume();
     let mut reports = Vec::new();
     let run_hash = loop {
         match next(&background) {
-            Event::Finished { run_hash } => break run_hash,
-            Event::Generation(report) => reports.push(report.evaluations),
+            RunEvent::Finished { run_hash } => break run_hash,
+            RunEvent::Generation(report) => reports.push(report.evaluations),
             other => panic!("{other:?}"),
         }
     };
     assert_eq!(reports, [5, 5, 5]);
-    // Opened again, it tells what was changed, and has the same end.
+    // Opened again, it has the same changes and the same hash.
     let again = start_after(&folder, Some(background));
-    assert!(matches!(next(&again), Event::WasChanged(changes) if changes.len() == 3));
-    assert!(matches!(next(&again), Event::Opened(behind) if behind.len() == 4));
-    assert_eq!(next(&again), Event::Finished { run_hash });
+    let reopened = opened(&again);
+    assert_eq!(reopened.reports.len(), 4);
+    assert_eq!(reopened.plan_at_start, plan());
+    assert_eq!(reopened.plan_now, plan_now);
+    assert_eq!(plan_now.changes.made().len(), 3);
+    assert_eq!(next(&again), RunEvent::Finished { run_hash });
 }
 
 #[test]
@@ -197,12 +218,12 @@ fn a_run_in_its_last_generation_can_be_made_longer() {
     let background = start(&folder);
     for _ in 1..=2 {
         background.run_single_generation();
-        assert!(matches!(next(&background), Event::Generation(_)));
+        assert!(matches!(next(&background), RunEvent::Generation(_)));
     }
-    background.amend([("evolution.generations".to_owned(), "5".to_owned())]);
+    background.request_changes([("evolution.generations".to_owned(), "5".to_owned())]);
     background.resume();
     let mut events = 0;
-    while !matches!(next(&background), Event::Finished { .. }) {
+    while !matches!(next(&background), RunEvent::Finished { .. }) {
         events += 1;
     }
     // The change, and generations 3 to 5.
@@ -215,14 +236,14 @@ fn in_the_background_a_run_has_the_same_hash() {
     let background = start(&folder);
     background.resume();
     let run_hash = loop {
-        if let Event::Finished { run_hash } = next(&background) {
+        if let RunEvent::Finished { run_hash } = next(&background) {
             break run_hash;
         }
     };
     let mut experiment = Experiment::new(plan());
-    let pool = pool(1).expect("a pool");
+    let evaluator = LocalPool::new(1).expect("threads");
     while !experiment.is_over() {
-        experiment.run_generation(&pool, &Control::default()).expect("not cancelled");
+        experiment.run_generation(&evaluator, &RunControl::default()).expect("not cancelled");
     }
     assert_eq!(run_hash, experiment.run_hash());
     let saved = std::fs::read_dir(folder.path()).expect("a folder").count();

@@ -5,7 +5,7 @@ use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::save::{load_preset, shipped_presets};
 use crate::score::Fitness;
 
-/// A case: what it is, seed, population, generations, and what it changes of the preset `report`.
+/// A case: description, seed, population, generations, and changes to the preset `report`.
 type Case = (&'static str, u64, u32, u32, &'static [(&'static str, &'static str)]);
 
 const CASES: &[Case] = &[
@@ -324,7 +324,7 @@ const CASES: &[Case] = &[
     ),
 ];
 
-/// All runs, with what they are: the cases, each kind of fitness, each shipped preset.
+/// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.
 pub(super) fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
     let presets = shipped_presets()?;
     let sized = |settings: &mut Settings, population, generations| {
@@ -339,14 +339,14 @@ pub(super) fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
         settings.check()?;
         plans.push(((*what).to_owned(), RunPlan::new("verify", *seed, settings)));
     }
-    // Each with a seed of its own: what differs only in the size of its runs must not compute the same.
+    // Each has its own seed: presets that differ only in the size of their runs would compute the same bits.
     for (fitness, seed) in Fitness::ALL.into_iter().zip(100..) {
         let mut settings = report.clone();
         settings.trial.fitness = fitness;
         sized(&mut settings, 6, 2);
         plans.push((format!("fitness {fitness}"), RunPlan::new("verify", seed, settings)));
     }
-    // In the order in which they came to be: a seed, once given, stays.
+    // In the order of their introduction: a seed, once given, stays.
     let (newest, older): (Vec<_>, Vec<_>) =
         presets.into_iter().partition(|preset| preset.name == "climb");
     for (preset, seed) in older.into_iter().chain(newest).zip(200..) {

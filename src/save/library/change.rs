@@ -1,54 +1,57 @@
-//! What can be done with an entry in its folder, and undone: renamed, duplicated, deleted, restored.
+//! Operations on an entry that can be undone: rename, duplicate, delete, restore.
 
-use std::fs::{self, OpenOptions};
+use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::DELETED;
 use super::details::{text_of_file, text_of_shipped};
-use super::list::Place;
+use super::list::SavePlace;
+use super::moving::move_new;
 use super::name::{ENDING, check_entry_name, free_path, shortened};
 use crate::check::Invalid;
 use crate::save::files::{prepare_folder, write_new};
 use crate::save::lock::Lock;
 use crate::save::{SaveError, SavesFolder};
 
-/// Something that was done with an entry.
+/// Folder for deleted entries within a folder of saves.
+pub const DELETED: &str = ".deleted";
+
+/// A completed operation on an entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Step {
-    /// It has another name.
+pub enum FileStep {
+    /// It was renamed.
     Renamed {
-        /// Where it was.
+        /// Its former path.
         from: PathBuf,
-        /// Where it is.
+        /// Its new path.
         to: PathBuf,
     },
-    /// It was put away.
+    /// It was deleted: moved into a hidden folder.
     Deleted {
-        /// Where it was.
+        /// Its former path.
         from: PathBuf,
-        /// Where it is kept.
+        /// Its path in the hidden folder.
         kept: PathBuf,
     },
-    /// It was brought back.
+    /// It was restored after it had been deleted.
     Restored {
-        /// Where it was before it was deleted.
+        /// Its path before it was deleted.
         wanted: PathBuf,
-        /// Where it is: elsewhere, if its name was taken meanwhile.
+        /// Its new path; another one if the former path was taken meanwhile.
         to: PathBuf,
     },
-    /// There is something new: a copy.
+    /// A new copy was added.
     Added {
-        /// Where it is.
+        /// Its path.
         path: PathBuf,
     },
 }
 
-impl Step {
-    /// Undoes it. What is returned undoes that, in turn.
+impl FileStep {
+    /// Undoes this operation, and returns the one that redoes it.
     ///
     /// # Errors
-    /// It cannot be moved back, or is not there any more; everything is as it was before then.
+    /// The entry cannot be moved back or no longer exists; then nothing has changed.
     pub fn undo(&self, saves: &SavesFolder) -> Result<Self, SaveError> {
         match self {
             Self::Renamed { from, to } => {
@@ -56,70 +59,75 @@ impl Step {
                 Ok(Self::Renamed { from: to.clone(), to: from.clone() })
             }
             Self::Deleted { from, kept } => restore(kept, from),
-            Self::Restored { to: path, .. } | Self::Added { path } => put_away(saves, path),
+            Self::Restored { to: path, .. } | Self::Added { path } => move_away(saves, path),
         }
     }
 
-    /// Where the entry is now; none, if it was deleted.
-    pub fn place(&self) -> Option<Place> {
+    /// The entry's place now; none if it was deleted.
+    pub fn place(&self) -> Option<SavePlace> {
         let path = match self {
             Self::Renamed { to, .. } | Self::Restored { to, .. } | Self::Added { path: to } => to,
             Self::Deleted { .. } => return None,
         };
-        Some(if path.is_dir() { Place::Run(path.clone()) } else { Place::Champion(path.clone()) })
+        Some(if path.is_dir() {
+            SavePlace::Run(path.clone())
+        } else {
+            SavePlace::Champion(path.clone())
+        })
     }
 }
 
-/// Gives a champion another name.
+/// Renames a champion.
 ///
 /// # Errors
-/// The name is not allowed or taken; it is a run, whose folder's name says what run it is; it is part of the
+/// The name is not allowed or taken; the entry is a run, whose folder's name identifies it; the entry is part of the
 /// program; the file cannot be renamed.
-pub fn rename(place: &Place, name: &str) -> Result<Step, SaveError> {
-    let Place::Champion(from) = place else {
+pub fn rename(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
+    let SavePlace::Champion(from) = place else {
         return Err(refused(place, "only a champion's file can be renamed"));
     };
     let invalid = |source| SaveError::Invalid { path: from.clone(), source };
     check_entry_name(name).map_err(invalid)?;
     let to = from.with_file_name(format!("{name}.{ENDING}"));
     move_new(from, &to)?;
-    Ok(Step::Renamed { from: from.clone(), to })
+    Ok(FileStep::Renamed { from: from.clone(), to })
 }
 
-/// Copies a champion beside it: "NAME copy", "NAME copy 2". One that is part of the program is copied into the
-/// folder of saves.
+/// Copies a champion within the folder of saves, as "NAME copy", "NAME copy 2" and so on.
 ///
 /// # Errors
-/// It is a run; the file cannot be read or the copy written.
-pub fn duplicate(saves: &SavesFolder, place: &Place) -> Result<Step, SaveError> {
+/// The entry is a run; the file cannot be read, or the copy cannot be written.
+pub fn duplicate(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, SaveError> {
     let text = match place {
-        Place::Shipped(name) => text_of_shipped(name)?.to_owned(),
-        Place::Champion(path) => text_of_file(path)?,
-        Place::Run(_) => return Err(refused(place, "only a champion's file can be duplicated")),
+        SavePlace::Shipped(name) => text_of_shipped(name)?.to_owned(),
+        SavePlace::Champion(path) => text_of_file(path)?,
+        SavePlace::Run(_) => {
+            return Err(refused(place, "only a champion's file can be duplicated"));
+        }
     };
-    // Of ten thousand copies one would try out ten thousand times whether files can be written there.
+    // Only if needed: preparing writes a file to test the folder, which is slow for ten thousand copies.
     if !saves.path().is_dir() {
         saves.prepare()?;
     }
     let name = shortened(&place.name(), " copy");
     let path = free_path(saves.path(), &name, Some(ENDING));
     write_new(&path, text.as_bytes())?;
-    Ok(Step::Added { path })
+    Ok(FileStep::Added { path })
 }
 
-/// Deletes an entry: moves it into a hidden folder of the saves, or of where it is if that is on another disk, from
-/// where undoing brings it back.
+/// Deletes an entry: moves it into a hidden folder of the saves, or of its own folder if that is on another disk.
+/// Undoing moves it back.
 ///
 /// # Errors
-/// A program writes into the run's folder; it is part of the program; it cannot be moved.
-pub fn delete(saves: &SavesFolder, place: &Place) -> Result<Step, SaveError> {
-    let path = place.path().ok_or_else(|| refused(place, "it comes with the program"))?;
-    put_away(saves, path)
+/// A program writes into the run's folder; the entry is part of the program; it cannot be moved.
+pub fn delete(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, SaveError> {
+    let path = place.path().ok_or_else(|| refused(place, "a champion's file or a run's folder"))?;
+    move_away(saves, path)
 }
 
-fn put_away(saves: &SavesFolder, path: &Path) -> Result<Step, SaveError> {
+fn move_away(saves: &SavesFolder, path: &Path) -> Result<FileStep, SaveError> {
     match put_into_bin(saves.path(), path) {
-        // Nothing can be moved from one disk to another, only copied; what was exported stays where it went.
+        // Files cannot be moved between disks: an exported copy on another disk is deleted within its own folder.
         Err(SaveError::Unwritable { source, .. }) if source.kind() == ErrorKind::CrossesDevices => {
             put_into_bin(path.parent().unwrap_or(Path::new(".")), path)
         }
@@ -127,13 +135,13 @@ fn put_away(saves: &SavesFolder, path: &Path) -> Result<Step, SaveError> {
     }
 }
 
-/// Moves something into the hidden folder within another.
-fn put_into_bin(folder: &Path, path: &Path) -> Result<Step, SaveError> {
+/// Moves a file or folder into the hidden folder within `folder`.
+fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
     let unreadable = |source| SaveError::Unreadable { path: path.to_owned(), source };
     let is_folder = fs::symlink_metadata(path).map_err(unreadable)?.is_dir();
     let lock = if is_folder { Some(Lock::take(path, "the library")?) } else { None };
     let bin = SavesFolder::within_run(folder, DELETED)?;
-    // Whether files can be written there is tried out once; the move itself tells it afterwards.
+    // Tested once when the folder is created; later the move itself fails if it cannot be written.
     if !bin.path().is_dir() {
         prepare_folder(bin.path())?;
     }
@@ -141,18 +149,18 @@ fn put_into_bin(folder: &Path, path: &Path) -> Result<Step, SaveError> {
     let ending = path.extension().filter(|_| !is_folder).map(|ending| ending.to_string_lossy());
     let kept = free_path(bin.path(), &name.to_string_lossy(), ending.as_deref());
     if cfg!(windows) {
-        // There a folder in which a file is open cannot be moved.
+        // Windows cannot move a folder in which a file is open.
         drop(lock);
         move_new(path, &kept)?;
     } else {
         move_new(path, &kept)?;
         drop(lock);
     }
-    Ok(Step::Deleted { from: path.to_owned(), kept })
+    Ok(FileStep::Deleted { from: path.to_owned(), kept })
 }
 
-/// Brings something back that was deleted; under the next free name, if its own is taken by now.
-fn restore(kept: &Path, wanted: &Path) -> Result<Step, SaveError> {
+/// Moves a deleted entry back; under the next free name if its own is taken by now.
+fn restore(kept: &Path, wanted: &Path) -> Result<FileStep, SaveError> {
     let folder = wanted.parent().unwrap_or(Path::new("."));
     let is_folder = kept.is_dir();
     let name = wanted.file_stem().filter(|_| !is_folder).or(wanted.file_name()).unwrap_or_default();
@@ -163,49 +171,17 @@ fn restore(kept: &Path, wanted: &Path) -> Result<Step, SaveError> {
         free_path(folder, &name.to_string_lossy(), ending.as_deref())
     };
     move_new(kept, &to)?;
-    Ok(Step::Restored { wanted: wanted.to_owned(), to })
+    Ok(FileStep::Restored { wanted: wanted.to_owned(), to })
 }
 
-fn refused(place: &Place, allowed: &str) -> SaveError {
-    let what = match place {
-        Place::Shipped(_) => "part of the program",
-        Place::Champion(_) => "a champion",
-        Place::Run(_) => "a run",
+fn refused(place: &SavePlace, allowed: &str) -> SaveError {
+    let found = match place {
+        SavePlace::Shipped(_) => "part of the program",
+        SavePlace::Champion(_) => "a champion",
+        SavePlace::Run(_) => "a run",
     };
-    let source = Invalid::new("entry", what, allowed);
+    let source = Invalid::new("entry", found, allowed);
     SaveError::Invalid { path: place.path().unwrap_or(Path::new(&place.name())).to_owned(), source }
-}
-
-/// Says that a name is taken.
-pub fn taken(path: &Path) -> SaveError {
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let source = Invalid::new("name", format!("{name:?}"), "a name that is not taken yet");
-    SaveError::Invalid { path: path.to_owned(), source }
-}
-
-/// Moves a file or folder to a name that must not be taken.
-pub fn move_new(from: &Path, to: &Path) -> Result<(), SaveError> {
-    let unwritable = |source| SaveError::Unwritable { path: to.to_owned(), source };
-    let about = fs::symlink_metadata(from)
-        .map_err(|source| SaveError::Unreadable { path: from.to_owned(), source })?;
-    if about.is_dir() {
-        if to.symlink_metadata().is_ok() {
-            return Err(taken(to));
-        }
-        // A folder that appears there between the two is replaced only if it is empty: nothing is lost.
-        return fs::rename(from, to).map_err(unwritable);
-    }
-    // A file would be replaced whatever it holds: the name is reserved before.
-    match OpenOptions::new().write(true).create_new(true).open(to) {
-        Ok(reserved) => drop(reserved),
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => return Err(taken(to)),
-        Err(error) => return Err(unwritable(error)),
-    }
-    fs::rename(from, to).map_err(|source| {
-        // It is the reservation, empty.
-        let _ = fs::remove_file(to);
-        unwritable(source)
-    })
 }
 
 #[cfg(test)]
@@ -216,11 +192,11 @@ mod tests {
 
     /// The champions of the folder.
     fn champions(saves: &SavesFolder) -> Vec<String> {
-        names(&list(saves).expect("readable"), |place| matches!(place, Place::Champion(_)))
+        names(&list(saves).expect("readable"), |place| matches!(place, SavePlace::Champion(_)))
     }
 
     #[test]
-    fn a_champion_is_renamed_and_back_again() {
+    fn a_rename_is_undone_and_redone() {
         let (_folder, saves) = saves();
         let place = champion_in(&saves, "first");
         let step = rename(&place, "My best, no. 2").expect("renamed");
@@ -232,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_taken_or_not_allowed_is_refused_and_nothing_changes() {
+    fn a_taken_or_invalid_name_is_refused_and_nothing_changes() {
         let (folder, saves) = saves();
         let place = champion_in(&saves, "first");
         fs::write(folder.path().join("second.ron"), "mine").expect("written");
@@ -253,11 +229,11 @@ mod tests {
     }
 
     #[test]
-    fn a_runs_folder_keeps_its_name_and_what_comes_with_the_program_stays() {
+    fn runs_cannot_be_renamed_and_shipped_champions_cannot_be_changed() {
         let (_folder, saves) = saves();
         let run = run_in(&saves, 1);
-        let shipped = Place::Shipped("fast");
-        let says = |result: Result<Step, SaveError>, words: &str| {
+        let shipped = SavePlace::Shipped("fast");
+        let says = |result: Result<FileStep, SaveError>, words: &str| {
             let message = result.expect_err("refused").to_string();
             assert!(message.contains(words), "{message}");
         };
@@ -267,11 +243,11 @@ mod tests {
         );
         says(duplicate(&saves, &run), "only a champion's file can be duplicated");
         says(rename(&shipped, "other"), "entry is part of the program");
-        says(delete(&saves, &shipped), "it comes with the program");
+        says(delete(&saves, &shipped), "a champion's file or a run's folder");
     }
 
     #[test]
-    fn copies_are_counted_and_have_every_byte() {
+    fn copies_are_numbered_and_identical() {
         let (folder, saves) = saves();
         let place = champion_in(&saves, "a");
         for expected in ["a copy", "a copy 2", "a copy 3"] {
@@ -280,14 +256,14 @@ mod tests {
         }
         let bytes = |name: &str| fs::read(folder.path().join(name)).expect("there");
         assert_eq!(bytes("a copy 3.ron"), bytes("a.ron"));
-        let step = duplicate(&saves, &Place::Shipped("fast")).expect("copied");
+        let step = duplicate(&saves, &SavePlace::Shipped("fast")).expect("copied");
         assert!(read_entry(&step.place().expect("there")).is_ok());
         step.undo(&saves).expect("undone");
         assert_eq!(champions(&saves), ["a copy 2", "a copy 3", "a copy", "a"]);
     }
 
     #[test]
-    fn what_is_deleted_comes_back_and_under_another_name_if_its_own_is_taken() {
+    fn a_deleted_entry_is_restored_under_another_name_if_its_own_is_taken() {
         let (folder, saves) = saves();
         let place = champion_in(&saves, "a");
         let deleted = delete(&saves, &place).expect("deleted");
@@ -317,7 +293,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn what_was_exported_to_another_disk_is_put_away_there_and_comes_back() {
+    fn undoing_an_export_to_another_disk_moves_the_copy_within_that_disk() {
         use crate::save::library::export;
         let (_folder, saves) = saves();
         let (champion, run) = (champion_in(&saves, "a"), run_in(&saves, 1));
@@ -343,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_is_deleted_and_restored_as_a_whole_but_not_while_it_is_in_use() {
+    fn a_run_is_deleted_and_restored_completely_but_not_while_in_use() {
         let (_folder, saves) = saves();
         let run = run_in(&saves, 1);
         let before = read_entry(&run).expect("whole");
@@ -362,9 +338,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_gone_meanwhile_is_said_and_a_link_in_place_of_the_bin_is_refused() {
+    fn a_vanished_entry_is_reported_and_a_link_in_place_of_the_hidden_folder_is_refused() {
         let (folder, saves) = saves();
-        let gone = Place::Champion(folder.path().join("gone.ron"));
+        let gone = SavePlace::Champion(folder.path().join("gone.ron"));
         for result in [rename(&gone, "b"), duplicate(&saves, &gone), delete(&saves, &gone)] {
             let message = result.expect_err("gone").to_string();
             assert!(message.contains("gone.ron: cannot be read"), "{message}");
@@ -384,7 +360,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_folder_without_permission_is_said_and_nothing_is_lost() {
+    fn a_folder_without_permission_gives_an_error_and_nothing_is_lost() {
         use std::os::unix::fs::PermissionsExt;
         let (folder, saves) = saves();
         let place = champion_in(&saves, "a");
@@ -392,7 +368,7 @@ mod tests {
             fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).expect("changed");
         };
         allow(0o555);
-        // Who may do everything is not stopped by permissions.
+        // Permissions do not stop the superuser.
         let is_stopped = fs::write(folder.path().join("probe"), "").is_err();
         if is_stopped {
             for result in [rename(&place, "b"), duplicate(&saves, &place), delete(&saves, &place)] {

@@ -1,112 +1,112 @@
-//! What stands in an entry: read one by one, checked like everything that is read, never simulated.
+//! The contents of a library entry: read one entry at a time, checked, never simulated.
 
 use std::path::Path;
 
-use super::list::Place;
+use super::list::SavePlace;
 use super::shipped::shipped_text;
 use super::thumbnail::Thumbnail;
 use crate::check::Invalid;
 use crate::evolve::{Origin, StrategyKind};
 use crate::genome::ControllerKind;
-use crate::save::files::{numbered, read_text, refuse_link, tamed};
-use crate::save::folder::goes_on;
+use crate::save::files::{numbered, read_text, refuse_link, single_line};
+use crate::save::folder::has_generations_left;
 use crate::save::plan::load_plan;
 use crate::save::record::load_log;
 use crate::save::{GenerationRecord, LoadedChampion, SaveError, load_generation, parse_champion};
 use crate::score::Fitness;
 
-/// What stands in an entry.
+/// The contents of an entry.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Details {
-    /// Of a champion.
+pub enum EntryDetails {
+    /// A champion's.
     Champion(Box<ChampionDetails>),
-    /// Of a run.
+    /// A run's.
     Run(Box<RunDetails>),
 }
 
-/// What stands in a champion's file.
+/// The contents of a champion's file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChampionDetails {
-    /// What it reached, in units of what is rewarded.
+    /// Its fitness.
     pub fitness: f32,
-    /// What is rewarded.
+    /// The kind of fitness that was maximised.
     pub rewarded: Fitness,
-    /// What it reached, in words.
+    /// Its result in words.
     pub reached: String,
-    /// Steps that its middle limb had under it at the end.
+    /// Steps that its middle limb had climbed at the end.
     pub climbed: u32,
-    /// Steps that there are.
+    /// Number of steps of the staircase.
     pub steps: u32,
     /// Length of the trial, in simulated seconds.
     pub duration_s: f32,
-    /// The run that found it, and its place there.
+    /// The run that found it, and its generation and index there.
     pub origin: Origin,
     /// The engine that found it.
     pub engine: u32,
-    /// What drives its joints.
+    /// The controller of its joints.
     pub controller: ControllerKind,
-    /// What somebody wrote at the top of its file, in a line.
+    /// The user's comment in the first line of the file.
     pub note: Option<String>,
-    /// What it does.
+    /// Its movement, seen from the side.
     pub thumbnail: Thumbnail,
 }
 
-/// What stands in a run's folder.
+/// The contents of a run's folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunDetails {
-    /// Name of the preset that it started from.
+    /// Name of its preset.
     pub preset: String,
     /// Its seed.
     pub seed: u64,
-    /// The method; not known of a run of another engine.
+    /// The search strategy; unknown for a run of another engine.
     pub strategy: Option<StrategyKind>,
-    /// What drives the joints.
+    /// The controller of the joints.
     pub controller: ControllerKind,
-    /// What is rewarded.
+    /// The kind of fitness that was maximised.
     pub rewarded: Fitness,
-    /// How many generations are finished.
+    /// Number of finished generations.
     pub finished: u32,
-    /// How many there are to be; not known of a run of another engine.
+    /// Number of generations in total; unknown for a run of another engine.
     pub generations: Option<u32>,
-    /// The best fitness of all, and the generation it is of; the first is 1.
+    /// The best fitness with its generation; the first is 1.
     pub best: Option<(u32, f32)>,
-    /// The best fitness of each generation, the first first; none where all were disqualified.
+    /// The best fitness of each generation in order; none where all were disqualified.
     pub best_of_each: Vec<Option<f32>>,
-    /// The generations whose champions are there to be replayed, in order.
+    /// The generations whose champions are saved, in order.
     pub champions: Vec<u32>,
-    /// Why it cannot go on, if it cannot.
+    /// The reason why it cannot continue, if it cannot.
     pub ended: Option<String>,
-    /// What its best does.
+    /// The movement of its best champion, seen from the side.
     pub thumbnail: Thumbnail,
 }
 
-/// Reads what stands in an entry.
+/// Reads the contents of an entry.
 ///
 /// # Errors
-/// It is unreadable, too large, damaged, a link, of another kind, newer, or has a value out of range.
-pub fn read_entry(place: &Place) -> Result<Details, SaveError> {
+/// The entry is unreadable, too large, damaged, a link, of another kind or format, or has a value out of range.
+pub fn read_entry(place: &SavePlace) -> Result<EntryDetails, SaveError> {
     match place {
-        Place::Shipped(name) => {
+        SavePlace::Shipped(name) => {
             let text = text_of_shipped(name)?;
             champion(Path::new(name), text)
         }
-        Place::Champion(path) => champion(path, &text_of_file(path)?),
-        Place::Run(folder) => run(folder),
+        SavePlace::Champion(path) => champion(path, &text_of_file(path)?),
+        SavePlace::Run(folder) => run(folder),
     }
 }
 
-/// Reads the champion of an entry; of a run that of its best generation, which is said.
+/// Reads the champion of an entry. Of a run it is the champion of the best generation, whose number is returned too.
 ///
 /// # Errors
-/// As [`read_entry`]; or the run has none yet.
-pub fn load_entry(place: &Place) -> Result<(LoadedChampion, Option<u32>), SaveError> {
+/// As for [`read_entry`]; or the run has no champion yet.
+pub fn load_entry(place: &SavePlace) -> Result<(LoadedChampion, Option<u32>), SaveError> {
     match place {
-        Place::Shipped(name) => {
+        SavePlace::Shipped(name) => {
             Ok((parse_champion(Path::new(name), text_of_shipped(name)?)?, None))
         }
-        Place::Champion(path) => Ok((parse_champion(path, &text_of_file(path)?)?, None)),
-        Place::Run(folder) => {
-            let Details::Run(details) = run(folder)? else { return Err(no_champion(folder)) };
+        SavePlace::Champion(path) => Ok((parse_champion(path, &text_of_file(path)?)?, None)),
+        SavePlace::Run(folder) => {
+            let EntryDetails::Run(details) = run(folder)? else { return Err(no_champion(folder)) };
             let best = details.best.map(|(generation, _)| generation);
             let there = best.filter(|best| details.champions.binary_search(best).is_ok());
             let generation = there.or(details.champions.last().copied());
@@ -117,14 +117,18 @@ pub fn load_entry(place: &Place) -> Result<(LoadedChampion, Option<u32>), SaveEr
 }
 
 fn no_champion(folder: &Path) -> SaveError {
-    let source = std::io::Error::other("no generation of the run has left a champion");
+    let source = std::io::Error::other("the run has no champion yet");
     SaveError::Unreadable { path: folder.to_owned(), source }
 }
 
 pub fn text_of_shipped(name: &str) -> Result<&'static str, SaveError> {
     shipped_text(name).ok_or_else(|| SaveError::Invalid {
         path: name.into(),
-        source: Invalid::new("name", format!("{name:?}"), "one that comes with the program"),
+        source: Invalid::new(
+            "name",
+            format!("{name:?}"),
+            "the name of a champion that is part of the program",
+        ),
     })
 }
 
@@ -134,13 +138,13 @@ pub fn text_of_file(path: &Path) -> Result<String, SaveError> {
     read_text(path)
 }
 
-fn champion(path: &Path, text: &str) -> Result<Details, SaveError> {
+fn champion(path: &Path, text: &str) -> Result<EntryDetails, SaveError> {
     let loaded = parse_champion(path, text)?;
     let champion = &loaded.champion;
     let evaluation = &champion.evaluation;
     let stairs = &champion.trial.stairs;
     let by_place = || stairs.steps_climbed(f64::from(evaluation.centre_y_m));
-    Ok(Details::Champion(Box::new(ChampionDetails {
+    Ok(EntryDetails::Champion(Box::new(ChampionDetails {
         fitness: evaluation.fitness,
         rewarded: champion.trial.fitness,
         reached: champion.reached(),
@@ -151,39 +155,40 @@ fn champion(path: &Path, text: &str) -> Result<Details, SaveError> {
         engine: loaded.engine,
         controller: champion.genome.controller.kind(),
         note: note(text),
-        thumbnail: Thumbnail::new(&champion.trial, loaded.recording.as_ref()),
+        thumbnail: Thumbnail::of_champion(champion, loaded.recording.as_ref()),
     })))
 }
 
-/// What stands in the first line, if that is not the program's own.
+/// The comment in the first line, unless the program wrote it.
 fn note(text: &str) -> Option<String> {
     let line = text.lines().next()?.strip_prefix("//")?.trim();
     let is_own = line.is_empty() || line.starts_with("A champion of Snakes & Stairs");
-    (!is_own).then(|| tamed(line))
+    (!is_own).then(|| single_line(line))
 }
 
-fn run(folder: &Path) -> Result<Details, SaveError> {
+fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
     let mut champions = numbered(folder, "generation-")?;
     champions.sort_unstable();
-    // What another engine or version began cannot go on, but be seen.
+    // A run of another engine cannot continue, but its champions can be shown.
     if let Err(error @ SaveError::Invalid { .. }) = load_plan(folder) {
-        return earlier(folder, champions, error);
+        return of_other_engine(folder, champions, error);
     }
     let (plan, records) = load_log(folder)?;
     champions.retain(|generation| *generation as usize <= records.len());
     let best_of = |record: &GenerationRecord| record.statistics.map(|of| of.best as f32);
     let best_of_each: Vec<Option<f32>> = records.iter().map(best_of).collect();
     let ranked = best_of_each.iter().zip(1..).filter_map(|(of, number)| Some((number, (*of)?)));
-    // Of equals the first.
+    // Of equal ones, the first.
     let best = ranked.reduce(|best, next| if next.1 > best.1 { next } else { best });
     let shown = best.and_then(|(generation, _)| load_generation(folder, generation).ok());
     let thumbnail = match &shown {
-        Some(of) => Thumbnail::new(&of.champion.trial, of.recording.as_ref()),
-        None => Thumbnail::new(&plan.settings.trial, None),
+        Some(of) => Thumbnail::of_champion(&of.champion, of.recording.as_ref()),
+        None => Thumbnail::of_trial(&plan.settings.trial),
     };
-    let ended = (!goes_on(&plan, &records)).then(|| "all its generations are finished".to_owned());
+    let ended = (!has_generations_left(&plan, &records))
+        .then(|| "all its generations are finished".to_owned());
     let settings = &plan.settings;
-    Ok(Details::Run(Box::new(RunDetails {
+    Ok(EntryDetails::Run(Box::new(RunDetails {
         strategy: Some(settings.evolution.strategy),
         controller: settings.genome.controller,
         rewarded: settings.trial.fitness,
@@ -199,11 +204,15 @@ fn run(folder: &Path) -> Result<Details, SaveError> {
     })))
 }
 
-/// What is left to say of a run that cannot go on with this engine: its latest champion tells.
-fn earlier(folder: &Path, champions: Vec<u32>, error: SaveError) -> Result<Details, SaveError> {
+/// The contents of a run that cannot continue with this engine, as far as its latest champion tells.
+fn of_other_engine(
+    folder: &Path,
+    champions: Vec<u32>,
+    error: SaveError,
+) -> Result<EntryDetails, SaveError> {
     let Some(latest) = champions.last().copied() else { return Err(error) };
     let LoadedChampion { champion, recording, .. } = load_generation(folder, latest)?;
-    Ok(Details::Run(Box::new(RunDetails {
+    Ok(EntryDetails::Run(Box::new(RunDetails {
         strategy: None,
         controller: champion.genome.controller.kind(),
         rewarded: champion.trial.fitness,
@@ -216,7 +225,7 @@ fn earlier(folder: &Path, champions: Vec<u32>, error: SaveError) -> Result<Detai
             SaveError::Invalid { source, .. } => source.to_string(),
             other => other.to_string(),
         }),
-        thumbnail: Thumbnail::new(&champion.trial, recording.as_ref()),
+        thumbnail: Thumbnail::of_champion(&champion, recording.as_ref()),
         preset: champion.origin.preset,
         seed: champion.origin.seed,
     })))
@@ -231,54 +240,56 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn everything_that_comes_with_the_program_is_whole() {
+    fn every_shipped_champion_can_be_read() {
         for (name, _) in SHIPPED {
-            let Details::Champion(details) = read_entry(&Place::Shipped(name)).expect("whole")
+            let EntryDetails::Champion(details) =
+                read_entry(&SavePlace::Shipped(name)).expect("whole")
             else {
                 panic!("{name} is no champion");
             };
             assert!(details.climbed >= 4, "{name} climbs {}", details.climbed);
             assert_eq!(details.thumbnail.limbs_m.len(), 5, "{name} is on record");
-            let (loaded, generation) = load_entry(&Place::Shipped(name)).expect("whole");
+            let (loaded, generation) = load_entry(&SavePlace::Shipped(name)).expect("whole");
             assert_eq!(loaded.champion.origin, details.origin);
             assert_eq!(generation, None);
         }
-        let Details::Champion(fast) = read_entry(&Place::Shipped("fast")).expect("whole") else {
+        let EntryDetails::Champion(fast) = read_entry(&SavePlace::Shipped("fast")).expect("whole")
+        else {
             panic!("no champion");
         };
         assert!(fast.note.expect("explained").starts_with("The fast one: gallops"));
     }
 
     #[test]
-    fn a_run_says_how_far_it_has_come_and_its_best_is_its_champion() {
+    fn a_runs_details_name_its_progress_and_its_best_champion() {
         let (_folder, saves) = saves();
         let place = run_in(&saves, 3);
-        let Details::Run(run) = read_entry(&place).expect("whole") else { panic!("no run") };
+        let EntryDetails::Run(run) = read_entry(&place).expect("whole") else { panic!("no run") };
         assert_eq!((run.preset.as_str(), run.seed), ("test", 3));
         assert_eq!((run.finished, run.generations), (2, Some(4)));
         assert_eq!(run.champions, [1, 2]);
         assert_eq!(run.ended, None);
         assert_eq!(run.best_of_each.len(), 2);
-        let (best, fitness) = run.best.expect("somebody was healthy");
+        let (best, fitness) = run.best.expect("a healthy individual");
         assert_eq!(run.best_of_each[best as usize - 1], Some(fitness));
         let (loaded, generation) = load_entry(&place).expect("whole");
         assert_eq!((generation, loaded.champion.evaluation.fitness), (Some(best), fitness));
     }
 
     #[test]
-    fn a_run_of_another_engine_can_be_seen_but_not_go_on() {
+    fn a_run_of_another_engine_can_be_shown_but_not_continued() {
         let (_folder, saves) = saves();
         let place = run_in(&saves, 1);
         let file = place.path().expect("a folder").join("run.ron");
         let text = fs::read_to_string(&file).expect("read");
         fs::write(&file, text.replace("engine: 2", "engine: 1")).expect("written");
-        let Details::Run(run) = read_entry(&place).expect("seen") else { panic!("no run") };
+        let EntryDetails::Run(run) = read_entry(&place).expect("seen") else { panic!("no run") };
         assert!(run.ended.expect("it has").contains("engine is 1"));
         assert!(load_entry(&place).is_ok());
     }
 
     #[test]
-    fn a_damaged_entry_says_why_and_stands_in_no_others_way() {
+    fn a_damaged_entry_gives_its_error_and_the_others_can_be_read() {
         let (folder, saves) = saves();
         champion_in(&saves, "good");
         let text = fs::read_to_string(folder.path().join("good.ron")).expect("read");
@@ -289,7 +300,7 @@ mod tests {
         fs::write(run.path().expect("a folder").join("log.jsonl"), "{}\n").expect("written");
         let entries = list(&saves).expect("listed");
         let own = entries.iter().filter(|entry| entry.place.path().is_some());
-        let read = |entry: &crate::save::library::Entry| {
+        let read = |entry: &crate::save::library::LibraryEntry| {
             let problem = read_entry(&entry.place).err().map(|error| error.to_string());
             (entry.place.name(), problem)
         };
@@ -308,14 +319,17 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_and_a_device_are_not_read() {
+    fn a_link_to_a_device_is_not_read() {
         let (folder, saves) = saves();
         let link = folder.path().join("zero.ron");
         std::os::unix::fs::symlink("/dev/zero", &link).expect("linked");
         let listed = list(&saves).expect("listed");
-        let place = Place::Champion(link);
+        let place = SavePlace::Champion(link);
         assert!(listed.iter().any(|entry| entry.place == place));
         let error = read_entry(&place).expect_err("refused").to_string();
-        assert!(error.ends_with("zero.ron: cannot be read: it is a link or no file"), "{error}");
+        assert!(
+            error.ends_with("zero.ron: cannot be read: it is a link or not a regular file"),
+            "{error}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! What is in a folder of saves, by names alone.
+//! Lists a folder of saves by names only.
 
 use std::fs::{self, DirEntry};
 use std::path::{Path, PathBuf};
@@ -9,10 +9,10 @@ use crate::save::plan::RUN_FILE;
 use crate::save::record::LOG_FILE;
 use crate::save::{SaveError, SavesFolder};
 
-/// Where an entry of the library is.
+/// The place of a library entry.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
-    /// A champion that is part of the program, by its name: it can be read, not changed.
+pub enum SavePlace {
+    /// A champion that is part of the program, by name; read-only.
     Shipped(&'static str),
     /// A champion's file.
     Champion(PathBuf),
@@ -20,8 +20,8 @@ pub enum Place {
     Run(PathBuf),
 }
 
-impl Place {
-    /// What it is called: the file's name without its ending, or the folder's.
+impl SavePlace {
+    /// Its name: that of the file without its extension, or that of the folder.
     pub fn name(&self) -> String {
         let part = match self {
             Self::Shipped(name) => return (*name).to_owned(),
@@ -31,7 +31,7 @@ impl Place {
         part.unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Its file or folder, if it has one.
+    /// The path of its file or folder, if it has one.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::Shipped(_) => None,
@@ -39,7 +39,7 @@ impl Place {
         }
     }
 
-    /// The folder, if it is a run's.
+    /// The run's folder, if it is a run.
     pub fn run(&self) -> Option<&Path> {
         match self {
             Self::Run(path) => Some(path),
@@ -48,45 +48,45 @@ impl Place {
     }
 }
 
-/// An entry of the library, as far as its name tells.
+/// A library entry, without its contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
-    /// Where it is.
-    pub place: Place,
-    /// Size of its file, in bytes; of a run's folder that of its log, which grows with every generation.
+pub struct LibraryEntry {
+    /// Its place.
+    pub place: SavePlace,
+    /// Size of its file, in bytes; for a run the size of its log, which grows with every generation.
     pub bytes: u64,
-    /// When it was last changed, since the beginning of 1970 (UTC); nothing for what is part of the program.
+    /// Time of its last change since the beginning of 1970 (UTC); zero for a part of the program.
     pub modified: Duration,
 }
 
-/// Lists a folder of saves by name: champions' files, runs' folders, and those champions that are part of the
-/// program and have no file of their name there. A folder that is not there yet is empty.
+/// Lists the champions and runs in a folder of saves by name, and the champions that are part of the program unless a
+/// file has the same name. A folder that does not exist is empty.
 ///
 /// # Errors
 /// The folder cannot be read.
-pub fn list(saves: &SavesFolder) -> Result<Vec<Entry>, SaveError> {
+pub fn list(saves: &SavesFolder) -> Result<Vec<LibraryEntry>, SaveError> {
     let folder = saves.path();
     let unreadable = |source| SaveError::Unreadable { path: folder.to_owned(), source };
     let mut entries = match fs::read_dir(folder) {
-        // What goes while it is listed is not there.
+        // Entries that vanish meanwhile are left out.
         Ok(found) => found.flatten().filter_map(|found| entry_of(&found)).collect(),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
         Err(error) => return Err(unreadable(error)),
     };
-    let shipped = SHIPPED.iter().map(|(name, text)| Entry {
-        place: Place::Shipped(name),
+    let shipped = SHIPPED.iter().map(|(name, text)| LibraryEntry {
+        place: SavePlace::Shipped(name),
         bytes: text.len() as u64,
         modified: Duration::ZERO,
     });
     entries.extend(shipped.filter(|entry| {
         folder.join(format!("{}.ron", entry.place.name())).symlink_metadata().is_err()
     }));
-    entries.sort_by(|a: &Entry, b| a.place.cmp(&b.place));
+    entries.sort_by(|a: &LibraryEntry, b| a.place.cmp(&b.place));
     Ok(entries)
 }
 
-/// What a name in the folder stands for, if it is for the library. What begins with a dot is hidden.
-fn entry_of(found: &DirEntry) -> Option<Entry> {
+/// The library entry of a file or folder, if it is one. Names that begin with a dot are hidden.
+fn entry_of(found: &DirEntry) -> Option<LibraryEntry> {
     let (name, path) = (found.file_name(), found.path());
     if name.as_encoded_bytes().starts_with(b".") {
         return None;
@@ -95,24 +95,27 @@ fn entry_of(found: &DirEntry) -> Option<Entry> {
     if kind.is_dir() {
         path.join(RUN_FILE).symlink_metadata().ok()?;
         let own = found.metadata().ok()?;
-        // A folder changes with its files' names, its log with every generation.
+        // The folder's own time changes only with the names in it, the log's with every generation.
         let log = path.join(LOG_FILE).symlink_metadata();
         let bytes = log.as_ref().map_or(0, fs::Metadata::len);
-        let modified = log.map_or(Duration::ZERO, |log| changed(&log)).max(changed(&own));
-        return Some(Entry { place: Place::Run(path), bytes, modified });
+        let modified = log.map_or(Duration::ZERO, |log| modified(&log)).max(modified(&own));
+        return Some(LibraryEntry { place: SavePlace::Run(path), bytes, modified });
     }
     if path.extension().is_none_or(|extension| extension != "ron") {
         return None;
     }
-    // Of a link itself: it is listed, and says when it is read that it is one.
+    // A link is listed as itself; reading it gives an error.
     let own = found.metadata().ok()?;
-    Some(Entry { place: Place::Champion(path), bytes: own.len(), modified: changed(&own) })
+    Some(LibraryEntry {
+        place: SavePlace::Champion(path),
+        bytes: own.len(),
+        modified: modified(&own),
+    })
 }
 
-/// Since the beginning of 1970.
-fn changed(about: &fs::Metadata) -> Duration {
-    let modified = about.modified().ok();
-    modified.and_then(|at| at.duration_since(UNIX_EPOCH).ok()).unwrap_or_default()
+/// Time of the last change, since the beginning of 1970.
+fn modified(about: &fs::Metadata) -> Duration {
+    about.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok()).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -121,7 +124,7 @@ mod tests {
     use crate::save::library::fixtures::{names, run_in, saves};
 
     #[test]
-    fn champions_and_runs_are_listed_and_nothing_else() {
+    fn only_champions_and_runs_are_listed() {
         let (folder, saves) = saves();
         for name in ["b.ron", "a.ron", ".hidden.ron", "notes.txt"] {
             fs::write(folder.path().join(name), "whatever").expect("written");
@@ -130,7 +133,7 @@ mod tests {
             fs::create_dir(folder.path().join(name)).expect("created");
         }
         let run = run_in(&saves, 1);
-        let own = |entries: &[Entry]| names(entries, |place| place.path().is_some());
+        let own = |entries: &[LibraryEntry]| names(entries, |place| place.path().is_some());
         let entries = list(&saves).expect("readable");
         assert_eq!(own(&entries), ["a", "b", &run.name()]);
         assert_eq!(entries.iter().filter(|entry| entry.place == run).count(), 1);
@@ -141,10 +144,11 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_with_the_program_is_listed_unless_the_folder_has_one_of_its_name() {
+    fn a_shipped_champion_is_listed_unless_a_file_has_its_name() {
         let (folder, saves) = saves();
-        let shipped =
-            || names(&list(&saves).expect("readable"), |place| matches!(place, Place::Shipped(_)));
+        let shipped = || {
+            names(&list(&saves).expect("readable"), |place| matches!(place, SavePlace::Shipped(_)))
+        };
         assert_eq!(shipped().len(), SHIPPED.len());
         fs::write(folder.path().join("climber.ron"), "mine").expect("written");
         assert_eq!(shipped().len(), SHIPPED.len() - 1);
@@ -152,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_is_not_there_yet_is_empty_and_a_file_in_its_place_is_an_error() {
+    fn a_missing_folder_is_empty_and_a_file_in_its_place_is_an_error() {
         let (folder, _) = saves();
         let missing = SavesFolder::find(Some(&folder.path().join("not yet")));
         assert_eq!(list(&missing).expect("empty").len(), SHIPPED.len());
@@ -164,7 +168,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_to_a_folder_is_no_run() {
+    fn a_link_to_a_run_is_not_listed() {
         let (folder, saves) = saves();
         let (elsewhere, others) = super::super::fixtures::saves();
         let run = run_in(&others, 1);

@@ -1,17 +1,17 @@
-//! What an entry may be called.
+//! Names of library entries.
 
 use std::path::{Path, PathBuf};
 
 use crate::check::Invalid;
 
-/// The longest name, in characters.
-pub const LONGEST_NAME: usize = 100;
-/// The longest name, in bytes: with a number and an ending it is still a file's name everywhere.
-const LONGEST_NAME_BYTES: usize = 200;
-/// The ending of a champion's file.
+/// Maximum length of a name, in characters.
+pub const MAX_NAME_CHARS: usize = 100;
+/// Maximum length of a name, in bytes: with a number and an extension it is still a valid file name on every system.
+const MAX_NAME_BYTES: usize = 200;
+/// The extension of a champion's file.
 pub const ENDING: &str = "ron";
 
-/// Accepts what an entry may be called: it can neither leave its folder nor hide in it.
+/// Checks a name: it must neither lead out of its folder nor hide in it.
 ///
 /// # Errors
 /// The name is empty or too long, begins with a dot, or has a slash or a control character in it.
@@ -19,12 +19,12 @@ pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     let invalid = |value: String, allowed: &str| Err(Invalid::new("name", value, allowed));
     let characters = name.chars().count();
     let start: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
-    if !(1..=LONGEST_NAME).contains(&characters) {
-        let allowed = format!("1 to {LONGEST_NAME} characters");
+    if !(1..=MAX_NAME_CHARS).contains(&characters) {
+        let allowed = format!("1 to {MAX_NAME_CHARS} characters");
         return invalid(format!("{characters} characters long"), &allowed);
     }
-    if name.len() > LONGEST_NAME_BYTES {
-        let allowed = format!("up to {LONGEST_NAME_BYTES} bytes");
+    if name.len() > MAX_NAME_BYTES {
+        let allowed = format!("up to {MAX_NAME_BYTES} bytes");
         return invalid(format!("{} bytes long", name.len()), &allowed);
     }
     if name.starts_with('.') {
@@ -42,18 +42,18 @@ pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     Ok(())
 }
 
-/// A name that is allowed, as near as possible to one from elsewhere.
+/// An allowed name that is as close as possible to any given name.
 pub fn plain_name(name: &str) -> String {
     let plain: String = name.chars().filter(|c| !c.is_control() && !"/\\".contains(*c)).collect();
     let short = shortened(plain.trim().trim_start_matches('.').trim_start(), "");
     if short.is_empty() { "imported".to_owned() } else { short }
 }
 
-/// A name with something added to it, at the expense of its own end if it would become too long.
+/// A name with `added` appended; its own end is cut off if it would become too long.
 pub fn shortened(name: &str, added: &str) -> String {
     let fits = |text: &str| {
-        text.chars().count() + added.chars().count() <= LONGEST_NAME
-            && text.len() + added.len() <= LONGEST_NAME_BYTES
+        text.chars().count() + added.chars().count() <= MAX_NAME_CHARS
+            && text.len() + added.len() <= MAX_NAME_BYTES
     };
     let mut kept = name;
     while let Some((last, _)) = kept.char_indices().next_back().filter(|_| !fits(kept)) {
@@ -62,7 +62,7 @@ pub fn shortened(name: &str, added: &str) -> String {
     kept.trim_end().to_owned() + added
 }
 
-/// The first path in a folder that is not taken: the name, then the name and 2, and so on.
+/// The first free path in a folder: the name, then the name with 2, 3 and so on.
 pub fn free_path(folder: &Path, name: &str, ending: Option<&str>) -> PathBuf {
     let path = |number: u32| {
         let number = if number > 1 { format!(" {number}") } else { String::new() };
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_that_leaves_its_folder_hides_or_is_too_long_is_refused_with_the_reason() {
+    fn a_name_that_is_a_path_hidden_or_too_long_is_refused_with_the_reason() {
         for good in ["climber", "My best one, no. 2", "Schlange ü", "x.y", &"é".repeat(100)] {
             assert_eq!(check_entry_name(good), Ok(()), "{good}");
         }
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_a_file_is_called_elsewhere_it_gets_a_name_that_is_allowed() {
+    fn any_name_is_turned_into_an_allowed_one() {
         for odd in ["", "...", "a/../b", " .x ", "a\u{7}b", &"龍".repeat(300), &"x".repeat(300)] {
             let plain = plain_name(odd);
             assert_eq!(check_entry_name(&plain), Ok(()), "{odd:?} became {plain:?}");

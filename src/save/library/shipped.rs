@@ -1,6 +1,6 @@
-//! The champions that are part of the program.
+//! Champions that are part of the program.
 
-/// Lists champions by the names of their files.
+/// Pairs the names of champions with the texts of their files.
 macro_rules! shipped {
     ($($name:literal),* $(,)?) => {
         &[$(($name, include_str!(concat!("../../../saves/", $name, ".ron")))),*]

@@ -1,44 +1,52 @@
-//! A small picture of what a champion does, from the side: as plain numbers, for whoever draws it.
+//! A small picture of a champion's movement from the side, as points for a later drawing.
 
+use crate::evolve::Champion;
 use crate::score::{Recording, Trial};
 use crate::world::{Pose, Vector};
 
-/// What a champion does, seen from the side. All points are y and z, in metres.
+/// A champion's movement, seen from the side. All points are y and z, in metres.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Thumbnail {
     /// The outline of the stairs, from the first riser's foot to the end of the landing.
     pub stairs_m: Vec<[f32; 2]>,
-    /// The middle limb's way. Empty, if it is not on record.
+    /// The path of the middle limb; empty without a recording.
     pub way_m: Vec<[f32; 2]>,
-    /// The limbs at the end, head first, with their corners in order. Empty, if they are not on record.
+    /// The limbs at the end, head first, each with its corners in order; empty without a recording.
     pub limbs_m: Vec<[[f32; 2]; 4]>,
 }
 
-/// So many points of the way.
-const WAY_POINTS: usize = 20;
+/// Number of points of the path.
+const PATH_POINTS: usize = 20;
 
 impl Thumbnail {
-    /// That of a champion's trial and what was recorded of it.
-    pub fn new(trial: &Trial, recording: Option<&Recording>) -> Self {
-        let stairs_m = stairs(trial);
-        let Some(recording) = recording else { return Self { stairs_m, ..Self::default() } };
-        let middle = recording.limbs() / 2;
+    /// The stairs of a trial, without a snake.
+    pub fn of_trial(trial: &Trial) -> Self {
+        Self { stairs_m: stairs(trial), ..Self::default() }
+    }
+
+    /// The stairs and the recorded motion of a champion.
+    pub fn of_champion(champion: &Champion, recording: Option<&Recording>) -> Self {
+        let empty = Self::of_trial(&champion.trial);
+        let Some(recording) = recording else { return empty };
+        let body = champion.body();
+        let middle = body.middle_limb();
         let last = recording.frames().len().saturating_sub(1);
-        let mut frames: Vec<usize> = (0..WAY_POINTS).map(|i| i * last / (WAY_POINTS - 1)).collect();
+        let mut frames: Vec<usize> =
+            (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();
         frames.dedup();
         let mut wanted = frames.into_iter().peekable();
-        let mut way_m = Vec::with_capacity(WAY_POINTS);
+        let mut way_m = Vec::with_capacity(PATH_POINTS);
         let mut limbs_m = Vec::new();
         for (index, frame) in recording.frames().enumerate() {
             if wanted.next_if_eq(&index).is_some() {
                 way_m.extend(frame.get(middle).map(|pose| side(pose.translation)));
             }
             if index == last {
-                let limbs = frame.iter().enumerate();
-                limbs_m.extend(limbs.map(|(limb, pose)| quad(pose, trial.agent.limb_size_m(limb))));
+                let limbs = frame.iter().zip(&body.limbs);
+                limbs_m.extend(limbs.map(|(pose, limb)| quad(pose, limb.size_m())));
             }
         }
-        Self { stairs_m, way_m, limbs_m }
+        Self { way_m, limbs_m, ..empty }
     }
 }
 
@@ -57,7 +65,7 @@ fn side(at_m: Vector) -> [f32; 2] {
     [at_m.y, at_m.z]
 }
 
-/// A limb from the side: the cut through its middle that shows most of it.
+/// A limb from the side: the largest of three cross-sections through its middle.
 fn quad(pose: &Pose, [width_m, length_m, height_m]: [f32; 3]) -> [[f32; 2]; 4] {
     let half = |x, y, z| side(pose.rotation * Vector::new(x, y, z) / 2.0);
     let across = half(width_m, 0.0, 0.0);
@@ -66,7 +74,7 @@ fn quad(pose: &Pose, [width_m, length_m, height_m]: [f32; 3]) -> [[f32; 2]; 4] {
     let area = |[a, b]: [[f32; 2]; 2]| (a[0] * b[1] - a[1] * b[0]).abs();
     let cuts = [[along, up], [along, across], [across, up]];
     let [a, b] = cuts.into_iter().fold(cuts[0], |best, cut| {
-        // Only a clear gain, so that a limb that lies straight is not cut at random.
+        // Only a clear gain counts, so that rounding errors do not choose the cross-section of a straight limb.
         if area(cut) > area(best) * 1.01 { cut } else { best }
     });
     let [y, z] = side(pose.translation);
@@ -81,11 +89,11 @@ mod tests {
     use crate::world::Rotation;
 
     #[test]
-    fn the_shipped_champions_goes_from_its_start_onto_the_landing() {
+    fn the_shipped_champions_path_leads_from_its_start_to_the_landing() {
         let loaded = shipped_champion().expect("well formed");
         let trial = &loaded.champion.trial;
         let Thumbnail { stairs_m, way_m, limbs_m } =
-            Thumbnail::new(trial, loaded.recording.as_ref());
+            Thumbnail::of_champion(&loaded.champion, loaded.recording.as_ref());
         assert_eq!(stairs_m.len(), 22);
         assert_eq!((stairs_m[0], stairs_m[21]), ([3.0, 0.0], [trial.stairs.end_y_m(), 0.0]));
         assert_eq!(way_m.len(), 20);
@@ -94,12 +102,12 @@ mod tests {
         assert_eq!(limbs_m.len(), 5);
         let middle = limbs_m[2].iter().fold([0.0, 0.0], |[y, z], at| [y + at[0], z + at[1]]);
         assert!((middle[0] / 4.0 - way_m[19][0]).abs() < 0.01, "about its centre");
-        let without = Thumbnail::new(trial, None);
+        let without = Thumbnail::of_champion(&loaded.champion, None);
         assert_eq!((without.way_m.len(), without.limbs_m.len()), (0, 0), "nothing is simulated");
     }
 
     #[test]
-    fn a_limb_is_as_long_as_it_looks_from_the_side() {
+    fn a_limbs_corners_match_its_projection() {
         let size = [1.0, 2.0, 0.5];
         let extent = |rotation| {
             let corners = quad(&Pose::from_parts(Vector::new(9.0, 3.0, 1.0), rotation), size);

@@ -1,35 +1,42 @@
-//! Out of the folder of saves and into it: copies that write over nothing.
+//! Exports and imports: copies out of and into the folder of saves that overwrite nothing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::EXPORTS;
-use super::change::{Step, move_new, taken};
+use super::change::FileStep;
 use super::details::{text_of_file, text_of_shipped};
-use super::list::Place;
+use super::list::SavePlace;
+use super::moving::{move_new, taken};
 use super::name::{ENDING, free_path, plain_name};
 use crate::save::files::{UNFINISHED, prepare_folder, read_bytes, write_new};
 use crate::save::lock::{LOCK_FILE, Lock};
 use crate::save::plan::load_plan;
-use crate::save::{Progress, SaveError, SavesFolder, parse_champion, run_name};
+use crate::save::{SaveError, SavedProgress, SavesFolder, parse_champion, run_name};
 
-/// The largest file of a run that is copied, in MiB: checkpoints are the largest, and stay below.
+/// Folder for exported copies within a folder of saves, unless another is given.
+pub const EXPORTS: &str = "exports";
+
+/// Maximum size of a run's file that is copied, in MiB; checkpoints are the largest, and stay below.
 const LARGEST_MIB: u64 = 64;
-/// A run has its files in one folder, and figures in one below.
+/// Maximum depth of folders that are copied: a run has its files in one folder, and figures in one below.
 const DEEPEST: u32 = 1;
 
-/// Copies an entry out: a run as a whole. `to` is a folder, which is made if need be, or for a champion a file
-/// that ends in ".ron"; without it, it is a folder within that of saves.
+/// Copies an entry out of the folder of saves; a run with its whole folder. `to` is a folder, which is created if it
+/// does not exist, or for a champion a file with the extension ".ron"; the default is a folder within the saves.
 ///
 /// # Errors
-/// A program writes into the run's folder; a file cannot be read or written; the name of the file is taken.
-pub fn export(saves: &SavesFolder, place: &Place, to: Option<&Path>) -> Result<Step, SaveError> {
+/// A program writes into the run's folder; a file cannot be read or written; the file's name is taken.
+pub fn export(
+    saves: &SavesFolder,
+    place: &SavePlace,
+    to: Option<&Path>,
+) -> Result<FileStep, SaveError> {
     let exports = saves.path().join(EXPORTS);
     let to = to.unwrap_or(&exports);
     let text = match place {
-        Place::Run(run) => return export_run(run, to),
-        Place::Champion(path) => text_of_file(path)?,
-        Place::Shipped(name) => text_of_shipped(name)?.to_owned(),
+        SavePlace::Run(run) => return export_run(run, to),
+        SavePlace::Champion(path) => text_of_file(path)?,
+        SavePlace::Shipped(name) => text_of_shipped(name)?.to_owned(),
     };
     let is_file = !to.is_dir() && to.extension().is_some_and(|ending| ending == ENDING);
     let path = if is_file {
@@ -42,11 +49,11 @@ pub fn export(saves: &SavesFolder, place: &Place, to: Option<&Path>) -> Result<S
         free_path(to, &place.name(), Some(ENDING))
     };
     write_new(&path, text.as_bytes())?;
-    Ok(Step::Added { path })
+    Ok(FileStep::Added { path })
 }
 
-fn export_run(run: &Path, to: &Path) -> Result<Step, SaveError> {
-    // Where nobody may write, nobody does; who writes there now is named.
+fn export_run(run: &Path, to: &Path) -> Result<FileStep, SaveError> {
+    // A folder that cannot be written needs no lock; a program that holds the lock is reported.
     let lock = match Lock::take(run, "the library") {
         Err(error @ SaveError::InUse { .. }) => return Err(error),
         other => other.ok(),
@@ -56,14 +63,14 @@ fn export_run(run: &Path, to: &Path) -> Result<Step, SaveError> {
     let copied = copy_folder(run, to)?;
     drop(lock);
     let path = free_path(to, &name, None);
-    settle(copied, &path)
+    rename_copy(copied, &path)
 }
 
-/// Copies a champion or a run in from anywhere, once it has been read and checked completely.
+/// Copies a champion or a run from anywhere into the folder of saves, after it has been read and checked completely.
 ///
 /// # Errors
-/// It is unreadable, damaged, a link or of another kind; the run is there already; it cannot be written.
-pub fn import(saves: &SavesFolder, from: &Path) -> Result<Step, SaveError> {
+/// The entry is unreadable, damaged, a link or of another kind; the run exists already; the copy cannot be written.
+pub fn import(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
     let unreadable = |source| SaveError::Unreadable { path: from.to_owned(), source };
     if fs::symlink_metadata(from).map_err(unreadable)?.is_dir() {
         return import_run(saves, from);
@@ -74,33 +81,33 @@ pub fn import(saves: &SavesFolder, from: &Path) -> Result<Step, SaveError> {
     let name = from.file_stem().unwrap_or_default().to_string_lossy();
     let path = free_path(saves.path(), &plain_name(&name), Some(ENDING));
     write_new(&path, text.as_bytes())?;
-    Ok(Step::Added { path })
+    Ok(FileStep::Added { path })
 }
 
-fn import_run(saves: &SavesFolder, from: &Path) -> Result<Step, SaveError> {
-    // Said before anything is copied: most folders that are dropped by mistake are no runs.
+fn import_run(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
+    // Checked before anything is copied: the folder may be any folder, chosen by mistake.
     let path = saves.path().join(run_name(&load_plan(from)?));
     if path.symlink_metadata().is_ok() {
         return Err(taken(&path));
     }
     saves.prepare()?;
     let copied = copy_folder(from, saves.path())?;
-    // The copy is what is checked: the original may change meanwhile.
+    // Check the copy: the original may change meanwhile.
     let plan = load_plan(copied.path())?;
-    Progress::read(copied.path(), &plan)?;
-    settle(copied, &path)
+    SavedProgress::read(copied.path(), &plan)?;
+    rename_copy(copied, &path)
 }
 
-/// Gives a folder that has been copied completely its name.
-fn settle(copied: tempfile::TempDir, path: &Path) -> Result<Step, SaveError> {
+/// Gives a completely copied folder its final name.
+fn rename_copy(copied: tempfile::TempDir, path: &Path) -> Result<FileStep, SaveError> {
     move_new(copied.path(), path)?;
-    // There is nothing left to remove where it was.
+    // Nothing is left under the temporary name.
     drop(copied);
-    Ok(Step::Added { path: path.to_owned() })
+    Ok(FileStep::Added { path: path.to_owned() })
 }
 
-/// Copies a run's folder into another folder under a name for what is not whole; dropped, it goes. Links are
-/// left out, and the lock, which is the original's.
+/// Copies a run's folder into another folder under a temporary name; the copy is removed when dropped. Links, hidden
+/// files and the lock are left out.
 fn copy_folder(from: &Path, into: &Path) -> Result<tempfile::TempDir, SaveError> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(UNFINISHED);
@@ -145,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_champion_goes_to_the_folder_of_exports_or_where_one_says() {
+    fn a_champion_is_exported_to_the_default_folder_or_to_a_given_path() {
         let (folder, saves) = saves();
         let place = champion_in(&saves, "a");
         let elsewhere = tempfile::tempdir().expect("a folder");
@@ -158,11 +165,11 @@ mod tests {
             (Some(file.as_path()), file.clone()),
         ] {
             let step = export(&saves, &place, to).expect("exported");
-            assert_eq!(step, Step::Added { path: expected });
+            assert_eq!(step, FileStep::Added { path: expected });
         }
         let refusal = export(&saves, &place, Some(&file)).expect_err("taken").to_string();
         assert!(refusal.contains("not taken yet"), "{refusal}");
-        export(&saves, &Place::Shipped("fast"), Some(&new)).expect("exported");
+        export(&saves, &SavePlace::Shipped("fast"), Some(&new)).expect("exported");
         assert_eq!(names_in(&new), ["a.ron", "fast.ron"]);
         assert_eq!(own(&saves), ["a"], "copies are not listed");
         let in_a_file = file.join("below");
@@ -171,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_is_exported_and_imported_as_a_whole_but_not_while_it_is_in_use() {
+    fn a_run_is_exported_and_imported_completely_but_not_while_in_use() {
         let (_folder, saves) = saves();
         let run = run_in(&saves, 1);
         let path = run.path().expect("a folder");
@@ -182,10 +189,10 @@ mod tests {
         let refusal = export(&saves, &run, Some(elsewhere.path())).expect_err("in use");
         assert!(refusal.to_string().contains("in use by"), "{refusal}");
         drop(lock);
-        let Step::Added { path: copy } =
+        let FileStep::Added { path: copy } =
             export(&saves, &run, Some(elsewhere.path())).expect("exported")
         else {
-            panic!("something else");
+            panic!("not a copy");
         };
         assert!(!copy.join(LOCK_FILE).exists());
         assert_eq!(fs::read_to_string(copy.join("figures/one.csv")).expect("there"), "1");
@@ -200,15 +207,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_damaged_is_not_imported_and_leaves_nothing() {
+    fn a_damaged_entry_is_not_imported_and_leaves_no_files() {
         let (_folder, saves) = saves();
         let elsewhere = tempfile::tempdir().expect("a folder");
         let bad = elsewhere.path().join("bad.ron");
-        fs::write(&bad, "(kind: \"snakes-and-stairs champion\", format: 4").expect("written");
+        fs::write(&bad, "(kind: \"snakes-and-stairs champion\", format: 5").expect("written");
         let error = import(&saves, &bad).expect_err("damaged").to_string();
         assert!(error.contains("bad.ron: damaged or incomplete"), "{error}");
         let error = import(&saves, elsewhere.path()).expect_err("no run").to_string();
-        assert!(error.contains("no run.ron in it"), "{error}");
+        assert!(error.contains("it contains no run.ron"), "{error}");
         let other = SavesFolder::find(Some(&elsewhere.path().join("runs")));
         let run = run_in(&other, 1);
         let champion = run.path().expect("a folder").join("generation-1.ron");
@@ -219,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_any_name_is_imported_beside_what_has_its_name() {
+    fn an_imported_file_gets_a_free_name() {
         let (_folder, saves) = saves();
         let (elsewhere, others) = super::super::fixtures::saves();
         champion_in(&others, "a");
@@ -237,7 +244,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_is_not_followed_in_or_out() {
+    fn links_are_not_followed_on_import_or_export() {
         use std::os::unix::fs::symlink;
         let (folder, saves) = saves();
         let (elsewhere, others) = super::super::fixtures::saves();
@@ -245,7 +252,7 @@ mod tests {
         let secret = elsewhere.path().join("secret.ron");
         let link = folder.path().join("link.ron");
         symlink(&secret, &link).expect("linked");
-        let place = Place::Champion(link.clone());
+        let place = SavePlace::Champion(link.clone());
         for result in [import(&saves, &link), export(&saves, &place, None)] {
             let message = result.expect_err("refused").to_string();
             assert!(message.contains("it is a link"), "{message}");

@@ -1,125 +1,93 @@
-//! The best of every generation, the latest first, to click and replay.
+//! The best snake of every generation, newest first. A click replays it.
 
 use bevy_egui::egui;
 
-use super::{explain, row};
-use crate::evolve::{Champion, Origin};
+use super::shown::ShownChampion;
+use crate::evolve::Champion;
 use crate::run::GenerationReport;
-use crate::studio::casting::{Pick, Saved};
-use crate::studio::command::Command;
-use crate::studio::exhibit::{Exhibit, Source};
+use crate::studio::commands::Command;
+use crate::studio::commands::pick::Pick;
+use crate::studio::stage::opening::NamedChampion;
+use crate::studio::ui::text_rows::{explain, row};
 
-/// What of the list is on the stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shown {
-    /// A champion that the studio opened with; the first is 0.
-    Opening(usize),
-    /// This individual of the current run.
-    Found {
-        /// The generation that found it; the first is 1.
-        generation: u32,
-        /// Its index in that generation.
-        individual: u32,
-    },
-}
-
-impl Shown {
-    /// How an exhibit is listed, if it is; `run` is the number of the current run.
-    pub(super) fn of(exhibit: &Exhibit, run: u32) -> Option<Self> {
-        match exhibit.source() {
-            Source::Opening(index) => Some(Self::Opening(index)),
-            Source::Run(of) if of == run => {
-                let Origin { generation, individual, .. } = exhibit.champion().origin;
-                Some(Self::Found { generation, individual })
-            }
-            Source::Library(_) | Source::Run(_) | Source::Lesson => None,
-        }
-    }
-
-    /// Whether it is this individual of the current run.
-    pub(super) fn is(self, generation: u32, individual: u32) -> bool {
-        self == Self::Found { generation, individual }
-    }
-}
-
-/// The list.
+/// List of champions.
 #[derive(Debug, Default)]
 pub(super) struct ChampionsPanel {
-    /// What it knows of the reports, and of which these are: how many, and the hash of the latest.
-    known: Option<((usize, u64), Known)>,
+    /// Cached summary of the reports, with the number of reports and the hash of the latest as its key.
+    summary: Option<((usize, u64), ReportSummary)>,
 }
 
-/// What is found out once for each new report, not in every frame.
+/// Summary that is computed once for each new report instead of in every frame.
 #[derive(Debug, Clone, Copy)]
-struct Known {
-    /// How many generations have a champion.
+struct ReportSummary {
+    /// Number of generations that have a champion.
     champions: usize,
-    /// The generation of the best of all.
+    /// Generation of the best champion of the run.
     best: Option<u32>,
 }
 
-impl Known {
+impl ReportSummary {
     fn of(reports: &[GenerationReport]) -> Self {
-        let known = reports.iter().filter_map(|report| report.champion.as_ref());
+        let champions = reports.iter().filter_map(|report| report.champion.as_ref());
         let fitness = |champion: &Champion| champion.evaluation.fitness;
-        // Of equals, the first that was found.
-        let best = known.clone().rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
-        Self { champions: known.count(), best: best.map(|champion| champion.origin.generation) }
+        // The earliest of equally fit champions wins.
+        let best = champions.clone().rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
+        Self { champions: champions.count(), best: best.map(|champion| champion.origin.generation) }
     }
 }
 
 impl ChampionsPanel {
-    /// Draws the list and adds what was asked for.
+    /// Draws the list and collects the user's commands.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
-        opening: &[Saved],
+        opening: &[NamedChampion],
         reports: &[GenerationReport],
-        shown: &[Shown],
+        shown: &[ShownChampion],
         leaders: impl Fn(Option<u32>) -> usize,
-        asked: &mut Vec<Command>,
+        commands: &mut Vec<Command>,
     ) {
-        let Known { champions, best } = self.follow(reports);
+        let ReportSummary { champions, best } = self.summary(reports);
         ui.horizontal(|ui| {
             for (name, hint, is_on, command) in [
                 (
                     "Race generations",
-                    "The generations' champions side by side (N)",
+                    "Replay champions of several generations side by side (N)",
                     champions > 1,
                     Command::RaceGenerations,
                 ),
                 (
-                    "Race top ten",
-                    "The best of the latest generation, side by side (M)",
+                    "Race best 10",
+                    "Replay the ten best snakes of the latest generation side by side (M)",
                     leaders(None) > 1,
                     Command::RaceLeaders(None),
                 ),
             ] {
                 let button = egui::Button::new(name);
-                let not_yet = "There is no such race yet";
+                let disabled_hint = "Nothing to race yet: wait for the next generation";
                 let response = ui.add_enabled(is_on, button).on_hover_text(hint);
-                if response.on_disabled_hover_text(not_yet).clicked() {
-                    asked.push(command);
+                if response.on_disabled_hover_text(disabled_hint).clicked() {
+                    commands.push(command);
                 }
             }
         });
         if reports.is_empty() {
-            explain(ui, "The best of each generation will appear here.");
+            explain(ui, "The best snake of each generation will appear here.");
         }
         let height = ui.spacing().interact_size.y;
         let rows = opening.len() + reports.len();
         let area = egui::ScrollArea::vertical().auto_shrink(false);
-        // Only those that are seen are drawn: there may be thousands.
+        // A run may have thousands of generations, so only visible rows are drawn.
         area.show_rows(ui, height, rows, |ui, seen| {
             for index in seen {
                 if let Some(saved) = opening.get(index) {
-                    let name = if opening.len() == 1 { "Saved" } else { &saved.name };
-                    let is_shown = shown.contains(&Shown::Opening(index));
+                    let name = if opening.len() == 1 { "Saved champion" } else { &saved.name };
+                    let is_shown = shown.contains(&ShownChampion::Opening(index));
                     let champion = &saved.loaded.champion;
-                    entry(ui, is_shown, name, champion, Pick::Opening(index), None, asked);
+                    entry(ui, is_shown, name, champion, Pick::Opened(index), None, commands);
                     continue;
                 }
-                // The latest first: that is what one waits for.
+                // The newest generation is listed first.
                 let Some(report) = reports.iter().rev().nth(index - opening.len()) else {
                     continue;
                 };
@@ -135,24 +103,24 @@ impl ChampionsPanel {
                 let is_best = best == Some(generation);
                 let name = if is_best { format!("{name}, best") } else { name };
                 let race = (leaders(Some(generation)) > 1).then_some(generation);
-                entry(ui, is_shown, &name, champion, pick, race, asked);
+                entry(ui, is_shown, &name, champion, pick, race, commands);
             }
         });
     }
 }
 
 impl ChampionsPanel {
-    fn follow(&mut self, reports: &[GenerationReport]) -> Known {
+    fn summary(&mut self, reports: &[GenerationReport]) -> ReportSummary {
         let now = (reports.len(), reports.last().map_or(0, |report| report.hash));
-        match self.known {
-            Some((then, known)) if then == now => known,
-            _ => self.known.insert((now, Known::of(reports))).1,
+        match self.summary {
+            Some((key, summary)) if key == now => summary,
+            _ => self.summary.insert((now, ReportSummary::of(reports))).1,
         }
     }
 }
 
-/// A row for somebody: a click shows it alone, one with Shift or Control puts it beside those on the stage; its menu
-/// lets the next run begin from it, and the best ten of its generation race, if they can.
+/// Draws the row of a champion. A click shows it alone; Shift or Control adds it to the stage. Its context menu starts
+/// the next run from it, or races the best ten of its generation.
 fn entry(
     ui: &mut egui::Ui,
     is_shown: bool,
@@ -160,31 +128,31 @@ fn entry(
     champion: &Champion,
     pick: Pick,
     race: Option<u32>,
-    asked: &mut Vec<Command>,
+    commands: &mut Vec<Command>,
 ) {
     let response = row(ui, is_shown, name, &champion.reached()).on_hover_ui(|ui| {
-        // What tells those apart that came equally far.
+        // These values distinguish champions that reached the same distance.
         if let Some(effort) = champion.evaluation.effort {
             let (energy_kj, speed_m_s) = (effort.energy_j / 1000.0, effort.top_speed_m_s);
-            ui.label(format!("Spent {energy_kj:.1} kJ, and was {speed_m_s:.1} m/s fast at most"));
+            ui.label(format!("Energy {energy_kj:.1} kJ, top speed {speed_m_s:.1} m/s"));
         }
-        ui.label("Click to replay; with Shift, beside what is on the stage; right click for more");
+        ui.label("Click to replay. Shift-click to add it to the stage. Right-click for more.");
     });
     if response.clicked() {
         let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-        asked.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
+        commands.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
     }
     response.context_menu(|ui| {
-        let found = ui.button("Begin the next run from it");
-        let hint = "The first generation descends from it, in its own world";
+        let found = ui.button("Start the next run from this snake");
+        let hint = "The first generation descends from it, in the world where it was found";
         if found.on_hover_text(hint).clicked() {
-            asked.push(Command::Found(pick));
+            commands.push(Command::StartFrom(pick));
             ui.close();
         }
         if let Some(generation) = race
-            && ui.button("Race its best ten").clicked()
+            && ui.button("Race best 10 of this generation").clicked()
         {
-            asked.push(Command::RaceLeaders(Some(generation)));
+            commands.push(Command::RaceLeaders(Some(generation)));
             ui.close();
         }
     });
@@ -194,29 +162,29 @@ fn entry(
 mod tests {
     use super::*;
     use crate::evolve::{RunPlan, Settings};
-    use crate::run::{Control, Experiment, pool};
+    use crate::run::{Experiment, LocalPool, RunControl};
     use crate::save::shipped_champion;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     #[test]
-    fn the_best_is_found_anew_when_there_is_another_report_and_in_another_run() {
+    fn the_summary_is_updated_after_a_report_and_in_another_run() {
         let mut settings = Settings::default();
         settings.evolution.population = 4;
         settings.trial.duration_s = 0.5;
-        let pool = pool(1).expect("a pool");
+        let pool = LocalPool::new(1).expect("threads");
         let run = |seed| {
             let mut experiment = Experiment::new(RunPlan::new("test", seed, settings.clone()));
             let mut report =
-                || experiment.run_generation(&pool, &Control::default()).expect("done");
+                || experiment.run_generation(&pool, &RunControl::default()).expect("done");
             [report(), report(), report()]
         };
         let (first, second) = (run(1), run(2));
         let mut panel = ChampionsPanel::default();
         for reports in [&first[..0], &first[..1], &first[..], &second[..], &first[..2]] {
-            let known = panel.follow(reports);
-            let expected = Known::of(reports);
-            assert_eq!((known.champions, known.best), (expected.champions, expected.best));
+            let summary = panel.summary(reports);
+            let expected = ReportSummary::of(reports);
+            assert_eq!((summary.champions, summary.best), (expected.champions, expected.best));
         }
     }
 
@@ -226,15 +194,15 @@ mod tests {
         settings.evolution.population = 4;
         settings.trial.duration_s = 0.5;
         let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
-        let pool = pool(1).expect("a pool");
-        let mut report = || experiment.run_generation(&pool, &Control::default()).expect("done");
+        let pool = LocalPool::new(1).expect("threads");
+        let mut report = || experiment.run_generation(&pool, &RunControl::default()).expect("done");
         let reports = [report(), report()];
         let loaded = shipped_champion().expect("well formed");
-        let opening = [Saved { name: "climber".to_owned(), loaded }];
+        let opening = [NamedChampion { name: "climber".to_owned(), loaded }];
         let mut panel = ChampionsPanel::default();
         let mut harness = Harness::new_ui_state(
-            |ui, asked| {
-                panel.ui(ui, &opening, &reports, &[Shown::Opening(0)], |_| 2, asked);
+            |ui, commands| {
+                panel.ui(ui, &opening, &reports, &[ShownChampion::Opening(0)], |_| 2, commands);
             },
             Vec::new(),
         );
@@ -246,7 +214,7 @@ mod tests {
         harness.run();
         harness.get_by_label("Race generations").click();
         harness.run();
-        let asked = [Command::Join(Pick::Generation(1)), Command::RaceGenerations];
-        assert_eq!(*harness.state(), asked);
+        let commands = [Command::Join(Pick::Generation(1)), Command::RaceGenerations];
+        assert_eq!(*harness.state(), commands);
     }
 }

@@ -1,70 +1,70 @@
-//! The lessons: their list, and the one that is going on.
+//! Lessons: the list, and the lesson in progress.
 
 use bevy_egui::egui;
 use egui_plot::{Line, PlotPoints};
 
-use super::axes::{around, bounds, still};
-use super::explain;
 use crate::score::Evaluation;
-use crate::studio::command::Command;
-use crate::studio::lessons::{Found, LESSONS, View};
-use crate::studio::look;
+use crate::studio::commands::Command;
+use crate::studio::state::lessons::{Found, LESSONS, LessonView};
+use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range};
+use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::theme;
 
-/// Draws the list of lessons, or the one that is going on, and adds what was asked for.
-pub(super) fn lessons(ui: &mut egui::Ui, going_on: Option<View<'_>>, asked: &mut Vec<Command>) {
-    match going_on {
-        None => list(ui, asked),
-        Some(view) => lesson(ui, view, asked),
+/// Draws the list of lessons or the lesson in progress, and collects the user's commands.
+pub(super) fn lessons(
+    ui: &mut egui::Ui,
+    current: Option<LessonView<'_>>,
+    commands: &mut Vec<Command>,
+) {
+    match current {
+        None => list(ui, commands),
+        Some(view) => lesson(ui, view, commands),
     }
 }
 
-fn list(ui: &mut egui::Ui, asked: &mut Vec<Command>) {
-    explain(
-        ui,
-        "What the first stair climbers taught their makers, each to be tried in two minutes. Your own run \
-         waits meanwhile, and is given back untouched.",
-    );
+fn list(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    explain(ui, "Five two-minute experiments. Your own run is paused and comes back unchanged.");
     for (index, lesson) in LESSONS.iter().enumerate() {
-        let palette = look::of(ui);
+        let palette = theme::of(ui);
         palette.card(palette.field_hovered).show(ui, |ui| {
             ui.set_width(ui.available_width());
             let title = format!("{}. {}", index + 1, lesson.title);
-            ui.label(egui::RichText::new(title).size(look::TITLE_SIZE).strong());
+            ui.label(egui::RichText::new(title).size(theme::TITLE_SIZE).strong());
             ui.label(lesson.question);
             let name = format!("Begin lesson {}", index + 1);
             if ui.button(&name).clicked() {
-                asked.push(Command::BeginLesson(index));
+                commands.push(Command::BeginLesson(index));
             }
         });
     }
 }
 
-fn lesson(ui: &mut egui::Ui, view: View<'_>, asked: &mut Vec<Command>) {
+fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) {
     let lesson = &LESSONS[view.index];
-    let palette = look::of(ui);
+    let palette = theme::of(ui);
     let accent = |text: &str| egui::RichText::new(text).strong().color(palette.on_accent);
     ui.horizontal_wrapped(|ui| {
         let back = egui::Button::new(accent("Back to my own run")).fill(palette.accent);
-        let hint = "The stage, the settings and the run are as they were before";
+        let hint = "End the lesson and restore your run, its settings and the stage";
         if ui.add(back).on_hover_text(hint).clicked() {
-            asked.push(Command::LeaveLesson);
+            commands.push(Command::LeaveLesson);
         }
         if view.index + 1 < LESSONS.len() && ui.button("Next lesson").clicked() {
-            asked.push(Command::BeginLesson(view.index + 1));
+            commands.push(Command::BeginLesson(view.index + 1));
         }
     });
     let title = format!("{}. {}", view.index + 1, lesson.title);
-    ui.label(egui::RichText::new(title).size(look::HEADING_SIZE).strong());
+    ui.label(egui::RichText::new(title).size(theme::HEADING_SIZE).strong());
     ui.label(egui::RichText::new(lesson.question).italics());
     ui.label(lesson.story);
-    heading(ui, "To try");
+    heading(ui, "Try it");
     ui.label(lesson.to_try);
     for (index, scene) in lesson.scenes.iter().enumerate() {
         let is_shown = index == view.scene;
         let button = egui::Button::new(scene.label()).selected(is_shown);
         let size = egui::vec2(ui.available_width(), 0.0);
         if ui.add_enabled(!view.is_busy, button.min_size(size)).clicked() {
-            asked.push(Command::TryLesson(index));
+            commands.push(Command::ShowLessonScene(index));
         }
     }
     heading(ui, "What to look for");
@@ -75,32 +75,32 @@ fn lesson(ui: &mut egui::Ui, view: View<'_>, asked: &mut Vec<Command>) {
     if !view.runs.is_empty() {
         runs(ui, view.runs, view.is_busy);
     }
-    heading(ui, "What it comes to");
+    heading(ui, "Conclusion");
     if view.has_tried && !view.is_busy {
         ui.label(lesson.answer);
     } else {
         ui.horizontal(|ui| {
-            explain(ui, "Watch and try it first.");
-            if ui.small_button("Tell me").clicked() {
-                asked.push(Command::TellLesson);
+            explain(ui, "Try the experiment first.");
+            if ui.small_button("Show conclusion").clicked() {
+                commands.push(Command::ShowLessonAnswer);
             }
         });
     }
 }
 
 fn heading(ui: &mut egui::Ui, text: &str) {
-    ui.add_space(look::GAP / 2.0);
-    ui.label(egui::RichText::new(text).size(look::TITLE_SIZE).strong());
+    ui.add_space(theme::GAP / 2.0);
+    ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
 }
 
-/// How each lane ends.
+/// Table of the final results of all lanes.
 fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
     table(ui, "lanes", &["", "Ends at", "Fitness"], |ui| {
         for (name, evaluation) in lanes {
             ui.label(name);
             match evaluation.disqualified {
                 Some(reason) => {
-                    ui.label("out:");
+                    ui.label("disqualified:");
                     ui.label(reason.words());
                 }
                 None => {
@@ -113,9 +113,9 @@ fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
     });
 }
 
-/// What each run has come to.
+/// Chart and table of the results of all runs.
 fn runs(ui: &mut egui::Ui, runs: &[Found], is_busy: bool) {
-    let palette = look::of(ui);
+    let palette = theme::of(ui);
     let colors = [palette.accent, palette.second];
     let best = |found: &Found| -> Vec<[f64; 2]> {
         let known = found.reports.iter().filter_map(|report| {
@@ -124,11 +124,12 @@ fn runs(ui: &mut egui::Ui, runs: &[Found], is_busy: bool) {
         known.collect()
     };
     let lines: Vec<Vec<[f64; 2]>> = runs.iter().map(best).collect();
-    let axis =
-        |of: usize, least: f64| around(lines.iter().flatten().map(move |point| point[of]), least);
+    let axis = |of: usize, least: f64| {
+        padded_range(lines.iter().flatten().map(move |point| point[of]), least)
+    };
     if let (Some(x), Some(y)) = (axis(0, 1.0), axis(1, 1.0)) {
-        explain(ui, "Best fitness of each generation, m");
-        still("lesson", look::PLOT_HEIGHT).show(ui, |plot| {
+        explain(ui, "Best fitness of each generation (m)");
+        fixed_plot("lesson", theme::PLOT_HEIGHT).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&x, &y));
             for ((found, points), color) in runs.iter().zip(&lines).zip(colors) {
                 let line = Line::new(found.name.clone(), PlotPoints::from(points.clone()));
@@ -140,10 +141,10 @@ fn runs(ui: &mut egui::Ui, runs: &[Found], is_busy: bool) {
         ui.horizontal(|ui| {
             ui.spinner();
             let done = runs.iter().map(|found| found.reports.len()).min().unwrap_or(0);
-            explain(ui, &format!("{done} generations done"));
+            explain(ui, &format!("{done} generations finished"));
         });
     }
-    table(ui, "runs", &["", "Best", "Out", "Hash"], |ui| {
+    table(ui, "runs", &["", "Best", "Disqualified", "Run hash"], |ui| {
         for (found, color) in runs.iter().zip(colors) {
             ui.label(egui::RichText::new(&found.name).color(color).strong());
             let best = found.best().map(|best| format!("{:.2} m", best.evaluation.fitness));
@@ -151,17 +152,17 @@ fn runs(ui: &mut egui::Ui, runs: &[Found], is_busy: bool) {
             let out: u32 = found.reports.iter().map(|report| report.disqualified).sum();
             let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
             ui.label(format!("{out} of {all}"))
-                .on_hover_text("Disqualified, of all that were tried");
+                .on_hover_text("Disqualified snakes of all that were evaluated");
             let hash = found.run_hash.map(|hash| format!("{hash:016x}"));
             let hash = egui::RichText::new(hash.unwrap_or_default()).monospace();
-            ui.add(egui::Label::new(hash.size(look::SMALL_SIZE)).wrap());
+            ui.add(egui::Label::new(hash.size(theme::SMALL_SIZE)).wrap());
             ui.end_row();
         }
     });
 }
 
 fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut egui::Ui)) {
-    let spacing = [look::GAP * 1.5, look::GAP / 2.0];
+    let spacing = [theme::GAP * 1.5, theme::GAP / 2.0];
     egui::Grid::new(id).num_columns(heads.len()).spacing(spacing).show(ui, |ui| {
         for head in heads {
             explain(ui, head);
@@ -174,19 +175,19 @@ fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut egu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::evolution::prepared_run;
-    use crate::studio::lessons::Lessons;
-    use crate::studio::stage::{Programme, Show};
-    use crate::studio::undo::History;
+    use crate::studio::stage::{Show, StageMode};
+    use crate::studio::state::current_run::prepared_run;
+    use crate::studio::state::lessons::Lessons;
+    use crate::studio::state::undo::UndoHistory;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// What a click on this sends.
+    /// Commands sent by a click on `label`.
     fn sent(of: &Lessons, label: &str) -> Vec<Command> {
-        let size = egui::vec2(look::PANEL_WIDTH, 1600.0);
+        let size = egui::vec2(theme::PANEL_WIDTH, 1600.0);
         let mut harness = Harness::builder()
             .with_size(size)
-            .build_ui_state(|ui, asked| lessons(ui, of.view(), asked), Vec::new());
+            .build_ui_state(|ui, commands| lessons(ui, of.view(), commands), Vec::new());
         harness.run();
         harness.get_by_label(label).click();
         harness.run();
@@ -194,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn each_lesson_can_be_begun_from_the_list() {
+    fn each_lesson_can_be_started_from_the_list() {
         for index in 0..LESSONS.len() {
             let label = format!("Begin lesson {}", index + 1);
             assert_eq!(sent(&Lessons::default(), &label), [Command::BeginLesson(index)]);
@@ -202,22 +203,22 @@ mod tests {
     }
 
     #[test]
-    fn a_lesson_is_tried_answered_and_left_by_its_buttons() {
+    fn lesson_buttons_run_an_experiment_show_the_conclusion_and_leave() {
         let mut evolution = prepared_run();
         let mut of = Lessons::default();
-        let on_show = Show { exhibits: Vec::new(), programme: Programme::Solo };
-        of.begin(0, &mut evolution, on_show, &mut History::default()).expect("allowed");
+        let on_show = Show { champions: Vec::new(), mode: StageMode::Solo };
+        of.begin(0, &mut evolution, on_show, &mut UndoHistory::default()).expect("allowed");
         let second = LESSONS[0].scenes[1].label();
-        assert_eq!(sent(&of, second), [Command::TryLesson(1)]);
-        assert_eq!(sent(&of, "Tell me"), [Command::TellLesson]);
+        assert_eq!(sent(&of, second), [Command::ShowLessonScene(1)]);
+        assert_eq!(sent(&of, "Show conclusion"), [Command::ShowLessonAnswer]);
         assert_eq!(sent(&of, "Next lesson"), [Command::BeginLesson(1)]);
         assert_eq!(sent(&of, "Back to my own run"), [Command::LeaveLesson]);
         of.try_out(1).expect("shown");
-        // Its answer is told now.
-        let size = egui::vec2(look::PANEL_WIDTH, 1600.0);
-        let mut asked = Vec::new();
+        // The conclusion is visible after an experiment.
+        let size = egui::vec2(theme::PANEL_WIDTH, 1600.0);
+        let mut commands = Vec::new();
         let harness =
-            Harness::builder().with_size(size).build_ui(|ui| lessons(ui, of.view(), &mut asked));
+            Harness::builder().with_size(size).build_ui(|ui| lessons(ui, of.view(), &mut commands));
         assert!(harness.query_by_label(LESSONS[0].answer).is_some());
     }
 }

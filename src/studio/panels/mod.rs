@@ -1,33 +1,18 @@
-//! The panels around the stage, and what lies on its edges: the player and the torques below it, the camera's buttons
-//! above it, the board beside it.
+//! Panels around the stage, and controls on its edges: player and torques below, camera buttons above, leaderboard
+//! beside it.
 //!
-//! A panel is a struct with a `ui` method. It sees what is, and sends commands; it changes nothing.
+//! A panel is a struct with a `ui` method. It reads the state and sends commands, but changes nothing itself.
 
-mod archive_map;
-mod axes;
-mod board;
 mod champions;
 mod charts;
-mod curves;
-mod evolution;
-mod front_plot;
-mod icons;
-mod key_overlay;
-mod layout;
+pub mod help;
 mod lessons;
 mod library;
-mod limb_card;
-mod menu;
-mod number_field;
-mod palette;
-mod parameters;
-mod presets;
-mod progress;
-mod signals;
-mod stage_cards;
-mod timeline;
-mod tour;
-mod view_bar;
+mod on_stage;
+mod player;
+mod run;
+mod settings;
+mod shown;
 mod world;
 
 use bevy::ecs::system::SystemParam;
@@ -35,54 +20,41 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use egui_dock::{DockArea, TabStyle, TabViewer};
 
-use super::actions::Situation;
-use super::camera::{CameraRig, StageCamera};
-use super::casting::Opening;
-use super::command::Command;
-use super::desk::{Desk, Over};
-use super::evolution::Evolution;
-use super::hands::{DOUBLE_CLICK_S, Hands};
-use super::lane::Lane;
-use super::lessons::{LESSONS, Lessons};
-use super::library::Library;
-use super::overlay::Overlays;
-use super::playback::Playback;
-use super::stage::{Programme, end_s};
-use super::stage_area::StageArea;
-use super::undo::History;
-use super::{Opened, look};
+use super::commands::Command;
+use super::commands::actions::Situation;
+use super::commands::modal::Modal;
+use super::scene::camera::mouse::DOUBLE_CLICK_S;
+use super::stage::end_s;
+use super::stage::lane::Lane;
+use super::stage::opening::OpeningChampions;
+use super::state::current_run::CurrentRun;
+use super::state::lessons::{LESSONS, Lessons};
+use super::state::library::Library;
+use super::state::options::OpenedComparison;
+use super::ui::theme;
+use super::ui::viewport::StageArea;
+use super::workspace::Workspace;
+use super::workspace::layout::style;
 
-use champions::{ChampionsPanel, Shown};
+use champions::ChampionsPanel;
 use charts::{ChartsPanel, FitnessChart};
-use evolution::EvolutionPanel;
-use key_overlay::key_overlay;
-use layout::style;
+use help::command_palette::CommandPalette;
+use help::key_list::key_overlay;
+use help::menu::menu;
+use help::tour::tour;
 use lessons::lessons;
 use library::LibraryPanel;
-use menu::menu;
-use palette::Palette;
-use stage_cards::{around_stage, lesson_card};
-use timeline::TimelinePanel;
-use tour::tour;
+use on_stage::OnStage;
+use player::cards::{around_stage, lesson_card};
+use player::timeline::TimelinePanel;
+use run::EvolutionPanel;
+use shown::ShownChampion;
 use world::WorldPanel;
 
-pub(super) use layout::{Layout, PanelKind};
-pub(super) use tour::shown_in;
+pub(super) use super::commands::panel::PanelKind;
+pub(super) use help::tour::highlighted_panel;
 
-/// What is on the stage, as the panels see it.
-#[derive(SystemParam)]
-struct OnStage<'w, 's> {
-    lanes: Query<'w, 's, &'static Lane>,
-    programme: Res<'w, Programme>,
-    playback: Res<'w, Playback>,
-    hands: Res<'w, Hands>,
-    rig: Res<'w, CameraRig>,
-    overlays: Res<'w, Overlays>,
-    history: Res<'w, History>,
-    smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
-}
-
-/// The panels, with what they remember between frames.
+/// The panels with their state between frames.
 #[derive(Resource)]
 struct Panels {
     evolution: EvolutionPanel,
@@ -92,16 +64,17 @@ struct Panels {
     saves: LibraryPanel,
     world: WorldPanel,
     timeline: TimelinePanel,
-    palette: Palette,
-    /// Where each panel was drawn in this frame, in points.
-    places: Vec<(PanelKind, egui::Rect)>,
-    is_dressed: bool,
-    letters: look::Letters,
+    palette: CommandPalette,
+    /// Rectangle of each panel in this frame, in points.
+    panel_rects: Vec<(PanelKind, egui::Rect)>,
+    is_styled: bool,
+    letters: theme::GlyphWarmUp,
 }
 
 impl FromWorld for Panels {
     fn from_world(world: &mut World) -> Self {
-        let comparison = world.get_resource::<Opened>().and_then(|opened| opened.0.as_ref());
+        let comparison =
+            world.get_resource::<OpenedComparison>().and_then(|opened| opened.0.as_ref());
         Self {
             evolution: EvolutionPanel::default(),
             fitness: FitnessChart::default(),
@@ -110,10 +83,10 @@ impl FromWorld for Panels {
             saves: LibraryPanel::default(),
             world: WorldPanel::default(),
             timeline: TimelinePanel::default(),
-            palette: Palette::default(),
-            places: Vec::new(),
-            is_dressed: false,
-            letters: look::Letters::default(),
+            palette: CommandPalette::default(),
+            panel_rects: Vec::new(),
+            is_styled: false,
+            letters: theme::GlyphWarmUp::default(),
         }
     }
 }
@@ -124,13 +97,13 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(EguiPrimaryContextPass, draw);
 }
 
-/// What the panels look at.
+/// State that the panels read.
 #[derive(SystemParam)]
-struct Seen<'w, 's> {
-    evolution: Res<'w, Evolution>,
-    opening: Res<'w, Opening>,
+struct PanelData<'w, 's> {
+    evolution: Res<'w, CurrentRun>,
+    opening: Res<'w, OpeningChampions>,
     on_stage: OnStage<'w, 's>,
-    theme: Res<'w, look::Theme>,
+    theme: Res<'w, theme::Theme>,
     lessons: Res<'w, Lessons>,
     saves: Res<'w, Library>,
 }
@@ -138,30 +111,31 @@ struct Seen<'w, 's> {
 fn draw(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
-    mut desk: ResMut<Desk>,
+    mut workspace: ResMut<Workspace>,
     mut area: ResMut<StageArea>,
-    seen: Seen,
+    data: PanelData,
     mut send: MessageWriter<Command>,
 ) -> Result {
     let context = contexts.ctx_mut()?.clone();
-    let is_first = !panels.is_dressed;
+    let is_first = !panels.is_styled;
     if is_first {
-        look::apply(&context);
-        panels.is_dressed = true;
+        theme::apply(&context);
+        panels.is_styled = true;
     }
-    look::show(&context, *seen.theme);
-    panels.letters.warm_up(&context, desk.scale);
-    // Presses are known by the frame in which they come: where frames are long, two that are near may seem far.
+    theme::show(&context, *data.theme);
+    panels.letters.warm_up(&context, workspace.scale);
+    // egui sees a press only at the next frame, so on slow frames the time limit of a double click grows by the length
+    // of a frame.
     let frame_s = context.input(|input| input.unstable_dt);
     context.options_mut(|options| {
         options.input_options.max_double_click_delay = f64::from(DOUBLE_CLICK_S + frame_s);
     });
-    // Another size of the panels takes effect in the next frame.
-    let is_settled = context.zoom_factor() == desk.scale;
-    context.set_zoom_factor(desk.scale);
-    let mut asked = Vec::new();
+    // A new scale takes effect in the next frame.
+    let is_settled = context.zoom_factor() == workspace.scale;
+    context.set_zoom_factor(workspace.scale);
+    let mut commands = Vec::new();
     let situation =
-        Situation::of(&seen.evolution, &seen.on_stage.programme, &desk, &seen.on_stage.history);
+        Situation::of(&data.evolution, &data.on_stage.mode, &workspace, &data.on_stage.history);
     let mut root = egui::Ui::new(
         context.clone(),
         "root".into(),
@@ -169,139 +143,153 @@ fn draw(
             .layer_id(egui::LayerId::background())
             .max_rect(context.content_rect()),
     );
-    let mut lanes: Vec<&Lane> = seen.on_stage.lanes.iter().collect();
+    let mut lanes: Vec<&Lane> = data.on_stage.lanes.iter().collect();
     lanes.sort_by_key(|lane| lane.number());
-    panels.places.clear();
+    panels.panel_rects.clear();
     let panels = &mut *panels;
-    if let Some(label) = desk.sought.take() {
-        panels.world.seek(label);
+    if let Some(label) = workspace.sought.take() {
+        panels.world.set_search(label);
     }
-    let mut viewer =
-        Viewer { panels: &mut *panels, seen: &seen, lanes: &lanes, stage: None, asked: &mut asked };
+    let mut viewer = Viewer {
+        panels: &mut *panels,
+        data: &data,
+        lanes: &lanes,
+        stage: None,
+        commands: &mut commands,
+    };
     if is_first && !is_settled {
-        // Panels that are put where they were would be measured with another measure.
-    } else if desk.is_bare {
+        // In the first frame the saved layout would be measured at the wrong scale.
+    } else if workspace.is_bare {
         viewer.stage(&mut root);
     } else {
-        let (preset, seed) = (seen.evolution.preset(), seen.evolution.seed());
-        let fill = look::of_context(&context).panel;
-        let margin = egui::Margin::symmetric(look::GAP as i8 * 2, look::GAP as i8 / 4);
+        let (preset, seed) = (data.evolution.preset(), data.evolution.seed());
+        let fill = theme::of_context(&context).panel;
+        let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, theme::GAP as i8 / 4);
         egui::Panel::top("menu").frame(egui::Frame::new().fill(fill).inner_margin(margin)).show(
             &mut root,
             |ui| {
-                menu(ui, situation, &format!("{preset}, seed {seed}"), viewer.asked);
+                menu(ui, situation, &format!("{preset}, seed {seed}"), viewer.commands);
             },
         );
         let style = style(&root);
         let size = root.available_size();
-        DockArea::new(desk.layout.state_in(size, is_settled))
+        DockArea::new(workspace.layout.state_in(size, is_settled))
             .style(style)
             .hidable_tab_bars(true)
             .show_leaf_close_all_buttons(false)
-            // Names alone have room beside each other; a right click on one closes its panel.
+            // Close buttons would leave no room for the names. A right-click on a tab closes its panel.
             .show_close_buttons(false)
             .show_secondary_button_hint(false)
             .show_inside(&mut root, &mut viewer);
     }
     if let Some(stage) = viewer.stage {
         let mut card_width = 0.0;
-        if let Some(lane) = focused(&lanes, &seen.on_stage) {
-            let theme = *seen.theme;
+        if let Some(lane) = focused(&lanes, &data.on_stage) {
+            let theme = *data.theme;
             let around =
-                around_stage(&context, stage, &seen.on_stage, &lanes, lane, theme, &mut asked);
+                around_stage(&context, stage, &data.on_stage, &lanes, lane, theme, &mut commands);
             card_width = around.board_width;
-            let is_in_sight = panels.places.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
-            if let Some(view) = seen.lessons.view().filter(|_| !is_in_sight) {
-                lesson_card(&context, around.below_bar, view.index, &mut asked);
+            let is_in_sight =
+                panels.panel_rects.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
+            if let Some(view) = data.lessons.view().filter(|_| !is_in_sight) {
+                lesson_card(&context, around.below_bar, view.index, &mut commands);
             }
         }
         area.set(&context, stage, card_width);
     }
-    match desk.over() {
-        Some(Over::Keys) => key_overlay(&context, &mut asked),
-        Some(Over::Palette) => {
+    match workspace.modal() {
+        Some(Modal::Keys) => key_overlay(&context, &mut commands),
+        Some(Modal::CommandPalette) => {
             let lessons = LESSONS.each_ref().map(|lesson| lesson.title);
-            panels.palette.ui(&context, situation, &lessons, &mut asked);
+            panels.palette.ui(&context, situation, &lessons, &mut commands);
         }
-        Some(Over::Tour(step)) => {
-            let target = shown_in(step)
-                .and_then(|kind| panels.places.iter().find(|(of, _)| *of == kind))
+        Some(Modal::Tour(step)) => {
+            let target = highlighted_panel(step)
+                .and_then(|kind| panels.panel_rects.iter().find(|(of, _)| *of == kind))
                 .map(|(_, place)| *place);
-            tour(&context, step, target, &mut asked);
+            tour(&context, step, target, &mut commands);
         }
         None => {}
     }
-    if desk.over() != Some(Over::Palette) {
+    if workspace.modal() != Some(Modal::CommandPalette) {
         panels.palette.close();
     }
-    send.write_batch(asked);
+    send.write_batch(commands);
     Ok(())
 }
 
 /// The lane whose numbers are shown.
 fn focused<'l>(lanes: &[&'l Lane], on_stage: &OnStage) -> Option<&'l Lane> {
-    let focused = lanes.iter().find(|lane| lane.number() == on_stage.hands.lane);
+    let focused = lanes.iter().find(|lane| lane.number() == on_stage.selection.lane);
     focused.or(lanes.first()).copied()
 }
 
-/// Draws a panel wherever it is.
+/// Draws the panels for the dock area.
 struct Viewer<'v, 'w, 's> {
     panels: &'v mut Panels,
-    seen: &'v Seen<'w, 's>,
+    data: &'v PanelData<'w, 's>,
     lanes: &'v [&'v Lane],
-    /// The part of the window that the stage has, once it is known.
+    /// Rectangle of the stage, once it is drawn.
     stage: Option<egui::Rect>,
-    asked: &'v mut Vec<Command>,
+    commands: &'v mut Vec<Command>,
 }
 
 impl Viewer<'_, '_, '_> {
-    /// The player at the bottom; the rest is the stage's.
+    /// Draws the player at the bottom and reserves the rest for the stage.
     fn stage(&mut self, ui: &mut egui::Ui) {
-        let OnStage { playback, .. } = &self.seen.on_stage;
-        if let Some(lane) = focused(self.lanes, &self.seen.on_stage) {
-            let margin = egui::Margin::symmetric(look::GAP as i8 * 2, look::GAP as i8);
-            let fill = look::of(ui).panel;
+        let OnStage { playback, .. } = &self.data.on_stage;
+        if let Some(lane) = focused(self.lanes, &self.data.on_stage) {
+            let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, theme::GAP as i8);
+            let fill = theme::of(ui).panel;
             egui::Panel::bottom("timeline")
                 .resizable(false)
                 .frame(egui::Frame::new().fill(fill).inner_margin(margin))
                 .show(ui, |ui| {
                     let ends_s = end_s(self.lanes.iter().copied());
-                    let run = self.seen.evolution.number();
-                    self.panels.timeline.ui(ui, lane, playback, ends_s, run, self.asked);
+                    let run = self.data.evolution.number();
+                    self.panels.timeline.ui(ui, lane, playback, ends_s, run, self.commands);
                 });
         }
         let stage = ui.available_rect_before_wrap();
-        // No control of egui's, but a place with a name, for those who look for it.
+        // The stage is not an egui widget, but accessibility tools and tests need its name and rectangle.
         let place = ui.interact(stage, ui.id().with("the stage"), egui::Sense::hover());
         place.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "The stage"));
         self.stage = Some(stage);
     }
 
-    /// What of the champions' list is on the stage.
-    fn shown(&self) -> Vec<Shown> {
-        let run = self.seen.evolution.number();
-        self.lanes.iter().filter_map(|lane| Shown::of(lane.exhibit(), run)).collect()
+    /// Champions of the list that are on the stage.
+    fn shown(&self) -> Vec<ShownChampion> {
+        let run = self.data.evolution.number();
+        self.lanes.iter().filter_map(|lane| ShownChampion::of(lane.staged(), run)).collect()
     }
 
     fn panel(&mut self, ui: &mut egui::Ui, kind: PanelKind) {
         let shown = self.shown();
-        let Seen { evolution, opening, .. } = self.seen;
-        let (panels, asked) = (&mut *self.panels, &mut *self.asked);
+        let PanelData { evolution, opening, .. } = self.data;
+        let (panels, commands) = (&mut *self.panels, &mut *self.commands);
         match kind {
             PanelKind::Stage => {}
             PanelKind::Run => {
-                panels.evolution.ui(ui, evolution, asked);
-                panels.fitness.ui(ui, evolution, look::CHART_HEIGHT, shown.first().copied(), asked);
+                panels.evolution.ui(ui, evolution, commands);
+                panels.fitness.ui(
+                    ui,
+                    evolution,
+                    theme::CHART_HEIGHT,
+                    shown.first().copied(),
+                    commands,
+                );
             }
-            PanelKind::World => panels.world.ui(ui, evolution, &self.seen.on_stage.history, asked),
-            PanelKind::Charts => panels.charts.ui(ui, evolution, shown.first().copied(), asked),
+            PanelKind::World => {
+                panels.world.ui(ui, evolution, &self.data.on_stage.history, commands)
+            }
+            PanelKind::Charts => panels.charts.ui(ui, evolution, shown.first().copied(), commands),
             PanelKind::Champions => {
                 let reports = evolution.reports();
                 let leaders = |generation| evolution.leaders(generation).len();
-                panels.champions.ui(ui, &opening.0, reports, &shown, leaders, asked);
+                panels.champions.ui(ui, &opening.0, reports, &shown, leaders, commands);
             }
-            PanelKind::Lessons => lessons(ui, self.seen.lessons.view(), asked),
-            PanelKind::Library => panels.saves.ui(ui, &self.seen.saves, asked),
+            PanelKind::Lessons => lessons(ui, self.data.lessons.view(), commands),
+            PanelKind::Library => panels.saves.ui(ui, &self.data.saves, commands),
         }
     }
 }
@@ -318,8 +306,8 @@ impl TabViewer for Viewer<'_, '_, '_> {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, kind: &mut PanelKind) {
-        // A floating window's layer moves; only what is in the window itself is a place to point at.
-        self.panels.places.push((*kind, ui.clip_rect()));
+        // The tour points only at panels in the main window, because floating windows move.
+        self.panels.panel_rects.push((*kind, ui.clip_rect()));
         if *kind == PanelKind::Stage {
             self.stage(ui);
         } else if [PanelKind::Champions, PanelKind::Library].contains(kind) {
@@ -348,7 +336,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
     }
 
     fn scroll_bars(&self, _kind: &PanelKind) -> [bool; 2] {
-        // Each panel scrolls as suits it.
+        // Each panel has its own scroll area.
         [false, false]
     }
 
@@ -359,35 +347,4 @@ impl TabViewer for Viewer<'_, '_, '_> {
             style
         })
     }
-}
-
-/// A section's title.
-fn title(ui: &mut egui::Ui, text: &str) {
-    ui.add_space(look::GAP);
-    ui.label(egui::RichText::new(text).size(look::TITLE_SIZE).strong());
-}
-
-/// A section's title, with something at the right end of its line.
-fn title_and(ui: &mut egui::Ui, text: &str, right: impl FnOnce(&mut egui::Ui)) {
-    ui.add_space(look::GAP);
-    // A line of text is lower than a line of buttons.
-    ui.spacing_mut().interact_size.y -= look::GAP * 0.75;
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new(text).size(look::TITLE_SIZE).strong());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), right);
-    });
-    ui.spacing_mut().interact_size.y += look::GAP * 0.75;
-}
-
-/// A line that explains.
-fn explain(ui: &mut egui::Ui, text: &str) {
-    ui.label(egui::RichText::new(text).color(look::of(ui).text_weak));
-}
-
-/// A clickable row over the whole width: a name at the left, what there is to say of it at the right.
-fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, about: &str) -> egui::Response {
-    let color = if is_shown { look::of(ui).text } else { look::of(ui).text_weak };
-    let about = egui::RichText::new(about).color(color);
-    let button = egui::Button::new(name).right_text(about).selected(is_shown);
-    ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
 }

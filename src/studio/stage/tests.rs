@@ -1,44 +1,46 @@
 //! The stage without a window, frame by frame.
 
+use std::time::Duration;
+
+use bevy::time::TimeUpdateStrategy;
+
+use super::opening::NamedChampion;
+use super::selection::HeldLimb;
 use super::*;
 use crate::evolve::Champion;
 use crate::save::{LoadedChampion, shipped_champion};
 use crate::score::{Recording, evaluate};
-use crate::studio::casting::Saved;
 use crate::world::{Pose, Pull, Vector};
-use bevy::time::TimeUpdateStrategy;
-use bevy_rapier3d::plugin::context::RapierRigidBodySet;
-use std::time::Duration;
 
 fn shipped() -> LoadedChampion {
     shipped_champion().expect("well formed")
 }
 
-/// A stage without a window on which these champions race.
+/// A headless stage on which these champions race.
 fn stage_of(opening: Vec<LoadedChampion>) -> App {
-    let saved = |loaded| Saved { name: "a champion".to_owned(), loaded };
+    let saved = |loaded| NamedChampion { name: "a champion".to_owned(), loaded };
     let mut app = App::new();
     app.add_plugins(MinimalPlugins)
         .add_message::<Show>()
         .init_resource::<Notices>()
         .init_resource::<Playback>()
-        .init_resource::<Programme>()
-        .init_resource::<Hands>()
-        .insert_resource(Opening(opening.into_iter().map(saved).collect()))
+        .init_resource::<StageMode>()
+        .init_resource::<Selection>()
+        .insert_resource(OpeningChampions(opening.into_iter().map(saved).collect()))
         .add_systems(Startup, show_opening)
         .add_systems(Update, (put_on_stage, advance).chain());
     frame(&mut app, 0.0);
     app
 }
 
-/// A frame of this length.
+/// Runs a frame of this length.
 fn frame(app: &mut App, length_s: f32) {
     let length = Duration::from_secs_f32(length_s);
     app.insert_resource(TimeUpdateStrategy::ManualDuration(length));
     app.update();
 }
 
-/// Frames of these lengths in turn, until the first lane is as asked for.
+/// Runs frames of these lengths in turn until the first lane meets the condition.
 fn play(app: &mut App, frames_s: &[f32], until: impl Fn(&Lane) -> bool) {
     for frame_s in frames_s.iter().cycle().take(10_000) {
         frame(app, *frame_s);
@@ -58,19 +60,19 @@ fn clock(app: &mut App) -> Mut<'_, Playback> {
     app.world_mut().resource_mut::<Playback>()
 }
 
-/// Waits until what will happen is known in all lanes.
-fn know_what_comes(app: &mut App) {
+/// Waits until the lookahead of all lanes has finished.
+fn finish_lookahead(app: &mut App) {
     frame(app, 0.0);
     let mut lanes = app.world_mut().query::<&mut Lane>();
-    lanes.iter_mut(app.world_mut()).for_each(|mut lane| lane.know_what_comes());
+    lanes.iter_mut(app.world_mut()).for_each(|mut lane| lane.finish_lookahead());
 }
 
 fn is_over(lane: &Lane) -> bool {
-    lane.performance().is_over()
+    lane.replay().is_over()
 }
 
 #[test]
-fn a_replay_on_the_stage_has_the_bits_of_the_headless_run_at_any_frame_rate_and_speed() {
+fn a_replay_is_bit_identical_to_the_headless_run_at_any_frame_rate_and_speed() {
     let opening = shipped().champion;
     let headless = evaluate(&opening.genome, &opening.trial);
     for (frames_s, speed) in [
@@ -92,10 +94,10 @@ fn a_replay_on_the_stage_has_the_bits_of_the_headless_run_at_any_frame_rate_and_
 }
 
 #[test]
-fn wherever_one_seeks_the_state_is_the_played_one_bit_for_bit() {
+fn seeking_gives_the_played_state_bit_for_bit() {
     let champion = shipped().champion;
     let mut app = stage_of(vec![shipped()]);
-    know_what_comes(&mut app);
+    finish_lookahead(&mut app);
     clock(&mut app).toggle(1.0e9);
     let steps = champion.trial.steps();
     let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
@@ -107,7 +109,7 @@ fn wherever_one_seeks_the_state_is_the_played_one_bit_for_bit() {
             assert!(played.advance());
         }
         let shown = lane(&mut app);
-        assert_eq!(shown.performance().step(), target);
+        assert_eq!(shown.replay().step(), target);
         assert_eq!(shown.last_poses(), played.poses(), "step {target}");
         assert_eq!(shown.evaluation(), played.evaluation(), "step {target}");
         let drawn: Vec<Pose> = shown.drawn_poses().collect();
@@ -116,15 +118,15 @@ fn wherever_one_seeks_the_state_is_the_played_one_bit_for_bit() {
 }
 
 #[test]
-fn steps_go_back_and_on_over_the_same_states() {
+fn stepping_back_and_forward_visits_the_same_states() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.05], |lane| lane.performance().step() > 200);
+    play(&mut app, &[0.05], |lane| lane.replay().step() > 200);
     let step_s = lane(&mut app).step_s();
     let mut seen = Vec::new();
     for forward in [true, true, false, false, true, true] {
         clock(&mut app).step(forward, step_s, 1.0e9);
         frame(&mut app, 0.1);
-        seen.push((lane(&mut app).performance().step(), lane(&mut app).last_poses().to_vec()));
+        seen.push((lane(&mut app).replay().step(), lane(&mut app).last_poses().to_vec()));
     }
     assert_eq!(seen[1], seen[5]);
     assert_eq!(seen[0], seen[2]);
@@ -132,22 +134,22 @@ fn steps_go_back_and_on_over_the_same_states() {
 }
 
 #[test]
-fn after_its_rest_it_begins_again_unless_it_is_held() {
+fn playback_loops_unless_it_is_paused() {
     let mut app = stage_of(vec![shipped()]);
     clock(&mut app).set_speed(16.0);
     play(&mut app, &[0.1], is_over);
     play(&mut app, &[0.1], |lane| !is_over(lane));
-    assert!(lane(&mut app).performance().step() < 100, "from the start");
+    assert!(lane(&mut app).replay().step() < 100, "from the start");
     clock(&mut app).hold_at(1.0e9);
     (0..50).for_each(|_| frame(&mut app, 0.1));
-    assert!(is_over(lane(&mut app)), "held at the end");
+    assert!(is_over(lane(&mut app)), "paused at the end");
 }
 
 #[test]
-fn a_replay_that_differs_from_its_record_says_so_once() {
+fn a_replay_that_differs_from_its_record_is_reported_once() {
     let honest = shipped();
     let mut edited = honest.clone();
-    edited.champion.genome.density_kg_m3 *= 1.2;
+    edited.champion.genome.body.density_kg_m3 *= 1.2;
     for (loaded, notices) in [(honest, 0), (edited, 1)] {
         let mut app = stage_of(vec![loaded]);
         play(&mut app, &[0.1], is_over);
@@ -157,11 +159,11 @@ fn a_replay_that_differs_from_its_record_says_so_once() {
 }
 
 #[test]
-fn what_another_engine_found_is_played_from_its_recording_and_can_be_simulated() {
+fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     let mut loaded = shipped();
     let Champion { genome, trial, .. } = &loaded.champion;
     let recording = Recording::of(genome, trial);
-    // It went elsewhere then: a metre to the side.
+    // The recording is shifted by a metre.
     let aside = |pose: &Pose| Pose { translation: pose.translation + Vec3::X, ..*pose };
     let poses = recording.frames().flatten().map(aside).collect();
     loaded.recording = Recording::new(recording.every_steps(), recording.limbs(), poses);
@@ -174,40 +176,38 @@ fn what_another_engine_found_is_played_from_its_recording_and_can_be_simulated()
     for (drawn, recorded) in shown.drawn_poses().zip(last) {
         assert!((drawn.translation - recorded.translation).length() < 1e-5);
     }
-    assert!(shown.exhibit().caption().contains("as engine 1 recorded it"));
-    let simulated = shown.exhibit().simulated();
+    assert!(shown.staged().caption().contains("as engine 1 recorded it"));
+    let simulated = shown.staged().simulated();
     app.world_mut().write_message(Show::solo(simulated));
     clock(&mut app).restart();
     frame(&mut app, 0.0);
     play(&mut app, &[0.1], is_over);
     let shown = lane(&mut app);
     assert_eq!(shown.evaluation().trace_hash, loaded.champion.evaluation.trace_hash);
-    assert!(shown.exhibit().could_be_as_found());
+    assert!(shown.staged().could_be_as_found());
 }
 
 #[test]
-fn between_frames_the_world_is_in_the_rapier_context() {
+fn the_world_for_debug_lines_is_the_one_that_is_scored() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.1], |lane| lane.performance().step() > 20);
-    let mut contexts = app.world_mut().query::<(&Lane, &RapierRigidBodySet)>();
-    let (lane, bodies) = contexts.single(app.world()).expect("one lane");
-    let simulation = lane.performance().simulation().expect("simulated");
-    assert_eq!(simulation.physics().bodies.len(), 0);
-    let in_context = simulation.limb_handles().iter();
-    let poses: Vec<Pose> = in_context.map(|&limb| *bodies.bodies[limb].position()).collect();
+    play(&mut app, &[0.1], |lane| lane.replay().step() > 20);
+    let lane = lane(&mut app);
+    let simulation = lane.simulation().expect("simulated");
+    let bodies = simulation.physics().bodies.iter();
+    let poses: Vec<Pose> = bodies.map(|(_, limb)| *limb.position()).collect();
     assert_eq!(poses, lane.last_poses());
 }
 
 #[test]
-fn it_draws_between_the_last_two_steps() {
+fn drawn_poses_lie_between_the_last_two_steps() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.0251], |lane| lane.performance().step() > 60);
+    play(&mut app, &[0.0251], |lane| lane.replay().step() > 60);
     let time_s = clock(&mut app).time_s();
     let shown = lane(&mut app);
     let place = time_s / shown.step_s();
     let share = (place - place.floor()) as f32;
     assert!((0.1..0.9).contains(&share), "the frame ends {share} of the way through a step");
-    let champion = shown.exhibit().champion();
+    let champion = shown.staged().champion();
     let mut rollout = crate::score::Rollout::new(&champion.genome, &champion.trial);
     let mut head = || {
         rollout.advance();
@@ -221,15 +221,15 @@ fn it_draws_between_the_last_two_steps() {
 }
 
 #[test]
-fn ten_lanes_stand_side_by_side_and_each_has_its_own_bits() {
+fn ten_lanes_stand_side_by_side_and_stay_bit_identical() {
     let champion = shipped().champion;
     let mut app = stage_of(vec![shipped(); 12]);
-    assert_eq!(*app.world().resource::<Programme>(), Programme::Race);
-    play(&mut app, &[0.05], |lane| lane.performance().step() > 60);
+    assert_eq!(*app.world().resource::<StageMode>(), StageMode::Race);
+    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
     let mut lanes = app.world_mut().query::<&Lane>();
     let mut lanes: Vec<&Lane> = lanes.iter(app.world()).collect();
     lanes.sort_by_key(|lane| lane.number());
-    assert_eq!(lanes.len(), MOST_LANES, "and no more");
+    assert_eq!(lanes.len(), MAX_LANES, "and no more");
     let xs: Vec<f32> = lanes.iter().map(|lane| lane.offset().x).collect();
     let spacing_m = champion.trial.stairs.width_m + GAP_M;
     for pair in xs.windows(2) {
@@ -242,96 +242,99 @@ fn ten_lanes_stand_side_by_side_and_each_has_its_own_bits() {
 }
 
 #[test]
-fn a_genome_that_does_not_fit_is_named_with_the_reason_and_the_others_are_shown() {
+fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
     let mut unfit = shipped();
     unfit.champion.trial.agent.limbs = 7;
     let mut app = stage_of(vec![shipped(), unfit.clone()]);
     assert_eq!(app.world().resource::<Notices>().len(), 1);
-    assert_eq!(*app.world().resource::<Programme>(), Programme::Solo);
-    let (lanes, problems) = lanes(vec![Exhibit::saved(&unfit, 0, "unfit")]);
+    assert_eq!(*app.world().resource::<StageMode>(), StageMode::Solo);
+    let (lanes, problems) = lanes(vec![StagedChampion::from_file(&unfit, 0, "unfit")]);
     assert!(lanes.is_empty());
     let problem = &problems[0];
     for part in ["unfit cannot be shown", "joints is 4 joints", "allowed: 6"] {
         assert!(problem.contains(part), "{part:?} in {problem}");
     }
-    // What was on show stays, if nothing else can be shown.
-    app.world_mut().write_message(Show::solo(Exhibit::saved(&unfit, 0, "unfit")));
+    // The earlier lanes stay if nothing else can be shown.
+    app.world_mut().write_message(Show::solo(StagedChampion::from_file(&unfit, 0, "unfit")));
     frame(&mut app, 0.1);
-    assert_eq!(lane(&mut app).exhibit().name(), "a champion");
+    assert_eq!(lane(&mut app).staged().name(), "a champion");
+}
+
+fn pulled(lane: Entity, pull: Pull) -> HeldLimb {
+    HeldLimb { lane, pull, pressed_at: Vec2::ZERO, is_pulling: true }
 }
 
 #[test]
-fn who_was_pulled_is_disturbed_until_it_goes_back_and_is_not_compared_with_its_record() {
+fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record() {
     let mut app = stage_of(vec![shipped()]);
-    know_what_comes(&mut app);
-    play(&mut app, &[0.05], |lane| lane.performance().step() > 60);
+    finish_lookahead(&mut app);
+    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
     let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, -2.0, 2.0);
     let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Hands>().hold(entity, pull);
+    app.world_mut().resource_mut::<Selection>().grab(0, pulled(entity, pull));
     (0..20).for_each(|_| frame(&mut app, 0.05));
     assert!(lane(&mut app).is_disturbed());
-    app.world_mut().resource_mut::<Hands>().open();
+    app.world_mut().resource_mut::<Selection>().release();
     play(&mut app, &[0.1], is_over);
     (0..10).for_each(|_| frame(&mut app, 0.05));
-    assert_eq!(app.world().resource::<Notices>().len(), 0, "no complaint about its record");
-    let recorded = lane(&mut app).exhibit().champion().evaluation;
-    assert!(!lane(&mut app).evaluation().agrees_with(&recorded), "it went elsewhere");
+    assert_eq!(app.world().resource::<Notices>().len(), 0, "the record is not checked");
+    let recorded = lane(&mut app).staged().champion().evaluation;
+    assert!(!lane(&mut app).evaluation().agrees_with(&recorded), "the pull changed the result");
     clock(&mut app).seek(1.0, 1.0e9);
     frame(&mut app, 0.0);
-    assert!(!lane(&mut app).is_disturbed(), "before the hand it is itself");
+    assert!(!lane(&mut app).is_disturbed(), "undisturbed before the pull");
     clock(&mut app).set_speed(16.0);
     play(&mut app, &[0.1], is_over);
     assert!(lane(&mut app).evaluation().agrees_with(&recorded));
 }
 
 #[test]
-fn with_many_steps_a_second_it_goes_on_instead_of_jumping_back_and_can_be_pulled() {
+fn a_high_step_rate_can_be_pulled_without_jumping_back() {
     let mut loaded = shipped();
     loaded.champion.trial.physics.steps_per_s = 1000;
     let mut app = stage_of(vec![loaded]);
-    know_what_comes(&mut app);
-    play(&mut app, &[0.1], |lane| lane.performance().step() > 300);
+    finish_lookahead(&mut app);
+    play(&mut app, &[0.1], |lane| lane.replay().step() > 300);
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
     let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, 0.0, 2.0);
     let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Hands>().hold(entity, pull);
+    app.world_mut().resource_mut::<Selection>().grab(0, pulled(entity, pull));
     frame(&mut app, 0.1);
-    assert!(lane(&mut app).is_disturbed(), "a frame of a hundred steps is a frame in the hand");
+    assert!(lane(&mut app).is_disturbed(), "pulled during all hundred steps of the frame");
 }
 
 #[test]
-fn a_disturbed_lane_that_has_far_to_go_takes_several_frames() {
+fn a_disturbed_lane_spreads_a_long_seek_over_several_frames() {
     let mut loaded = shipped();
     loaded.champion.trial.duration_s = 300.0;
     let mut app = stage_of(vec![loaded]);
-    play(&mut app, &[0.05], |lane| lane.performance().step() > 60);
+    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
     let to_m = lane(&mut app).last_poses()[0].translation;
-    app.world_mut()
-        .resource_mut::<Hands>()
-        .hold(entity, Pull { limb: 0, held_at_m: Vector::ZERO, to_m });
+    let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
+    app.world_mut().resource_mut::<Selection>().grab(0, pulled(entity, pull));
     frame(&mut app, 0.05);
-    app.world_mut().resource_mut::<Hands>().open();
-    let before = lane(&mut app).performance().step();
+    app.world_mut().resource_mut::<Selection>().release();
+    let before = lane(&mut app).replay().step();
     clock(&mut app).hold_at(250.0);
     frame(&mut app, 0.05);
-    let after = lane(&mut app).performance().step();
-    assert!(after - before <= MOST_STEPS_A_FRAME, "{before} to {after}");
-    play(&mut app, &[0.05], |lane| lane.is_over() || lane.performance().step() == 15_000);
+    let after = lane(&mut app).replay().step();
+    assert!(after - before <= MAX_STEPS_PER_FRAME, "{before} to {after}");
+    play(&mut app, &[0.05], |lane| lane.is_over() || lane.replay().step() == 15_000);
 }
 
 #[test]
-fn a_recording_lands_in_a_race_and_has_a_trail() {
+fn a_recording_has_a_landing_time_and_a_trail() {
     let mut loaded = shipped();
     let Champion { genome, trial, .. } = &loaded.champion;
     loaded.recording = Some(Recording::of(genome, trial));
     loaded.engine = 1;
     let mut app = stage_of(vec![loaded, shipped()]);
-    know_what_comes(&mut app);
+    finish_lookahead(&mut app);
     clock(&mut app).hold_at(1.0e9);
     (0..10).for_each(|_| frame(&mut app, 0.1));
     let mut lanes = app.world_mut().query::<&Lane>();

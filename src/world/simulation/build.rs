@@ -7,7 +7,7 @@ use crate::world::contact::{ContactLaws, joint_coefficients};
 use crate::world::surface::ContactLaw;
 use crate::world::{JointPlan, PhysicsWorld, Surface};
 
-/// Gives a collider of the world its material.
+/// Gives the collider of the ground or of a step its material.
 fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
     let collider = collider
         .friction(surface.friction)
@@ -17,7 +17,7 @@ fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> C
     with_hook(collider, law)
 }
 
-/// Lets the collider's contacts pass the hooks, if they have to.
+/// Lets the collider's contacts pass the hooks, if the law needs them.
 fn with_hook(collider: ColliderBuilder, law: &ContactLaw) -> ColliderBuilder {
     let hooks =
         if law.needs_hook() { ActiveHooks::MODIFY_SOLVER_CONTACTS } else { ActiveHooks::empty() };
@@ -54,7 +54,7 @@ pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &
     }
 }
 
-/// Inserts the straight snake, head first, lying on the ground.
+/// Inserts the limbs in the order of the plan as a straight row that lies on the ground, head first.
 pub(super) fn insert_limbs(
     physics: &mut PhysicsWorld,
     plan: &WorldPlan,
@@ -73,7 +73,7 @@ pub(super) fn insert_limbs(
             let straight_y_m = front_y_m - limb.length_m / 2.0;
             front_y_m -= limb.length_m;
             let centre = if plan.start_turn_rad == 0.0 {
-                // Not around the middle and back: rounding would make other bits of it.
+                // Without the detour over the middle of the snake, whose rounding would change the bits.
                 Vector::new(plan.start_x_m, straight_y_m, axis_z_m)
             } else {
                 let along_m = straight_y_m - plan.start_y_m;
@@ -98,46 +98,45 @@ pub(super) fn insert_limbs(
         .collect()
 }
 
-/// Joins neighbours, head first. See [`universal_joint`].
+/// Inserts the joints in the order of the plan: see [`universal_joint`].
 pub(super) fn insert_joints(
     physics: &mut PhysicsWorld,
     limbs: &[RigidBodyHandle],
     plan: &WorldPlan,
 ) {
-    let body = &plan.body;
-    for (index, joint) in body.joints.iter().enumerate() {
-        let (front, rear) = (&body.limbs[index], &body.limbs[index + 1]);
-        let mut built = universal_joint(joint, front.length_m / 2.0, rear.length_m / 2.0);
+    for joint in &plan.body.joints {
+        let [parent, child] = [joint.parent, joint.child].map(|limb| &plan.body.limbs[limb]);
+        let mut built = universal_joint(joint, parent.length_m / 2.0, child.length_m / 2.0);
         built.softness = joint_coefficients(
             joint.cfm_m_s_per_n,
             plan.physics.step_s(),
-            front.mass_kg(),
-            rear.mass_kg(),
+            parent.mass_kg(),
+            child.mass_kg(),
         );
-        physics.insert_impulse_joint(limbs[index], limbs[index + 1], built);
+        physics.insert_impulse_joint(limbs[joint.parent], limbs[joint.child], built);
     }
 }
 
-/// A universal joint between the rear face of the front limb and the front face of the rear limb.
+/// A universal joint between the rear face of the parent and the front face of the child.
 ///
-/// Rapier has no such joint among its multibodies, so it is an impulse joint with all axes locked but
+/// Rapier has no such multibody joint, so it is an impulse joint with all axes locked but
 /// the rotations about x (bend) and y (twist). Its lock keeps the z part of the relative quaternion at
 /// zero, which makes it a constant-velocity universal joint. With `q` that quaternion the bend is
 /// `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`; both limits are symmetric (asymmetric ones would
 /// make rapier call the C library's sine, whose bits differ between machines).
 ///
-/// The damping is a motor that wants zero joint rate, which the solver integrates implicitly. Rapier takes
-/// a motor without damping for an infinitely stiff one, so an undamped joint's motor gets no force. It
-/// stays, because joints without motors are solved four at a time, by code that calls the C library's
-/// arc tangent.
-fn universal_joint(plan: &JointPlan, front_half_m: f32, rear_half_m: f32) -> GenericJoint {
+/// The damping is a motor with a target rate of zero, which the solver integrates implicitly. Rapier treats
+/// a motor without damping as infinitely stiff, so an undamped joint's motor gets no force. The motor
+/// stays nevertheless, because joints without motors are solved four at a time, by code that calls the C
+/// library's arc tangent.
+fn universal_joint(plan: &JointPlan, parent_half_m: f32, child_half_m: f32) -> GenericJoint {
     let locked = JointAxesMask::LIN_AXES | JointAxesMask::ANG_Z;
     let mut joint = GenericJointBuilder::new(locked)
-        .local_anchor1(Vector::new(0.0, -front_half_m, 0.0))
-        .local_anchor2(Vector::new(0.0, rear_half_m, 0.0))
+        .local_anchor1(Vector::new(0.0, -parent_half_m, 0.0))
+        .local_anchor2(Vector::new(0.0, child_half_m, 0.0))
         .limits(JointAxis::AngX, [-plan.bend_limit_rad, plan.bend_limit_rad])
         .limits(JointAxis::AngY, [-plan.twist_limit_rad, plan.twist_limit_rad])
-        // Neighbours touch with a whole face; their contact would block the bend.
+        // Joined limbs touch with a whole face; their contact would block the bend.
         .contacts_enabled(false)
         .build();
     for axis in [JointAxis::AngX, JointAxis::AngY] {

@@ -1,4 +1,4 @@
-//! The world against what the report states and what closed forms say.
+//! The world compared with the report and with closed forms.
 
 mod observe;
 mod surface;
@@ -9,7 +9,9 @@ use super::*;
 /// A snake of `limbs` blocks without damping, in the world of the report.
 fn plan(limbs: usize) -> WorldPlan {
     let limb = LimbPlan { width_m: 1.0, length_m: 2.0, height_m: 1.0, density_kg_m3: 2.5 };
-    let joint = JointPlan {
+    let joint = |parent| JointPlan {
+        parent,
+        child: parent + 1,
         bend_limit_rad: 1.0,
         twist_limit_rad: 0.9,
         max_bend_torque_nm: 1000.0,
@@ -26,7 +28,7 @@ fn plan(limbs: usize) -> WorldPlan {
         health: HealthLimits::default(),
         body: BodyPlan {
             limbs: vec![limb; limbs],
-            joints: vec![joint; limbs - 1],
+            joints: (0..limbs - 1).map(joint).collect(),
             angular_damping_per_s: 0.0,
         },
         start_y_m: -7.23,
@@ -35,7 +37,7 @@ fn plan(limbs: usize) -> WorldPlan {
     }
 }
 
-/// The same snake where nothing touches it and nothing pulls at it.
+/// The same snake without gravity and far above the ground.
 fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
     let mut plan = plan(limbs);
     plan.physics.gravity_m_s2 = 0.0;
@@ -56,7 +58,7 @@ fn angles(simulation: &Simulation, joint: usize) -> [f32; 3] {
 }
 
 #[test]
-fn the_straight_snake_lies_where_table_1_starts() {
+fn the_straight_snake_starts_at_the_position_of_table_1() {
     let simulation = Simulation::new(&plan(5));
     let centres: Vec<Vector> = simulation.poses().map(|pose| pose.translation).collect();
     assert_eq!(centres[2], Vector::new(0.0, -7.23, 0.5));
@@ -73,7 +75,7 @@ fn the_density_gives_the_mass() {
 }
 
 #[test]
-fn torques_are_couples_that_turn_nothing_as_a_whole() {
+fn joint_torques_do_not_accelerate_the_snake_as_a_whole() {
     let (_, mut simulation) = weightless(5);
     let torques: Vec<JointTorque> = (0..4)
         .map(|joint| JointTorque { bend_nm: 3.0 - joint as f32, twist_nm: joint as f32 })
@@ -89,7 +91,7 @@ fn torques_are_couples_that_turn_nothing_as_a_whole() {
 }
 
 #[test]
-fn a_bend_torque_bends_and_a_twist_torque_twists_and_nothing_else() {
+fn each_torque_turns_its_joint_about_its_own_axis_only() {
     for (torque, moved) in [
         (JointTorque { bend_nm: 2.0, twist_nm: 0.0 }, 0),
         (JointTorque { bend_nm: 0.0, twist_nm: 2.0 }, 1),
@@ -199,7 +201,7 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
 }
 
 #[test]
-fn the_energy_that_joints_spend_is_what_the_limbs_gain() {
+fn the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs() {
     for torque in
         [JointTorque { bend_nm: 1.0, twist_nm: 0.0 }, JointTorque { bend_nm: 0.0, twist_nm: 0.25 }]
     {
@@ -230,7 +232,7 @@ fn the_energy_that_joints_spend_is_what_the_limbs_gain() {
 }
 
 #[test]
-fn a_snake_that_starts_turned_is_the_same_snake_elsewhere() {
+fn a_turned_start_turns_and_moves_the_whole_snake() {
     let turned = WorldPlan { start_x_m: 0.3, start_turn_rad: 0.5, ..plan(5) };
     let mut simulation = Simulation::new(&turned);
     let centres: Vec<Vector> = simulation.poses().map(|pose| pose.translation).collect();
@@ -240,7 +242,7 @@ fn a_snake_that_starts_turned_is_the_same_snake_elsewhere() {
     assert!((along - expected).length() < 1e-5, "{along}");
     let heading = simulation.poses().next().expect("a head").rotation * Vector::Y;
     assert!((heading - expected).length() < 1e-5, "{heading}");
-    // Its joints fit: nothing pulls it anywhere.
+    // Its joints fit: no constraint moves it.
     for _ in 0..60 {
         simulation.step(&[JointTorque::default(); 4]).expect("healthy");
     }
@@ -248,7 +250,7 @@ fn a_snake_that_starts_turned_is_the_same_snake_elsewhere() {
 }
 
 #[test]
-fn a_thrown_snake_remembers_how_near_it_came_to_its_limits() {
+fn the_effort_of_a_thrown_snake_holds_its_maxima() {
     let (_, mut simulation) = weightless(3);
     for limb in simulation.limbs.clone() {
         simulation.physics.bodies[limb].set_linvel(Vector::new(3.0, 0.0, 4.0), true);
@@ -291,8 +293,8 @@ fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     assert!((found_s / expected_s - 1.0).abs() < 0.01, "{found_s} s for {expected_s} s");
 }
 
-/// Drift over 10 s of a weightless snake of `limbs` that waves and turns without a touch: momentum in
-/// kg m/s, and energy as a share of what it had.
+/// Drift over 10 s of a weightless snake of `limbs` that waves and turns without any contact: of its momentum
+/// in kg m/s, and of its energy relative to the initial energy.
 fn drift(limbs: usize) -> (f32, f32) {
     let (mut plan, _) = weightless(limbs);
     for joint in &mut plan.body.joints {
@@ -305,7 +307,7 @@ fn drift(limbs: usize) -> (f32, f32) {
         body.set_translation(above, true);
         body.set_linvel(Vector::new(0.4, 0.0, 0.0), true);
     }
-    // A wave is pushed in through the joints, so that no joint is contradicted at the start.
+    // The joints start the wave, so that the initial motion satisfies every joint.
     for step in 0..30 {
         let push = |joint: usize| JointTorque {
             bend_nm: if (step + 10 * joint) % 40 < 20 { 0.3 } else { -0.3 },
@@ -334,7 +336,7 @@ fn drift(limbs: usize) -> (f32, f32) {
 }
 
 #[test]
-fn what_is_left_alone_keeps_its_momentum_and_its_energy() {
+fn a_snake_without_external_forces_keeps_its_momentum_and_energy() {
     for limbs in [2, 5, 12] {
         let (momentum, energy) = drift(limbs);
         assert!(momentum < 1.0e-4, "{limbs} limbs: {momentum} kg m/s");
@@ -343,7 +345,7 @@ fn what_is_left_alone_keeps_its_momentum_and_its_energy() {
 }
 
 #[test]
-fn gravity_pulls_as_it_is_set() {
+fn a_fall_follows_the_gravity_of_the_settings() {
     let fallen_m = |gravity_m_s2| {
         let mut plan = plan(2);
         plan.physics.gravity_m_s2 = gravity_m_s2;
@@ -366,7 +368,7 @@ fn gravity_pulls_as_it_is_set() {
 }
 
 #[test]
-fn each_way_of_breaking_the_physics_disqualifies() {
+fn each_exceeded_health_limit_disqualifies() {
     let broken_by = |speed_limit_m_s, break_it: fn(&mut RigidBody)| {
         let mut plan = plan(5);
         plan.health.speed_m_s = speed_limit_m_s;
@@ -383,7 +385,7 @@ fn each_way_of_breaking_the_physics_disqualifies() {
     let tear = |body: &mut RigidBody| {
         body.set_translation(body.translation() + Vector::new(0.0, 3.0, 1.0), true);
     };
-    // Rapier pulls a torn joint together at once, at a speed that is a reason of its own.
+    // Rapier pulls a torn joint together at once, so fast that the speed limit would be the reason.
     assert_eq!(broken_by(1000.0, tear), Some(Disqualification::JointBroke));
     assert_eq!(broken_by(25.0, |_| ()), None, "a snake that lies still is healthy");
 

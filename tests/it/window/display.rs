@@ -1,4 +1,4 @@
-//! A virtual display with the program on it.
+//! The program on a virtual display.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -12,7 +12,7 @@ use super::input::A_FRAME;
 use super::picture::Picture;
 use crate::program::{folder, snakes};
 
-/// The program in a window on a display of its own.
+/// The program in a window on its own display.
 pub struct Studio {
     program: Mutex<Child>,
     xvfb: Child,
@@ -20,29 +20,29 @@ pub struct Studio {
     window: String,
     size: (i32, i32),
     folder: tempfile::TempDir,
-    /// Software rendering takes every core there is: one window at a time.
+    /// Opens one window at a time, because software rendering uses all cores.
     _turn: MutexGuard<'static, ()>,
 }
 
 static TURN: Mutex<()> = Mutex::new(());
 static SKIPPED: AtomicU32 = AtomicU32::new(0);
-/// Software rendering on a busy machine draws a few frames a second; nothing here takes minutes.
+/// Timeout. Software rendering on a busy machine draws a few frames per second.
 const PATIENCE: Duration = Duration::from_secs(120);
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
-/// Wide enough for all cards over the stage, and not slower to draw than need be.
+/// Default window size: wide enough for all cards over the stage, small enough to draw quickly.
 const SIZE: (i32, i32) = (1000, 860);
 
-/// Skips a test, or fails where skipping is not allowed.
+/// Skips a test, or fails where skipping is forbidden.
 fn skip(test: &str, reason: &str) {
     let required = std::env::var("SNAKES_WINDOW_TESTS").is_ok_and(|value| value == "required");
     assert!(!required, "window test {test} cannot run: {reason}");
     let skipped = SKIPPED.fetch_add(1, Ordering::SeqCst) + 1;
     let line = format!("window tests skipped so far: {skipped} ({test}: {reason})\n");
-    // Not through eprintln!, which the test runner swallows when a test passes.
+    // Not through eprintln!, because the test runner swallows its output when a test passes.
     std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).expect("standard error");
 }
 
-/// Whether there is no Vulkan driver, so that nothing can be drawn; the test then is skipped.
+/// Whether there is no Vulkan driver. The test is skipped then.
 pub fn lacks_a_driver(test: &str) -> bool {
     let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
     let is_there =
@@ -59,18 +59,18 @@ fn is_installed(tool: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(tool).is_file())
 }
 
-/// The text of a file of preferences with these fields.
+/// Text of a preferences file with these fields.
 pub fn preferences(fields: &str) -> String {
     format!("(kind: \"snakes-and-stairs preferences\", format: 1, preferences: ({fields}))")
 }
 
 impl Studio {
-    /// Opens the program with the keyboard on it, and the tour taken; none where that is not possible.
+    /// Opens the program with the keyboard focus and without the tour; `None` where that is impossible.
     pub fn open(test: &str, arguments: &str) -> Option<Self> {
         Self::open_sized(test, arguments, SIZE)
     }
 
-    /// Opens the program in a window of this size. Unless the arguments say where preferences are, the tour was taken.
+    /// Opens the program in a window of this size. The tour is skipped unless the arguments name a preferences file.
     pub fn open_sized(test: &str, arguments: &str, size: (i32, i32)) -> Option<Self> {
         if let Some(missing) = ["Xvfb", "xdotool"].into_iter().find(|tool| !is_installed(tool)) {
             skip(test, &format!("{missing} is not installed"));
@@ -116,17 +116,17 @@ impl Studio {
         Some(studio)
     }
 
-    /// The program's process.
+    /// Process id of the program.
     pub fn process(&self) -> u32 {
         self.program.lock().expect("no panic").id()
     }
 
-    /// The window's width and height.
+    /// Width and height of the window.
     pub fn size(&self) -> (i32, i32) {
         self.size
     }
 
-    /// Waits for the window; the error is what the program said when it ended instead.
+    /// Waits for the window. The error is the program's message if it ended instead.
     fn find_window(&mut self) -> Result<(), String> {
         let started = Instant::now();
         loop {
@@ -147,19 +147,19 @@ impl Studio {
         }
     }
 
-    /// The window's title.
+    /// Title of the window.
     pub fn title(&self) -> String {
         self.xdotool_quietly(&["getwindowname", &self.window]).trim().to_owned()
     }
 
-    /// Finished generations, as the title has them.
+    /// Number of finished generations in the title.
     pub fn generations(&self) -> u32 {
         let title = self.title();
         let number = title.split(" of ").next().and_then(|head| head.rsplit(' ').next());
         number.and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("title: {title}"))
     }
 
-    /// Waits until so many generations are finished, or more: a fast run passes any number between two looks.
+    /// Waits until at least this many generations are finished. A fast run may pass several between two polls.
     pub fn wait_for_generations(&self, count: u32) {
         let title = || format!("{count} generations in {:?}", self.title());
         self.wait(|| self.generations() >= count, title);
@@ -175,7 +175,7 @@ impl Studio {
         self.wait(|| !self.title().contains(part), || format!("no {part:?} in {:?}", self.title()));
     }
 
-    /// Pauses evolution, so that no newcomer takes the stage, and puts the first champion on it.
+    /// Pauses evolution, so that no new champion is shown, and shows the saved champion.
     pub fn pause_evolution(&self) {
         if !self.title().contains("finished") {
             self.key("e");
@@ -188,30 +188,30 @@ impl Studio {
         self.wait_for_title("showing saved champion");
     }
 
-    /// The moment at which the stage is held, in simulated seconds, as the title has it.
+    /// Time at which the stage is paused, in simulated seconds, from the title.
     pub fn held_at_s(&self) -> f64 {
         let title = self.title();
         let text = title.rsplit_once("held at ").and_then(|(_, rest)| rest.strip_suffix(" s"));
         text.and_then(|text| text.parse().ok()).unwrap_or_else(|| panic!("title: {title}"))
     }
 
-    /// Where the program keeps what it saves, unless told otherwise.
+    /// Default folder of saves.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Where the program says where everything is.
+    /// The file of `--places`.
     pub fn places_file(&self) -> PathBuf {
         self.folder.path().join(PLACES)
     }
 
-    /// What is on the display now.
+    /// The current picture.
     pub fn picture(&self) -> Picture {
         let screen = self.folder.path().join("Xvfb_screen0");
         Picture::of_xwd(&fs::read(screen).expect("Xvfb's screen"), self.scene())
     }
 
-    /// Waits for a picture that `is_it`.
+    /// Waits for a picture that meets the condition.
     pub fn picture_with(&self, is_it: impl Fn(&Picture) -> bool) -> Picture {
         let started = Instant::now();
         loop {
@@ -224,8 +224,7 @@ impl Studio {
         }
     }
 
-    /// Waits until the stage has stopped changing, with the pointer, which is part of the picture, away, and no message
-    /// over it, which would go at some time.
+    /// Waits until the stage is still, without the pointer and without messages, which would disappear later.
     pub fn still_picture(&self) -> Picture {
         self.step_aside();
         let has_no_message = || self.find(|place| place.role == "Status").is_none();
@@ -233,7 +232,7 @@ impl Studio {
         let mut before = self.picture();
         let mut equal = 0;
         let started = Instant::now();
-        // A slow camera can look still for one frame; for three it is.
+        // A slow camera can look still for one frame, but not for three.
         while equal < 3 {
             std::thread::sleep(A_FRAME);
             let now = self.picture();
@@ -244,12 +243,12 @@ impl Studio {
         before
     }
 
-    /// Moves the pointer to where it shows no hint.
+    /// Moves the pointer to a place without tooltip.
     pub fn step_aside(&self) {
         self.move_to((1, self.size.1 - 2));
     }
 
-    /// Quits by the keyboard; the program's exit code.
+    /// Quits with the keyboard and returns the exit code.
     pub fn quit(self) -> Option<i32> {
         self.xdotool(&["key", "ctrl+q"]);
         let started = Instant::now();
@@ -263,7 +262,7 @@ impl Studio {
         }
     }
 
-    /// Waits for something; `what` says who waits in vain.
+    /// Waits for a condition; `what` describes it in the failure message.
     pub fn wait(&self, is_it: impl Fn() -> bool, what: impl Fn() -> String) {
         let started = Instant::now();
         while !is_it() {
@@ -272,7 +271,7 @@ impl Studio {
         }
     }
 
-    /// Presses keys, moves the mouse.
+    /// Runs xdotool.
     pub fn xdotool(&self, arguments: &[&str]) {
         let status = self.xdotool_command(arguments).status().expect("xdotool starts");
         assert!(status.success(), "xdotool {arguments:?}: {status}");
@@ -290,14 +289,14 @@ impl Studio {
     }
 }
 
-/// The file in which the program says where everything is.
+/// The file of `--places`.
 const PLACES: &str = "places.txt";
-/// The file of what was chosen for the window.
+/// The preferences file.
 const PREFERENCES: &str = "studio.ron";
 
 impl Drop for Studio {
     fn drop(&mut self) {
-        // Both may have ended already.
+        // Both processes may have ended already.
         let program = self.program.get_mut().unwrap_or_else(PoisonError::into_inner);
         let _ = program.kill();
         let _ = program.wait();

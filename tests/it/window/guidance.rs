@@ -3,7 +3,7 @@
 use super::display::Studio;
 
 #[test]
-fn a_lesson_is_taken_from_its_beginning_to_its_end_and_ones_own_run_is_untouched() {
+fn a_complete_lesson_leaves_the_own_run_untouched() {
     let Some(studio) = Studio::open("lesson", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("World");
@@ -12,10 +12,10 @@ fn a_lesson_is_taken_from_its_beginning_to_its_end_and_ones_own_run_is_untouched
     studio.open_panel("Lessons");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
-    assert!(studio.find(|place| place.label.contains("too much sticks")).is_none());
+    assert!(studio.find(|place| place.label.contains("too much makes a block catch")).is_none());
     studio.scroll_and_click("Button", "A little less, a little more");
     studio.place_with("friction 0.7");
-    studio.place_with("too much sticks");
+    studio.place_with("too much makes a block catch");
     studio.scroll_and_click("Button", "Back to my own run");
     studio.wait_for_title(&title);
     studio.open_panel("World");
@@ -23,7 +23,7 @@ fn a_lesson_is_taken_from_its_beginning_to_its_end_and_ones_own_run_is_untouched
 }
 
 #[test]
-fn the_run_that_the_fifth_lesson_repeats_has_the_same_bits() {
+fn the_fifth_lesson_repeats_a_run_bit_for_bit() {
     let Some(studio) = Studio::open("lesson-5", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("Lessons");
@@ -63,23 +63,23 @@ fn the_tour_is_taken_once() {
 }
 
 #[test]
-fn all_keys_are_shown_and_any_command_is_found_by_its_name() {
+fn shortcuts_are_listed_and_commands_are_found_by_name() {
     let Some(studio) = Studio::open("keys", "--preset quick") else { return };
     studio.wait_for_title("4 of 4 generations, finished");
     studio.key("question");
-    studio.place("Keys and mouse");
+    studio.place("Keyboard and mouse");
     studio.key("Escape");
-    studio.wait_for_no("Keys and mouse");
+    studio.wait_for_no("Keyboard and mouse");
     studio.key("ctrl+k");
     studio.place("Find a command");
     studio.type_text("dark");
     studio.key("Return");
-    // What lay over the window is gone, and the button offers the other theme.
+    // The modal view is closed, and the button offers the other theme.
     studio.wait_for_no("Find a command");
     studio.place_of("Button", "Light");
     studio.key("ctrl+k");
     studio.place("Find a command");
-    studio.type_text("race the generations");
+    studio.type_text("race generations");
     studio.key("Return");
     studio.wait_for_title("showing a race of ");
 }

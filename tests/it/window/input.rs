@@ -1,10 +1,10 @@
-//! Keys and mouse, pressed for real.
+//! Real key presses and mouse input.
 
 use std::time::Duration;
 
 use super::display::Studio;
 
-/// Longer than a frame takes: between a press and the next move, egui and Bevy must have drawn one.
+/// Longer than a frame, because egui and Bevy must draw one between a press and the next move.
 pub const A_FRAME: Duration = Duration::from_millis(700);
 
 fn for_a_frame() {
@@ -18,7 +18,7 @@ impl Studio {
         for_a_frame();
     }
 
-    /// Does something while a key is held down.
+    /// Acts while a key is held down.
     pub fn holding(&self, key: &str, act: impl FnOnce()) {
         self.xdotool(&["keydown", key]);
         for_a_frame();
@@ -27,15 +27,15 @@ impl Studio {
         for_a_frame();
     }
 
-    /// Types into what has the keyboard.
+    /// Types into the focused widget.
     pub fn type_text(&self, text: &str) {
         self.xdotool(&["type", "--delay", "150", text]);
         for_a_frame();
     }
 
-    /// Types in place of what stands in the field that has the keyboard.
+    /// Replaces the text of the focused field.
     pub fn retype(&self, text: &str) {
-        // Not by Ctrl A: a field asks which keys are held at a frame's end, which may be after both are let go.
+        // Not with Ctrl A, because a field reads modifiers at the end of a frame, which may be after their release.
         self.key("End");
         self.xdotool(&["key", "--repeat", "40", "--delay", "20", "BackSpace"]);
         self.type_text(text);
@@ -50,7 +50,7 @@ impl Studio {
     /// Clicks a point of the window.
     pub fn click_at(&self, at: (i32, i32)) {
         self.move_to(at);
-        // Press and release at once: egui takes a button held for longer for something else.
+        // Press and release at once, because egui treats a longer press differently.
         self.xdotool(&["click", "1"]);
         for_a_frame();
     }
@@ -59,7 +59,7 @@ impl Studio {
     pub fn double_click_at(&self, at: (i32, i32)) {
         self.move_to(at);
         self.xdotool(&["click", "1"]);
-        // In frames of their own, and yet near each other.
+        // In separate frames, but close in time.
         std::thread::sleep(Duration::from_millis(250));
         self.xdotool(&["click", "1"]);
         for_a_frame();
@@ -70,7 +70,7 @@ impl Studio {
         self.drag_and_hold(button, from, to, || {});
     }
 
-    /// Drags and holds on at the end until `then` has happened.
+    /// Drags and keeps the button pressed until `then` has happened.
     pub fn drag_and_hold(
         &self,
         button: u32,
@@ -88,7 +88,7 @@ impl Studio {
         for_a_frame();
     }
 
-    /// Turns the wheel over a point of the window: up is away from the person.
+    /// Turns the wheel over a point of the window; up is away from the user.
     pub fn wheel(&self, is_up: bool, at: (i32, i32)) {
         self.move_to(at);
         let button = if is_up { "4" } else { "5" };

@@ -1,4 +1,4 @@
-//! The library with real mouse and keys, and what becomes of the files.
+//! The library with real mouse and keys, and its effects on the files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::display::Studio;
 use super::places::Place;
 
-/// A folder of saves with two champions and a file that is damaged.
+/// A folder of saves with two champions and a damaged file.
 fn saves(folder: &Path) -> PathBuf {
     let saves = folder.join("saves");
     fs::create_dir(&saves).expect("created");
@@ -19,7 +19,7 @@ fn saves(folder: &Path) -> PathBuf {
     saves
 }
 
-/// A studio that shows these three in its library and nothing else.
+/// A studio whose library shows only these three.
 fn with_zebras(test: &str, saves: &Path) -> Option<Studio> {
     let arguments = format!("--preset quick --saves {}", saves.display());
     let studio = Studio::open(test, &arguments)?;
@@ -31,14 +31,14 @@ fn with_zebras(test: &str, saves: &Path) -> Option<Studio> {
     Some(studio)
 }
 
-/// Waits until it says that so many saves are listed.
+/// Waits until this number of saves is listed.
 fn wait_for_count(studio: &Studio, count: &str) {
     studio.place_where(count, |place| {
         place.label.starts_with(count) && place.label.contains(" saves")
     });
 }
 
-/// The row of the save with this name, once it is read.
+/// The row of a loaded save with this name.
 fn row(studio: &Studio, name: &str) -> Place {
     let start = format!("{name}, ");
     studio.place_where(name, |place| {
@@ -48,13 +48,13 @@ fn row(studio: &Studio, name: &str) -> Place {
     })
 }
 
-/// Chooses a save by a click on its row; from then on keys are the list's.
+/// Selects a save by a click on its row, which also gives the list the keyboard focus.
 fn choose(studio: &Studio, name: &str) {
     studio.click_at(row(studio, name).area.middle());
     studio.wait(|| row(studio, name).value == "on", || format!("{name} to be chosen"));
 }
 
-/// Waits until the caption under the stage says this.
+/// Waits for a caption under the stage.
 fn wait_for_caption(studio: &Studio, name: &str) {
     let left = studio.stage().left;
     studio.place_where(name, |place| {
@@ -72,7 +72,7 @@ fn saves_are_searched_replayed_and_raced() {
     wait_for_caption(&studio, "zebra-two");
     choose(&studio, "zebra-one");
     studio.click_with("ctrl", &row(&studio, "zebra-two"));
-    studio.place_with("2 chosen");
+    studio.place_with("2 selected");
     studio.key("Return");
     studio.wait_for_title("showing a race of 2");
     studio.type_into("Search the library", "zebra damaged");
@@ -81,7 +81,7 @@ fn saves_are_searched_replayed_and_raced() {
 }
 
 #[test]
-fn a_save_is_renamed_deleted_and_brought_back() {
+fn a_save_is_renamed_deleted_and_restored() {
     let folder = super::folder();
     let saves = saves(folder.path());
     let Some(studio) = with_zebras("library-files", &saves) else { return };

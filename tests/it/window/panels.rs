@@ -3,7 +3,7 @@
 use super::display::Studio;
 
 #[test]
-fn a_run_is_started_and_paused_by_its_button_and_from_the_menu() {
+fn button_and_menu_start_and_pause_a_run() {
     let Some(studio) = Studio::open("menu", "--preset quick --generations 1000") else { return };
     studio.wait_for_title("running");
     studio.click_label("Pause");
@@ -12,12 +12,12 @@ fn a_run_is_started_and_paused_by_its_button_and_from_the_menu() {
     studio.wait_for_title("running");
     studio.choose("Run", "Start or pause evolution");
     studio.wait_for_title("paused");
-    studio.click_label("Start");
+    studio.click_label("Resume");
     studio.wait_for_title("running");
 }
 
 #[test]
-fn a_slider_shows_at_once_what_it_does_and_is_undone_and_redone() {
+fn a_slider_starts_a_what_if_and_can_be_undone_and_redone() {
     let Some(studio) = Studio::open("slider", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("World");
@@ -36,13 +36,13 @@ fn a_slider_shows_at_once_what_it_does_and_is_undone_and_redone() {
 }
 
 #[test]
-fn whatever_is_a_point_or_a_bar_in_a_chart_is_replayed_by_a_click() {
+fn clicking_a_point_or_bar_of_a_chart_replays_it() {
     let Some(studio) = Studio::open("charts", "--preset quick") else { return };
     studio.wait_for_title("4 of 4 generations, finished");
     studio.open_panel("Charts");
     let chart = studio.place("Chart: Fitness by generation").area;
     for generation in [3, 2] {
-        // The axis reaches over six generations, with a margin.
+        // The axis spans six generations and a margin.
         let share = (f64::from(generation) - 0.8) / 5.4;
         studio.click_at(chart.at(share, 0.4));
         studio.wait_for_title(&format!("showing generation {generation}"));
@@ -51,7 +51,7 @@ fn whatever_is_a_point_or_a_bar_in_a_chart_is_replayed_by_a_click() {
     let chart = studio.place_where("the spread", |place| {
         place.label.starts_with("Chart: ") && !place.label.contains("Fitness by generation")
     });
-    // Along its foot there is a bar somewhere; all are of the latest generation.
+    // Search for a bar along the bottom; all bars belong to the latest generation.
     let is_shown = (1..24).any(|column| {
         studio.click_at(chart.area.at(f64::from(column) / 24.0, 0.985));
         studio.title().contains("showing generation 4")
@@ -62,22 +62,22 @@ fn whatever_is_a_point_or_a_bar_in_a_chart_is_replayed_by_a_click() {
 }
 
 #[test]
-fn settings_of_the_search_are_changed_while_the_run_goes_on() {
+fn search_settings_can_change_during_a_run() {
     let Some(studio) = Studio::open("during-run", "--preset quick --generations 1000") else {
         return;
     };
     studio.wait_for_title("running");
     studio.type_into("Generations", "2000");
     studio.wait_for_title("of 2000 generations, running");
-    studio.place("1 setting changed on the way");
+    studio.place("1 setting changed during the run");
     studio.type_into("Mutation range, N·m", "50");
-    studio.place("2 settings changed on the way");
+    studio.place("2 settings changed during the run");
     let now = studio.generations();
     studio.wait_for_generations(now + 2);
 }
 
 #[test]
-fn the_stage_is_there_alone_and_the_panels_come_back() {
+fn panels_can_be_hidden_and_shown_again() {
     let Some(studio) = Studio::open("bare", "--preset quick") else { return };
     studio.pause_evolution();
     let beside = studio.stage();

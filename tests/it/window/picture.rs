@@ -1,14 +1,14 @@
-//! What is on the display, as pixels.
+//! Screenshots of the display.
 
 use std::path::Path;
 
 use super::places::Area;
 
-/// What is on the display.
+/// A screenshot of the display.
 pub struct Picture {
     width: i32,
     pixels: Vec<[u8; 3]>,
-    /// The part in which only the scene is: no panel, no card, no message.
+    /// The area that shows only the scene, without panels, cards and messages.
     scene: Area,
 }
 
@@ -33,7 +33,7 @@ impl Picture {
         Self { width: width as i32, pixels, scene }
     }
 
-    /// Where the scene is.
+    /// Rectangle of the scene.
     pub fn scene(&self) -> Area {
         self.scene
     }
@@ -43,12 +43,12 @@ impl Picture {
         self.region(self.scene)
     }
 
-    /// How many pixels of the scene look like `is`.
+    /// Number of pixels of the scene that meet a condition.
     pub fn count(&self, is: fn(&[u8; 3]) -> bool) -> usize {
         self.scene_pixels().iter().filter(|pixel| is(pixel)).count()
     }
 
-    /// The middle of a square of the scene all of whose pixels look like `is`.
+    /// Centre of a square of the scene in which all pixels meet a condition.
     pub fn find(&self, is: fn(&[u8; 3]) -> bool) -> Option<(i32, i32)> {
         const SIDE: i32 = 9;
         let Area { left, top, right, bottom } = self.scene;
@@ -60,14 +60,14 @@ impl Picture {
         squares.next().map(|(x, y)| (x + SIDE / 2, y + SIDE / 2))
     }
 
-    /// How bright a rectangle is on the whole, from 0 to 255.
+    /// Mean brightness of a rectangle, from 0 to 255.
     pub fn brightness(&self, area: Area) -> u32 {
         let pixels = self.region(area);
         let sum: u32 = pixels.iter().flatten().map(|part| u32::from(*part)).sum();
         sum / (3 * pixels.len().max(1) as u32)
     }
 
-    /// Writes it as PNG.
+    /// Writes the picture as PNG.
     pub fn store(&self, path: &Path) {
         let width = self.width as u32;
         let height = self.pixels.len() as u32 / width;
@@ -86,17 +86,17 @@ impl Picture {
     }
 }
 
-/// Whether a pixel is red as one half of the snake is.
+/// Whether a pixel has the red of the snake.
 pub fn is_red(&[red, green, blue]: &[u8; 3]) -> bool {
     red > 90 && u32::from(red) > 2 * u32::from(green) && u32::from(red) > 2 * u32::from(blue)
 }
 
-/// Whether a pixel is blue as the other half is.
+/// Whether a pixel has the blue of the snake.
 pub fn is_blue(&[red, green, blue]: &[u8; 3]) -> bool {
     blue > 90 && u32::from(blue) * 2 > 3 * u32::from(green) && u32::from(blue) > 2 * u32::from(red)
 }
 
-/// How many pixels of the scene differ between two pictures.
+/// Number of pixels of the scene that differ between two pictures.
 pub fn difference(before: &Picture, after: &Picture) -> usize {
     let after = after.region(before.scene);
     before.scene_pixels().iter().zip(after).filter(|(a, b)| **a != *b).count()

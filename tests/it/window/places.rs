@@ -1,4 +1,4 @@
-//! Where everything is in the window, by its name, as the program itself describes it.
+//! Finds controls in the window by name, with the list that the program itself writes.
 
 use super::display::Studio;
 use super::input::A_FRAME;
@@ -13,38 +13,38 @@ pub struct Area {
 }
 
 impl Area {
-    /// How wide it is.
+    /// Width.
     pub fn width(self) -> i32 {
         self.right - self.left
     }
 
-    /// How high it is.
+    /// Height.
     pub fn height(self) -> i32 {
         self.bottom - self.top
     }
 
-    /// The point at these shares of its width and its height.
+    /// The point at these fractions of width and height.
     pub fn at(self, x: f64, y: f64) -> (i32, i32) {
         let along = |from: i32, length: i32, share: f64| from + (f64::from(length) * share) as i32;
         (along(self.left, self.width(), x), along(self.top, self.height(), y))
     }
 
-    /// Its middle.
+    /// Centre.
     pub fn middle(self) -> (i32, i32) {
         self.at(0.5, 0.5)
     }
 }
 
-/// A control, or words.
+/// A control or a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
-    /// What it is: `Button`, `Slider`, `Label` and so on.
+    /// Role: `Button`, `Slider`, `Label` and so on.
     pub role: String,
-    /// What it is called.
+    /// Label.
     pub label: String,
-    /// What stands in it; `on` or `off` of what can be either.
+    /// Value; `on` or `off` for check boxes and toggles.
     pub value: String,
-    /// Where it is.
+    /// Rectangle.
     pub area: Area,
 }
 
@@ -64,19 +64,19 @@ impl Place {
 }
 
 impl Studio {
-    /// All that is described now; what is scrolled out of sight too.
+    /// All listed controls, including those that are scrolled out of sight.
     pub fn places(&self) -> Vec<Place> {
-        // It is written whole or not at all; before the first frame there is none.
+        // The file is written atomically and does not exist before the first frame.
         let text = std::fs::read_to_string(self.places_file()).unwrap_or_default();
         text.lines().filter_map(Place::of_line).collect()
     }
 
-    /// The first that `is` it.
+    /// The first control that meets a condition.
     pub fn find(&self, is: impl Fn(&Place) -> bool) -> Option<Place> {
         self.places().into_iter().find(is)
     }
 
-    /// Waits for one that `is` it and has come to rest; `what` it is says who waits in vain.
+    /// Waits for a control that meets a condition and does not move; `what` describes it in the failure message.
     pub fn place_where(&self, what: &str, is: impl Fn(&Place) -> bool) -> Place {
         let listed = || {
             let places = self.places().into_iter();
@@ -85,7 +85,7 @@ impl Studio {
         };
         loop {
             self.wait(|| self.find(&is).is_some(), listed);
-            // What has just been opened moves to its place in the next frame.
+            // A widget that was just opened moves to its place in the next frame.
             let area = |place: Option<Place>| place.map(|place| place.area);
             let before = area(self.find(&is));
             std::thread::sleep(A_FRAME / 2);
@@ -99,57 +99,57 @@ impl Studio {
         }
     }
 
-    /// Waits for what is called exactly so: a control, if there is one, before words.
+    /// Waits for a control with this label or, without one, for a text.
     pub fn place(&self, label: &str) -> Place {
         let place = self.place_where(label, |place| place.label == label);
         let control = self.find(|place| place.label == label && !place.is_words());
         control.unwrap_or(place)
     }
 
-    /// Waits for what has this role and is called exactly so.
+    /// Waits for a control with this role and label.
     pub fn place_of(&self, role: &str, label: &str) -> Place {
         let what = format!("{role} {label:?}");
         self.place_where(&what, |place| place.role == role && place.label == label)
     }
 
-    /// Waits for a button whose name begins so.
+    /// Waits for a button whose label starts with a text.
     pub fn button_starting(&self, start: &str) -> Place {
         self.place_where(start, |place| place.role == "Button" && place.label.starts_with(start))
     }
 
-    /// Waits for anything whose name has this in it.
+    /// Waits for a control whose label contains a text.
     pub fn place_with(&self, part: &str) -> Place {
         self.place_where(part, |place| place.label.contains(part))
     }
 
-    /// Waits until nothing has this in its name.
+    /// Waits until no label contains a text.
     pub fn wait_for_no(&self, part: &str) {
         let is_gone = || self.find(|place| place.label.contains(part)).is_none();
         self.wait(is_gone, || format!("no {part:?}"));
     }
 
-    /// What stands in the control of this role and name.
+    /// Value of the control with this role and label.
     pub fn value_of(&self, role: &str, label: &str) -> String {
         self.place_of(role, label).value
     }
 
-    /// Waits until in the control of this role and name stands `value`.
+    /// Waits until the control with this role and label has this value.
     pub fn wait_for_value(&self, role: &str, label: &str, value: &str) {
         let now = || self.place_of(role, label).value;
         self.wait(|| now() == value, || format!("{label} {value:?}, which is {:?}", now()));
     }
 
-    /// Clicks the middle of what is called exactly so.
+    /// Clicks the centre of the control with this label.
     pub fn click_label(&self, label: &str) {
         self.click_at(self.place(label).area.middle());
     }
 
-    /// Clicks the middle of the button whose name begins so.
+    /// Clicks the centre of the button whose label starts with a text.
     pub fn click_starting(&self, start: &str) {
         self.click_at(self.button_starting(start).area.middle());
     }
 
-    /// Clicks what is called exactly so with keys such as `ctrl` held down.
+    /// Clicks the control with this label while keys such as `ctrl` are held down.
     pub fn click_with(&self, key: &str, place: &Place) {
         self.holding(key, || self.click_at(place.area.middle()));
     }
@@ -159,34 +159,34 @@ impl Studio {
         self.click_label(&format!("Panel {name}"));
     }
 
-    /// Opens a menu and chooses from it.
+    /// Opens a menu and selects an entry.
     pub fn choose(&self, menu: &str, action: &str) {
         self.click_at(self.place_of("Button", menu).area.middle());
         self.click_starting(action);
     }
 
-    /// Drags a slider to a share of its rail.
+    /// Drags a slider to a fraction of its rail.
     pub fn drag_slider(&self, label: &str, share: f64) {
         let rail = self.scrolled_to("Slider", label).area;
         self.drag(1, rail.at(0.5, 0.5), rail.at(share, 0.5));
     }
 
-    /// Replaces what stands in a field, and leaves it by Enter.
+    /// Replaces the text of a field and presses Enter.
     pub fn type_into(&self, label: &str, text: &str) {
         self.click_at(self.scrolled_to("TextInput", label).area.middle());
         self.retype(text);
         self.key("Return");
     }
 
-    /// Waits for a control of the upper panels, turning the wheel over them until it is in sight.
+    /// Waits for a control of the upper panels, scrolling until it is visible.
     pub fn scrolled_to(&self, role: &str, label: &str) -> Place {
         self.scrolled_to_where(label, |place| place.role == role && place.label == label)
     }
 
-    /// The same for one that `is` it.
+    /// The same for a control that meets a condition.
     pub fn scrolled_to_where(&self, what: &str, is: impl Fn(&Place) -> bool) -> Place {
         let [top, below] = ["Panel Run", "Panel Champions"].map(|tab| self.place(tab).area);
-        // In a low window all panels are beside each other, and each has the whole height.
+        // In a low window all panels are side by side at full height.
         let bottom = if below.top < top.bottom { self.size().1 } else { below.top };
         for _ in 0..40 {
             let place = self.place_where(what, &is);
@@ -199,7 +199,7 @@ impl Studio {
         panic!("{what} could not be scrolled into sight");
     }
 
-    /// Clicks a control of the upper panels, wherever it is in them.
+    /// Scrolls to a control of the upper panels and clicks it.
     pub fn scroll_and_click(&self, role: &str, label: &str) {
         self.click_at(self.scrolled_to(role, label).area.middle());
     }
@@ -218,7 +218,7 @@ impl Studio {
         for _ in 0..40 {
             match self.find(is_it) {
                 Some(place) if place.area.middle().1 < bottom - 4 => return place,
-                // Those that are out of sight are not there; the saved one is above all.
+                // Rows that are out of sight are not listed; the saved champion is at the top.
                 _ => self.wheel(row == 0, (tab.left + 100, bottom - 40)),
             }
         }
@@ -236,20 +236,20 @@ impl Studio {
         self.click_with("shift", &place);
     }
 
-    /// The part of the window that is the stage's.
+    /// The area of the stage.
     pub fn stage(&self) -> Area {
         let stage = self.find(|place| place.label == "The stage");
         stage.unwrap_or_else(|| self.place("The stage")).area
     }
 
-    /// The part of the stage on which nothing lies but, in a race, its board.
+    /// The area of the stage that only the board of a race can cover.
     pub fn scene(&self) -> Area {
         let Area { left, top, right, bottom } = self.stage();
         let cards = if self.find(|place| place.label == "Follow").is_some() { 100 } else { 10 };
         Area { left: left + 10, top: top + cards, right: right - 10, bottom: bottom - 10 }
     }
 
-    /// Holds the stage, or goes on, at this share of the time.
+    /// Seeks to this fraction of the time.
     pub fn seek(&self, share: f64) {
         self.click_at(self.place("Moment, in simulated seconds").area.at(share, 0.5));
     }

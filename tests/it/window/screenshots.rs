@@ -1,29 +1,28 @@
-//! The pictures of the studio that the README shows, taken from the real window.
+//! The README's screenshots of the studio, taken from the real window.
 //!
-//! `cargo test --test it screenshots -- --ignored` writes those into `assets/screenshots`. To look at all of them, as
-//! others see them, the environment names a folder, a size of the window, a scale of the panels and a theme:
-//! `SNAKES_SCREENSHOTS=target/screenshots SNAKES_SCREENSHOTS_SIZE=2560x1440 SNAKES_SCREENSHOTS_SCALE=1.5
-//! SNAKES_SCREENSHOTS_THEME=dark`.
+//! `cargo test --test it screenshots -- --ignored` writes them to `assets/screenshots`. Environment variables take
+//! other screenshots: a folder, a window size, a UI scale and a theme, as in `SNAKES_SCREENSHOTS=target/screenshots
+//! SNAKES_SCREENSHOTS_SIZE=2560x1440 SNAKES_SCREENSHOTS_SCALE=1.5 SNAKES_SCREENSHOTS_THEME=dark`.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use super::display::{Studio, preferences};
 
-/// A run that has learned something, quickly.
+/// A run that improves quickly.
 const RUN: &str = "--preset climb --generations 30 --threads 2";
 
-/// What the README shows; nothing else goes into `assets/screenshots`.
+/// The README's screenshots; only these are written to `assets/screenshots`.
 const IN_README: [&str; 5] = ["single", "race", "charts", "library", "lesson"];
 
-/// Where pictures go, how large they and the panels are, and in which theme.
+/// Target folder, sizes and theme of the screenshots.
 struct Album {
-    /// None if they are the README's.
+    /// `None` for the README's screenshots.
     folder: Option<PathBuf>,
     size: (i32, i32),
     scale: String,
     theme: String,
-    /// What the program saves and remembers meanwhile.
+    /// Folder for saves and preferences of the program.
     scratch: tempfile::TempDir,
 }
 
@@ -43,7 +42,7 @@ impl Album {
         Self { folder, size, scale, theme, scratch: super::folder() }
     }
 
-    /// Opens the program; none where that is not possible. Saves are the same each time, the rest is as new.
+    /// Opens the program; `None` where that is impossible. Saves are shared, everything else is fresh.
     fn open(&self, arguments: &str, tour_is_over: bool) -> Option<Studio> {
         let path = self.scratch.path().join("studio.ron");
         let fields = format!("ui_scale: {}, tour_is_over: {tour_is_over}", self.scale);
@@ -60,7 +59,7 @@ impl Album {
         Some(studio)
     }
 
-    /// Writes what is on the display once it has come to rest.
+    /// Writes a screenshot once the display is still.
     fn keep(&self, studio: &Studio, name: &str) {
         let folder = match &self.folder {
             Some(folder) => folder.clone(),
@@ -70,12 +69,12 @@ impl Album {
             None => return,
         };
         studio.step_aside();
-        // Messages go after eight seconds; a camera glides for one, and a large picture takes one.
+        // Messages disappear after eight seconds; a camera moves for one, and a large picture takes one.
         std::thread::sleep(Duration::from_secs(9));
         studio.picture().store(&folder.join(format!("{name}-{}.png", self.theme)));
     }
 
-    /// The stage: a race, another world, one from near.
+    /// Screenshots of the stage: a race, another world, a close-up.
     fn stage(&self) -> Option<()> {
         let studio = self.open(RUN, true)?;
         studio.key("a");
@@ -97,7 +96,7 @@ impl Album {
         self.keep(&studio, "what-if");
         drop(studio);
 
-        // One that often touches something, from near, at a moment at which it does.
+        // A close-up at a moment with contacts.
         let robust =
             concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/robust.ron --preset quick");
         let studio = self.open(robust, true)?;
@@ -112,7 +111,7 @@ impl Album {
         Some(())
     }
 
-    /// The main view, the panels, and what lies over the window.
+    /// Screenshots of the main view, the panels and the modal views.
     fn panels(&self) -> Option<()> {
         let studio = self.open(RUN, true)?;
         studio.key("a");
@@ -138,10 +137,10 @@ impl Album {
         self.keep(&studio, "library");
 
         studio.key("question");
-        studio.place("Keys and mouse");
+        studio.place("Keyboard and mouse");
         self.keep(&studio, "keys");
         studio.key("Escape");
-        studio.wait_for_no("Keys and mouse");
+        studio.wait_for_no("Keyboard and mouse");
 
         studio.open_panel("Lessons");
         studio.click_label("Begin lesson 1");

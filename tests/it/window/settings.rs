@@ -1,4 +1,4 @@
-//! What a person has chosen for the window is there again when it is opened the next time.
+//! Preferences of the window survive a restart.
 
 use super::display::{Studio, preferences};
 use super::places::Area;
@@ -37,7 +37,7 @@ fn theme_scale_panels_and_overlays_survive_a_restart() {
     studio.click_label("Show");
     studio.wait_for_value("CheckBox", "Trail", "on");
     assert_eq!(studio.value_of("CheckBox", "Contacts"), "off");
-    // Closed is not lost: the menu brings it back.
+    // The menu restores a closed panel.
     studio.key("Escape");
     studio.choose("Panels", "Charts");
     studio.place("Panel Charts");

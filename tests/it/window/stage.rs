@@ -1,10 +1,10 @@
-//! The stage with real mouse and keys: play, step, seek, race, what-if, hands, cameras, overlays, pictures.
+//! The stage with real mouse and keys: play, step, seek, race, what-if, pulls, cameras, overlays, pictures.
 
 use super::display::Studio;
 use super::picture::{Picture, difference, is_blue, is_red};
 use super::places::Area;
 
-/// A studio that has the saved champion on its stage, held at the start, and evolves nothing.
+/// A studio with the saved champion paused at the start and evolution paused.
 fn held_at_start(test: &str) -> Option<Studio> {
     let studio = Studio::open(test, "--preset quick --saves saves")?;
     studio.pause_evolution();
@@ -16,13 +16,13 @@ fn held_at_start(test: &str) -> Option<Studio> {
 }
 
 #[test]
-fn the_player_holds_steps_back_and_on_and_seeks() {
+fn the_player_pauses_steps_and_seeks() {
     let Some(studio) = Studio::open("player", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.click_label("Hold");
+    studio.click_label("Pause playback");
     studio.wait_for_title(", held at ");
     studio.seek(0.5);
-    // A pixel of the strip is some hundredths of a second.
+    // A pixel of the strip is a few hundredths of a second.
     let is_there = || ["held at 7.4", "held at 7.5"].iter().any(|at| studio.title().contains(at));
     studio.wait(is_there, || format!("the middle of 15 s in {:?}", studio.title()));
     let middle = studio.held_at_s();
@@ -44,7 +44,7 @@ fn the_player_holds_steps_back_and_on_and_seeks() {
     studio.wait_for_title("held at 15.00 s");
     studio.click_label("From the start");
     studio.wait_for_title_without("held");
-    // Four times as fast, and staying at the end.
+    // Four times the speed, without looping.
     studio.key("o");
     for _ in 0..4 {
         studio.key("plus");
@@ -53,7 +53,7 @@ fn the_player_holds_steps_back_and_on_and_seeks() {
 }
 
 #[test]
-fn a_race_is_begun_by_key_and_by_clicks_and_left_again() {
+fn a_race_starts_by_key_or_click_and_ends_by_key() {
     let Some(studio) = Studio::open("race", "--preset quick") else { return };
     studio.wait_for_title("4 of 4 generations, finished");
     studio.key("n");
@@ -72,26 +72,26 @@ fn a_race_is_begun_by_key_and_by_clicks_and_left_again() {
 }
 
 #[test]
-fn a_change_in_the_world_tab_is_shown_beside_the_original_and_kept_or_dropped() {
+fn a_changed_world_is_shown_beside_the_original_and_kept_or_discarded() {
     let Some(studio) = Studio::open("what-if", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("World");
-    studio.scroll_and_click("CheckBox", "The ground has a surface of its own");
+    studio.scroll_and_click("CheckBox", "The ground has its own surface");
     studio.wait_for_title("showing saved champion and what if");
-    studio.click_label("Drop");
+    studio.click_label("Discard");
     studio.wait_for_title_without("what if");
-    studio.scroll_and_click("CheckBox", "The ground has a surface of its own");
+    studio.scroll_and_click("CheckBox", "The ground has its own surface");
     studio.wait_for_title("showing saved champion and what if");
     studio.click_label("Keep");
     studio.wait_for_title("showing saved champion in another world");
-    studio.scroll_and_click("CheckBox", "The ground has a surface of its own");
+    studio.scroll_and_click("CheckBox", "The ground has its own surface");
     studio.wait_for_title("what if");
     studio.key("Escape");
     studio.wait_for_title("showing saved champion in another world");
 }
 
 #[test]
-fn a_limb_that_is_clicked_shows_its_numbers_and_one_that_is_dragged_is_disturbed() {
+fn clicking_a_limb_shows_its_numbers_and_dragging_disturbs_the_snake() {
     let Some(studio) = held_at_start("hands") else { return };
     let card = |picture: &Picture| {
         let scene = picture.scene();
@@ -102,7 +102,7 @@ fn a_limb_that_is_clicked_shows_its_numbers_and_one_that_is_dragged_is_disturbed
     studio.click_at(limb);
     let with_card = studio.still_picture();
     assert!(card(&before) != card(&with_card), "its numbers are shown");
-    // It is taken while it cannot run away, and pulled once it moves.
+    // Grab it while it is paused, and pull once it moves.
     studio.drag_and_hold(1, limb, (limb.0 - 60, limb.1 - 90), || {
         studio.key("space");
         studio.wait_for_title(", disturbed");
@@ -112,7 +112,7 @@ fn a_limb_that_is_clicked_shows_its_numbers_and_one_that_is_dragged_is_disturbed
 }
 
 #[test]
-fn every_camera_shows_something_else_and_follow_comes_back() {
+fn camera_modes_differ_and_follow_can_be_restored() {
     let Some(studio) = held_at_start("cameras") else { return };
     let follow = studio.still_picture();
     let mut before = studio.still_picture();
@@ -134,13 +134,13 @@ fn every_camera_shows_something_else_and_follow_comes_back() {
     studio.picture_with(|now| difference(&follow, now) > 3000);
     studio.key("Home");
     studio.picture_with(|now| difference(&follow, now) < 200);
-    // A double click on the ground goes there; from near, the snake is large or out of the picture.
+    // A double click on the ground focuses there; from near, the snake is large or out of the picture.
     studio.double_click_at(studio.stage().at(0.67, 0.55));
     studio.picture_with(|now| difference(&follow, now) > 20_000);
 }
 
 #[test]
-fn each_overlay_is_drawn_and_taken_away_again() {
+fn each_overlay_can_be_shown_and_hidden() {
     let Some(studio) = held_at_start("overlays") else { return };
     studio.seek(0.5);
     let bare = studio.still_picture();
@@ -153,7 +153,7 @@ fn each_overlay_is_drawn_and_taken_away_again() {
 }
 
 #[test]
-fn the_theme_changes_panels_and_scene_and_pictures_are_saved() {
+fn the_theme_applies_to_panels_and_scene_and_pictures_are_saved() {
     let Some(studio) = held_at_start("theme") else { return };
     let stage = studio.stage();
     let panel = Area { left: 2, top: 2, right: 22, bottom: 6 };

@@ -1,32 +1,34 @@
-//! Draws a chart from its data: lines, points, bars, a legend; reads values out, and lets people click.
+//! Draws charts: series, legend, hover texts and clicks.
 
-use bevy_egui::egui::{self, Color32, Pos2, Sense, Stroke};
+use bevy_egui::egui;
+use bevy_egui::egui::{Color32, Pos2, Sense, Stroke};
 use egui_plot::{
     Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints, PlotTransform,
     PlotUi, Points, Polygon, Text,
 };
 
-use super::thin::Drawn;
-use super::view::{Hit, Target, View};
-use crate::evolve::Place;
+use super::downsample::DrawnSeries;
+use super::view::{ChartHit, ChartView, HitShape};
+use crate::evolve::IndividualId;
 use crate::plot::{Chart, Figure, Role, Series, Shape};
-use crate::studio::command::Command;
-use crate::studio::look::{self, Palette};
-use crate::studio::panels::axes::{axis_name, bounds, still};
+use crate::studio::commands::Command;
+use crate::studio::ui::plot_axes::{axis_name, bounds, fixed_plot};
+use crate::studio::ui::theme;
+use crate::studio::ui::theme::Palette;
 
-/// How far beside a point a click still counts, in points of the screen.
-const REACH: f32 = 16.0;
-/// Up to so many points on a line each is marked.
-const MOST_MARKED: usize = 30;
+/// Maximum distance between a click and a point, in screen points.
+const CLICK_DISTANCE: f32 = 16.0;
+/// Maximum number of points on a line that are marked individually.
+const MAX_MARKED_POINTS: usize = 30;
 
-/// Draws a view over the width there is, as high as the room allows. `shown` is who is on the stage.
+/// Draws a view over the available width and height. `shown` is the individual on the stage.
 pub(super) fn draw(
     ui: &mut egui::Ui,
     id: &str,
-    view: &View,
+    view: &ChartView,
     height: f32,
-    shown: Option<Place>,
-    asked: &mut Vec<Command>,
+    shown: Option<IndividualId>,
+    commands: &mut Vec<Command>,
 ) {
     legend(ui, &view.figure);
     let figure = &view.figure;
@@ -34,62 +36,63 @@ pub(super) fn draw(
     let width = ui.available_width();
     let columns = match count {
         0 | 1 => 1,
-        _ => ((width / look::MULTIPLE_WIDTH) as usize).clamp(1, count),
+        _ => ((width / theme::MULTIPLE_WIDTH) as usize).clamp(1, count),
     };
     let rows = count.div_ceil(columns).max(1);
     let size = egui::vec2(
-        (width - look::GAP * (columns - 1) as f32) / columns as f32,
-        if count > 1 { (height / rows as f32).max(look::MULTIPLE_HEIGHT) } else { height },
+        (width - theme::GAP * (columns - 1) as f32) / columns as f32,
+        if count > 1 { (height / rows as f32).max(theme::MULTIPLE_HEIGHT) } else { height },
     );
     let indexed: Vec<(usize, &Chart)> = figure.charts.iter().enumerate().collect();
     for row in indexed.chunks(columns) {
         ui.horizontal_top(|ui| {
-            ui.spacing_mut().item_spacing.x = look::GAP;
+            ui.spacing_mut().item_spacing.x = theme::GAP;
             for &(index, chart) in row {
                 let hits = view.hits.get(index).map_or(&[][..], Vec::as_slice);
                 ui.vertical(|ui| {
                     ui.set_width(size.x);
                     let drawn = view.drawn.get(index).map_or(&[][..], Vec::as_slice);
                     let (id, title) = (format!("{id} {index}"), figure.title.as_str());
-                    let part = Part { id, title, chart, drawn };
-                    part.ui(ui, hits, size.y, shown, asked);
+                    let part = ChartPart { id, title, chart, drawn };
+                    part.ui(ui, hits, size.y, shown, commands);
                 });
             }
         });
     }
     if !figure.note.is_empty() {
-        ui.label(egui::RichText::new(&figure.note).color(look::of(ui).text_weak));
+        ui.label(egui::RichText::new(&figure.note).color(theme::of(ui).text_weak));
     }
 }
 
 /// One chart of a figure.
-struct Part<'a> {
+struct ChartPart<'a> {
     id: String,
     title: &'a str,
     chart: &'a Chart,
-    /// Its series as they go to the screen.
-    drawn: &'a [Drawn],
+    /// Series prepared for drawing.
+    drawn: &'a [DrawnSeries],
 }
 
-impl Part<'_> {
+impl ChartPart<'_> {
     fn ui(
         &self,
         ui: &mut egui::Ui,
-        hits: &[Hit],
+        hits: &[ChartHit],
         height: f32,
-        shown: Option<Place>,
-        asked: &mut Vec<Command>,
+        shown: Option<IndividualId>,
+        commands: &mut Vec<Command>,
     ) {
         let chart = self.chart;
         let has_names = !chart.x.names.is_empty();
         let over = if has_names { chart.x.name.clone() } else { chart.x.label() };
         let name = if chart.name.is_empty() { String::new() } else { chart.name.clone() + ": " };
-        let text = format!("{name}{}, over {}", chart.y.label(), lower(&over));
+        let text = format!("{name}{} over {}", chart.y.label(), lower(&over));
         let line = ui.add(egui::Label::new(axis_name(ui, &text)).truncate());
-        let left = (height - line.rect.height() - look::GAP).max(look::LEAST_CHART_HEIGHT);
-        let palette = look::of(ui);
-        // The values are read out by this file.
-        let plot = still(&self.id, left).label_formatter(|_| None).show_axes([!has_names, true]);
+        let left = (height - line.rect.height() - theme::GAP).max(theme::MIN_CHART_HEIGHT);
+        let palette = theme::of(ui);
+        // This module draws the hover text itself.
+        let plot =
+            fixed_plot(&self.id, left).label_formatter(|_| None).show_axes([!has_names, true]);
         let plot = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds(&chart.x.range, &chart.y.range));
             for (place, _) in &chart.x.names {
@@ -128,15 +131,18 @@ impl Part<'_> {
             && let Some(pick) = hit.pick
         {
             let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-            asked.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
+            commands.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
         }
-        let replay =
-            if hit.pick.is_some() { "\nClick to replay; with Shift, beside others" } else { "" };
+        let replay = if hit.pick.is_some() {
+            "\nClick to replay. Shift-click to add it to the stage"
+        } else {
+            ""
+        };
         response.on_hover_text_at_pointer(hit.words() + replay);
     }
 }
 
-/// A name within a sentence: units stay as they are.
+/// Lowercases the first letter only, because units are case-sensitive.
 fn lower(name: &str) -> String {
     let mut letters = name.chars();
     letters
@@ -148,18 +154,18 @@ fn axis_text(text: &str, color: Color32) -> egui::RichText {
     egui::RichText::new(text).color(color).small()
 }
 
-/// Adds a series to a chart. Its points are borrowed: there may be many, and this happens in every frame.
-fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a Drawn, palette: &Palette) {
+/// Adds a series to a plot. It borrows the points, because there may be many in every frame.
+fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, palette: &Palette) {
     let color = palette.role(series.role);
     let borrowed = || match drawn {
-        Drawn::Points(points) => PlotPoints::from(points.as_slice()),
-        Drawn::Band(_) | Drawn::AsItIs => PlotPoints::default(),
+        DrawnSeries::Points(points) => PlotPoints::from(points.as_slice()),
+        DrawnSeries::Band(_) | DrawnSeries::AsItIs => PlotPoints::default(),
     };
     match &series.shape {
         Shape::Line(points) => {
             let line = Line::new(&series.name, borrowed()).color(color);
             plot.line(line.width(2.0).allow_hover(false));
-            if points.len() <= MOST_MARKED {
+            if points.len() <= MAX_MARKED_POINTS {
                 let dots = Points::new(&series.name, borrowed()).color(color);
                 plot.points(dots.radius(3.0).allow_hover(false));
             }
@@ -177,7 +183,7 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a Drawn, palette:
             plot.points(dots.radius(radius).allow_hover(false));
         }
         Shape::Band(_) => {
-            let Drawn::Band([along, low, high]) = drawn else { return };
+            let DrawnSeries::Band([along, low, high]) = drawn else { return };
             let band = FilledArea::new(&series.name, along, low, high);
             plot.add(band.fill_color(color.gamma_multiply(0.2)).allow_hover(false));
         }
@@ -198,17 +204,19 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a Drawn, palette:
     }
 }
 
-/// What of a chart is under the pointer.
-fn nearest<'a>(hits: &'a [Hit], transform: &PlotTransform, at: Pos2) -> Option<&'a Hit> {
+/// Hit target under the pointer.
+fn nearest<'a>(hits: &'a [ChartHit], transform: &PlotTransform, at: Pos2) -> Option<&'a ChartHit> {
     let place = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
-    let distance = |hit: &Hit| match hit.target {
-        Target::Point(point) => Some(place(point).distance(at)).filter(|far| *far <= REACH),
-        // Of those in one column the nearest.
-        Target::Column(point) => {
-            let (aside, along) = ((place(point).x - at.x).abs(), (place(point).y - at.y).abs());
-            (aside <= REACH).then_some(aside + along * 1.0e-3)
+    let distance = |hit: &ChartHit| match hit.target {
+        HitShape::Point(point) => {
+            Some(place(point).distance(at)).filter(|far| *far <= CLICK_DISTANCE)
         }
-        Target::Area([left, right, bottom, top]) => {
+        // The small vertical term picks the nearest point of a column.
+        HitShape::Column(point) => {
+            let (aside, along) = ((place(point).x - at.x).abs(), (place(point).y - at.y).abs());
+            (aside <= CLICK_DISTANCE).then_some(aside + along * 1.0e-3)
+        }
+        HitShape::Area([left, right, bottom, top]) => {
             let area = egui::Rect::from_two_pos(place([left, bottom]), place([right, top]));
             area.contains(at).then_some(0.0)
         }
@@ -217,32 +225,32 @@ fn nearest<'a>(hits: &'a [Hit], transform: &PlotTransform, at: Pos2) -> Option<&
     near.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(hit, _)| hit)
 }
 
-/// Marks what is pointed at, or on the stage.
-fn ring(painter: &egui::Painter, transform: &PlotTransform, hit: &Hit, color: Color32) {
+/// Draws a ring around the hovered target, or around the individual on the stage.
+fn ring(painter: &egui::Painter, transform: &PlotTransform, hit: &ChartHit, color: Color32) {
     let place = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
     let stroke = Stroke::new(2.0, color);
     match hit.target {
-        Target::Point(point) | Target::Column(point) => {
+        HitShape::Point(point) | HitShape::Column(point) => {
             painter.circle_stroke(place(point), 6.0, stroke);
         }
-        Target::Area([left, right, bottom, top]) => {
+        HitShape::Area([left, right, bottom, top]) => {
             let area = egui::Rect::from_two_pos(place([left, bottom]), place([right, top]));
             painter.rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
         }
     }
 }
 
-/// What is drawn how, in a line that wraps between names. Marks have theirs in the chart.
+/// Draws the legend, which wraps between names. Marks are labelled in the chart.
 fn legend(ui: &mut egui::Ui, figure: &Figure) {
-    let color = look::of(ui).text;
+    let color = theme::of(ui).text;
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = egui::vec2(look::GAP, look::GAP / 2.0);
+        ui.spacing_mut().item_spacing = egui::vec2(theme::GAP, theme::GAP / 2.0);
         for series in figure.listed() {
             let font = egui::TextStyle::Small.resolve(ui.style());
-            let sample_size = egui::vec2(look::SAMPLE_WIDTH, look::SMALL_SIZE);
-            let left = sample_size.x + look::GAP / 2.0;
-            // One that is longer than a line has several.
-            let room = (ui.max_rect().width() - left).max(look::SAMPLE_WIDTH);
+            let sample_size = egui::vec2(theme::SAMPLE_WIDTH, theme::SMALL_SIZE);
+            let left = sample_size.x + theme::GAP / 2.0;
+            // A long name wraps over several lines.
+            let room = (ui.max_rect().width() - left).max(theme::SAMPLE_WIDTH);
             let name = ui.painter().layout(series.name.clone(), font, color, room);
             let size = egui::vec2(left + name.size().x, name.size().y);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -255,9 +263,9 @@ fn legend(ui: &mut egui::Ui, figure: &Figure) {
     });
 }
 
-/// A sample of how a series is drawn.
+/// Draws a sample of a series for the legend.
 fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
-    let color = look::of(ui).role(series.role);
+    let color = theme::of(ui).role(series.role);
     let (painter, y) = (ui.painter(), rect.center().y);
     let ends = [egui::pos2(rect.left(), y), egui::pos2(rect.right(), y)];
     match &series.shape {
@@ -282,15 +290,19 @@ fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
             for shade in 0..shades {
                 let left = rect.left() + width * shade as f32;
                 let part = egui::Rect::from_x_y_ranges(left..=left + width, rect.y_range());
-                painter.rect_filled(part, 0.0, look::ramp(shade as f32 / (shades - 1) as f32));
+                painter.rect_filled(
+                    part,
+                    0.0,
+                    theme::palette::ramp(shade as f32 / (shades - 1) as f32),
+                );
             }
         }
     }
 }
 
-/// For tests: the place on the screen of a place in a chart whose area is `chart`.
+/// Test helper: screen position of a chart position, if `area` is the chart's rectangle.
 #[cfg(test)]
-pub(super) fn place_in(area: egui::Rect, chart: &Chart, [x, y]: [f64; 2]) -> Pos2 {
+pub(super) fn screen_position(area: egui::Rect, chart: &Chart, [x, y]: [f64; 2]) -> Pos2 {
     let share = |value: f64, range: &std::ops::RangeInclusive<f64>| {
         ((value - range.start()) / (range.end() - range.start())) as f32
     };

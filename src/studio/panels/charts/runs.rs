@@ -1,34 +1,34 @@
-//! Two runs over each other: this one and others of the folder of saves.
+//! Comparison of the current run with other saved runs.
 
 use std::sync::Arc;
 
 use bevy_egui::egui;
 
-use super::fitness::what;
-use super::view::{Hit, Target, View};
+use super::fitness::axis_title;
+use super::view::{ChartHit, ChartView, HitShape};
 use crate::evolve::RunPlan;
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::Statistics;
 use crate::save::StatisticsRecord;
-use crate::studio::command::Command;
-use crate::studio::evolution::{Evolution, MOST_COMPARED};
-use crate::studio::look;
-use crate::studio::panels::axes::around;
-use crate::studio::panels::explain;
+use crate::studio::commands::Command;
+use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
+use crate::studio::ui::plot_axes::padded_range;
+use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::theme;
 
-/// The colours of the other runs, in the order in which they were chosen.
+/// Colours of the other runs, in the order of their selection.
 const ROLES: [Role; MOST_COMPARED] = [Role::Second, Role::Third, Role::Others];
 
-/// A run's lines.
+/// Curves of a run.
 struct Curves {
     name: Arc<str>,
     role: Role,
-    /// Generation, best, median.
+    /// Generation, best and median fitness.
     points: Vec<[f64; 3]>,
 }
 
-/// The chart of this run and those that are compared with it.
-pub(super) fn view(run: &Evolution) -> View {
+/// Chart of the current run and the selected ones.
+pub(super) fn view(run: &CurrentRun) -> ChartView {
     let fitness = run.settings().trial.fitness;
     let unit = fitness.unit();
     let own = run.reports().iter().filter_map(|report| {
@@ -47,14 +47,14 @@ pub(super) fn view(run: &Evolution) -> View {
         });
         let mut name = title(&other.plan);
         if curves.iter().any(|known| *known.name == *name) {
-            // The same preset and seed with other settings.
+            // The folder distinguishes runs with equal preset and seed.
             name = format!("{name}, {}", compared.folder.file_name().unwrap_or_default().display());
         }
         curves.push(Curves { name: name.into(), role, points: points.collect() });
     }
     let values =
         curves.iter().flat_map(|of| &of.points).flat_map(|&[_, best, median]| [best, median]);
-    let y = around(values, 1.0).unwrap_or(0.0..=1.0);
+    let y = padded_range(values, 1.0).unwrap_or(0.0..=1.0);
     let last = curves.iter().flat_map(|of| &of.points).map(|point| point[0]).fold(2.0, f64::max);
     let aside = (last - 1.0) * 0.04;
     let line = |of: &Curves, value: usize| -> Vec<[f64; 2]> {
@@ -73,39 +73,39 @@ pub(super) fn view(run: &Evolution) -> View {
                 "{name}\nGeneration {generation:.0}\nbest {best:.2}{unit}\nmedian {median:.2}{unit}"
             )
         };
-        Hit::new(Target::Point([generation, best]), words)
+        ChartHit::new(HitShape::Point([generation, best]), words)
     };
     let hits = curves.iter().flat_map(|of| of.points.iter().map(move |point| hit(of, point)));
     let hits = hits.collect();
     let chart = Chart {
         name: String::new(),
         x: Axis::new("Generation", "", 1.0 - aside..=last + aside),
-        y: Axis::new(what(fitness), unit.trim(), y),
+        y: Axis::new(axis_title(fitness), unit.trim(), y),
         series: series.collect(),
         marks: Vec::new(),
     };
     let note = if rewards_differ {
-        "Not all of them reward the same: their heights cannot be compared."
+        "These runs use different rewards, so their fitness cannot be compared."
     } else {
         ""
     };
     let note = note.to_owned();
-    View::new(Figure { note, ..Figure::of("Runs over each other", chart) }, vec![hits])
+    ChartView::new(Figure { note, ..Figure::of("Comparison of runs", chart) }, vec![hits])
 }
 
 fn title(plan: &RunPlan) -> String {
     format!("{}, seed {}, {}", plan.preset, plan.seed, plan.settings.evolution.strategy)
 }
 
-/// The list of runs to choose from, and what is wrong with those that cannot be read.
-pub(super) fn choice(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command>) {
+/// Draws the list of runs to select, and errors of those that cannot be read.
+pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let others = run.others();
     for compared in others.compared() {
         let name = compared.folder.file_name().unwrap_or_default().display();
         match &compared.read {
-            None => explain(ui, &format!("Reading {name} ...")),
+            None => explain(ui, &format!("Loading {name} ...")),
             Some(Err(problem)) => {
-                ui.colored_label(look::of(ui).problem, format!("Not shown: {problem}"));
+                ui.colored_label(theme::of(ui).problem, format!("Not shown: {problem}"));
             }
             Some(Ok(other)) if other.records.is_empty() => {
                 explain(ui, &format!("{name} has no finished generation."));
@@ -113,27 +113,27 @@ pub(super) fn choice(ui: &mut egui::Ui, run: &Evolution, asked: &mut Vec<Command
             Some(Ok(_)) => {}
         }
     }
-    let Some(runs) = others.runs() else { return explain(ui, "Looking for other runs ...") };
+    let Some(runs) = others.runs() else { return explain(ui, "Loading the list of runs ...") };
     let mut choices = runs.iter().filter(|other| other.folder != run.folder()).peekable();
     ui.horizontal(|ui| {
         match choices.peek() {
-            Some(_) => ui.label(format!("Lay over this run, up to {MOST_COMPARED}:")),
-            None => ui.label("There is no other run in the saves yet."),
+            Some(_) => ui.label(format!("Compare with up to {MOST_COMPARED} other runs:")),
+            None => ui.label("There are no other runs yet."),
         };
-        if ui.small_button("Look again").on_hover_text("Look for new runs").clicked() {
-            asked.push(Command::ListRuns);
+        if ui.small_button("Refresh").on_hover_text("Read the list of runs again").clicked() {
+            commands.push(Command::ListRuns);
         }
     });
-    egui::ScrollArea::vertical().id_salt("runs").max_height(look::PLOT_HEIGHT).show(ui, |ui| {
+    egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
         for other in choices {
             let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
             let finished = other.finished;
             let name = format!("{}, {finished} generations", title(&other.plan));
             let is_on = is_shown || others.compared().len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
-            let hint = format!("Show its lines too: {}", other.folder.display());
+            let hint = format!("Add this run to the chart: {}", other.folder.display());
             if response.on_hover_text(hint).clicked() {
-                asked.push(Command::Compare(other.folder.clone()));
+                commands.push(Command::Compare(other.folder.clone()));
             }
         }
     });

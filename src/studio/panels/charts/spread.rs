@@ -1,49 +1,49 @@
-//! How the fitness of the latest generation is spread: a bar for each range, to click and replay its best.
+//! Histogram of the fitness in the latest generation. A click on a bar replays its best snake.
 
 use std::ops::RangeInclusive;
 
-use super::fitness::what;
-use super::view::{Hit, Target, View};
-use crate::evolve::{Place, Settings};
+use super::fitness::axis_title;
+use super::view::{ChartHit, ChartView, HitShape};
+use crate::evolve::{IndividualId, Settings};
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::Generation;
 use crate::score::Evaluation;
-use crate::studio::casting::Pick;
-use crate::studio::panels::axes::{around, number, step};
+use crate::studio::commands::pick::Pick;
+use crate::studio::ui::plot_axes::{number, padded_range, step};
 use crate::world::Disqualification;
 
-/// Between so many bars the number is chosen, by how many snakes there are.
-const BARS: RangeInclusive<f64> = 6.0..=30.0;
+/// Minimum and maximum number of bars.
+const BAR_COUNTS: RangeInclusive<f64> = 6.0..=30.0;
 
-/// Those of a generation whose fitness is in a range.
+/// Bar of the histogram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bin {
-    /// From there.
+    /// Lower end.
     from: f64,
-    /// To there; only of the last bin it is within it.
+    /// Upper end; exclusive except in the last bin.
     to: f64,
     count: u32,
-    /// The index of the best of them, and its fitness.
+    /// Index and fitness of the best snake.
     best: (u32, f32),
 }
 
-/// The chart of a generation.
-pub(super) fn view(settings: &Settings, generation: &Generation) -> View {
+/// Histogram of a generation.
+pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
     let unit = settings.trial.fitness.unit();
     let bins = bins(&generation.evaluations);
     let number_of = generation.number;
     let bars = bins.iter().map(|bin| [(bin.from + bin.to) / 2.0, f64::from(bin.count)]);
     let width = bins.first().map_or(1.0, |bin| bin.to - bin.from);
     let bars = Shape::Bars { width, bars: bars.collect() };
-    let most = bins.iter().map(|bin| bin.count).max().unwrap_or(0);
+    let max = bins.iter().map(|bin| bin.count).max().unwrap_or(0);
     let ends = bins.iter().flat_map(|bin| [bin.from, bin.to]);
-    let top = f64::from(most.max(1)) * 1.06;
+    let top = f64::from(max.max(1)) * 1.06;
     let chart = Chart {
         name: String::new(),
         x: Axis::new(
-            what(settings.trial.fitness),
+            axis_title(settings.trial.fitness),
             unit.trim(),
-            around(ends, 1.0).unwrap_or(0.0..=1.0),
+            padded_range(ends, 1.0).unwrap_or(0.0..=1.0),
         ),
         y: Axis::new("Snakes", "", 0.0..=top),
         series: vec![Series::new("snakes", Role::First, bars)],
@@ -54,31 +54,31 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> View {
         let range = format!("from {} to {}{unit}", number(from), number(to));
         let snakes = if count == 1 { "snake" } else { "snakes" };
         let words = format!(
-            "{count} {snakes} {range}\nThe best of them: snake {}, {fitness:.2}{unit}",
+            "{count} {snakes} {range}\nBest of them: snake {}, {fitness:.2}{unit}",
             individual + 1
         );
-        let place = Place { generation: number_of, individual };
-        let area = Target::Area([from, to, 0.0, top]);
-        Hit::of(area, move || words.clone(), Pick::Individual(place), place)
+        let place = IndividualId { generation: number_of, individual };
+        let area = HitShape::Area([from, to, 0.0, top]);
+        ChartHit::of(area, move || words.clone(), Pick::Individual(place), place)
     });
     let hits = hits.collect();
     let title = format!("Fitness within generation {number_of}");
     let note = disqualified(&generation.evaluations);
-    View::new(Figure { note, ..Figure::of(&title, chart) }, vec![hits])
+    ChartView::new(Figure { note, ..Figure::of(&title, chart) }, vec![hits])
 }
 
-/// Sorts the healthy ones into ranges of equal, round width; ranges in which nobody is are left out.
+/// Sorts healthy snakes into bins of equal, round width. Empty bins are left out.
 fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
     let healthy: Vec<(u32, f32)> = (0..)
         .zip(evaluations)
         .filter(|(_, evaluation)| evaluation.disqualified.is_none())
         .map(|(index, evaluation)| (index, evaluation.fitness))
         .collect();
-    let least = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MAX, f32::min);
-    let most = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MIN, f32::max);
-    let wanted = (healthy.len() as f64).sqrt().clamp(*BARS.start(), *BARS.end());
-    // A step divides a range into about six parts.
-    let width = step((f64::from(most) - f64::from(least)).max(1.0e-3) * 6.0 / wanted);
+    let min = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MAX, f32::min);
+    let max = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MIN, f32::max);
+    let wanted = (healthy.len() as f64).sqrt().clamp(*BAR_COUNTS.start(), *BAR_COUNTS.end());
+    // `step` divides a range into about six parts.
+    let width = step((f64::from(max) - f64::from(min)).max(1.0e-3) * 6.0 / wanted);
     let place = |fitness: f32| libm::floor(f64::from(fitness) / width);
     let mut bins: Vec<Bin> = Vec::new();
     let mut sorted = healthy;
@@ -88,7 +88,7 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
         match bins.last_mut() {
             Some(bin) if bin.from == from => {
                 bin.count += 1;
-                // Of equals the first is the best, as everywhere.
+                // The first of equally fit snakes counts as the best.
                 if fitness > bin.best.1 {
                     bin.best = (individual, fitness);
                 }
@@ -99,7 +99,7 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
     bins
 }
 
-/// How many were disqualified, and why.
+/// Numbers of disqualified snakes by reason.
 fn disqualified(evaluations: &[Evaluation]) -> String {
     use Disqualification as D;
     let all = [D::NotFinite, D::JointBroke, D::TooFast, D::LeftArena, D::Crashed];
@@ -110,7 +110,7 @@ fn disqualified(evaluations: &[Evaluation]) -> String {
         .collect();
     let number: usize = all.into_iter().map(count).sum();
     if number == 0 {
-        return format!("None of {} was disqualified.", evaluations.len());
+        return format!("None of {} were disqualified.", evaluations.len());
     }
     format!("{number} of {} were disqualified: {}.", evaluations.len(), reasons.join(", "))
 }
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn bars_count_everybody_healthy_once_and_know_their_best() {
+    fn bars_count_every_healthy_snake_once_and_know_their_best() {
         let values = [-7.2, -7.1, -7.15, -6.0, -3.5, -3.6, 1.9];
         let mut evaluations: Vec<Evaluation> =
             values.iter().map(|value| evaluation(*value, None)).collect();
@@ -153,6 +153,6 @@ mod tests {
         let words = disqualified(&evaluations);
         assert!(words.starts_with("3 of 4 were disqualified: 1 because a joint"), "{words}");
         assert!(words.ends_with("2 because it outran the speed limit."), "{words}");
-        assert_eq!(disqualified(&evaluations[..1]), "None of 1 was disqualified.");
+        assert_eq!(disqualified(&evaluations[..1]), "None of 1 were disqualified.");
     }
 }

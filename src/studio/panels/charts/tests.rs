@@ -1,26 +1,27 @@
-//! The panel as a person uses it: choose, point, click, write.
+//! Tests of the charts panel: select, hover, click, export.
 
-use super::*;
-use crate::evolve::Settings;
-use crate::studio::casting::Pick;
-use crate::studio::evolution::{compared_run, explored_run, prepared_run};
-use crate::studio::panels::parameters::tests::assert_nothing_is_wider_than;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-/// What a person sees and sends who has a chart on show in a panel of this width.
+use super::*;
+use crate::evolve::Settings;
+use crate::studio::commands::pick::Pick;
+use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::state::current_run::{compared_run, explored_run, prepared_run};
+
+/// Result of `act` and the commands sent, in a panel of this width.
 fn with<T>(
-    run: &Evolution,
-    kind: Kind,
+    run: &CurrentRun,
+    kind: ChartKind,
     width: f32,
     act: impl FnOnce(&mut Harness<'_, Vec<Command>>) -> T,
 ) -> (T, Vec<Command>) {
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
     let mut harness = Harness::builder()
         .with_size(egui::vec2(width, 700.0))
-        .build_ui_state(|ui, asked| panel.ui(ui, run, None, asked), Vec::new());
+        .build_ui_state(|ui, commands| panel.ui(ui, run, None, commands), Vec::new());
     harness.run();
-    // What it looks for by itself.
+    // Opening a chart may request the list of runs.
     harness.state_mut().clear();
     let seen = act(&mut harness);
     harness.run();
@@ -29,13 +30,14 @@ fn with<T>(
 }
 
 #[test]
-fn a_chart_is_chosen_by_its_name() {
-    let ((), sent) = with(&explored_run(), Kind::Fitness, 600.0, |harness| {
+fn a_chart_is_selected_by_its_name() {
+    let ((), sent) = with(&explored_run(), ChartKind::Fitness, 600.0, |harness| {
         assert!(harness.query_by_label("Fitness by generation").is_some());
-        for (kind, title) in
-            [(Kind::Family, "Ancestors of the best"), (Kind::Runs, "Runs over each other")]
-        {
-            harness.get_by_label(kind.words().0).click();
+        for (kind, title) in [
+            (ChartKind::Ancestors, "Ancestors of the best"),
+            (ChartKind::Runs, "Comparison of runs"),
+        ] {
+            harness.get_by_label(kind.labels().0).click();
             harness.run();
             assert!(harness.query_all_by_label(title).next().is_some(), "{title}");
         }
@@ -51,11 +53,11 @@ fn click(harness: &mut Harness<'_, Vec<Command>>, at: egui::Pos2) {
 }
 
 #[test]
-fn before_the_first_generation_every_chart_says_what_will_appear() {
+fn before_the_first_generation_every_chart_explains_its_content() {
     let run = prepared_run();
-    for kind in Kind::ALL {
-        let ((), sent) = with(&run, kind, look::PANEL_WIDTH, |harness| {
-            let says = ["will appear here", "None is open", "MAP-Elites keeps one"];
+    for kind in ChartKind::ALL {
+        let ((), sent) = with(&run, kind, theme::PANEL_WIDTH, |harness| {
+            let says = ["will appear here", "No comparison is open", "MAP-Elites keeps an archive"];
             let is_said =
                 says.iter().any(|text| harness.query_all_by_label_contains(text).next().is_some());
             assert!(is_said, "{kind:?}");
@@ -66,12 +68,12 @@ fn before_the_first_generation_every_chart_says_what_will_appear() {
 }
 
 #[test]
-fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_written() {
+fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
     let run = explored_run();
     for width in [300.0, 900.0] {
-        for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Methods) {
+        for kind in ChartKind::ALL.into_iter().filter(|kind| *kind != ChartKind::Methods) {
             let ((), sent) = with(&run, kind, width, |harness| {
-                // The torques of waves are worked out on a thread.
+                // The torques of waves are computed on another thread.
                 for _ in 0..3000 {
                     if harness.query_by_label("CSV").is_some() {
                         break;
@@ -81,45 +83,45 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_written() {
                 harness.get_by_label("CSV").click();
                 harness.run();
             });
-            let [Command::Export(Export { figure, name, format })] = &sent[..] else {
+            let [Command::ExportChart(ChartExport { figure, name, format })] = &sent[..] else {
                 panic!("{kind:?}: {sent:?}")
             };
-            assert_eq!((*name, *format), (kind.file_name(), Format::Csv));
+            assert_eq!((*name, *format), (kind.file_name(), ChartFormat::Csv));
             assert!(figure.table().len() > 1, "{kind:?} has rows");
         }
     }
 }
 
 #[test]
-fn a_click_on_a_generation_a_bar_an_ancestor_and_a_parent_replays_them() {
+fn a_click_replays_a_generation_a_bar_an_ancestor_or_a_parent() {
     let run = explored_run();
-    for kind in [Kind::Fitness, Kind::Spread, Kind::Family, Kind::Parents] {
+    for kind in [ChartKind::Fitness, ChartKind::Spread, ChartKind::Ancestors, ChartKind::Parents] {
         let view = view_of(kind, &run).expect("explored");
         let chart = &view.figure.charts[0];
-        let hit = view.hits[0].last().expect("somebody").clone();
+        let hit = view.hits[0].last().expect("a snake").clone();
         let at = match hit.target {
-            view::Target::Point(point) | view::Target::Column(point) => point,
-            view::Target::Area([left, right, ..]) => [(left + right) / 2.0, 0.5],
+            view::HitShape::Point(point) | view::HitShape::Column(point) => point,
+            view::HitShape::Area([left, right, ..]) => [(left + right) / 2.0, 0.5],
         };
         let (words, sent) = with(&run, kind, 600.0, |harness| {
             let area = harness.get_by_label(&format!("Chart: {}", view.figure.title)).rect();
-            let place = draw::place_in(area, chart, at);
+            let place = draw::screen_position(area, chart, at);
             click(harness, place);
             harness.hover_at(place + egui::vec2(0.5, 0.5));
             harness.run();
             let first = hit.words().lines().next().expect("words").to_owned();
             harness.query_all_by_label_contains(&first).next().is_some()
         });
-        assert_eq!(sent, [Command::Show(hit.pick.expect("somebody"))], "{kind:?}");
+        assert_eq!(sent, [Command::Show(hit.pick.expect("a snake"))], "{kind:?}");
         assert!(words, "{kind:?} is read out: {}", hit.words());
     }
 }
 
 #[test]
-fn another_run_has_its_lines_and_a_damaged_one_is_named_with_what_is_wrong() {
+fn another_run_is_drawn_and_a_damaged_one_is_reported() {
     let saves = tempfile::tempdir().expect("a folder");
     let run = compared_run(saves.path(), false);
-    let view = view_of(Kind::Runs, &run).expect("there");
+    let view = view_of(ChartKind::Runs, &run).expect("there");
     let names: Vec<&str> = view.figure.listed().iter().map(|series| &*series.name).collect();
     let expected = [
         "this run (test, seed 1): median",
@@ -133,38 +135,39 @@ fn another_run_has_its_lines_and_a_damaged_one_is_named_with_what_is_wrong() {
 
     let saves = tempfile::tempdir().expect("a folder");
     let run = compared_run(saves.path(), true);
-    with(&run, Kind::Runs, 400.0, |harness| {
+    with(&run, ChartKind::Runs, 400.0, |harness| {
         assert!(harness.query_by_label_contains("log.jsonl: damaged").is_some());
     });
 }
 
 #[test]
-fn the_torques_are_those_of_who_is_on_the_stage_and_its_parent() {
+fn the_torques_are_those_of_the_snake_on_the_stage_and_its_parent() {
     let run = explored_run();
     let latest = run.exploration().expect("explored").generation.clone().expect("this session's");
-    let child = (0..).zip(&latest.parents).find(|(_, parents)| parents.places().next().is_some());
-    let (individual, parents) = child.expect("somebody has parents");
-    let place = Place { generation: latest.number, individual };
-    let mut torques = Torques::default();
-    torques.follow(&run, Some(place)).expect("known");
+    let child = (0..).zip(&latest.parents).find(|(_, parents)| parents.ids().next().is_some());
+    let (individual, parents) = child.expect("a snake with parents");
+    let place = IndividualId { generation: latest.number, individual };
+    let mut torques = TorqueComparison::default();
+    torques.update(&run, Some(place)).expect("known");
     let trial = &run.settings().trial;
     let note = loop {
         if let Some(view) = torques.view(trial) {
             break view.figure.note.clone();
         }
     };
-    let parent = parents.places().next().expect("a parent");
-    let name = |of: Place| format!("snake {} of generation {}", of.individual + 1, of.generation);
-    assert!(note.starts_with(&format!("Lines: {}.", name(place))), "{note}");
+    let parent = parents.ids().next().expect("a parent");
+    let name =
+        |of: IndividualId| format!("snake {} of generation {}", of.individual + 1, of.generation);
+    assert!(note.starts_with(&format!("Solid lines: {}.", name(place))), "{note}");
     assert!(run.genome_of(parent).is_none() || note.contains(&name(parent)), "{note}");
-    torques.follow(&run, None).expect("the best");
+    torques.update(&run, None).expect("the best");
     assert!(torques.view(trial).is_none_or(|view| view.figure.note != note));
 }
 
 #[test]
-fn who_is_clicked_is_found_again_with_what_it_reached() {
+fn a_clicked_snake_is_found_with_the_fitness_of_its_hover_text() {
     let run = explored_run();
-    for kind in [Kind::Spread, Kind::Family, Kind::Parents] {
+    for kind in [ChartKind::Spread, ChartKind::Ancestors, ChartKind::Parents] {
         let view = view_of(kind, &run).expect("explored");
         for hit in view.hits[0].iter().take(12) {
             let Some(Pick::Individual(place)) = hit.pick else { panic!("{hit:?}") };
@@ -173,10 +176,10 @@ fn who_is_clicked_is_found_again_with_what_it_reached() {
             assert!(hit.words().contains(&fitness), "{kind:?}: {fitness} in {}", hit.words());
         }
     }
-    assert!(run.individual(Place { generation: 99, individual: 0 }).is_none());
+    assert!(run.individual(IndividualId { generation: 99, individual: 0 }).is_none());
 }
 
-/// A run of so many generations, each with what a run of two has found in its second.
+/// Reports of a long run, copied from the last report of a short one.
 fn long_reports(generations: u32) -> Vec<crate::run::GenerationReport> {
     let run = explored_run();
     let last = run.reports().last().expect("explored");
@@ -191,26 +194,27 @@ fn long_reports(generations: u32) -> Vec<crate::run::GenerationReport> {
 }
 
 #[test]
-fn of_ten_thousand_generations_the_window_draws_a_few_and_the_table_has_all() {
+fn ten_thousand_generations_are_downsampled_on_screen_but_not_in_the_table() {
     let reports = long_reports(10_000);
     let view = fitness::view(&Settings::default(), &reports);
     assert_eq!(view.figure.table().len(), 10_001);
     let points = view.drawn[0].iter().map(|drawn| match drawn {
-        thin::Drawn::Points(points) => points.len(),
-        thin::Drawn::Band([along, ..]) => along.len(),
-        thin::Drawn::AsItIs => 0,
+        downsample::DrawnSeries::Points(points) => points.len(),
+        downsample::DrawnSeries::Band([along, ..]) => along.len(),
+        downsample::DrawnSeries::AsItIs => 0,
     });
-    assert!(points.max().expect("series") <= thin::MOST_POINTS + 2);
+    assert!(points.max().expect("series") <= downsample::MAX_POINTS + 2);
 }
 
 #[test]
-fn a_long_name_in_a_legend_has_several_lines() {
+fn a_long_name_in_a_legend_wraps() {
     let mut view = fitness::view(&Settings::default(), &long_reports(3));
     let figure = Arc::make_mut(&mut view.figure);
     figure.charts[0].series[0].name = "a run of a preset with quite a long name: median ".repeat(3);
-    let mut harness = Harness::builder()
-        .with_size(egui::vec2(300.0, 700.0))
-        .build_ui_state(|ui, asked| draw::draw(ui, "long", &view, 400.0, None, asked), Vec::new());
+    let mut harness = Harness::builder().with_size(egui::vec2(300.0, 700.0)).build_ui_state(
+        |ui, commands| draw::draw(ui, "long", &view, 400.0, None, commands),
+        Vec::new(),
+    );
     harness.run();
     assert_nothing_is_wider_than(&harness, 300.0);
 }

@@ -1,83 +1,86 @@
-//! A chart as it is drawn: its data, and who is where in it.
+//! Chart prepared for drawing: its data and its hit targets.
 
 use std::fmt;
 use std::sync::Arc;
 
-use super::thin::{Drawn, drawn};
-use crate::evolve::Place;
+use super::downsample::{DrawnSeries, drawn};
+use crate::evolve::IndividualId;
 use crate::plot::Figure;
-use crate::studio::casting::Pick;
+use crate::studio::commands::pick::Pick;
 
-/// A chart, worked out once for as long as what it shows stays the same.
+/// Chart that is computed once and cached until its data changes.
 #[derive(Debug, Clone)]
-pub(super) struct View {
-    /// What is shown, and can be written as a file.
+pub(super) struct ChartView {
+    /// Data, also used for export.
     pub figure: Arc<Figure>,
-    /// The series of each of its charts, as they go to the screen.
-    pub drawn: Vec<Vec<Drawn>>,
-    /// What can be pointed at in each of its charts.
-    pub hits: Vec<Vec<Hit>>,
+    /// Series of each chart, prepared for drawing.
+    pub drawn: Vec<Vec<DrawnSeries>>,
+    /// Hit targets of each chart.
+    pub hits: Vec<Vec<ChartHit>>,
 }
 
-impl View {
-    /// A view of one chart or several.
-    pub fn new(figure: Figure, hits: Vec<Vec<Hit>>) -> Self {
+impl ChartView {
+    /// View of one or several charts.
+    pub fn new(figure: Figure, hits: Vec<Vec<ChartHit>>) -> Self {
         let drawn = figure.charts.iter().map(drawn).collect();
         Self { figure: Arc::new(figure), drawn, hits }
     }
 }
 
-/// Something in a chart that can be pointed at.
+/// Part of a chart that has a hover text.
 #[derive(Debug, Clone)]
-pub(super) struct Hit {
-    /// Where it is.
-    pub target: Target,
-    words: Words,
-    /// Whom a click puts on the stage.
+pub(super) struct ChartHit {
+    /// Position and shape.
+    pub target: HitShape,
+    words: HoverText,
+    /// Individual that a click replays.
     pub pick: Option<Pick>,
-    /// Who that is, if it is somebody of the current run.
-    pub place: Option<Place>,
+    /// Place of that individual, if it belongs to the current run.
+    pub place: Option<IndividualId>,
 }
 
-/// What there is to say of something: worked out when somebody points at it, since there may be ten thousand.
+/// Hover text that is computed on demand, because a chart may have ten thousand targets.
 #[derive(Clone)]
-struct Words(Arc<dyn Fn() -> String + Send + Sync>);
+struct HoverText(Arc<dyn Fn() -> String + Send + Sync>);
 
-impl fmt::Debug for Words {
+impl fmt::Debug for HoverText {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Debug::fmt(&(self.0)(), f)
     }
 }
 
-/// Where something is that can be pointed at.
+/// Position and shape of a hit target.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Target {
-    /// At a point.
+pub(super) enum HitShape {
+    /// Point.
     Point([f64; 2]),
-    /// At a point, and wherever is above or below it.
+    /// Point with everything above and below it.
     Column([f64; 2]),
-    /// Anywhere from and to in x, from and to in y.
+    /// Rectangle: left, right, bottom, top.
     Area([f64; 4]),
 }
 
-impl Hit {
-    /// Something to read.
-    pub fn new(target: Target, words: impl Fn() -> String + Send + Sync + 'static) -> Self {
-        Self { target, words: Words(Arc::new(words)), pick: None, place: None }
+impl ChartHit {
+    /// Hit target with a hover text.
+    pub fn new(target: HitShape, words: impl Fn() -> String + Send + Sync + 'static) -> Self {
+        Self { target, words: HoverText(Arc::new(words)), pick: None, place: None }
     }
 
-    /// Somebody to replay.
+    /// Hit target that replays an individual.
     pub fn of(
-        target: Target,
+        target: HitShape,
         words: impl Fn() -> String + Send + Sync + 'static,
         pick: Pick,
-        place: Place,
+        place: IndividualId,
     ) -> Self {
         Self { pick: Some(pick), place: Some(place), ..Self::new(target, words) }
     }
 
-    /// What stands beside the pointer.
+    /// Hover text.
     pub fn words(&self) -> String {
         (self.words.0)()
     }
 }
+
+/// Version of the data from which a view was computed.
+pub(super) type Version = (u32, u64, usize, u64);

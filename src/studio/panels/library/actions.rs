@@ -1,151 +1,157 @@
-//! What can be done with the saves that are chosen: the same for buttons, the menu and the keys.
+//! Actions on the selected saves, shared by buttons, context menu and keys.
 
 use std::path::{Path, PathBuf};
 
-use crate::save::library::Place;
-use crate::studio::command::Command;
-use crate::studio::library::{Ask, Item, Library};
-use crate::studio::stage::MOST_LANES;
+use crate::save::library::SavePlace;
+use crate::studio::commands::Command;
+use crate::studio::commands::library::LibraryCommand;
+use crate::studio::stage::MAX_LANES;
+use crate::studio::state::library::{Library, LibraryItem};
 
-/// Something that can be done.
+/// Action on the selected saves.
 #[derive(Debug)]
-pub struct Action {
-    /// On its button.
+pub struct LibraryAction {
+    /// Label of its button.
     pub name: &'static str,
-    /// What it does, and by which key.
+    /// Hover text with its shortcut.
     pub hint: &'static str,
-    /// Why it cannot be done now, if it cannot.
+    /// Reason why it is disabled, if it is.
     pub refusal: Option<&'static str>,
-    /// What it is.
-    pub act: Act,
+    /// Effect of the action.
+    pub act: LibraryActionKind,
 }
 
-/// What an action is.
+/// Effect of an action.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Act {
-    /// Ask for this.
+pub enum LibraryActionKind {
+    /// Send this command.
     Send(Command),
-    /// Let the name be edited in its row.
-    Rename(Place),
-    /// Ask where to.
+    /// Edit the name in its row.
+    Rename(SavePlace),
+    /// Open the field for the target folder.
     Export,
     /// Show or hide the champions of this run.
     ShowChampions(PathBuf),
 }
 
-impl Act {
-    /// Whether it is asked for by the key to delete.
+impl LibraryActionKind {
+    /// Whether this action deletes saves.
     pub fn deletes(&self) -> bool {
-        matches!(self, Self::Send(Command::Library(Ask::Delete(_))))
+        matches!(self, Self::Send(Command::Library(LibraryCommand::Delete(_))))
     }
 }
 
-const ONLY_ONE: Option<&str> = Some("Choose one save for it");
-const DAMAGED: Option<&str> = Some("It cannot be read");
+const SELECT_ONE: Option<&str> = Some("Select a single save first");
+const DAMAGED: Option<&str> = Some("This save cannot be read");
 const NO_CHAMPION: Option<&str> = Some("The run has no champion yet");
 
-/// What can be done with these, those that make no sense left out.
-pub fn actions(library: &Library, chosen: &[&Item]) -> Vec<Action> {
+/// Actions for the selected saves. Actions that make no sense for them are left out.
+pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction> {
     let Some(first) = chosen.first() else { return Vec::new() };
-    let places: Vec<Place> = chosen.iter().map(|item| item.place().clone()).collect();
-    let unshowable = chosen.iter().find_map(|item| unshowable(item));
-    let single = if chosen.len() == 1 { None } else { ONLY_ONE };
+    let places: Vec<SavePlace> = chosen.iter().map(|item| item.place().clone()).collect();
+    let replay_refusal = chosen.iter().find_map(|item| replay_refusal(item));
+    let single = if chosen.len() == 1 { None } else { SELECT_ONE };
     let mut actions = vec![match chosen.len() {
-        1 => Action {
+        1 => LibraryAction {
             name: "Replay",
-            hint: "Put it on the stage; of a run its best (Enter, double click)",
-            refusal: unshowable,
-            act: ask(Ask::Replay(first.place().clone())),
+            hint: "Show it on the stage; for a run, its best snake (Enter or double-click)",
+            refusal: replay_refusal,
+            act: library_command(LibraryCommand::Replay(first.place().clone())),
         },
-        several => Action {
+        several => LibraryAction {
             name: "Race",
-            hint: "Let them climb side by side; of a run its best (Enter)",
-            refusal: if several > MOST_LANES {
-                Some("The stage has room for ten")
+            hint: "Replay them side by side; for a run, its best snake (Enter)",
+            refusal: if several > MAX_LANES {
+                Some("At most ten snakes fit on the stage")
             } else {
-                unshowable
+                replay_refusal
             },
-            act: ask(Ask::Race(places.clone())),
+            act: library_command(LibraryCommand::Race(places.clone())),
         },
     }];
-    actions.push(Action {
-        name: "New run from it",
-        hint: "Begin a run in which it is a parent of the first generation",
-        refusal: single.or(unshowable),
-        act: ask(Ask::FoundRun(first.place().clone())),
+    actions.push(LibraryAction {
+        name: "New run from this",
+        hint: "Start a run whose first generation descends from this snake",
+        refusal: single.or(replay_refusal),
+        act: library_command(LibraryCommand::StartFrom(first.place().clone())),
     });
     if let (Some(folder), 1) = (first.place().run(), chosen.len()) {
         actions.extend(of_run(library, first, folder));
     }
-    let has = |meant: fn(&Place) -> bool| places.iter().any(meant);
+    let has = |meant: fn(&SavePlace) -> bool| places.iter().any(meant);
     let has_run = has(|place| place.run().is_some());
-    let has_shipped = has(|place| matches!(place, Place::Shipped(_)));
+    let has_shipped = has(|place| matches!(place, SavePlace::Shipped(_)));
     actions.extend([
-        Action {
+        LibraryAction {
             name: "Rename",
-            hint: "Give it another name (F2)",
+            hint: "Change the name (F2)",
             refusal: single
-                .or(has_run.then_some("The name of a run's folder says what run it is"))
-                .or(has_shipped.then_some("It comes with the program; duplicate it first")),
-            act: Act::Rename(first.place().clone()),
+                .or(has_run.then_some("Runs cannot be renamed"))
+                .or(has_shipped
+                    .then_some("Built-in champions cannot be renamed; duplicate it first")),
+            act: LibraryActionKind::Rename(first.place().clone()),
         },
-        Action {
+        LibraryAction {
             name: "Duplicate",
-            hint: "Make a copy beside it (Ctrl D)",
-            refusal: has_run.then_some("A run is there once; its champions can be exported"),
-            act: ask(Ask::Duplicate(places.clone())),
+            hint: "Make a copy (Ctrl D)",
+            refusal: has_run.then_some("Runs cannot be duplicated, but they can be exported"),
+            act: library_command(LibraryCommand::Duplicate(places.clone())),
         },
-        Action {
+        LibraryAction {
             name: "Export",
-            hint: "Copy it to another folder; a run as a whole",
+            hint: "Copy it to another folder",
             refusal: None,
-            act: Act::Export,
+            act: LibraryActionKind::Export,
         },
-        Action {
+        LibraryAction {
             name: "Delete",
-            hint: "Put it away into .deleted in the folder of saves; Ctrl Z brings it back (Del)",
-            refusal: has_shipped.then_some("It comes with the program").or_else(|| {
+            hint: "Move it to the folder .deleted of the saves; Ctrl Z restores it (Del)",
+            refusal: has_shipped.then_some("Built-in champions cannot be deleted").or_else(|| {
                 let goes_on = places.iter().any(|place| library.is_current(place));
-                goes_on.then_some("The run goes on now; begin another one first")
+                goes_on.then_some("This is the current run; start another one first")
             }),
-            act: ask(Ask::Delete(places)),
+            act: library_command(LibraryCommand::Delete(places)),
         },
     ]);
     actions
 }
 
-fn of_run(library: &Library, item: &Item, folder: &Path) -> [Action; 2] {
+fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryAction; 2] {
     let is_over = item.run().is_none_or(|run| run.ended.is_some());
     let refusal = if library.is_current(item.place()) {
-        Some("It goes on now")
+        Some("This is the current run")
     } else if item.problem().is_some() {
         DAMAGED
     } else {
-        is_over.then_some("It cannot go on: see below")
+        is_over.then_some("This run cannot be resumed; the reason is given below")
     };
     let has_none = item.run().is_some_and(|run| run.champions.is_empty());
     [
-        Action {
-            name: "Continue",
-            hint: "Go on with this run where it was stopped; the current one is kept",
+        LibraryAction {
+            name: "Resume",
+            hint: "Resume this run where it stopped; the current run stays saved",
             refusal,
-            act: Act::Send(Command::Continue(folder.to_owned())),
+            act: LibraryActionKind::Send(Command::Continue(folder.to_owned())),
         },
-        Action {
+        LibraryAction {
             name: "Champions",
-            hint: "List the best of each of its generations, to replay and race",
+            hint: "List the best snake of each generation, to replay and race",
             refusal: if has_none { NO_CHAMPION } else { item.problem().and(DAMAGED) },
-            act: Act::ShowChampions(folder.to_owned()),
+            act: LibraryActionKind::ShowChampions(folder.to_owned()),
         },
     ]
 }
 
-/// Why it cannot be put on the stage, if it cannot.
-fn unshowable(item: &Item) -> Option<&'static str> {
+/// Reason why a save cannot be shown on the stage, if there is one.
+fn replay_refusal(item: &LibraryItem) -> Option<&'static str> {
     let has_none = item.run().is_some_and(|run| run.champions.is_empty());
     if has_none { NO_CHAMPION } else { item.problem().and(DAMAGED) }
 }
 
-fn ask(ask: Ask) -> Act {
-    Act::Send(Command::Library(ask))
+fn library_command(command: LibraryCommand) -> LibraryActionKind {
+    LibraryActionKind::Send(Command::Library(command))
+}
+
+pub(super) fn send(commands: &mut Vec<Command>, command: LibraryCommand) {
+    commands.push(Command::Library(command));
 }

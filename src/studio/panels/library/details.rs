@@ -1,60 +1,61 @@
-//! Under the list: what is chosen, what there is to know of it, and what can be done with it.
+//! Below the list: details of the selected save, and buttons for its actions.
 
 use std::path::PathBuf;
 
 use bevy_egui::egui;
 
-use super::actions::{Act, Action};
+use super::actions::{LibraryAction, LibraryActionKind};
 use super::thumbnail::{sparkline, thumbnail};
-use crate::save::library::{Place, RunDetails};
-use crate::studio::command::Command;
-use crate::studio::library::{Ask, Item, fitness_text};
-use crate::studio::look;
-use crate::studio::panels::{explain, row};
+use crate::save::library::{RunDetails, SavePlace};
+use crate::studio::commands::Command;
+use crate::studio::commands::library::LibraryCommand;
+use crate::studio::state::library::{LibraryItem, fitness_text};
+use crate::studio::ui::text_rows::{explain, row};
+use crate::studio::ui::theme;
 
-/// A button for each action. Returns the one that is asked for.
-pub fn buttons(ui: &mut egui::Ui, actions: &[Action]) -> Option<Act> {
-    let mut wanted = None;
+/// Draws a button for each action. Returns the action that was clicked.
+pub fn buttons(ui: &mut egui::Ui, actions: &[LibraryAction]) -> Option<LibraryActionKind> {
+    let mut clicked_action = None;
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = egui::Vec2::splat(look::GAP / 2.0);
+        ui.spacing_mut().item_spacing = egui::Vec2::splat(theme::GAP / 2.0);
         for action in actions {
             if button(ui, action, true) {
-                wanted = Some(action.act.clone());
+                clicked_action = Some(action.act.clone());
             }
         }
     });
-    wanted
+    clicked_action
 }
 
-/// The same as a menu.
-pub fn menu(ui: &mut egui::Ui, actions: &[Action]) -> Option<Act> {
-    let mut wanted = None;
+/// Draws the actions as menu entries. Returns the action that was clicked.
+pub fn menu(ui: &mut egui::Ui, actions: &[LibraryAction]) -> Option<LibraryActionKind> {
+    let mut clicked_action = None;
     for action in actions {
         if button(ui, action, false) {
-            wanted = Some(action.act.clone());
+            clicked_action = Some(action.act.clone());
             ui.close();
         }
     }
-    wanted
+    clicked_action
 }
 
-fn button(ui: &mut egui::Ui, action: &Action, is_small: bool) -> bool {
+fn button(ui: &mut egui::Ui, action: &LibraryAction, is_small: bool) -> bool {
     let button = egui::Button::new(action.name);
     let button = if is_small { button.small() } else { button };
     let response = ui.add_enabled(action.refusal.is_none(), button).on_hover_text(action.hint);
     response.on_disabled_hover_text(action.refusal.unwrap_or_default()).clicked()
 }
 
-/// What there is to know of one save.
-pub fn details(ui: &mut egui::Ui, item: &Item) {
+/// Draws the details of one save.
+pub fn details(ui: &mut egui::Ui, item: &LibraryItem) {
     picture(ui, item);
     ui.add(egui::Label::new(egui::RichText::new(item.name()).strong()).truncate());
     if let Some(problem) = item.problem() {
-        ui.add(egui::Label::new(egui::RichText::new(problem).color(look::of(ui).problem)));
+        ui.add(egui::Label::new(egui::RichText::new(problem).color(theme::of(ui).problem)));
         return;
     }
     if !item.is_read() {
-        return explain(ui, "It is being read ...");
+        return explain(ui, "Loading ...");
     }
     let mut lines = Vec::new();
     if let Some(champion) = item.champion() {
@@ -70,14 +71,14 @@ pub fn details(ui: &mut egui::Ui, item: &Item) {
         ));
         let (controller, engine) = (champion.controller.name(), champion.engine);
         let duration_s = champion.duration_s;
-        lines.push(format!("{duration_s} s, controller {controller}, engine {engine}"));
+        lines.push(format!("Duration {duration_s} s, controller {controller}, engine {engine}"));
         lines.extend(champion.note.clone());
     }
     if let Some(run) = item.run() {
         lines.push(match run.best {
             Some((generation, fitness)) => {
                 let fitness = fitness_text(fitness, run.rewarded);
-                format!("Best {fitness}, of generation {generation}; {}", item.generation_text())
+                format!("Best {fitness} in generation {generation}; {}", item.generation_text())
             }
             None => item.generation_text(),
         });
@@ -88,52 +89,56 @@ pub fn details(ui: &mut egui::Ui, item: &Item) {
             method.unwrap_or_default()
         ));
         lines.push(match &run.ended {
-            Some(why) => format!("It cannot go on: {why}"),
-            None => "It can go on".to_owned(),
+            Some(why) => format!("Cannot be resumed: {why}"),
+            None => "Can be resumed".to_owned(),
         });
     }
     if item.place().path().is_none() {
-        lines.push("It comes with the program, and cannot be changed".to_owned());
+        lines.push("Built-in champion; it cannot be changed".to_owned());
     }
     for line in lines {
         explain(ui, &line);
     }
 }
 
-fn picture(ui: &mut egui::Ui, item: &Item) {
+fn picture(ui: &mut egui::Ui, item: &LibraryItem) {
     let Some(of) = item.thumbnail() else { return };
-    let size = egui::vec2(ui.available_width(), look::PICTURE_HEIGHT);
+    let size = egui::vec2(ui.available_width(), theme::PICTURE_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
-    let palette = look::of(ui);
+    let palette = theme::of(ui);
     let line = item.run().map(|run| run.best_of_each.as_slice()).filter(|best| best.len() > 1);
     let Some(line) = line else {
         thumbnail(ui.painter(), rect, of, palette);
-        response
-            .on_hover_text("The way of its middle block, and the snake at the end, from the side");
+        response.on_hover_text("Side view: the path of the middle block and the final pose");
         return;
     };
-    let gap = look::GAP / 2.0;
+    let gap = theme::GAP / 2.0;
     let [left, right] =
         [rect.with_max_x(rect.center().x - gap), rect.with_min_x(rect.center().x + gap)];
     thumbnail(ui.painter(), left, of, palette);
     sparkline(ui.painter(), right, line, palette);
-    response.on_hover_text(
-        "Left: what its best does, from the side. Right: the best of each generation",
-    );
+    response
+        .on_hover_text("Left: side view of its best snake. Right: best fitness of each generation");
 }
 
-/// The champions of a run's generations.
-pub fn champions(ui: &mut egui::Ui, place: &Place, run: &RunDetails, asked: &mut Vec<Command>) {
+/// Draws the list of the champions of a run.
+pub fn champions(
+    ui: &mut egui::Ui,
+    place: &SavePlace,
+    run: &RunDetails,
+    commands: &mut Vec<Command>,
+) {
     let Some(folder) = place.run().map(ToOwned::to_owned) else { return };
     let folder: PathBuf = folder;
     if run.champions.len() > 1 {
-        let hint = "Its generations side by side; of many some at equal distances";
+        let hint = "Replay the best of its generations side by side, spread evenly over the run";
         if ui.button("Race generations").on_hover_text(hint).clicked() {
             let (run, generations) = (folder.clone(), run.champions.clone());
-            asked.push(Command::Library(Ask::RaceGenerations { run, generations }));
+            commands.push(Command::Library(LibraryCommand::RaceGenerations { run, generations }));
         }
     }
-    let area = egui::ScrollArea::vertical().id_salt("champions").max_height(look::CHAMPIONS_HEIGHT);
+    let area =
+        egui::ScrollArea::vertical().id_salt("champions").max_height(theme::CHAMPIONS_HEIGHT);
     let height = ui.spacing().interact_size.y;
     area.auto_shrink([false, true]).show_rows(ui, height, run.champions.len(), |ui, rows| {
         for generation in run.champions.get(rows).unwrap_or_default() {
@@ -144,7 +149,8 @@ pub fn champions(ui: &mut egui::Ui, place: &Place, run: &RunDetails, asked: &mut
             let response = row(ui, false, &name, &about.unwrap_or_default());
             if response.on_hover_text("Click to replay").clicked() {
                 let (run, generation) = (folder.clone(), *generation);
-                asked.push(Command::Library(Ask::ReplayGeneration { run, generation }));
+                commands
+                    .push(Command::Library(LibraryCommand::ReplayGeneration { run, generation }));
             }
         }
     });

@@ -1,132 +1,135 @@
-//! What is typed: a name over its row, a path to copy to or from.
+//! Text fields: the new name of a save, and the path for import or export.
 
 use std::path::PathBuf;
 
-use bevy_egui::egui::{self, Key as Press};
+use bevy_egui::egui;
+use bevy_egui::egui::Key as Press;
 
-use super::{LibraryPanel, send};
-use crate::save::library::{Place, check_entry_name};
-use crate::studio::command::Command;
-use crate::studio::library::Ask;
-use crate::studio::look;
+use super::LibraryPanel;
+use super::actions::send;
+use crate::save::library::{SavePlace, check_entry_name};
+use crate::studio::commands::Command;
+use crate::studio::commands::library::LibraryCommand;
+use crate::studio::ui::theme;
 
-/// A name that is being edited.
+/// Name being edited.
 #[derive(Debug)]
-pub struct Naming {
-    /// Whose.
-    pub place: Place,
-    /// The name so far.
+pub struct RenameField {
+    /// SavePlace of the renamed save.
+    pub place: SavePlace,
+    /// Text typed so far.
     pub text: String,
-    /// Whether its field has had the keyboard.
-    pub has_begun: bool,
+    /// Whether the field has been focused.
+    pub has_had_focus: bool,
 }
 
-/// A path that is being typed.
+/// Path being typed.
 #[derive(Debug)]
-pub struct Asking {
-    what: Wanted,
+pub struct PathPrompt {
+    purpose: PathPurpose,
     text: String,
-    has_begun: bool,
+    has_had_focus: bool,
 }
 
-/// What a path is asked for.
+/// Purpose of a typed path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wanted {
-    /// Where copies go.
+pub enum PathPurpose {
+    /// Target folder of an export.
     Export,
-    /// What is copied in.
+    /// File or folder to import.
     Import,
 }
 
 impl LibraryPanel {
-    /// A field over the name of a row: Enter takes it, Escape leaves it as it was.
+    /// Draws a text field over the name of a row. Enter accepts the name, Escape cancels.
     pub(super) fn edit_name(
         &mut self,
         ui: &mut egui::Ui,
         rect: egui::Rect,
-        asked: &mut Vec<Command>,
+        commands: &mut Vec<Command>,
     ) {
-        let Some(naming) = &mut self.naming else { return };
-        let field = egui::TextEdit::singleline(&mut naming.text);
+        let Some(renaming) = &mut self.renaming else { return };
+        let field = egui::TextEdit::singleline(&mut renaming.text);
         let response = ui.put(rect, field);
         label(ui, &response, "New name");
-        if !naming.has_begun {
+        if !renaming.has_had_focus {
             response.request_focus();
-            naming.has_begun = true;
+            renaming.has_had_focus = true;
             return;
         }
         if !response.lost_focus() {
             return;
         }
-        let name = naming.text.trim().to_owned();
-        let is_good = check_entry_name(&name).is_ok();
-        if ui.input(|input| input.key_pressed(Press::Escape)) || name == naming.place.name() {
-            self.naming = None;
-        } else if is_good {
-            send(asked, Ask::Rename { place: naming.place.clone(), name });
-            self.naming = None;
+        let name = renaming.text.trim().to_owned();
+        let is_valid = check_entry_name(&name).is_ok();
+        if ui.input(|input| input.key_pressed(Press::Escape)) || name == renaming.place.name() {
+            self.renaming = None;
+        } else if is_valid {
+            send(commands, LibraryCommand::Rename { place: renaming.place.clone(), name });
+            self.renaming = None;
         } else if ui.input(|input| input.key_pressed(Press::Enter)) {
-            // What is wrong with it is said below.
-            naming.has_begun = false;
+            // The reason is shown below the list.
+            renaming.has_had_focus = false;
             return;
         } else {
-            self.naming = None;
+            self.renaming = None;
         }
         self.wants_keyboard = true;
     }
 
-    /// Opens a field for a path, or closes it.
-    pub(super) fn ask_for(&mut self, what: Wanted, text: String) {
-        let is_open = self.asking.as_ref().is_some_and(|asking| asking.what == what);
-        self.asking = (!is_open).then_some(Asking { what, text, has_begun: false });
+    /// Opens the path field, or closes it if it is open for the same purpose.
+    pub(super) fn toggle_path_field(&mut self, purpose: PathPurpose, text: String) {
+        let is_open =
+            self.path_prompt.as_ref().is_some_and(|path_prompt| path_prompt.purpose == purpose);
+        self.path_prompt = (!is_open).then_some(PathPrompt { purpose, text, has_had_focus: false });
     }
 
-    /// A field for a path, while one is asked for.
-    pub(super) fn path_field(&mut self, ui: &mut egui::Ui, asked: &mut Vec<Command>) {
-        let Some(asking) = &mut self.asking else { return };
-        let (label, hint) = match asking.what {
-            Wanted::Export => ("Export to", "A folder, which is made if need be"),
-            Wanted::Import => ("Import from", "A champion's file, or the folder of a run"),
+    /// Draws the path field, if it is open.
+    pub(super) fn path_field(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        let Some(path_prompt) = &mut self.path_prompt else { return };
+        let (label, hint) = match path_prompt.purpose {
+            PathPurpose::Export => ("Export to", "Path of a folder; it is created if necessary"),
+            PathPurpose::Import => ("Import from", "Path of a champion file or a run folder"),
         };
-        let mut is_done = false;
+        let mut is_closed = false;
         ui.horizontal(|ui| {
             let name = ui.label(label);
-            // The width of the two buttons beside it.
-            let width = ui.available_width() - look::COLUMN_WIDTHS[2];
-            let field = egui::TextEdit::singleline(&mut asking.text).desired_width(width);
+            // Leaves room for the two buttons.
+            let width = ui.available_width() - theme::COLUMN_WIDTHS[2];
+            let field = egui::TextEdit::singleline(&mut path_prompt.text).desired_width(width);
             let response = ui.add(field).labelled_by(name.id).on_hover_text(hint);
-            if !asking.has_begun {
+            if !path_prompt.has_had_focus {
                 response.request_focus();
-                asking.has_begun = true;
+                path_prompt.has_had_focus = true;
             }
             let is_entered =
                 response.lost_focus() && ui.input(|input| input.key_pressed(Press::Enter));
-            let is_there = !asking.text.trim().is_empty();
-            let go = ui.add_enabled(is_there, egui::Button::new("OK").small());
-            if (is_entered || go.clicked()) && is_there {
-                let path = PathBuf::from(asking.text.trim());
+            let has_text = !path_prompt.text.trim().is_empty();
+            let ok = ui.add_enabled(has_text, egui::Button::new("OK").small());
+            if (is_entered || ok.clicked()) && has_text {
+                let path = PathBuf::from(path_prompt.text.trim());
                 let places = self.selection.places().cloned().collect();
                 send(
-                    asked,
-                    match asking.what {
-                        Wanted::Export => Ask::Export { places, to: Some(path) },
-                        Wanted::Import => Ask::Import(vec![path]),
+                    commands,
+                    match path_prompt.purpose {
+                        PathPurpose::Export => LibraryCommand::Export { places, to: Some(path) },
+                        PathPurpose::Import => LibraryCommand::Import(vec![path]),
                     },
                 );
-                is_done = true;
+                is_closed = true;
             }
-            let is_left =
+            let is_cancelled =
                 response.lost_focus() && ui.input(|input| input.key_pressed(Press::Escape));
-            is_done |= is_left || ui.add(egui::Button::new("Cancel").small()).clicked();
+            is_closed |= is_cancelled || ui.add(egui::Button::new("Cancel").small()).clicked();
         });
-        if is_done {
-            self.asking = None;
+        if is_closed {
+            self.path_prompt = None;
             self.wants_keyboard = true;
         }
     }
 }
 
-/// Names a field for who does not see it.
+/// Sets the accessible name of a widget.
 pub fn label(ui: &egui::Ui, response: &egui::Response, name: &str) {
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
 }

@@ -1,31 +1,31 @@
-//! In which order the library is listed, and what of it: worked out when something has changed, not every frame.
+//! Sorted and filtered rows of the library, recomputed only after a change.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use crate::studio::library::{Item, Library};
+use crate::studio::state::library::{Library, LibraryItem};
 
-/// What the list is sorted by.
+/// Column by which the list is sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Key {
-    /// From A to Z.
+pub enum SortKey {
+    /// File or folder name.
     Name,
-    /// What is reached.
+    /// Best fitness.
     Fitness,
     /// Name of the preset.
     Preset,
-    /// The generation, of a run how many there are.
+    /// Generation of a champion, or number of generations of a run.
     Generation,
-    /// When it was last changed.
+    /// Time of the last change.
     Date,
 }
 
-impl Key {
-    /// All, in the order of the columns.
+impl SortKey {
+    /// All keys, in the order of the columns.
     pub const ALL: [Self; 5] =
         [Self::Name, Self::Fitness, Self::Preset, Self::Generation, Self::Date];
 
-    /// What it is called.
+    /// Title of the column.
     pub fn name(self) -> &'static str {
         match self {
             Self::Name => "Name",
@@ -37,40 +37,43 @@ impl Key {
     }
 }
 
-/// By what, and from which end.
+/// Sort key and direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sort {
-    /// By what.
-    pub key: Key,
-    /// Whether the greatest is first.
+pub struct SortOrder {
+    /// Sort key.
+    pub key: SortKey,
+    /// Whether the largest value comes first.
     pub is_descending: bool,
 }
 
-impl Default for Sort {
-    /// The newest first.
+impl Default for SortOrder {
+    /// Newest first.
     fn default() -> Self {
-        Self::by(Key::Date)
+        Self::by(SortKey::Date)
     }
 }
 
-impl Sort {
-    /// As people want it first: names from A, the best and the newest on top.
-    pub fn by(key: Key) -> Self {
-        Self { key, is_descending: matches!(key, Key::Fitness | Key::Generation | Key::Date) }
+impl SortOrder {
+    /// Default direction of a key: names ascending; fitness, generation and date descending.
+    pub fn by(key: SortKey) -> Self {
+        Self {
+            key,
+            is_descending: matches!(key, SortKey::Fitness | SortKey::Generation | SortKey::Date),
+        }
     }
 
-    /// After a click on a column: the other way round, if it is sorted by that already.
-    pub fn clicked(self, key: Key) -> Self {
+    /// Order after a click on a column: reversed if the column is the sort key already.
+    pub fn clicked(self, key: SortKey) -> Self {
         if self.key == key { self.reversed() } else { Self::by(key) }
     }
 
-    /// The other way round.
+    /// The same key in the opposite direction.
     pub fn reversed(self) -> Self {
         Self { is_descending: !self.is_descending, ..self }
     }
 
-    /// What is not known is last in either direction; equals are in the order of their names.
-    fn compare(self, a: &Item, b: &Item) -> Ordering {
+    /// Unknown values come last in both directions. Equal values are ordered by name.
+    fn compare(self, a: &LibraryItem, b: &LibraryItem) -> Ordering {
         fn known<T>(a: Option<T>, b: Option<T>, compare: impl Fn(&T, &T) -> Ordering) -> Ordering {
             match (a, b) {
                 (Some(a), Some(b)) => compare(&a, &b),
@@ -80,12 +83,13 @@ impl Sort {
         let turned = |order: Ordering| if self.is_descending { order.reverse() } else { order };
         let by_name = || a.sorted_as().cmp(b.sorted_as());
         let by_key = match self.key {
-            Key::Name => turned(by_name()),
-            Key::Fitness => known(a.fitness(), b.fitness(), |a, b| turned(a.total_cmp(b))),
-            Key::Preset => known(a.preset(), b.preset(), |a, b| turned(a.cmp(b))),
-            Key::Generation => known(a.generation(), b.generation(), |a, b| turned(a.cmp(b))),
-            Key::Date => {
-                let date = |item: &Item| Some(item.entry().modified).filter(|at| !at.is_zero());
+            SortKey::Name => turned(by_name()),
+            SortKey::Fitness => known(a.fitness(), b.fitness(), |a, b| turned(a.total_cmp(b))),
+            SortKey::Preset => known(a.preset(), b.preset(), |a, b| turned(a.cmp(b))),
+            SortKey::Generation => known(a.generation(), b.generation(), |a, b| turned(a.cmp(b))),
+            SortKey::Date => {
+                let date =
+                    |item: &LibraryItem| Some(item.entry().modified).filter(|at| !at.is_zero());
                 known(date(a), date(b), |a, b| turned(a.cmp(b)))
             }
         };
@@ -93,57 +97,57 @@ impl Sort {
     }
 }
 
-/// The rows of the list.
+/// Sorted rows of the list.
 #[derive(Debug, Default)]
-pub struct Order {
+pub struct SortedItems {
     /// Indices into the library's items.
     rows: Arc<[usize]>,
-    made_for: Option<MadeFor>,
-    made_at_s: f64,
+    input: Option<SortInput>,
+    sorted_at_s: f64,
 }
 
 #[derive(Debug, PartialEq)]
-struct MadeFor {
+struct SortInput {
     listings: u64,
     sortings: u64,
     search: String,
-    sort: Sort,
+    sort: SortOrder,
 }
 
-/// While entries are read the list is sorted anew no more often than this, in seconds.
-const LEAST_AGE_S: f64 = 0.5;
+/// Minimum time between two sorts while entries are being read, in seconds.
+const MIN_SORT_INTERVAL_S: f64 = 0.5;
 
-impl Order {
-    /// Sorts and filters anew, if something has changed. `now_s` is the time of the frame, in seconds.
-    pub fn update(&mut self, library: &Library, search: &str, sort: Sort, now_s: f64) {
-        let wanted = MadeFor {
+impl SortedItems {
+    /// Sorts and filters again if something has changed. `now_s` is the time of the frame, in seconds.
+    pub fn update(&mut self, library: &Library, search: &str, sort: SortOrder, now_s: f64) {
+        let input_now = SortInput {
             listings: library.listings(),
             sortings: library.sortings(),
             search: search.to_lowercase(),
             sort,
         };
-        let is_good = self.made_for.as_ref().is_some_and(|made_for| {
-            let only_read_on = MadeFor { sortings: wanted.sortings, ..made_for.copy() } == wanted;
-            let is_young = library.unread() > 0 && now_s - self.made_at_s < LEAST_AGE_S;
-            *made_for == wanted || (only_read_on && is_young)
+        let is_current = self.input.as_ref().is_some_and(|input| {
+            let only_read_on =
+                SortInput { sortings: input_now.sortings, ..input.copy() } == input_now;
+            let is_young = library.unread() > 0 && now_s - self.sorted_at_s < MIN_SORT_INTERVAL_S;
+            *input == input_now || (only_read_on && is_young)
         });
-        if is_good {
+        if is_current {
             return;
         }
-        let sought: Vec<&str> = wanted.search.split_whitespace().collect();
+        let words: Vec<&str> = input_now.search.split_whitespace().collect();
         let items = library.items();
-        // Where the places are the same and few entries have changed, the rows are nearly in order already, and
-        // sorting them takes no longer than looking at each once.
-        let are_same = self.made_for.as_ref().is_some_and(|of| of.listings == wanted.listings);
+        // If few entries have changed, the existing rows are nearly sorted, and sorting them takes linear time.
+        let are_same = self.input.as_ref().is_some_and(|of| of.listings == input_now.listings);
         let mut rows: Vec<usize> = if are_same && self.rows.len() == items.len() {
             self.rows.to_vec()
         } else {
             (0..items.len()).collect()
         };
-        rows.retain(|index| items[*index].has_all(&sought));
+        rows.retain(|index| items[*index].has_all(&words));
         rows.sort_by(|a, b| sort.compare(&items[*a], &items[*b]));
         self.rows = rows.into();
-        (self.made_for, self.made_at_s) = (Some(wanted), now_s);
+        (self.input, self.sorted_at_s) = (Some(input_now), now_s);
     }
 
     /// Indices into the library's items, row by row.
@@ -152,7 +156,7 @@ impl Order {
     }
 }
 
-impl MadeFor {
+impl SortInput {
     fn copy(&self) -> Self {
         Self { search: self.search.clone(), ..*self }
     }
@@ -171,41 +175,45 @@ mod tests {
         (folder, library)
     }
 
-    fn names(library: &Library, search: &str, sort: Sort) -> Vec<String> {
-        let mut order = Order::default();
+    fn names(library: &Library, search: &str, sort: SortOrder) -> Vec<String> {
+        let mut order = SortedItems::default();
         order.update(library, search, sort, 0.0);
         order.rows().iter().map(|row| library.items()[*row].name().to_owned()).collect()
     }
 
     #[test]
-    fn it_is_sorted_both_ways_and_what_is_not_known_is_last_in_both() {
+    fn rows_are_sorted_in_both_directions_with_unknown_values_last() {
         let (_folder, library) = library();
-        let by_name = names(&library, "", Sort::by(Key::Name));
+        let by_name = names(&library, "", SortOrder::by(SortKey::Name));
         assert_eq!(by_name[..3], ["Broken", "climber", "fast"]);
-        let best = names(&library, "", Sort::by(Key::Fitness));
-        let worst = names(&library, "", Sort::by(Key::Fitness).reversed());
+        let best = names(&library, "", SortOrder::by(SortKey::Fitness));
+        let worst = names(&library, "", SortOrder::by(SortKey::Fitness).reversed());
         assert_eq!(best[..2], ["climber", "rearer"], "of equals the first by name");
         assert_eq!(worst[0], "first-climber");
         assert_eq!((best.last(), worst.last()), (by_name.first(), by_name.first()));
-        assert_eq!(names(&library, "", Sort::default())[0], "Broken", "the only one with a date");
+        assert_eq!(
+            names(&library, "", SortOrder::default())[0],
+            "Broken",
+            "the only one with a date"
+        );
     }
 
     #[test]
-    fn all_words_of_a_search_count() {
+    fn a_search_must_match_all_words() {
         let (_folder, library) = library();
-        assert_eq!(names(&library, "DAMAGED", Sort::default()), ["Broken"]);
-        assert_eq!(names(&library, " climb  gait rob", Sort::default()), ["robust"]);
-        assert!(names(&library, "climb nothing", Sort::default()).is_empty());
+        assert_eq!(names(&library, "DAMAGED", SortOrder::default()), ["Broken"]);
+        assert_eq!(names(&library, " climb  gait rob", SortOrder::default()), ["robust"]);
+        assert!(names(&library, "climb nothing", SortOrder::default()).is_empty());
     }
 
     #[test]
-    fn nothing_is_sorted_again_as_long_as_nothing_changes() {
+    fn rows_are_sorted_again_only_after_a_change() {
         let (_folder, library) = library();
-        let mut order = Order::default();
-        order.update(&library, "", Sort::default(), 1.0);
-        order.update(&library, "", Sort::default(), 9.0);
-        assert_eq!(order.made_at_s, 1.0);
-        order.update(&library, "f", Sort::default(), 10.0);
-        assert_eq!(order.made_at_s, 10.0);
+        let mut order = SortedItems::default();
+        order.update(&library, "", SortOrder::default(), 1.0);
+        order.update(&library, "", SortOrder::default(), 9.0);
+        assert_eq!(order.sorted_at_s, 1.0);
+        order.update(&library, "f", SortOrder::default(), 10.0);
+        assert_eq!(order.sorted_at_s, 10.0);
     }
 }

@@ -1,51 +1,51 @@
-//! Which rows of the library are chosen, by clicks and by keys.
+//! Rows of the library that are selected by clicks and keys.
 
 use std::collections::BTreeSet;
 
-use crate::save::library::Place;
+use crate::save::library::SavePlace;
 
-/// What is chosen.
+/// Set of selected saves, with cursor and anchor.
 #[derive(Debug, Default)]
-pub struct Selection {
-    chosen: BTreeSet<Place>,
-    /// The row at which keys begin.
-    cursor: Option<Place>,
-    /// Where a range began.
-    anchor: Option<Place>,
+pub struct ChosenSaves {
+    chosen: BTreeSet<SavePlace>,
+    /// Row from which keys move.
+    cursor: Option<SavePlace>,
+    /// Row at which a range starts.
+    anchor: Option<SavePlace>,
     changes: u64,
 }
 
-impl Selection {
-    /// Whether it is chosen.
-    pub fn has(&self, place: &Place) -> bool {
+impl ChosenSaves {
+    /// Whether a save is selected.
+    pub fn has(&self, place: &SavePlace) -> bool {
         self.chosen.contains(place)
     }
 
-    /// What is chosen.
-    pub fn places(&self) -> impl ExactSizeIterator<Item = &Place> {
+    /// Selected saves.
+    pub fn places(&self) -> impl ExactSizeIterator<Item = &SavePlace> {
         self.chosen.iter()
     }
 
-    /// The row at which keys begin.
-    pub fn cursor(&self) -> Option<&Place> {
+    /// Row from which keys move.
+    pub fn cursor(&self) -> Option<&SavePlace> {
         self.cursor.as_ref()
     }
 
-    /// Changes whenever something else is chosen.
+    /// Counter that increases with every change of the selection.
     pub fn changes(&self) -> u64 {
         self.changes
     }
 
-    /// Chooses one alone.
-    pub fn only(&mut self, place: &Place) {
+    /// Selects one save only.
+    pub fn only(&mut self, place: &SavePlace) {
         self.changes += 1;
         self.chosen = BTreeSet::from([place.clone()]);
         self.anchor = Some(place.clone());
         self.cursor = Some(place.clone());
     }
 
-    /// Chooses one more, or one less.
-    pub fn toggle(&mut self, place: &Place) {
+    /// Adds a save to the selection, or removes it.
+    pub fn toggle(&mut self, place: &SavePlace) {
         self.changes += 1;
         if !self.chosen.remove(place) {
             self.chosen.insert(place.clone());
@@ -54,10 +54,10 @@ impl Selection {
         self.cursor = Some(place.clone());
     }
 
-    /// Chooses all rows from where the range began to this one.
-    pub fn extend<'a>(&mut self, place: &Place, rows: impl Iterator<Item = &'a Place>) {
-        let rows: Vec<&Place> = rows.collect();
-        let row_of = |wanted: &Place| rows.iter().position(|row| *row == wanted);
+    /// Selects all rows from the anchor to this one.
+    pub fn extend<'a>(&mut self, place: &SavePlace, rows: impl Iterator<Item = &'a SavePlace>) {
+        let rows: Vec<&SavePlace> = rows.collect();
+        let row_of = |wanted: &SavePlace| rows.iter().position(|row| *row == wanted);
         let ends = self.anchor.as_ref().and_then(row_of).zip(row_of(place));
         let Some((from, to)) = ends else { return self.only(place) };
         self.changes += 1;
@@ -66,18 +66,18 @@ impl Selection {
         self.cursor = Some(place.clone());
     }
 
-    /// Chooses all rows.
-    pub fn all<'a>(&mut self, rows: impl Iterator<Item = &'a Place>) {
+    /// Selects all rows.
+    pub fn all<'a>(&mut self, rows: impl Iterator<Item = &'a SavePlace>) {
         self.changes += 1;
         self.chosen = rows.cloned().collect();
     }
 
-    /// Forgets what is not there any more.
-    pub fn retain(&mut self, is_there: impl Fn(&Place) -> bool) {
+    /// Removes saves that no longer exist.
+    pub fn retain(&mut self, exists: impl Fn(&SavePlace) -> bool) {
         self.changes += 1;
-        self.chosen.retain(&is_there);
-        self.cursor = self.cursor.take().filter(&is_there);
-        self.anchor = self.anchor.take().filter(&is_there);
+        self.chosen.retain(&exists);
+        self.cursor = self.cursor.take().filter(&exists);
+        self.anchor = self.anchor.take().filter(&exists);
     }
 }
 
@@ -87,14 +87,14 @@ mod tests {
 
     const NAMES: [&str; 5] = ["a", "b", "c", "d", "e"];
 
-    fn chosen(selection: &Selection) -> String {
-        selection.places().map(Place::name).collect()
+    fn chosen(selection: &ChosenSaves) -> String {
+        selection.places().map(SavePlace::name).collect()
     }
 
     #[test]
-    fn clicks_choose_one_some_more_or_a_range() {
-        let rows = NAMES.map(Place::Shipped);
-        let mut selection = Selection::default();
+    fn clicks_select_one_row_several_rows_or_a_range() {
+        let rows = NAMES.map(SavePlace::Shipped);
+        let mut selection = ChosenSaves::default();
         selection.only(&rows[1]);
         assert_eq!(chosen(&selection), "b");
         selection.extend(&rows[3], rows.iter());

@@ -1,4 +1,4 @@
-//! The library's panel without a window: what is in it, and what clicks and keys ask for.
+//! Tests of the library panel without a window.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -8,28 +8,28 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
-use crate::run::Reading;
-use crate::save::library::{Details, Entry, RunDetails, read_entry};
-use crate::studio::notice::Notices;
+use crate::run::LibraryEvent;
+use crate::save::library::{EntryDetails, LibraryEntry, RunDetails, read_entry};
+use crate::studio::ui::notifications::Notices;
 
-fn entry(place: Place, day: u64) -> Entry {
-    Entry { place, bytes: 1, modified: Duration::from_secs(day * 86_400) }
+fn entry(place: SavePlace, day: u64) -> LibraryEntry {
+    LibraryEntry { place, bytes: 1, modified: Duration::from_secs(day * 86_400) }
 }
 
-fn file(name: &str) -> Place {
-    Place::Champion(PathBuf::from(format!("saves/{name}.ron")))
+fn file(name: &str) -> SavePlace {
+    SavePlace::Champion(PathBuf::from(format!("saves/{name}.ron")))
 }
 
 fn run_folder() -> PathBuf {
     PathBuf::from("saves/climb-seed8-0123abcd")
 }
 
-/// A run that was stopped after two of ten generations.
-fn stopped_run() -> Details {
-    let Ok(Details::Champion(of)) = read_entry(&Place::Shipped("fast")) else {
-        panic!("it comes with the program");
+/// Run that was stopped after two of ten generations.
+fn stopped_run() -> EntryDetails {
+    let Ok(EntryDetails::Champion(of)) = read_entry(&SavePlace::Shipped("fast")) else {
+        panic!("a built-in champion");
     };
-    Details::Run(Box::new(RunDetails {
+    EntryDetails::Run(Box::new(RunDetails {
         preset: "climb".to_owned(),
         seed: 8,
         strategy: None,
@@ -45,11 +45,11 @@ fn stopped_run() -> Details {
     }))
 }
 
-/// Two champions, a damaged file, a run, and one that comes with the program; the first is the newest.
+/// Library of two champions, a damaged file, a run and a built-in champion. The first is the newest.
 fn library() -> Library {
-    let shipped = Place::Shipped("fast");
+    let shipped = SavePlace::Shipped("fast");
     let champion = read_entry(&shipped).map_err(|error| error.to_string());
-    let run = Place::Run(run_folder());
+    let run = SavePlace::Run(run_folder());
     let entries = vec![
         entry(shipped.clone(), 0),
         entry(file("alpha"), 9),
@@ -58,13 +58,13 @@ fn library() -> Library {
         entry(run.clone(), 6),
     ];
     Library::of(vec![
-        Reading::Listed(entries),
-        Reading::Read(shipped, champion.clone()),
-        Reading::Read(file("alpha"), champion.clone()),
-        Reading::Read(file("beta"), champion),
-        Reading::Read(file("broken"), Err("cut off at line 3".to_owned())),
-        Reading::Read(run, Ok(stopped_run())),
-        Reading::Done(1),
+        LibraryEvent::Listed(entries),
+        LibraryEvent::Read(shipped, champion.clone()),
+        LibraryEvent::Read(file("alpha"), champion.clone()),
+        LibraryEvent::Read(file("beta"), champion),
+        LibraryEvent::Read(file("broken"), Err("cut off at line 3".to_owned())),
+        LibraryEvent::Read(run, Ok(stopped_run())),
+        LibraryEvent::Done(1),
     ])
 }
 
@@ -72,10 +72,10 @@ type Test<'a> = Harness<'a, Vec<Command>>;
 
 fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
     let mut panel = LibraryPanel::default();
-    // Two clicks of a test are a double click only if its frames are short.
+    // Two clicks count as a double click only if the frames are short.
     let builder = Harness::builder().with_size(egui::Vec2::from(size)).with_step_dt(1.0 / 60.0);
     let mut harness = builder.build_ui_state(
-        move |ui, asked: &mut Vec<Command>| panel.ui(ui, library, asked),
+        move |ui, commands: &mut Vec<Command>| panel.ui(ui, library, commands),
         Vec::new(),
     );
     harness.run();
@@ -83,18 +83,18 @@ fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
     harness
 }
 
-/// What the panel asks for after somebody has done `act`.
-fn asked(library: &Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<Ask> {
+/// Library commands sent after `act`.
+fn sent(library: &Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryCommand> {
     let mut harness = harness(library, [420.0, 800.0]);
     act(&mut harness);
     harness.run();
-    let asked = harness.state().iter().filter_map(|command| match command {
-        Command::Library(ask) => Some(ask.clone()),
-        // Why something cannot be is said.
-        Command::Say(_) => None,
+    let commands = harness.state().iter().filter_map(|command| match command {
+        Command::Library(request) => Some(request.clone()),
+        // Reasons for refused actions are not compared.
+        Command::Notify(_) => None,
         other => panic!("{other:?}"),
     });
-    asked.collect()
+    commands.collect()
 }
 
 fn click(harness: &mut Test<'_>, label: &str) {
@@ -102,8 +102,8 @@ fn click(harness: &mut Test<'_>, label: &str) {
     harness.run();
 }
 
-/// Chooses the row whose label begins like this.
-fn choose(harness: &mut Test<'_>, name: &str) {
+/// Selects the row whose label starts with this name.
+fn select(harness: &mut Test<'_>, name: &str) {
     row_of(harness, name).click();
     harness.run();
 }
@@ -119,26 +119,26 @@ fn press(harness: &mut Test<'_>, modifiers: Modifiers, key: Press) {
 }
 
 #[test]
-fn each_button_asks_for_what_it_says_of_the_save_that_is_chosen() {
+fn each_button_sends_its_command_for_the_selected_save() {
     let library = library();
-    for (row, button, ask) in [
-        ("alpha", "Replay", Ask::Replay(file("alpha"))),
-        ("alpha", "New run from it", Ask::FoundRun(file("alpha"))),
-        ("beta", "Duplicate", Ask::Duplicate(vec![file("beta")])),
-        ("broken", "Delete", Ask::Delete(vec![file("broken")])),
-        ("climb-seed8-0123abcd", "Replay", Ask::Replay(Place::Run(run_folder()))),
-        ("fast", "Duplicate", Ask::Duplicate(vec![Place::Shipped("fast")])),
+    for (row, button, request) in [
+        ("alpha", "Replay", LibraryCommand::Replay(file("alpha"))),
+        ("alpha", "New run from this", LibraryCommand::StartFrom(file("alpha"))),
+        ("beta", "Duplicate", LibraryCommand::Duplicate(vec![file("beta")])),
+        ("broken", "Delete", LibraryCommand::Delete(vec![file("broken")])),
+        ("climb-seed8-0123abcd", "Replay", LibraryCommand::Replay(SavePlace::Run(run_folder()))),
+        ("fast", "Duplicate", LibraryCommand::Duplicate(vec![SavePlace::Shipped("fast")])),
     ] {
-        let found = asked(&library, |harness| {
-            choose(harness, row);
+        let found = sent(&library, |harness| {
+            select(harness, row);
             click(harness, button);
         });
-        assert_eq!(found, [ask], "{button} of {row}");
+        assert_eq!(found, [request], "{button} of {row}");
     }
 }
 
 #[test]
-fn what_makes_no_sense_cannot_be_clicked() {
+fn impossible_actions_are_disabled() {
     let library = library();
     for (row, button) in [
         ("broken", "Replay"),
@@ -147,8 +147,8 @@ fn what_makes_no_sense_cannot_be_clicked() {
         ("climb-seed8-0123abcd", "Rename"),
         ("climb-seed8-0123abcd", "Duplicate"),
     ] {
-        let found = asked(&library, |harness| {
-            choose(harness, row);
+        let found = sent(&library, |harness| {
+            select(harness, row);
             assert!(harness.get_by_label(button).accesskit_node().is_disabled(), "{button}");
             click(harness, button);
         });
@@ -157,11 +157,11 @@ fn what_makes_no_sense_cannot_be_clicked() {
 }
 
 #[test]
-fn a_stopped_run_goes_on_and_shows_its_champions() {
+fn a_stopped_run_is_resumed_and_lists_its_champions() {
     let library = library();
     let mut harness = harness(&library, [420.0, 900.0]);
-    choose(&mut harness, "climb-seed8-0123abcd");
-    click(&mut harness, "Continue");
+    select(&mut harness, "climb-seed8-0123abcd");
+    click(&mut harness, "Resume");
     assert_eq!(*harness.state(), [Command::Continue(run_folder())]);
     harness.state_mut().clear();
     click(&mut harness, "Champions");
@@ -170,17 +170,17 @@ fn a_stopped_run_goes_on_and_shows_its_champions() {
     click(&mut harness, "Race generations");
     let run = run_folder();
     let expected = [
-        Ask::ReplayGeneration { run: run.clone(), generation: 1 },
-        Ask::RaceGenerations { run, generations: vec![1, 2] },
+        LibraryCommand::ReplayGeneration { run: run.clone(), generation: 1 },
+        LibraryCommand::RaceGenerations { run, generations: vec![1, 2] },
     ];
     assert_eq!(*harness.state(), expected.map(Command::Library));
 }
 
 #[test]
-fn several_are_chosen_with_shift_and_control_and_race() {
+fn shift_and_control_select_several_saves_for_a_race() {
     let library = library();
-    let found = asked(&library, |harness| {
-        choose(harness, "alpha");
+    let found = sent(&library, |harness| {
+        select(harness, "alpha");
         row_of(harness, "beta").click_modifiers(Modifiers::SHIFT);
         harness.run();
         row_of(harness, "fast").click_modifiers(Modifiers::COMMAND);
@@ -189,29 +189,29 @@ fn several_are_chosen_with_shift_and_control_and_race() {
         assert!(harness.get_by_label("Rename").accesskit_node().is_disabled());
         click(harness, "Delete");
     });
-    let places = vec![Place::Shipped("fast"), file("alpha"), file("beta")];
-    assert_eq!(found, [Ask::Race(places)], "what comes with the program cannot be deleted");
+    let places = vec![SavePlace::Shipped("fast"), file("alpha"), file("beta")];
+    assert_eq!(found, [LibraryCommand::Race(places)], "built-in champions cannot be deleted");
 }
 
 #[test]
-fn a_double_click_replays() {
+fn a_double_click_replays_a_save() {
     let library = library();
-    let found = asked(&library, |harness| {
+    let found = sent(&library, |harness| {
         row_of(harness, "beta").click();
         row_of(harness, "beta").click();
         harness.run();
     });
-    assert_eq!(found, [Ask::Replay(file("beta"))]);
+    assert_eq!(found, [LibraryCommand::Replay(file("beta"))]);
 }
 
 #[test]
-fn keys_alone_do_all_that_the_mouse_does() {
+fn every_mouse_action_has_a_key() {
     let library = library();
     let none = Modifiers::NONE;
-    let found = asked(&library, |harness| {
+    let found = sent(&library, |harness| {
         harness.get_by_label_contains("Saves: ").focus();
         harness.run();
-        // The newest is first.
+        // The newest save is the first row.
         press(harness, none, Press::ArrowDown);
         press(harness, none, Press::ArrowDown);
         press(harness, none, Press::Enter);
@@ -224,19 +224,19 @@ fn keys_alone_do_all_that_the_mouse_does() {
         press(harness, none, Press::F2);
     });
     let expected = [
-        Ask::Replay(file("beta")),
-        Ask::Race(vec![file("alpha"), file("beta")]),
-        Ask::Duplicate(vec![file("alpha")]),
-        Ask::Delete(vec![file("alpha")]),
+        LibraryCommand::Replay(file("beta")),
+        LibraryCommand::Race(vec![file("alpha"), file("beta")]),
+        LibraryCommand::Duplicate(vec![file("alpha")]),
+        LibraryCommand::Delete(vec![file("alpha")]),
     ];
-    assert_eq!(found, expected, "what comes with the program is last, and keeps its name");
+    assert_eq!(found, expected, "the built-in champion is last and keeps its name");
 }
 
 #[test]
-fn a_name_is_edited_in_its_row_refused_with_the_reason_and_sent() {
+fn a_name_is_edited_in_its_row_and_invalid_names_are_refused() {
     let library = library();
     let mut harness = harness(&library, [420.0, 800.0]);
-    choose(&mut harness, "alpha");
+    select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::F2);
     harness.get_by_label("New name").type_text("/x");
     harness.run();
@@ -250,7 +250,10 @@ fn a_name_is_edited_in_its_row_refused_with_the_reason_and_sent() {
     harness.run();
     press(&mut harness, Modifiers::NONE, Press::Enter);
     let name = "alpha two".to_owned();
-    assert_eq!(*harness.state(), [Command::Library(Ask::Rename { place: file("alpha"), name })]);
+    assert_eq!(
+        *harness.state(),
+        [Command::Library(LibraryCommand::Rename { place: file("alpha"), name })]
+    );
     harness.state_mut().clear();
     press(&mut harness, Modifiers::NONE, Press::F2);
     harness.get_by_label("New name").type_text("no");
@@ -261,7 +264,7 @@ fn a_name_is_edited_in_its_row_refused_with_the_reason_and_sent() {
 }
 
 #[test]
-fn the_search_leaves_only_what_has_all_its_words() {
+fn the_search_shows_only_saves_that_match_all_words() {
     let library = library();
     let mut harness = harness(&library, [420.0, 800.0]);
     harness.get_by_label("Search the library").focus();
@@ -273,11 +276,11 @@ fn the_search_leaves_only_what_has_all_its_words() {
     assert!(harness.query_by_label_contains("alpha, ").is_none());
     harness.get_by_label("Search the library").type_text("xyz");
     harness.run();
-    assert!(harness.query_by_label("No save has all of these words.").is_some());
+    assert!(harness.query_by_label("No save matches all of these words.").is_some());
 }
 
 #[test]
-fn where_it_is_wide_a_click_on_a_column_sorts_by_it_and_the_next_the_other_way() {
+fn a_click_on_a_column_sorts_and_a_second_click_reverses_the_order() {
     let library = library();
     let mut harness = harness(&library, [900.0, 800.0]);
     let top = |harness: &Test<'_>, name: &str| row_of(harness, name).rect().top();
@@ -289,25 +292,25 @@ fn where_it_is_wide_a_click_on_a_column_sorts_by_it_and_the_next_the_other_way()
 }
 
 #[test]
-fn an_export_asks_where_to_and_suggests_the_usual_folder() {
+fn an_export_suggests_the_exports_folder() {
     let library = library();
-    let found = asked(&library, |harness| {
-        choose(harness, "alpha");
+    let found = sent(&library, |harness| {
+        select(harness, "alpha");
         click(harness, "Export");
         click(harness, "OK");
     });
     let to = Some(Path::new("saves").join("exports"));
-    assert_eq!(found, [Ask::Export { places: vec![file("alpha")], to }]);
+    assert_eq!(found, [LibraryCommand::Export { places: vec![file("alpha")], to }]);
 }
 
 #[test]
-fn nothing_sticks_out_of_a_narrow_or_a_low_panel() {
+fn everything_fits_into_a_narrow_or_low_panel() {
     let library = library();
     for size in [[300.0, 700.0], [300.0, 200.0], [559.0, 400.0], [900.0, 300.0]] {
         let mut harness = harness(&library, size);
         for name in ["alpha", "climb-seed8-0123abcd"] {
             if size[1] > 300.0 {
-                choose(&mut harness, name);
+                select(&mut harness, name);
             }
         }
         let nodes = harness.get_all_by(|node| node.label().is_some());
@@ -323,17 +326,17 @@ fn nothing_sticks_out_of_a_narrow_or_a_low_panel() {
 }
 
 #[test]
-fn who_is_chosen_stays_in_sight_when_what_is_said_of_it_makes_the_list_low() {
+fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
     let library = library();
     let mut harness = harness(&library, [420.0, 560.0]);
     let list = |harness: &Test<'_>| harness.get_by_label_contains("Saves: ").rect();
     let list_height = |harness: &Test<'_>| list(harness).height();
     let before = list_height(&harness);
-    choose(&mut harness, "fast");
+    select(&mut harness, "fast");
     let (list, row) = (list(&harness), row_of(&harness, "fast").rect());
-    assert!(list.height() < before - look::SAVE_HEIGHT, "{} of {before}", list.height());
+    assert!(list.height() < before - theme::LIBRARY_ROW_HEIGHT, "{} of {before}", list.height());
     assert!(list.contains_rect(row), "{row} in {list}");
-    // Let go, it leaves its room to the list again.
+    // Without a selection the list has its full height again.
     let held = Modifiers::COMMAND;
     let at = row.center();
     harness.event_modifiers(egui::Event::PointerMoved(at), held);
@@ -347,9 +350,9 @@ fn who_is_chosen_stays_in_sight_when_what_is_said_of_it_makes_the_list_low() {
 }
 
 #[test]
-fn of_ten_thousand_saves_only_the_rows_in_sight_are_laid_out() {
+fn only_the_visible_rows_of_ten_thousand_saves_are_laid_out() {
     let entries = (0..10_000).map(|number| entry(file(&format!("save {number:05}")), number + 1));
-    let library = Library::of(vec![Reading::Listed(entries.collect())]);
+    let library = Library::of(vec![LibraryEvent::Listed(entries.collect())]);
     let mut harness = harness(&library, [420.0, 600.0]);
     let rows = |harness: &Test<'_>| {
         let is_row = |label: String| label.starts_with("save 0");
@@ -357,33 +360,33 @@ fn of_ten_thousand_saves_only_the_rows_in_sight_are_laid_out() {
     };
     let laid_out = rows(&harness);
     assert!((5..20).contains(&laid_out), "{laid_out}");
-    // The end is as near as the beginning.
+    // The last row is reached directly.
     harness.get_by_label_contains("Saves: ").focus();
     harness.run();
     press(&mut harness, Modifiers::NONE, Press::End);
     assert!(harness.query_by_label("save 00000, not read yet").is_some());
     assert!((5..20).contains(&rows(&harness)));
-    // Those in sight are read before the others.
+    // Visible entries are read before the others.
     let hurried = harness.state().iter().rev().find_map(|command| match command {
-        Command::Library(Ask::Hurry(places)) => Some(places),
+        Command::Library(LibraryCommand::LoadFirst(places)) => Some(places),
         _ => None,
     });
-    assert!(hurried.expect("asked for").contains(&file("save 00000")));
+    assert!(hurried.expect("requested").contains(&file("save 00000")));
 }
 
 #[test]
-fn what_is_done_with_many_can_be_cancelled_and_with_a_few_shows_nothing() {
+fn long_operations_can_be_cancelled_and_short_ones_show_no_progress() {
     for (count, shown) in [(50, true), (2, false)] {
         let mut library = library();
         let gone = (0..count).map(|number| file(&format!("gone {number}"))).collect();
-        // They are not there: whatever is done, nothing is changed.
-        let _ = library.apply(&Ask::Delete(gone), &mut Notices::default());
-        let found = asked(&library, |harness| {
+        // The files do not exist, so nothing changes on disk.
+        let _ = library.apply(&LibraryCommand::Delete(gone), &mut Notices::default());
+        let found = sent(&library, |harness| {
             assert_eq!(harness.query_by_label("Cancel").is_some(), shown);
             if shown {
                 click(harness, "Cancel");
             }
         });
-        assert_eq!(found.first(), shown.then_some(&Ask::Cancel));
+        assert_eq!(found.first(), shown.then_some(&LibraryCommand::Cancel));
     }
 }

@@ -1,51 +1,52 @@
-//! The little picture of a save: stairs, the middle limb's way, the snake at the end. Shapes, no textures.
+//! Thumbnail of a save: stairs, path of the middle limb and final pose. It is drawn from shapes, without textures.
 
-use bevy_egui::egui::{self, Pos2, Rect, Shape, Stroke};
+use bevy_egui::egui;
+use bevy_egui::egui::{Pos2, Rect, Shape, Stroke};
 
 use crate::save::library::Thumbnail;
-use crate::studio::look;
-use crate::studio::look::Palette;
+use crate::studio::ui::theme;
+use crate::studio::ui::theme::Palette;
 
-/// Heights are drawn at most so many times as large as lengths: the stairs are long and low.
-const MOST_STRETCH: f32 = 2.0;
-/// Room around what is drawn, in metres.
+/// Maximum vertical stretch, because the stairs are long and low.
+const MAX_STRETCH: f32 = 2.0;
+/// Margin around the drawing, in metres.
 const MARGIN_M: f32 = 1.5;
 
-/// Draws it.
+/// Draws a thumbnail.
 pub fn thumbnail(painter: &egui::Painter, rect: Rect, of: &Thumbnail, palette: &Palette) {
     painter.rect_filled(rect, 4.0, palette.field);
     let painter = painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-    let view = View::new(rect, of);
+    let view = ThumbnailView::new(rect, of);
     for step in of.stairs_m.get(1..).unwrap_or_default().as_chunks::<2>().0 {
         let [[front_y_m, top_z_m], [back_y_m, _]] = *step;
         let corners = [[front_y_m, 0.0], [back_y_m, top_z_m]].map(|at| view.at(at));
-        let color = look::flat(palette.nosing);
+        let color = theme::flat(palette.nosing);
         painter.rect_filled(Rect::from_points(&corners), 0.0, color);
     }
     let way: Vec<Pos2> = of.way_m.iter().map(|at| view.at(*at)).collect();
-    painter.add(Shape::line(way, Stroke::new(1.0, look::flat(palette.trail))));
+    painter.add(Shape::line(way, Stroke::new(1.0, theme::flat(palette.trail))));
     for (limb, corners) in of.limbs_m.iter().enumerate() {
         let color = if limb % 2 == 0 { palette.red_limb } else { palette.blue_limb };
-        let color = look::flat(color);
+        let color = theme::flat(color);
         let points = corners.map(|at| view.at(at)).to_vec();
-        // A limb seen from its end is thin: its edge keeps it visible.
+        // The stroke keeps a limb visible that is seen edge-on.
         painter.add(Shape::convex_polygon(points, color, Stroke::new(0.5, color)));
     }
     let ground = [rect.left(), rect.right()].map(|x| egui::pos2(x, view.at([0.0, 0.0]).y));
     painter.line_segment(ground, Stroke::new(1.0, palette.text_weak));
 }
 
-/// Where the metres are.
-struct View {
+/// Mapping from metres to points.
+struct ThumbnailView {
     rect: Rect,
     least_y_m: f32,
     points_per_m: egui::Vec2,
 }
 
-impl View {
+impl ThumbnailView {
     fn new(rect: Rect, of: &Thumbnail) -> Self {
         let limbs = of.limbs_m.iter().flatten();
-        // The landing may be long and empty: where it begins is enough.
+        // Only the start of the landing is shown, because the landing may be long.
         let shown_stairs = of.stairs_m.len().saturating_sub(2);
         let stairs = of.stairs_m.iter().take(shown_stairs.max(1));
         let seen: Vec<&[f32; 2]> = stairs.chain(&of.way_m).chain(limbs).collect();
@@ -56,7 +57,7 @@ impl View {
         let most_y_m = of_axis(0, f32::max, f32::MIN).max(1.0) + MARGIN_M;
         let most_z_m = of_axis(1, f32::max, 1.0) + MARGIN_M;
         let along = rect.width() / (most_y_m - least_y_m);
-        let up = (rect.height() * 0.9 / most_z_m).min(along * MOST_STRETCH);
+        let up = (rect.height() * 0.9 / most_z_m).min(along * MAX_STRETCH);
         Self { rect, least_y_m, points_per_m: egui::vec2(along, up) }
     }
 
@@ -66,7 +67,7 @@ impl View {
     }
 }
 
-/// Draws the best of each generation of a run as a line.
+/// Draws the best fitness of each generation of a run as a line.
 pub fn sparkline(painter: &egui::Painter, rect: Rect, best: &[Option<f32>], palette: &Palette) {
     painter.rect_filled(rect, 4.0, palette.field);
     let known = || best.iter().flatten().copied();
@@ -74,9 +75,9 @@ pub fn sparkline(painter: &egui::Painter, rect: Rect, best: &[Option<f32>], pale
     if least > most {
         return;
     }
-    let area = rect.shrink(look::GAP / 2.0);
+    let area = rect.shrink(theme::GAP / 2.0);
     let last = best.len().saturating_sub(1).max(1) as f32;
-    // No more points than there are places for.
+    // Draws at most one point per pixel of the width.
     let every = best.len().div_ceil(area.width().max(1.0) as usize).max(1);
     let points = best.iter().enumerate().step_by(every).filter_map(|(index, of)| {
         let share = ((*of)? - least) / (most - least).max(f32::MIN_POSITIVE);
@@ -89,20 +90,20 @@ pub fn sparkline(painter: &egui::Painter, rect: Rect, best: &[Option<f32>], pale
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::library::{Details, Place, read_entry};
+    use crate::save::library::{EntryDetails, SavePlace, read_entry};
 
     #[test]
-    fn all_that_is_to_be_seen_is_within_the_picture() {
-        let Ok(Details::Champion(of)) = read_entry(&Place::Shipped("climber")) else {
+    fn the_whole_drawing_fits_into_the_thumbnail() {
+        let Ok(EntryDetails::Champion(of)) = read_entry(&SavePlace::Shipped("climber")) else {
             panic!("it comes with the program");
         };
-        let rect = Rect::from_min_size(egui::pos2(10.0, 20.0), look::THUMBNAIL_SIZE);
-        let view = View::new(rect, &of.thumbnail);
+        let rect = Rect::from_min_size(egui::pos2(10.0, 20.0), theme::THUMBNAIL_SIZE);
+        let view = ThumbnailView::new(rect, &of.thumbnail);
         for at in of.thumbnail.way_m.iter().chain(of.thumbnail.limbs_m.iter().flatten()) {
             assert!(rect.contains(view.at(*at)), "{at:?}");
         }
-        // Nothing to be seen is no reason to fail.
-        let empty = View::new(rect, &Thumbnail::default());
+        // An empty thumbnail is drawn without an error.
+        let empty = ThumbnailView::new(rect, &Thumbnail::default());
         assert!(empty.at([0.0, 0.0]).x.is_finite());
     }
 }

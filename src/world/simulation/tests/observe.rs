@@ -1,4 +1,4 @@
-//! What can be seen of a world against what must be there.
+//! Readings of a world compared with known forces and torques.
 
 use super::*;
 
@@ -24,7 +24,7 @@ fn a_snake_at_rest_is_carried_by_its_contacts() {
 }
 
 #[test]
-fn friction_pushes_against_the_motion_as_hard_as_the_law_says() {
+fn friction_opposes_the_motion_with_the_force_of_its_law() {
     let mut plan = plan(2);
     plan.surface.friction = 0.5;
     plan.ground.friction = 0.5;
@@ -42,11 +42,11 @@ fn friction_pushes_against_the_motion_as_hard_as_the_law_says() {
 }
 
 #[test]
-fn a_torque_is_seen_as_it_was_clamped() {
+fn applied_torques_are_the_clamped_torques() {
     let mut simulation = Simulation::new(&plan(3));
     let asked = JointTorque { bend_nm: 5000.0, twist_nm: -30.0 };
     simulation.step(&[asked, JointTorque::default()]).expect("healthy");
     let seen: Vec<JointTorque> = simulation.applied_torques().collect();
     assert_eq!(seen, [JointTorque { bend_nm: 1000.0, twist_nm: -30.0 }, JointTorque::default()]);
-    assert_eq!(simulation.torque_limits(0).map(|most| most.bend_nm), Some(1000.0));
+    assert_eq!(simulation.body().joints[0].max_bend_torque_nm, 1000.0);
 }

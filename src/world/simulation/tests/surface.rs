@@ -1,4 +1,4 @@
-//! The seven surface parameters against closed forms.
+//! The seven surface parameters compared with closed forms.
 
 use super::*;
 
@@ -16,8 +16,8 @@ fn run(simulation: &mut Simulation, seconds: f32) {
     (0..steps).for_each(|_| simulation.step(&[]).expect("healthy"));
 }
 
-/// A block that falls flat from `height_m`, and how high its underside comes after the first impact, in
-/// metres.
+/// Height that the underside of a block reaches after its first impact, in metres, when it falls flat from
+/// `height_m`.
 fn rebound_m(surface: Surface, height_m: f32) -> f32 {
     let mut plan = block(surface);
     plan.physics.steps_per_s = 240;
@@ -95,7 +95,7 @@ fn a_resting_block_sinks_by_its_weight_over_the_stiffness_of_its_contacts() {
 }
 
 #[test]
-fn ground_and_stairs_give_way_each_in_its_own_way() {
+fn ground_and_stairs_have_independent_softness() {
     let sunk_m = |on_stairs: bool, stairs_cfm, ground_cfm| {
         let soft = |soft_cfm_m_s_per_n| Surface { soft_cfm_m_s_per_n, ..Default::default() };
         let mut plan = block(soft(stairs_cfm));
@@ -232,8 +232,8 @@ fn contacts_pass_the_hooks_only_where_a_parameter_needs_them() {
     assert_eq!(hooked(slip), 11, "ten steps and the ground, and no limb");
 }
 
-/// The most that the mechanical energy of a thrown, limp snake ever is above an earlier value of its own,
-/// in J, and what it had at first.
+/// Largest rise of the mechanical energy of a thrown, limp snake above any earlier value, in J, and its initial
+/// energy, in J.
 fn energy_gained_j(surface: Surface) -> (f32, f32) {
     let mut plan = WorldPlan { ground: surface.clone(), surface, start_y_m: -20.0, ..plan(5) };
     plan.health.arena_back_m = 1000.0;
@@ -266,7 +266,7 @@ fn energy_gained_j(surface: Surface) -> (f32, f32) {
 }
 
 #[test]
-fn no_surface_feeds_energy_in() {
+fn no_surface_adds_energy() {
     let slippery = Surface { friction: 2.0, slip_m_s_per_n: 0.1, ..Default::default() };
     let soft = Surface { soft_cfm_m_s_per_n: 0.01, ..Default::default() };
     for surface in [

@@ -1,0 +1,155 @@
+//! The definitions of all flags and subcommands, whose comments are the program's help.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+
+use super::compare::CompareArgs;
+use super::render::RenderArgs;
+use super::robust::PerturbationArgs;
+use crate::score::Fitness;
+
+/// A five-block snake evolves until it climbs a staircase.
+///
+/// Without arguments a window opens: a champion climbs, and a new run evolves in the background.
+#[derive(Debug, Parser)]
+#[command(name = "snakes", version, subcommand_precedence_over_arg = true)]
+pub struct Args {
+    /// Work in the terminal: no window opens, and no display is needed
+    #[arg(long, global = true)]
+    pub no_render: bool,
+    /// Print JSON, one object per line
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Name of a preset (see `snakes presets`), or path of your own preset file
+    #[arg(long, global = true, value_name = "NAME", help_heading = RUN)]
+    pub(super) preset: Option<String>,
+    /// Seed of the run; the same seed gives the same bits [default: 1]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
+    pub(super) seed: Option<String>,
+    /// Individuals per generation
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
+    pub(super) population: Option<String>,
+    /// Number of generations
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
+    pub(super) generations: Option<String>,
+    /// Length of each trial, in simulated seconds
+    #[arg(long, global = true, value_name = "S", allow_negative_numbers = true, help_heading = RUN)]
+    pub(super) duration: Option<String>,
+    #[arg(long, global = true, value_name = "NAME", help_heading = RUN, help = fitness_help())]
+    pub(super) fitness: Option<String>,
+    /// Change a single setting, such as surface.friction=0.8 (see `snakes settings`); may be repeated
+    #[arg(long, global = true, value_name = "FIELD=VALUE", help_heading = RUN)]
+    pub(super) set: Vec<String>,
+    /// Continue the run in this folder after its last finished generation
+    #[arg(
+        long,
+        global = true,
+        value_name = "DIR",
+        help_heading = RUN,
+        conflicts_with_all = [
+            "preset", "seed", "population", "generations", "duration", "fitness", "set", "out", "restart", "from",
+        ]
+    )]
+    pub(super) resume: Option<PathBuf>,
+    /// Begin a run from a saved champion: the first generation descends from it, in its own world unless --preset
+    /// or --set say otherwise
+    #[arg(long, value_name = "FILE", conflicts_with = "resume", help_heading = RUN)]
+    pub(super) from: Option<PathBuf>,
+    /// Start over, even if this run has saved generations; without this, an unfinished run continues and a finished
+    /// one is shown
+    #[arg(long, global = true, help_heading = RUN)]
+    pub restart: bool,
+    /// Worker threads [default: all cores; with a window, all but one]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
+    pub(super) threads: Option<String>,
+    /// Folder for the files that this run writes: champions, tables, pictures
+    #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
+    pub(super) out: Option<PathBuf>,
+    /// Folder of saved champions [default: ./saves if it exists, else the platform's data folder]
+    #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
+    pub(super) saves: Option<PathBuf>,
+    /// Open the window with the result of `snakes compare`, a .ron file
+    #[arg(long, global = true, value_name = "FILE", help_heading = WINDOW)]
+    pub comparison: Option<PathBuf>,
+    /// Size of the window, in physical pixels
+    #[arg(long, global = true, value_name = "WIDTHxHEIGHT", help_heading = WINDOW)]
+    pub(super) window_size: Option<String>,
+    /// Colour theme: light or dark [default: the last one used; light at first]
+    #[arg(long, global = true, value_name = "NAME", help_heading = WINDOW)]
+    pub(super) theme: Option<String>,
+    /// File for window preferences, or "none" [default: a file in the platform's settings folder]
+    #[arg(long, global = true, value_name = "FILE", help_heading = WINDOW)]
+    pub(super) preferences: Option<PathBuf>,
+    /// Write the role, position and label of every widget to this file whenever they change, for automated tests
+    #[arg(long, global = true, value_name = "FILE", hide_short_help = true, help_heading = WINDOW)]
+    pub places: Option<PathBuf>,
+    /// Close the window after this number of frames, and print how long each took
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = WINDOW)]
+    pub(super) exit_after_frames: Option<String>,
+    /// The subcommand; without one, a run evolves.
+    #[command(subcommand)]
+    pub command: Option<Subcommand>,
+}
+
+const RUN: &str = "Run";
+const FILES: &str = "Files";
+const WINDOW: &str = "Window";
+
+/// The subcommands.
+#[derive(Debug, clap::Subcommand)]
+pub enum Subcommand {
+    /// Replay saved champions exactly, several side by side; with --no-render, check them against their records
+    Replay {
+        /// Saved champions
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// Measure the speed of the simulation on this machine
+    Bench,
+    /// Check that this machine computes the same bits as the reference machine
+    Verify,
+    /// Measure how often a champion reaches each step when friction, stairs, density and start vary at random
+    Robust {
+        /// Saved champion
+        file: PathBuf,
+        /// Number of trials
+        #[arg(long, value_name = "N", default_value_t = 100)]
+        trials: u32,
+        /// How much they vary.
+        #[command(flatten)]
+        range: PerturbationArgs,
+    },
+    /// Compare search strategies and controllers under equal budgets
+    Compare(CompareArgs),
+    /// Run the report's protocol with several seeds, and print its Table 1 beside the result
+    Table1 {
+        /// Number of seeds
+        #[arg(long, value_name = "N", default_value_t = 10)]
+        seeds: u64,
+        /// First seed
+        #[arg(long, value_name = "N", default_value_t = 1)]
+        first_seed: u64,
+    },
+    /// Draw the champion of each generation of a run, and its torque signal, as PNG files; opens no window
+    Figures {
+        /// Folder of the run, as `snakes --no-render` prints it
+        run: PathBuf,
+    },
+    /// Draw one moment of saved champions side by side as a PNG file; opens no window
+    Render(RenderArgs),
+    /// List the presets
+    Presets,
+    /// List every setting with its value, in the form that --set takes
+    Settings {
+        /// Describe them too: tables in Markdown, as in docs/settings.md
+        #[arg(long)]
+        markdown: bool,
+    },
+}
+
+/// Lists every fitness, so that the help follows the code.
+fn fitness_help() -> String {
+    let names: Vec<String> = Fitness::ALL.iter().map(ToString::to_string).collect();
+    format!("The fitness that is maximised: {}", names.join(", "))
+}

@@ -1,0 +1,93 @@
+//! From the command line's words to flags, or to a text that is printed.
+
+use std::ffi::OsString;
+
+use clap::Parser;
+use clap::error::{ContextKind, ErrorKind};
+
+use super::flags::Args;
+use crate::cli::error::CliError;
+use crate::evolve::{Settings, fields};
+
+/// The result of parsing.
+pub enum Parsed {
+    /// Flags and perhaps a subcommand.
+    Run(Box<Args>),
+    /// A text to print: help or version.
+    Print(String),
+}
+
+/// Parses the arguments, and shortens clap's errors to one line.
+pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, CliError> {
+    match Args::try_parse_from(arguments) {
+        Ok(args) => Ok(Parsed::Run(Box::new(args))),
+        Err(error) => match error.kind() {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                Ok(Parsed::Print(error.render().to_string()))
+            }
+            _ => Err(CliError::Usage(one_line(&error))),
+        },
+    }
+}
+
+/// The error itself and its tip, if there is one, on one line.
+fn one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let mut paragraphs = text.split("\n\n");
+    let problem = paragraphs.next().unwrap_or_default();
+    let tip = setting_tip(error)
+        .or_else(|| paragraphs.find(|text| text.trim().starts_with("tip:")).map(str::to_owned));
+    let words: Vec<&str> = problem.split_whitespace().collect();
+    let tip = tip.as_deref().unwrap_or_default().split_whitespace();
+    let line = words.into_iter().chain(tip).collect::<Vec<&str>>().join(" ");
+    format!("{} (see snakes --help)", line.trim_start_matches("error: "))
+}
+
+/// The tip to use --set, if an unknown flag has the name of exactly one setting, with or without its unit.
+fn setting_tip(error: &clap::Error) -> Option<String> {
+    let flag = error.get(ContextKind::InvalidArg)?.to_string();
+    if error.kind() != ErrorKind::UnknownArgument {
+        return None;
+    }
+    let name = flag.trim_start_matches('-').replace('-', "_");
+    let settings = fields(&Settings::default());
+    let mut named = settings.iter().map(|(path, _)| path).filter(|path| {
+        let last = path.rsplit('.').next().unwrap_or_default();
+        last.strip_prefix(&name).is_some_and(|unit| unit.is_empty() || unit.starts_with('_'))
+    });
+    let path = named.next()?;
+    named.next().is_none().then(|| format!("tip: use --set {path}=VALUE"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(words: &str) -> String {
+        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
+        match parse(arguments.map(OsString::from)) {
+            Err(error) => error.to_string(),
+            Ok(_) => unreachable!("{words} is refused"),
+        }
+    }
+
+    #[test]
+    fn an_unknown_flag_gives_one_line_with_the_most_similar_flag() {
+        let message = refusal("--polulation 3");
+        assert!(message.contains("--polulation") && !message.contains('\n'), "{message}");
+        assert!(message.contains("tip: a similar argument exists: '--population'"), "{message}");
+    }
+
+    #[test]
+    fn an_unknown_flag_with_the_name_of_a_setting_gives_the_tip_to_use_set() {
+        for (flag, field) in [
+            ("--parents", "evolution.halving.parents"),
+            ("--points-per-s", "genome.points_per_s"),
+            ("--gravity", "trial.physics.gravity_m_s2"),
+        ] {
+            let message = refusal(&format!("{flag} 3"));
+            assert!(message.contains(&format!("'{flag}'")), "{message}");
+            assert!(message.contains(&format!("tip: use --set {field}=VALUE")), "{message}");
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! From flags to a run: a preset, with the flags' values put in, and the folders.
+
+use std::path::Path;
+
+use super::flags::{Args, Subcommand};
+use super::values::number;
+use crate::check::Invalid;
+use crate::cli::error::CliError;
+use crate::evolve::{Champion, Founder, RunPlan, Settings, with_fields};
+use crate::run::RunSource;
+use crate::save::{
+    DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, shipped_presets,
+};
+
+const WHOLE: &str = "a whole number from 0 up";
+
+impl Args {
+    /// The preset that is named, or the subcommand's default, as it stands in its file.
+    pub fn preset(&self) -> Result<Preset, CliError> {
+        let default = match self.command {
+            // These are about the report's run.
+            Some(Subcommand::Table1 { .. } | Subcommand::Bench) => "report",
+            _ => DEFAULT_PRESET,
+        };
+        Ok(load_preset(self.preset.as_deref().unwrap_or(default))?)
+    }
+
+    /// The folder for this run's champions.
+    pub fn saves_folder(&self) -> SavesFolder {
+        SavesFolder::find(self.out.as_deref().or(self.saves.as_deref()))
+    }
+
+    /// The folder that is named for results.
+    #[cfg(feature = "studio")]
+    pub fn out_folder(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
+
+    /// The folder for tables: the working directory, unless another is named.
+    pub fn results_folder(&self) -> SavesFolder {
+        SavesFolder::find(Some(self.out.as_deref().unwrap_or(Path::new("."))))
+    }
+
+    /// The run in the folder to resume, or the run that the flags describe.
+    pub fn run_source(&self) -> Result<RunSource, CliError> {
+        if let Some(folder) = &self.resume {
+            return Ok(RunSource::in_folder(folder)?);
+        }
+        let plan = match &self.from {
+            Some(file) => self.plan_from(file)?,
+            None => {
+                let (preset, settings) = self.settings()?;
+                RunPlan::new(&preset, self.seed()?, settings)
+            }
+        };
+        let earlier = if self.restart { ExistingRun::Discard } else { ExistingRun::Keep };
+        Ok(RunSource::in_saves(&self.saves_folder(), plan, earlier))
+    }
+
+    /// The run that begins from a saved champion. Its search is that of the named preset, else of the preset that the
+    /// champion comes from; its world is that of the named preset, else the champion's own. The genome's ranges are
+    /// widened to include the champion. The flags' values are put in last.
+    fn plan_from(&self, file: &Path) -> Result<RunPlan, CliError> {
+        let Champion { genome, trial, origin, .. } = load_champion(file)?.champion;
+        let mut preset = match &self.preset {
+            Some(named) => load_preset(named)?,
+            None => {
+                let shipped = shipped_presets()?;
+                let its_own = shipped.into_iter().find(|preset| preset.name == origin.preset);
+                its_own.map_or_else(|| self.preset(), Ok)?
+            }
+        };
+        if self.preset.is_none() {
+            preset.settings.trial = trial;
+        }
+        preset.settings.genome = preset.settings.genome.widened_for(&genome);
+        let (preset, settings) = self.flags_over(preset)?;
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        let founder = Founder::new(&name, genome);
+        Ok(RunPlan::new(&preset, self.seed()?, settings).starting_from(founder)?)
+    }
+
+    /// The preset's name and its settings, with the flags' values put in and everything checked.
+    pub fn settings(&self) -> Result<(String, Settings), CliError> {
+        self.flags_over(self.preset()?)
+    }
+
+    fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
+        let mut settings = preset.settings;
+        if let Some(text) = &self.population {
+            settings.evolution.population = number("population", text, WHOLE)?;
+        }
+        if let Some(text) = &self.generations {
+            settings.evolution.generations = number("generations", text, WHOLE)?;
+        }
+        if let Some(text) = &self.duration {
+            settings.trial.duration_s = number("duration", text, "a number")?;
+        }
+        if let Some(text) = &self.fitness {
+            settings.trial.fitness = text.parse()?;
+        }
+        let mut changes = Vec::new();
+        for text in &self.set {
+            let (path, value) = text.split_once('=').ok_or_else(|| {
+                let allowed = "FIELD=VALUE, such as surface.friction=0.8";
+                Invalid::new("set", format!("{text:?}"), allowed)
+            })?;
+            changes.push((path.trim(), value.trim()));
+        }
+        Ok((preset.name, with_fields(&settings, changes)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::args::{Parsed, parse};
+    use clap::CommandFactory;
+    use std::ffi::OsString;
+
+    fn args(words: &str) -> Result<Args, CliError> {
+        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
+        match parse(arguments.map(OsString::from))? {
+            Parsed::Run(args) => Ok(*args),
+            Parsed::Print(_) => unreachable!("no help was asked for"),
+        }
+    }
+
+    fn args_of(words: &str) -> Args {
+        args(words).expect("allowed")
+    }
+
+    fn refusal(words: &str) -> String {
+        let complaint = args(words).and_then(|args| {
+            args.seed()?;
+            args.threads()?;
+            args.settings().map(drop)
+        });
+        complaint.expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn the_flags_are_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn flags_override_the_preset() {
+        let args = args("--no-render --seed 7 --population 20 --duration 2.5").expect("allowed");
+        let (preset, settings) = args.settings().expect("allowed");
+        assert_eq!(preset, "climb");
+        assert_eq!(settings.evolution.population, 20);
+        assert_eq!(settings.trial.duration_s, 2.5);
+        assert_eq!(args.seed().expect("allowed"), 7);
+        let args =
+            args_of("--no-render --set surface.friction=0.8 --set ground.slip_m_s_per_n=0.1");
+        let (_, settings) = args.settings().expect("allowed");
+        assert_eq!(settings.trial.surface.friction, 0.8);
+        assert_eq!(settings.trial.ground.map(|ground| ground.slip_m_s_per_n), Some(0.1));
+    }
+
+    #[test]
+    fn wrong_values_are_refused_with_field_value_and_range() {
+        for (words, message) in [
+            ("--population 0", "evolution.population is 0; allowed: 1 to 100000"),
+            ("--population -3", "population is \"-3\"; allowed: a whole number from 0 up"),
+            ("--duration -1", "trial.duration_s is -1; allowed: 0.1 to 600"),
+            ("--duration NaN", "trial.duration_s is NaN; allowed: 0.1 to 600"),
+            (
+                "--seed twelve",
+                "seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615",
+            ),
+            (
+                "--preset nosuch",
+                "preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file",
+            ),
+            ("--threads 0", "threads is 0; allowed: 1 to 1024"),
+            ("--set surface.bounce=2", "trial.surface.bounce is 2; allowed: 0 to 1"),
+            (
+                "--set surface.bounce",
+                "set is \"surface.bounce\"; allowed: FIELD=VALUE, such as surface.friction=0.8",
+            ),
+        ] {
+            assert_eq!(refusal(words), message, "{words}");
+        }
+    }
+
+    #[cfg(feature = "studio")]
+    #[test]
+    fn a_theme_is_light_or_dark_if_it_is_given() {
+        use crate::studio::Theme;
+        assert_eq!(args_of("").theme().expect("allowed"), None);
+        assert_eq!(args_of("--theme dark").theme().expect("allowed"), Some(Theme::Dark));
+        let refusal = args_of("--theme dim").theme().expect_err("refused").to_string();
+        assert_eq!(refusal, "theme is \"dim\"; allowed: light or dark");
+    }
+}

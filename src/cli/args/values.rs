@@ -1,0 +1,100 @@
+//! Values of single flags, checked.
+
+use std::str::FromStr;
+use std::sync::Arc;
+
+use super::flags::Args;
+use crate::check::{Invalid, within};
+use crate::cli::error::CliError;
+use crate::run::headless::HeadlessError;
+use crate::run::{Evaluator, LocalPool, THREADS_RANGE, available_cores};
+#[cfg(feature = "studio")]
+use crate::save::PreferencesFile;
+#[cfg(feature = "studio")]
+use crate::studio::Theme;
+
+/// Reads a number; `allowed` is what the error calls one.
+pub(super) fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
+    text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), allowed))
+}
+
+/// Reads a size in pixels, such as 1280x720.
+#[cfg(feature = "studio")]
+pub fn size(flag: &str, text: &str, least: (u32, u32), most: u32) -> Result<(u32, u32), Invalid> {
+    let allowed = "WIDTHxHEIGHT, such as 1280x720";
+    let wrong = || Invalid::new(flag, format!("{text:?}"), allowed);
+    let (width, height) = text.split_once('x').ok_or_else(wrong)?;
+    let (width, height) = (number(flag, width, allowed)?, number(flag, height, allowed)?);
+    within(&format!("{flag}.width"), width, least.0..=most)?;
+    within(&format!("{flag}.height"), height, least.1..=most)?;
+    Ok((width, height))
+}
+
+/// The evaluator of all modes of the program.
+fn evaluator_of(workers: usize) -> Result<Arc<dyn Evaluator>, CliError> {
+    Ok(Arc::new(LocalPool::new(workers).map_err(HeadlessError::from)?))
+}
+
+impl Args {
+    /// The seed of the run.
+    pub fn seed(&self) -> Result<u64, CliError> {
+        let allowed = "a whole number from 0 to 18446744073709551615";
+        let given = self.seed.as_deref();
+        Ok(given.map_or(Ok(1), |text| number("seed", text, allowed))?)
+    }
+
+    /// Number of worker threads without a window.
+    pub fn threads(&self) -> Result<usize, CliError> {
+        self.threads_or(available_cores())
+    }
+
+    /// The evaluator without a window.
+    pub fn evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
+        evaluator_of(self.threads()?)
+    }
+
+    /// The evaluator beside a window, which leaves one core free for it.
+    #[cfg(feature = "studio")]
+    pub fn studio_evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
+        evaluator_of(self.threads_or(available_cores().saturating_sub(1).max(1))?)
+    }
+
+    fn threads_or(&self, default: usize) -> Result<usize, CliError> {
+        let Some(text) = &self.threads else { return Ok(default) };
+        let threads = number("threads", text, "a whole number from 1 to 1024")?;
+        within("threads", threads, THREADS_RANGE)?;
+        Ok(threads)
+    }
+
+    /// The window's size in physical pixels, if it is given.
+    #[cfg(feature = "studio")]
+    pub fn window_size(&self) -> Result<Option<(u32, u32)>, CliError> {
+        let given = self.window_size.as_deref();
+        Ok(given.map(|text| size("window-size", text, (320, 240), 16_384)).transpose()?)
+    }
+
+    /// The colour theme of the window and of pictures, if it is given.
+    #[cfg(feature = "studio")]
+    pub fn theme(&self) -> Result<Option<Theme>, CliError> {
+        Ok(self.theme.as_deref().map(str::parse).transpose()?)
+    }
+
+    /// The file for window preferences.
+    #[cfg(feature = "studio")]
+    pub fn preferences(&self) -> PreferencesFile {
+        match self.preferences.as_deref() {
+            None => PreferencesFile::find(),
+            Some(path) if path.as_os_str() == "none" => PreferencesFile::nowhere(),
+            Some(path) => PreferencesFile::at(path),
+        }
+    }
+
+    /// The number of frames after which the window closes by itself.
+    #[cfg(feature = "studio")]
+    pub fn exit_after_frames(&self) -> Result<Option<u32>, CliError> {
+        let Some(text) = &self.exit_after_frames else { return Ok(None) };
+        let frames = number("exit-after-frames", text, "a whole number from 1 up")?;
+        within("exit-after-frames", frames, 1..=u32::MAX)?;
+        Ok(Some(frames))
+    }
+}

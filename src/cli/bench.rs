@@ -1,0 +1,51 @@
+//! `snakes bench`: the speed of the simulation, as a table or JSON.
+
+use std::io;
+use std::time::Duration;
+
+use indicatif::ProgressBar;
+
+use super::args::Args;
+use super::error::CliError;
+use super::output::print;
+use crate::run::bench::{BenchReport, bench};
+use crate::run::headless::HeadlessError;
+
+/// Enough for some twenty rounds of every variant.
+const BENCH_DURATION: Duration = Duration::from_secs(6);
+
+/// Measures, and prints the figures.
+pub fn print_bench(args: &Args) -> Result<(), CliError> {
+    let settings = args.preset()?.settings;
+    let bar = ProgressBar::new(100);
+    let report = bench(&settings, args.threads()?, BENCH_DURATION, |share| {
+        bar.set_position((share * 100.0) as u64);
+    });
+    bar.finish_and_clear();
+    let report = report.map_err(HeadlessError::from)?;
+    if args.json {
+        let line = serde_json::to_string(&report).map_err(io::Error::other);
+        return print(&format!("{}\n", line.map_err(HeadlessError::from)?));
+    }
+    print(&table(&report))
+}
+
+fn table(report: &BenchReport) -> String {
+    format!(
+        "threads                  {}\n\
+         steps_per_s              {:.0}\n\
+         sim_s_per_s              {:.1}  ({:.1} per thread)\n\
+         one thread               {:.1} sim_s_per_s\n\
+         bare rapier, one thread  {:.1} sim_s_per_s\n\
+         ratio to bare rapier     {:.3}\n\
+         scaling over one thread  {:.3}\n",
+        report.threads,
+        report.steps_per_s,
+        report.sim_s_per_s,
+        report.sim_s_per_s_per_thread,
+        report.one_thread_sim_s_per_s,
+        report.bare_rapier_sim_s_per_s,
+        report.ratio_to_bare_rapier,
+        report.scaling,
+    )
+}

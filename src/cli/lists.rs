@@ -1,0 +1,48 @@
+//! `snakes presets` and `snakes settings`.
+
+use super::args::Args;
+use super::error::CliError;
+use super::output::print;
+use crate::evolve::fields;
+use crate::save::shipped_presets;
+use crate::schema::markdown;
+
+/// Prints the presets that come with the program.
+pub fn print_presets(json: bool) -> Result<(), CliError> {
+    let mut text = String::new();
+    for preset in shipped_presets()? {
+        if json {
+            let line = serde_json::json!({"name": preset.name, "about": preset.about});
+            text += &format!("{line}\n");
+        } else {
+            text += &format!("{:<14}{}\n", preset.name, preset.about);
+        }
+    }
+    print(&text)
+}
+
+/// Prints every setting with its value; or as tables that describe them, which are `docs/settings.md`.
+pub fn print_settings(args: &Args, as_markdown: bool) -> Result<(), CliError> {
+    let (preset, settings) = args.settings()?;
+    if as_markdown {
+        return print(&format!(
+            "# Settings\n\n\
+             `snakes --set NAME=VALUE` changes a setting, in the window and without it. The beginning of a name may \
+             be left out if no other setting ends like the rest: `--set rise_m=0.4`. The panels of the window set \
+             the same settings.\n\n\
+             The values below, and what is fixed, are those of the preset `{preset}`. A setting that may change takes \
+             another value while a run goes on, from its next generation, if the strategy of the run uses it; a fixed \
+             one waits for the next run.\n\n\
+             The program writes this page: `snakes settings --markdown > docs/settings.md`.\n{}",
+            markdown(&settings)
+        ));
+    }
+    if args.json {
+        let line = serde_json::json!({"preset": preset, "settings": settings});
+        return print(&format!("{line}\n"));
+    }
+    let fields = fields(&settings);
+    let width = fields.iter().map(|(path, _)| path.len()).max().unwrap_or(0);
+    let lines = fields.iter().map(|(path, value)| format!("{path:<width$} = {value}\n"));
+    print(&lines.collect::<String>())
+}

@@ -1,0 +1,26 @@
+//! The interface of a controller.
+
+use super::{Observation, Senses};
+use crate::world::JointTorque;
+
+/// Turns observations into torques, step after step.
+///
+/// It may keep state between steps. The state is part of a clone: keyframes and replays go on with the bits of
+/// the original.
+pub trait Controller: Send + Sync {
+    /// The senses it needs, the same in every step.
+    fn needs(&self) -> Senses;
+
+    /// Writes the torques of the step that begins, one per joint from the head. They are clamped to the joints'
+    /// limits later.
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]);
+
+    /// A copy with the same state.
+    fn boxed_clone(&self) -> Box<dyn Controller>;
+}
+
+impl Clone for Box<dyn Controller> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed_clone()
+    }
+}

@@ -1,0 +1,27 @@
+//! Periodic torques.
+
+use super::{Controller, Observation, Senses};
+use crate::genome::Waves;
+use crate::world::JointTorque;
+
+/// Follows waves of torque.
+#[derive(Debug, Clone)]
+pub struct WavePlayer(pub Waves);
+
+impl Controller for WavePlayer {
+    fn needs(&self) -> Senses {
+        Senses::default()
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let periods = observation.periods(self.0.frequency_hz);
+        for (torque, joint) in torques.iter_mut().zip(&self.0.joints) {
+            torque.bend_nm = joint.bend.at(periods);
+            torque.twist_nm = joint.twist.at(periods);
+        }
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,125 @@
+//! Descriptors: numbers that distinguish kinds of behaviour.
+
+use serde::{Deserialize, Serialize};
+
+use crate::schema::{Choice, Choices};
+use crate::score::Evaluation;
+
+/// A number that describes how an agent moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Descriptor {
+    /// Mean height of the limbs above the surface below the middle one.
+    BodyHeight,
+    /// Mean distance from the middle of the stairs.
+    Sideways,
+    /// Energy per metre of progress.
+    EnergyPerMetre,
+    /// Share of limbs that touch something.
+    ContactDuty,
+    /// Frequency of the motion.
+    Frequency,
+}
+
+impl Choices for Descriptor {
+    const OPTIONS: &'static [Self] = &Self::ALL;
+
+    fn choice(self) -> Choice {
+        let about = match self {
+            Self::BodyHeight => "How high the snake carries itself, on average.",
+            Self::Sideways => "How far from the middle of the stairs it goes, on average.",
+            Self::EnergyPerMetre => "How much energy it spends for a metre forward.",
+            Self::ContactDuty => "How many of its limbs touch something, on average.",
+            Self::Frequency => "How often its motion repeats in a second.",
+        };
+        Choice::new(self.name(), self.label(), about)
+    }
+}
+
+impl Descriptor {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::BodyHeight,
+        Self::Sideways,
+        Self::EnergyPerMetre,
+        Self::ContactDuty,
+        Self::Frequency,
+    ];
+
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BodyHeight => "body_height",
+            Self::Sideways => "sideways",
+            Self::EnergyPerMetre => "energy_per_metre",
+            Self::ContactDuty => "contact_duty",
+            Self::Frequency => "frequency",
+        }
+    }
+
+    /// The label of its axis, with the unit.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::BodyHeight => "Height over the treads (m)",
+            Self::Sideways => "Off the middle (m)",
+            Self::EnergyPerMetre => "Energy per metre (J/m)",
+            Self::ContactDuty => "Share of limbs in contact",
+            Self::Frequency => "Gait frequency (Hz)",
+        }
+    }
+
+    /// The values at both ends of its axis. Values beyond belong to the outermost cells.
+    pub fn range(self) -> (f64, f64) {
+        match self {
+            Self::BodyHeight => (0.3, 2.3),
+            Self::Sideways => (0.0, 2.5),
+            Self::EnergyPerMetre => (10.0, 10_000.0),
+            Self::ContactDuty => (0.0, 1.0),
+            Self::Frequency => (0.0, 4.0),
+        }
+    }
+
+    /// Whether its axis is logarithmic.
+    pub fn is_logarithmic(self) -> bool {
+        self == Self::EnergyPerMetre
+    }
+
+    /// Its value for an agent that started at `start_y_m`, in the unit of [`Self::label`]. None if it was not
+    /// observed. Without progress the energy per metre is infinite.
+    pub fn value(self, evaluation: &Evaluation, start_y_m: f32) -> Option<f64> {
+        let behaviour = evaluation.behaviour?;
+        Some(match self {
+            Self::BodyHeight => f64::from(behaviour.mean_height_m),
+            Self::Sideways => f64::from(behaviour.mean_sideways_m),
+            Self::EnergyPerMetre => {
+                let progress_m = f64::from(evaluation.centre_y_m) - f64::from(start_y_m);
+                let energy_j = f64::from(evaluation.effort?.energy_j);
+                if progress_m > 0.0 { energy_j / progress_m } else { f64::INFINITY }
+            }
+            Self::ContactDuty => f64::from(behaviour.contact_duty),
+            Self::Frequency => f64::from(behaviour.frequency_hz),
+        })
+    }
+
+    /// The position of a value on the axis: 0 at its beginning, 1 at its end.
+    pub fn share(self, value: f64) -> f64 {
+        let (least, most) = self.range();
+        let share = if self.is_logarithmic() {
+            let log = |x: f64| libm::log(x.clamp(least, most));
+            (log(value) - log(least)) / (log(most) - log(least))
+        } else {
+            (value - least) / (most - least)
+        };
+        share.clamp(0.0, 1.0)
+    }
+
+    /// The value at a position on the axis.
+    pub fn at_share(self, share: f64) -> f64 {
+        let (least, most) = self.range();
+        if self.is_logarithmic() {
+            least * libm::pow(most / least, share)
+        } else {
+            least + (most - least) * share
+        }
+    }
+}

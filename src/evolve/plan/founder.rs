@@ -1,0 +1,161 @@
+//! The founder of a run: an individual from which the first generation descends.
+
+use std::sync::Arc;
+
+use super::RunPlan;
+use crate::check::Invalid;
+use crate::genome::Genome;
+
+/// Maximum length of a founder's name, in characters.
+const LONGEST_NAME: usize = 40;
+
+/// An individual that a run starts from.
+#[derive(Debug, Clone)]
+pub struct Founder {
+    /// A few plain characters for people. They decide nothing.
+    name: String,
+    /// Its genes.
+    genome: Genome,
+}
+
+impl PartialEq for Founder {
+    /// Whether both start the same runs: the name decides nothing.
+    fn eq(&self, other: &Self) -> bool {
+        self.genome == other.genome
+    }
+}
+
+impl Founder {
+    /// A founder. Its name is reduced to characters that are safe in titles and files.
+    pub fn new(name: &str, genome: Genome) -> Self {
+        let plain = |c: &char| c.is_alphanumeric() || " -_.,".contains(*c);
+        let name: String = name.chars().filter(plain).take(LONGEST_NAME).collect();
+        let name = name.trim().to_owned();
+        Self { name: if name.is_empty() { "a champion".to_owned() } else { name }, genome }
+    }
+
+    /// The name for people.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its genes.
+    pub fn genome(&self) -> &Genome {
+        &self.genome
+    }
+}
+
+impl RunPlan {
+    /// The same run, starting from a founder.
+    ///
+    /// # Errors
+    /// It does not fit the trial or the space of genomes; the message names the gene or setting.
+    pub fn starting_from(self, founder: Founder) -> Result<Self, Invalid> {
+        let plan = Self { founder: Some(Arc::new(founder)), ..self };
+        plan.check_founder()?;
+        Ok(plan)
+    }
+
+    /// Checks that the founder, if there is one, fits the settings.
+    ///
+    /// # Errors
+    /// The first gene or setting that does not fit, inside `founder`.
+    pub fn check_founder(&self) -> Result<(), Invalid> {
+        let Some(founder) = &self.founder else { return Ok(()) };
+        let (trial, space) = (&self.settings.trial, &self.settings.genome);
+        let fits = space
+            .check_genome(&founder.genome, trial.genome_shape())
+            .and_then(|()| trial.check_genome(&founder.genome));
+        fits.map_err(|error| error.inside("founder"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{EvolutionSettings, Settings, StrategyKind, begin};
+    use crate::genome::ControllerKind;
+    use crate::rng::{Purpose, stream};
+
+    fn settings(strategy: StrategyKind, controller: ControllerKind) -> Settings {
+        let evolution = EvolutionSettings { strategy, population: 20, ..Default::default() };
+        let mut settings = Settings { evolution, ..Default::default() };
+        settings.genome.controller = controller;
+        settings.trial.duration_s = 1.0;
+        settings
+    }
+
+    fn founder_in(settings: &Settings) -> Genome {
+        let mut rng = stream(77, 1, 0, Purpose::Birth);
+        settings.genome.random_genome(settings.trial.genome_shape(), &mut rng)
+    }
+
+    /// The largest difference between the coordinates of two genomes.
+    fn distance(settings: &Settings, a: &Genome, b: &Genome) -> f64 {
+        let (a, b) = (settings.genome.point_of(a), settings.genome.point_of(b));
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        off.map(|off| off.min(1.0 - off)).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_first_individual_is_the_founder_and_others_descend_from_it() {
+        for strategy in StrategyKind::ALL {
+            for controller in ControllerKind::ALL {
+                let settings = settings(strategy, controller);
+                let genome = founder_in(&settings);
+                let plan = RunPlan::new("test", 1, settings.clone());
+                let random = begin(&plan).ask();
+                let founded = plan.starting_from(Founder::new("x", genome.clone())).expect("fits");
+                let asked = begin(&founded).ask();
+                assert_eq!(asked.len(), random.len());
+                let what = format!("{strategy}, {controller}");
+                if strategy == StrategyKind::CmaEs {
+                    assert_ne!(asked, random, "{what}");
+                    continue;
+                }
+                assert_eq!(asked[0], genome, "{what}");
+                let near = |other: &&Genome| distance(&settings, other, &genome) < 0.45;
+                let descended = asked[1..].iter().filter(near).count();
+                assert!(descended >= 9, "{what}: {descended}");
+                let fresh = asked[1..].iter().filter(|other| random.contains(other)).count();
+                let all_descend = strategy == StrategyKind::Halving;
+                assert_eq!(fresh > 0, !all_descend, "{what}: {fresh} random");
+            }
+        }
+    }
+
+    #[test]
+    fn cma_es_begins_at_the_founder() {
+        let mut settings = settings(StrategyKind::CmaEs, ControllerKind::Gait);
+        settings.evolution.cma_es.step = 1.0e-6;
+        settings.evolution.cma_es.newborns = 7;
+        let genome = founder_in(&settings);
+        let plan = RunPlan::new("test", 1, settings.clone());
+        let plan = plan.starting_from(Founder::new("x", genome.clone())).expect("fits");
+        let asked = begin(&plan).ask();
+        assert_eq!(asked.len(), 20, "no random genomes");
+        assert!(asked.iter().all(|other| distance(&settings, other, &genome) < 1.0e-4));
+    }
+
+    #[test]
+    fn a_founder_that_does_not_fit_is_refused_with_the_reason() {
+        let gait = founder_in(&settings(StrategyKind::Ga, ControllerKind::Gait));
+        let signals = settings(StrategyKind::Ga, ControllerKind::Signal);
+        let plan = RunPlan::new("test", 1, signals);
+        let error = plan.starting_from(Founder::new("x", gait)).expect_err("refused").to_string();
+        assert_eq!(error, "founder.controller is gait; allowed: signal");
+    }
+
+    #[test]
+    fn a_name_keeps_only_characters_that_are_safe_in_titles() {
+        let genome = founder_in(&settings(StrategyKind::Ga, ControllerKind::Gait));
+        for (name, kept) in [
+            ("climber", "climber"),
+            ("\u{1b}[2Jüber\n\"x\"", "2Jüberx"),
+            ("\u{202e}", "a champion"),
+            (&"x".repeat(99), &"x".repeat(40)),
+        ] {
+            assert_eq!(Founder::new(name, genome.clone()).name(), kept);
+        }
+    }
+}

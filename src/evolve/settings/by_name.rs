@@ -1,0 +1,176 @@
+//! Any single setting by its dotted name, for flags, panels and logs: `surface.friction`.
+
+use super::Settings;
+use crate::check::Invalid;
+use crate::schema::{find, list, set_text};
+
+/// All settings with their values as text, in the order of their names: `trial.surface.friction`, `1`.
+pub fn fields(settings: &Settings) -> Vec<(String, String)> {
+    let listed = list(settings).into_iter();
+    let mut fields: Vec<_> = listed.map(|listed| (listed.path, listed.value.to_string())).collect();
+    fields.sort();
+    fields
+}
+
+/// The settings with one field changed, checked as a whole: see [`with_fields`].
+///
+/// # Errors
+/// There is no such field (the nearest names are listed), or its value is not allowed.
+pub fn with_field(settings: &Settings, path: &str, text: &str) -> Result<Settings, Invalid> {
+    with_fields(settings, [(path, text)])
+}
+
+/// The settings with some fields changed, checked as a whole after the last.
+///
+/// A path may leave out its beginning: `surface.friction` for `trial.surface.friction`, if no other field ends like
+/// that. A field of the ground that has no surface of its own gives it one: a copy of the stairs'.
+///
+/// # Errors
+/// There is no such field (the nearest names are listed), or a value is not allowed.
+pub fn with_fields<'a>(
+    settings: &Settings,
+    changes: impl IntoIterator<Item = (&'a str, &'a str)>,
+) -> Result<Settings, Invalid> {
+    let mut settings = settings.clone();
+    for (path, text) in changes {
+        let ground = &mut settings.trial.ground;
+        if ["ground", "trial.ground"].contains(&path) && text == "none" {
+            *ground = None;
+            continue;
+        }
+        if path.trim_start_matches("trial.").starts_with("ground.") {
+            ground.get_or_insert_with(|| settings.trial.surface.clone());
+        }
+        let path = find(&settings, path)?;
+        set_text(&mut settings, &path, text)?;
+    }
+    settings.check()?;
+    Ok(settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::score::{Fitness, PerPart};
+    use crate::world::Surface;
+
+    fn refusal(path: &str, text: &str) -> String {
+        with_field(&Settings::default(), path, text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_field_is_found_by_the_end_of_its_path() {
+        let settings = Settings::default();
+        for path in ["surface.friction", "trial.surface.friction"] {
+            let changed = with_field(&settings, path, "0.8").expect("allowed");
+            assert_eq!(changed.trial.surface.friction, 0.8);
+        }
+        let changed = with_field(&settings, "fitness", "head").expect("allowed");
+        assert_eq!(changed.trial.fitness, Fitness::Head);
+        let changed = with_field(&settings, "stairs.steps", "4").expect("allowed");
+        assert_eq!(changed.trial.stairs.steps, 4);
+    }
+
+    #[test]
+    fn a_list_sets_one_value_for_each_part_and_none_gives_it_back_to_the_genome() {
+        let settings = Settings::default();
+        let path = "joint_damping_nms_per_rad";
+        let changed = with_field(&settings, path, "[10, 20, 30, 40]").expect("allowed");
+        let list = PerPart::Each(vec![10.0, 20.0, 30.0, 40.0]);
+        assert_eq!(changed.trial.agent.joint_damping_nms_per_rad, list);
+        let fixed = with_field(&settings, "agent.bend_limit_rad", "0.5").expect("allowed");
+        assert_eq!(fixed.trial.agent.bend_limit_rad, Some(PerPart::All(0.5)));
+        let free = with_field(&fixed, "agent.bend_limit_rad", "none").expect("allowed");
+        assert_eq!(free, settings);
+    }
+
+    #[test]
+    fn setting_one_field_of_the_ground_gives_it_a_surface_of_its_own() {
+        let mut settings = Settings::default();
+        settings.trial.surface.bounce = 0.5;
+        let changed = with_field(&settings, "ground.friction", "0.1").expect("allowed");
+        let ground = changed.trial.ground.expect("its own");
+        assert_eq!((ground.friction, ground.bounce), (0.1, 0.5));
+        assert_eq!(changed.trial.surface, settings.trial.surface);
+        let changed = with_field(&settings, "ground.friction", "0.1").expect("allowed");
+        for path in ["ground", "trial.ground"] {
+            assert_eq!(with_field(&changed, path, "none").expect("allowed"), settings);
+        }
+    }
+
+    #[test]
+    fn fields_that_depend_on_each_other_are_checked_together() {
+        let density = [("density_min_kg_m3", "0.6"), ("density_max_kg_m3", "0.8")];
+        for changes in [density, [density[1], density[0]]] {
+            let changed = with_fields(&Settings::default(), changes).expect("allowed");
+            assert_eq!(changed.genome.density_max_kg_m3, 0.8);
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        for (path, text, message) in [
+            ("surface.friction", "-1", "trial.surface.friction is -1; allowed: 0 to 1000"),
+            ("surface.friction", "NaN", "trial.surface.friction is \"NaN\"; allowed: 0 to 1000"),
+            ("limbs", "2.5", "trial.agent.limbs is \"2.5\"; allowed: 2 to 12, whole numbers"),
+            (
+                "limb_width_m",
+                "[1, 2]",
+                "trial.agent.limb_width_m is a list of 2; allowed: one value, or a list of 5",
+            ),
+        ] {
+            assert_eq!(refusal(path, text), message);
+        }
+        assert!(refusal("fitness", "speed").contains("allowed: centre, head, centre_of_mass"));
+    }
+
+    #[test]
+    fn an_unknown_path_lists_the_nearest_names_and_an_unclear_one_all() {
+        let message = refusal("surface.fricton", "1");
+        assert!(
+            message.starts_with("set is \"surface.fricton\", an unknown setting; "),
+            "{message}"
+        );
+        assert!(message.contains("(nearest) trial.surface.friction"), "{message}");
+        assert!(refusal("surface.soft_cfm", "1").contains("trial.surface.soft_cfm_m_s_per_n"));
+        let message = refusal("friction", "1");
+        assert!(
+            ["surface", "agent.skin", "repeats.off"]
+                .iter()
+                .all(|place| message.contains(&format!("trial.{place}.friction"))),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn every_field_can_be_set_to_what_it_is() {
+        let mut settings = Settings::default();
+        settings.trial.ground = Some(settings.trial.surface.clone());
+        let fields = fields(&settings);
+        assert!(fields.len() > 50, "{} fields", fields.len());
+        for (path, text) in fields {
+            let same = with_field(&settings, &path, &text).expect(&path);
+            assert_eq!(same, settings, "{path} = {text}");
+        }
+    }
+
+    /// The names of all fields, from the serialized settings instead of their rows.
+    fn serialized(value: &serde_json::Value, path: &str) -> Vec<String> {
+        let serde_json::Value::Object(fields) = value else { return vec![path.to_owned()] };
+        let below = |(name, value)| serialized(value, &format!("{path}.{name}"));
+        fields.iter().flat_map(below).collect()
+    }
+
+    #[test]
+    fn every_field_has_a_row_of_its_name() {
+        for ground in [None, Some(Surface::default())] {
+            let mut settings = Settings::default();
+            settings.trial.ground = ground;
+            let value = serde_json::to_value(&settings).expect("serializable");
+            let mut names = serialized(&value, "");
+            names.sort();
+            let listed = fields(&settings).into_iter().map(|(field, _)| format!(".{field}"));
+            assert_eq!(listed.collect::<Vec<_>>(), names);
+        }
+    }
+}

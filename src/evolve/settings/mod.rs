@@ -1,0 +1,309 @@
+//! The settings of an experiment.
+
+mod by_name;
+mod cma_es;
+mod ga;
+mod halving;
+mod map_elites;
+mod novelty;
+mod size;
+mod strategy_kind;
+
+pub use by_name::{fields, with_field, with_fields};
+pub use cma_es::{CmaEsSettings, RestartKind};
+pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
+pub use halving::HalvingSettings;
+pub use map_elites::MapElitesSettings;
+pub use novelty::NoveltySettings;
+pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
+pub use strategy_kind::StrategyInfo;
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+use crate::check::Invalid;
+use crate::genome::{GenomeSpace, LARGEST_GENOME_TORQUES};
+use crate::schema::{self, Choice, Choices, Section, SettingGroup, Walk, choice, whole};
+use crate::score::Trial;
+use strategy_kind::strategy_kinds;
+
+/// The settings of an experiment. Equal settings and an equal seed give equal bits.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// The conditions under which genomes are scored.
+    pub trial: Trial,
+    /// The space of genomes.
+    pub genome: GenomeSpace,
+    /// The search.
+    pub evolution: EvolutionSettings,
+}
+
+/// The search: the strategy, its length, and the settings of all strategies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EvolutionSettings {
+    /// The strategy.
+    pub strategy: StrategyKind,
+    /// Individuals per generation. The report simulated 500 to 1000. CMA-ES with restarts
+    /// begins with this size and has larger generations later.
+    pub population: u32,
+    /// Generations in a run. The report has six. Population times generations is the
+    /// budget of evaluations; a strategy with larger generations has fewer of them.
+    pub generations: u32,
+    /// The report's method.
+    pub halving: HalvingSettings,
+    /// The genetic algorithm, which also makes the children of novelty search.
+    pub ga: GaSettings,
+    /// CMA-ES.
+    pub cma_es: CmaEsSettings,
+    /// MAP-Elites.
+    pub map_elites: MapElitesSettings,
+    /// Novelty search.
+    pub novelty: NoveltySettings,
+}
+
+strategy_kinds! {
+    /// The report's method: children of the best few, within a range that halves.
+    #[default]
+    Halving = StrategyInfo {
+        name: "halving",
+        title: "Halving (the report's)",
+        words: "The best few have children, each shifted at random within a range that halves.",
+        color: [0xd5, 0x5e, 0x00],
+        settings: &["halving"],
+        compared_generations: Some(HalvingSettings::REPORT_GENERATIONS),
+        check_size: |evolution, size| evolution.halving.check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// A genetic algorithm.
+    Ga = StrategyInfo {
+        name: "ga",
+        title: "Genetic algorithm",
+        words: "Parents are chosen, crossed and mutated; the step of mutation evolves with them.",
+        color: [0x00, 0x9e, 0x73],
+        settings: &["ga"],
+        check_size: |evolution, size| GaSettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// Covariance matrix adaptation.
+    CmaEs = StrategyInfo {
+        name: "cma_es",
+        title: "CMA-ES",
+        words: "Learns in which directions it pays to vary: covariance matrix adaptation.",
+        color: [0x00, 0x72, 0xb2],
+        settings: &["cma_es"],
+        is_budget_driven: true,
+        check_size: |evolution, size| CmaEsSettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// An archive of the best of every kind of behaviour.
+    MapElites = StrategyInfo {
+        name: "map_elites",
+        title: "MAP-Elites",
+        words: "Keeps the best of every kind of behaviour, and breeds from all of them.",
+        color: [0xcc, 0x79, 0xa7],
+        settings: &["map_elites"],
+        has_archive: true,
+        check_size: |evolution, size| evolution.map_elites.check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// Novelty search. The genetic algorithm makes its children.
+    Novelty = StrategyInfo {
+        name: "novelty",
+        title: "Novelty search",
+        words: "Rewards what has not been seen before, and distance as much as it is told to.",
+        color: [0xe6, 0x9f, 0x00],
+        settings: &["novelty", "ga"],
+        check_size: |evolution, size| NoveltySettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// Random search, the baseline for every other strategy.
+    Random = StrategyInfo {
+        name: "random",
+        title: "Random",
+        words: "Draws every genome at random: the baseline that any method has to beat.",
+        color: [0x80, 0x80, 0x80],
+        ..StrategyInfo::PLAIN
+    };
+}
+
+impl StrategyKind {
+    /// The name in files; flags may write - for _.
+    pub fn name(self) -> &'static str {
+        self.info().name
+    }
+
+    /// The name at the head of a list or a chart.
+    pub fn title(self) -> &'static str {
+        self.info().title
+    }
+
+    /// A sentence about how it searches.
+    pub fn words(self) -> &'static str {
+        self.info().words
+    }
+}
+
+impl fmt::Display for StrategyKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+impl Default for EvolutionSettings {
+    fn default() -> Self {
+        Self {
+            strategy: StrategyKind::Halving,
+            population: 500,
+            generations: 6,
+            halving: HalvingSettings::default(),
+            ga: GaSettings::default(),
+            cma_es: CmaEsSettings::default(),
+            map_elites: MapElitesSettings::default(),
+            novelty: NoveltySettings::default(),
+        }
+    }
+}
+
+impl SettingGroup for EvolutionSettings {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { strategy, population, generations, halving, ga, cma_es, map_elites, novelty } =
+            self;
+        walk.section(Self::RUN);
+        let row = whole("population", "Population", 1..=LARGEST_POPULATION)
+            .hint("Snakes in a generation. More find more, and take longer");
+        let row = if strategy.info().is_budget_driven { row.fixed(cma_es::LEARNED) } else { row };
+        walk.setting(row, population);
+        walk.setting(
+            whole("generations", "Generations", 1..=10_000).hint(
+                "Generations in a run. With the population they give the evaluations that it may cost",
+            ),
+            generations,
+        );
+        walk.section(Self::STRATEGY);
+        walk.setting(
+            choice("strategy", "Strategy")
+                .hint("The method of the search")
+                .fixed("Takes effect with the next run, because another strategy cannot use the current state."),
+            strategy,
+        );
+        let used = strategy.info().settings;
+        let groups: [(&str, &mut dyn SettingGroup); 5] = [
+            ("halving", halving),
+            ("ga", ga),
+            ("cma_es", cma_es),
+            ("map_elites", map_elites),
+            ("novelty", novelty),
+        ];
+        for (name, group) in groups {
+            walk.used_if(used.contains(&name));
+            walk.group(name, group);
+        }
+    }
+}
+
+impl Choices for StrategyKind {
+    const OPTIONS: &'static [Self] = &Self::ALL;
+
+    fn choice(self) -> Choice {
+        Choice::new(self.name(), self.title(), self.words())
+    }
+}
+
+impl EvolutionSettings {
+    /// The section of a run's size and length.
+    pub const RUN: Section =
+        Section { title: "Run", about: "How many snakes, for how many generations." };
+    /// The section of the method.
+    pub const STRATEGY: Section =
+        Section { title: "Strategy", about: "How the next generation is made from the last." };
+
+    /// Number of evaluations that a run may cost.
+    pub fn budget(&self) -> u64 {
+        u64::from(self.population) * u64::from(self.generations)
+    }
+}
+
+/// Why a run keeps the axes of its archive.
+const LAYOUT: &str =
+    "Takes effect with the next run, because it determines the layout of the archive.";
+
+impl Settings {
+    /// Checks every field against its range, and that a generation fits into memory.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub fn check(&self) -> Result<(), Invalid> {
+        schema::check(self)
+    }
+}
+
+impl SettingGroup for Settings {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let Self { trial, genome, evolution } = self;
+        walk.group("evolution", evolution);
+        walk.fixed(
+            "Takes effect with the next run, because existing genomes would not fit new ones.",
+        );
+        walk.group("genome", genome);
+        walk.fixed(
+            "Takes effect with the next run, because the fitness of earlier generations could not be compared.",
+        );
+        walk.group("trial", trial);
+    }
+
+    /// Checks that a generation, and what the strategy keeps, fit into memory.
+    fn check_together(&self) -> Result<(), Invalid> {
+        let points = self.genome.points(self.trial.duration_s);
+        let torque_points = 2 * self.trial.agent.joints() * points;
+        if torque_points > LARGEST_GENOME_TORQUES {
+            let value =
+                format!("{} ({torque_points} torque points in all)", self.genome.points_per_s);
+            let allowed = format!("values for at most {LARGEST_GENOME_TORQUES} torque points");
+            return Err(Invalid::new("genome.points_per_s", value, allowed));
+        }
+        let shape = self.trial.genome_shape();
+        let size = GenomeSize { space: &self.genome, shape, torque_points };
+        (self.evolution.strategy.info().check_size)(&self.evolution, &size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_strategy_has_a_row_of_its_own_and_is_stored_by_its_name() {
+        for (index, kind) in StrategyKind::ALL.into_iter().enumerate() {
+            assert_eq!(ron::to_string(&kind).expect("written"), kind.name());
+            assert!(!kind.title().is_empty() && kind.words().ends_with('.'), "{kind}");
+            for other in &StrategyKind::ALL[..index] {
+                assert_ne!(other.info().color, kind.info().color, "{other}, {kind}");
+                assert_ne!(other.title(), kind.title());
+            }
+        }
+    }
+
+    #[test]
+    fn the_defaults_are_allowed() {
+        assert_eq!(Settings::default().check(), Ok(()));
+    }
+
+    #[test]
+    fn a_generation_that_would_not_fit_into_memory_is_refused() {
+        let mut settings = Settings::default();
+        settings.trial.duration_s = 600.0;
+        settings.genome.points_per_s = 100.0;
+        settings.evolution.population = 10_000;
+        let error = settings.check().unwrap_err().to_string();
+        assert!(error.starts_with("evolution.population is 10000; allowed: 1 to 52"), "{error}");
+        settings.evolution.population = 50;
+        settings.evolution.halving.parents = 50;
+        let error = settings.check().unwrap_err().to_string();
+        assert!(error.starts_with("evolution.halving.parents is 50; allowed: 1 to 4"), "{error}");
+        settings.genome.points_per_s = 1000.0;
+        let error = settings.check().unwrap_err().to_string();
+        assert!(error.starts_with("genome.points_per_s is 1000 (4800000 torque points"), "{error}");
+    }
+}

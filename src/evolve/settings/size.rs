@@ -1,0 +1,68 @@
+//! Limits of memory: how many numbers generations and checkpoints may hold.
+
+use crate::check::Invalid;
+use crate::genome::{GenomeShape, GenomeSpace};
+
+/// Maximum number of individuals in a generation.
+pub const LARGEST_POPULATION: u32 = 100_000;
+/// Maximum number of coordinates in all candidates of one iteration of CMA-ES: 64 MiB.
+pub const LARGEST_SAMPLE: usize = 1 << 23;
+/// Maximum number of genes in one generation: 25 million torque points take 100 MB.
+const LARGEST_GENERATION_GENES: usize = 25_000_000;
+/// Maximum number of genes in the state of a strategy. A checkpoint writes each in 12 to 20 characters.
+pub const LARGEST_STATE_GENES: usize = 2_000_000;
+
+/// The size of the genomes of a run.
+#[derive(Debug)]
+pub struct GenomeSize<'a> {
+    /// The space of the genomes.
+    pub space: &'a GenomeSpace,
+    /// Joints and duration that they are made for.
+    pub shape: GenomeShape,
+    /// Torque points of a genome of signals.
+    pub torque_points: usize,
+}
+
+impl GenomeSize<'_> {
+    /// Number of coordinates of a genome as a point of the unit cube.
+    pub fn coordinates(&self) -> usize {
+        self.space.dimension(self.shape)
+    }
+
+    /// Number of genes of a genome that is kept whole.
+    pub fn genes(&self) -> usize {
+        if self.is_of_points() { self.torque_points } else { self.coordinates() }
+    }
+
+    /// Whether the genes of the controller are torque points.
+    fn is_of_points(&self) -> bool {
+        self.space.controller.uses("points_per_s")
+    }
+
+    /// Checks that a generation of this many individuals fits into memory.
+    ///
+    /// # Errors
+    /// It has too many genes.
+    pub fn check_generation(&self, population: u32, genes_each: usize) -> Result<(), Invalid> {
+        self.check_count("evolution.population", population, genes_each, LARGEST_GENERATION_GENES)
+    }
+
+    /// Checks that this many individuals have at most `limit` genes together.
+    ///
+    /// # Errors
+    /// They have more; `field` is the setting that decides their number.
+    pub fn check_count(
+        &self,
+        field: &str,
+        count: u32,
+        genes_each: usize,
+        limit: usize,
+    ) -> Result<(), Invalid> {
+        let most = limit / genes_each.max(1);
+        if count as usize <= most {
+            return Ok(());
+        }
+        let noun = if self.is_of_points() { "torque points" } else { "genes" };
+        Err(Invalid::new(field, count, format!("1 to {most} with {genes_each} {noun} each")))
+    }
+}

@@ -1,0 +1,67 @@
+//! A row of the list of strategies: the facts about a strategy that need no search.
+
+use super::{EvolutionSettings, GenomeSize};
+use crate::check::Invalid;
+
+/// The facts about a strategy that are the same for all its runs.
+#[derive(Debug, Clone, Copy)]
+pub struct StrategyInfo {
+    /// The name in files and flags; flags may write - for _.
+    pub name: &'static str,
+    /// The name at the head of a list or a chart.
+    pub title: &'static str,
+    /// A sentence about how it searches.
+    pub words: &'static str,
+    /// The colour of its curves: red, green and blue. The six colours of the first six strategies are those of
+    /// Okabe and Ito, which remain distinct for colour-blind people.
+    pub color: [u8; 3],
+    /// The groups of settings below `evolution` that it uses, its own first.
+    pub settings: &'static [&'static str],
+    /// Whether it chooses the size of each generation itself. The population is then the size of the first, and
+    /// the run ends when the evaluations are spent that population and generations allow.
+    pub is_budget_driven: bool,
+    /// Whether it keeps an archive of elites over two descriptors.
+    pub has_archive: bool,
+    /// Number of generations in a comparison, where more would not continue the search; none for any number.
+    pub compared_generations: Option<u32>,
+    /// Checks that its generations and its state fit into memory.
+    pub check_size: fn(&EvolutionSettings, &GenomeSize<'_>) -> Result<(), Invalid>,
+}
+
+impl StrategyInfo {
+    /// The row of a strategy of points that keeps no more than its generation.
+    pub(super) const PLAIN: Self = Self {
+        name: "",
+        title: "",
+        words: "",
+        color: [0; 3],
+        settings: &[],
+        is_budget_driven: false,
+        has_archive: false,
+        compared_generations: None,
+        check_size: |evolution, size| {
+            size.check_generation(evolution.population, size.coordinates())
+        },
+    };
+}
+
+/// Makes [`StrategyKind`](super::StrategyKind) from one row for each strategy, in the order of lists.
+macro_rules! strategy_kinds {
+    ($($(#[$meta:meta])* $kind:ident = $info:expr;)*) => {
+        /// The strategies. Files store the name.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum StrategyKind { $($(#[$meta])* $kind,)* }
+
+        impl StrategyKind {
+            /// All of them, the report's first.
+            pub const ALL: [Self; [$(Self::$kind),*].len()] = [$(Self::$kind),*];
+
+            /// Its row of the list.
+            pub fn info(self) -> &'static StrategyInfo {
+                match self { $(Self::$kind => const { &$info },)* }
+            }
+        }
+    };
+}
+pub(super) use strategy_kinds;

@@ -1,0 +1,313 @@
+//! One run of the covariance matrix adaptation evolution strategy.
+//!
+//! The search draws candidates from a normal distribution and moves, scales and shapes it so that
+//! good candidates become likelier. Everything follows Hansen, "The CMA Evolution Strategy: A
+//! Tutorial" (arXiv:1604.00772v2); "eq." is an equation and "Table 1" the table of parameters there.
+//! For many dimensions the covariance may be kept diagonal (Ros & Hansen 2008, "A Simple Modification
+//! in CMA-ES Achieving Linear Time and Space Complexity").
+//!
+//! Only the four operations, roots and `libm` are used, sums run from the front, and random numbers
+//! come from named streams: the same state gives the same bits on every machine.
+
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use super::candidate::{RankedCandidate, check_floats};
+use super::eigen::{PrincipalAxes, dot};
+use super::rates::{CovarianceShape, LearningRates};
+use super::termination::{HistoryWindows, StopCriteria, StopReason, ValueHistory};
+use crate::check::{Invalid, within};
+use crate::evolve::settings::{LARGEST_POPULATION, LARGEST_SAMPLE};
+use crate::evolve::strategies::search::normal;
+
+/// Maximum dimension of a full covariance, whose axes take time cubic in it.
+pub const LARGEST_FULL: usize = 256;
+/// Maximum dimension of a diagonal covariance.
+pub const LARGEST_DIAGONAL: usize = 1_000_000;
+/// A run without restarts: the whole state, from which it continues bit for bit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cma {
+    shape: CovarianceShape,
+    /// Whether bad candidates make their directions less likely.
+    active: bool,
+    /// Candidates per iteration, λ.
+    population: u32,
+    /// Iterations that have been learned from, g.
+    iteration: u32,
+    /// The centre of the distribution, m.
+    mean: Vec<f64>,
+    pub(super) initial_step: f64,
+    /// The overall standard deviation, σ.
+    step: f64,
+    /// The evolution path of the step size, p_σ.
+    step_path: Vec<f64>,
+    /// The evolution path of the covariance, p_c.
+    covariance_path: Vec<f64>,
+    /// C without σ²: the lower triangle row by row, or only the diagonal if that is the shape.
+    covariance: Vec<f64>,
+    history: ValueHistory,
+    stop: Option<StopReason>,
+}
+
+impl Cma {
+    /// A run that starts around `mean` with the standard deviation `step` in every coordinate.
+    /// `population` is at least 2; the tutorial recommends 4 + ⌊3 ln n⌋. `active` is the usual default.
+    pub fn new(
+        mean: Vec<f64>,
+        step: f64,
+        population: u32,
+        shape: CovarianceShape,
+        active: bool,
+    ) -> Result<Self, Invalid> {
+        let dimension = mean.len();
+        check_size(shape, dimension, population)?;
+        let mut run = Self {
+            shape,
+            active,
+            population,
+            iteration: 0,
+            mean,
+            initial_step: step,
+            step,
+            step_path: vec![0.0; dimension],
+            covariance_path: vec![0.0; dimension],
+            covariance: vec![0.0; entries(shape, dimension)],
+            history: ValueHistory::default(),
+            stop: None,
+        };
+        (0..dimension).for_each(|i| run.covariance[diagonal_index(shape, i)] = 1.0);
+        run.check()?;
+        Ok(run)
+    }
+
+    /// Candidates per iteration.
+    pub fn population(&self) -> u32 {
+        self.population
+    }
+
+    /// Iterations that have been learned from.
+    pub fn iteration(&self) -> u32 {
+        self.iteration
+    }
+
+    /// The centre of the distribution, the best estimate of the optimum.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// The overall standard deviation.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// The first overall standard deviation.
+    pub fn initial_step(&self) -> f64 {
+        self.initial_step
+    }
+
+    /// Why the run has ended, if it has. It then learns nothing more.
+    pub fn stop(&self) -> Option<StopReason> {
+        self.stop
+    }
+
+    /// The candidates of this iteration. `random` returns the stream of the candidate with an index; it should
+    /// differ in every iteration. Candidates may lie anywhere: the caller handles bounds.
+    pub fn candidates(&self, random: impl Fn(u32) -> ChaCha8Rng) -> Vec<Vec<f64>> {
+        let axes = self.axes();
+        let candidate = |index| {
+            let mut random = random(index);
+            let normals: Vec<f64> = (0..self.mean.len()).map(|_| normal(&mut random)).collect();
+            // Eqs. 38 to 40.
+            let shift = axes.stretched(&normals);
+            self.mean.iter().zip(shift).map(|(m, y)| m + self.step * y).collect()
+        };
+        (0..self.population).map(candidate).collect()
+    }
+
+    /// Learns from all candidates of this iteration, best first.
+    ///
+    /// If numbers leave the range of `f64`, the run keeps its state and stops.
+    ///
+    /// # Errors
+    /// Their number or dimension differs from that of [`Self::candidates`], or one is not finite. Nothing is learned.
+    pub fn update(&mut self, ranked: &[RankedCandidate]) -> Result<(), Invalid> {
+        self.check_candidates(ranked)?;
+        if self.stop.is_some() {
+            return Ok(());
+        }
+        let mut next = self.clone();
+        next.learn(ranked);
+        next.history.record(ranked, next.windows().long);
+        if next.check().is_ok() {
+            next.stop = next.reason_to_stop();
+            *self = next;
+        } else {
+            self.stop = Some(StopReason::Numbers);
+        }
+        Ok(())
+    }
+
+    /// Checks a state from a file. A run that passes cannot panic, and its candidates have at most
+    /// [`LARGEST_SAMPLE`] coordinates.
+    pub fn check(&self) -> Result<(), Invalid> {
+        let dimension = self.mean.len();
+        check_size(self.shape, dimension, self.population)?;
+        check_floats("mean", &self.mean, dimension)?;
+        check_floats("step_path", &self.step_path, dimension)?;
+        check_floats("covariance_path", &self.covariance_path, dimension)?;
+        check_floats("covariance", &self.covariance, entries(self.shape, dimension))?;
+        if let Some(variance) = self.variances().find(|&variance| variance <= 0.0) {
+            return Err(Invalid::new("covariance", variance, "a positive diagonal"));
+        }
+        within("initial_step", self.initial_step, f64::MIN_POSITIVE..=f64::MAX)?;
+        within("step", self.step, f64::MIN_POSITIVE..=f64::MAX)?;
+        self.history.check(self.iteration, self.windows().long).map_err(|e| e.inside("history"))
+    }
+
+    /// Whether the run has this shape and is active or not.
+    pub(super) fn is_of(&self, shape: CovarianceShape, active: bool) -> bool {
+        self.shape == shape && self.active == active
+    }
+
+    fn windows(&self) -> HistoryWindows {
+        HistoryWindows::new(self.mean.len(), self.population, self.iteration)
+    }
+
+    fn reason_to_stop(&self) -> Option<StopReason> {
+        let progress = StopCriteria {
+            iteration: self.iteration,
+            mean: &self.mean,
+            initial_step: self.initial_step,
+            step: self.step,
+            covariance_path: &self.covariance_path,
+            variances: self.variances().collect(),
+            axes: self.axes(),
+            history: &self.history,
+            windows: self.windows(),
+        };
+        progress.reason_to_stop()
+    }
+
+    fn check_candidates(&self, ranked: &[RankedCandidate]) -> Result<(), Invalid> {
+        if ranked.len() != self.population as usize {
+            return Err(Invalid::new("candidates", ranked.len(), self.population.to_string()));
+        }
+        let mut points = ranked.iter().map(|candidate| candidate.point);
+        points.try_for_each(|point| check_floats("candidate", point, self.mean.len()))
+    }
+
+    /// The principal axes of C.
+    fn axes(&self) -> PrincipalAxes {
+        match self.shape {
+            CovarianceShape::Full => PrincipalAxes::of_symmetric(&self.covariance, self.mean.len()),
+            CovarianceShape::Diagonal => PrincipalAxes::of_diagonal(&self.covariance),
+        }
+    }
+
+    /// The diagonal of C.
+    fn variances(&self) -> impl Iterator<Item = f64> {
+        let places = (0..self.mean.len()).map(|i| diagonal_index(self.shape, i));
+        places.filter_map(|place| self.covariance.get(place).copied())
+    }
+
+    /// One iteration (appendix A of the tutorial).
+    fn learn(&mut self, ranked: &[RankedCandidate]) {
+        let rates = LearningRates::new(self.mean.len(), self.population, self.shape, self.active);
+        let axes = self.axes();
+        let shifts: Vec<Vec<f64>> = ranked.iter().map(|c| self.shift_to(c.point)).collect();
+        // Eqs. 41 and 42: the mean moves to the weighted mean of the better half.
+        let mut shift = vec![0.0; self.mean.len()];
+        for (&weight, y) in rates.weights.iter().zip(&shifts).filter(|(weight, _)| **weight > 0.0) {
+            add(&mut shift, weight, y);
+        }
+        add(&mut self.mean, self.step, &shift);
+        // Eqs. 43 and 44: consecutive steps in one direction are too short, steps that cancel are too long.
+        let white = axes.turned(&axes.whitened(&shift));
+        fade(&mut self.step_path, rates.step_path, rates.selection_mass, &white);
+        let length = dot(&self.step_path, &self.step_path).sqrt();
+        let surplus = length / rates.expected_length - 1.0;
+        self.step *= libm::exp(rates.step_path / rates.damping * surplus);
+        // Eq. 45; a path that is still far too long must not stretch the covariance as well.
+        let calm = rates.is_calm(length, self.iteration);
+        if calm {
+            fade(&mut self.covariance_path, rates.path, rates.selection_mass, &shift);
+        } else {
+            self.covariance_path.iter_mut().for_each(|x| *x *= 1.0 - rates.path);
+        }
+        self.adapt(&rates, calm, &axes, &shifts);
+        self.iteration = self.iteration.saturating_add(1);
+    }
+
+    /// y = (x - m) / σ.
+    fn shift_to(&self, point: &[f64]) -> Vec<f64> {
+        point.iter().zip(&self.mean).map(|(x, m)| (x - m) / self.step).collect()
+    }
+
+    /// Eqs. 46 and 47: the covariance forgets a little, and learns its path (rank one) and the shifts
+    /// (rank μ); a bad shift counts as if it had the expected length.
+    fn adapt(
+        &mut self,
+        rates: &LearningRates,
+        calm: bool,
+        axes: &PrincipalAxes,
+        shifts: &[Vec<f64>],
+    ) {
+        let missing = if calm { 0.0 } else { rates.path * (2.0 - rates.path) };
+        let sum = rates.weights.iter().fold(0.0, |sum, weight| sum + weight);
+        let keep = 1.0 + rates.one * missing - rates.one - rates.many * sum;
+        self.covariance.iter_mut().for_each(|entry| *entry *= keep);
+        add_square(&mut self.covariance, self.shape, rates.one, &self.covariance_path);
+        for (&weight, y) in rates.weights.iter().zip(shifts).filter(|(weight, _)| **weight != 0.0) {
+            let scale = if weight > 0.0 { 1.0 } else { rates.shrunk(&axes.whitened(y)) };
+            add_square(&mut self.covariance, self.shape, rates.many * weight * scale, y);
+        }
+    }
+}
+
+/// vector += factor · other.
+fn add(vector: &mut [f64], factor: f64, other: &[f64]) {
+    vector.iter_mut().zip(other).for_each(|(x, y)| *x += factor * y);
+}
+
+/// Lets an evolution path fade at `rate` and adds a shift, so that a random walk keeps its variance.
+fn fade(path: &mut [f64], rate: f64, mass: f64, shift: &[f64]) {
+    let uptake = (rate * (2.0 - rate) * mass).sqrt();
+    path.iter_mut().zip(shift).for_each(|(x, y)| *x = (1.0 - rate) * *x + uptake * y);
+}
+
+/// covariance += factor · v vᵀ, restricted to the entries of the shape.
+fn add_square(covariance: &mut [f64], shape: CovarianceShape, factor: f64, vector: &[f64]) {
+    if shape == CovarianceShape::Diagonal {
+        covariance.iter_mut().zip(vector).for_each(|(entry, x)| *entry += factor * x * x);
+        return;
+    }
+    let mut rest = covariance.iter_mut();
+    for (row, x) in vector.iter().enumerate() {
+        vector[..=row].iter().zip(rest.by_ref()).for_each(|(y, entry)| *entry += factor * x * y);
+    }
+}
+
+/// Number of entries of a covariance.
+fn entries(shape: CovarianceShape, dimension: usize) -> usize {
+    match shape {
+        CovarianceShape::Full => dimension * (dimension + 1) / 2,
+        CovarianceShape::Diagonal => dimension,
+    }
+}
+
+/// Index of the variance of a coordinate in the covariance.
+fn diagonal_index(shape: CovarianceShape, coordinate: usize) -> usize {
+    match shape {
+        CovarianceShape::Full => coordinate * (coordinate + 3) / 2,
+        CovarianceShape::Diagonal => coordinate,
+    }
+}
+
+/// Checks that a run of this size fits into memory.
+fn check_size(shape: CovarianceShape, dimension: usize, population: u32) -> Result<(), Invalid> {
+    let largest = if shape == CovarianceShape::Full { LARGEST_FULL } else { LARGEST_DIAGONAL };
+    within("dimension", dimension, 1..=largest)?;
+    within("population", population, 2..=LARGEST_POPULATION)?;
+    within("population · dimension", dimension * population as usize, 1..=LARGEST_SAMPLE)
+}

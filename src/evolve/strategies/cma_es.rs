@@ -1,0 +1,155 @@
+//! CMA-ES as a strategy: the points that [`super::cma`] samples, as genomes.
+
+use super::cma::{CmaParameters, CovarianceShape, RankedCandidate, RestartedCma};
+use super::search::Search;
+use crate::check::{Invalid, within};
+use crate::evolve::parents::Parents;
+use crate::evolve::plan::RunPlan;
+use crate::evolve::settings::CmaEsSettings;
+use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
+use crate::genome::Genome;
+use crate::rng::Purpose;
+use crate::score::Evaluation;
+
+/// In larger spaces the covariance is diagonal: there are too many dependences between genes to learn within a run.
+const LARGEST_FULL_DIMENSION: usize = 100;
+
+/// CMA-ES.
+#[derive(Debug, Clone)]
+pub struct CmaEs {
+    settings: CmaEsSettings,
+    search: Search,
+    /// The runs of CMA-ES; none while the generation of random genomes is pending that the first begins with.
+    runs: Option<RestartedCma>,
+}
+
+/// The shape of the covariance in a space of this dimension.
+pub fn covariance_shape(dimension: usize) -> CovarianceShape {
+    if dimension <= LARGEST_FULL_DIMENSION {
+        CovarianceShape::Full
+    } else {
+        CovarianceShape::Diagonal
+    }
+}
+
+impl CmaEs {
+    /// The settings of a run: random genomes take at most a quarter of its budget.
+    fn settings(plan: &RunPlan) -> CmaEsSettings {
+        let evolution = &plan.settings.evolution;
+        let most = u32::try_from(evolution.budget() / 4).unwrap_or(u32::MAX);
+        let newborns = evolution.cma_es.newborns.min(most);
+        CmaEsSettings { newborns, ..evolution.cma_es.clone() }
+    }
+
+    fn parameters(&self) -> CmaParameters {
+        CmaParameters {
+            step: self.settings.step.into(),
+            population: u32::try_from(self.search.population).unwrap_or(u32::MAX).max(2),
+            shape: covariance_shape(self.search.dimension),
+            active: self.settings.active,
+            restart: self.settings.restarts,
+        }
+    }
+
+    fn start(&mut self, mean: Vec<f64>) {
+        // The check of the settings excludes errors. Without runs all genomes would be random.
+        self.runs = RestartedCma::new(self.parameters(), mean).ok();
+        debug_assert!(self.runs.is_some(), "the settings were checked");
+    }
+
+    fn points(&self) -> Vec<Vec<f64>> {
+        match &self.runs {
+            Some(runs) => {
+                runs.candidates(|index| self.search.stream(index as usize, Purpose::Sample))
+            }
+            None => (0..self.population()).map(|i| self.search.random_genome_point(i)).collect(),
+        }
+    }
+}
+
+impl Strategy for CmaEs {
+    /// The mean begins at the founder, if there is one; otherwise at the best of the random genomes, or in the middle
+    /// of all ranges if the settings ask for none.
+    fn begin(plan: &RunPlan) -> Self {
+        let settings = Self::settings(plan);
+        let mut search = Self { settings, search: Search::new(plan, 0), runs: None };
+        match search.search.founder().map(<[f64]>::to_vec) {
+            Some(founder) => search.start(founder),
+            None if search.settings.newborns == 0 => {
+                search.start(vec![0.5; search.search.dimension]);
+            }
+            None => {}
+        }
+        search
+    }
+
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
+        let settings = Self::settings(plan);
+        let resumed = Self { settings, search: Search::new(plan, finished), runs: state.read()? };
+        if let Some(runs) = &resumed.runs {
+            runs.check()?;
+            resumed.search.check(runs.current().mean())?;
+            if *runs.parameters() != resumed.parameters() {
+                return Err(Invalid::new("parameters", "others", "those of the run"));
+            }
+            let most = u64::from(plan.settings.evolution.population) << 9;
+            within("population", u64::from(runs.population()), 2..=most)?;
+            // Longer steps lead far outside all ranges.
+            within("step", runs.current().step(), 0.0..=1.0e6)?;
+        }
+        Ok(resumed)
+    }
+
+    fn ask(&self) -> Vec<Genome> {
+        self.search.genomes(&self.points())
+    }
+
+    fn population(&self) -> usize {
+        let random = self.settings.newborns.max(1) as usize;
+        self.runs.as_ref().map_or(random, |runs| runs.population() as usize)
+    }
+
+    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+        let points = self.points();
+        let order = full_ranking(evaluations);
+        match &mut self.runs {
+            Some(runs) => {
+                // A disqualified agent has no fitness. Its value is the least of those ranked before it.
+                let mut least = f64::INFINITY;
+                let ranked: Vec<RankedCandidate> = order
+                    .iter()
+                    .map(|&index| {
+                        let evaluation = &evaluations[index];
+                        if evaluation.disqualified.is_none() {
+                            least = least.min(f64::from(evaluation.fitness));
+                        }
+                        let value = if least.is_finite() { least } else { 0.0 };
+                        RankedCandidate { point: &points[index], value }
+                    })
+                    .collect();
+                let mut rng = self.search.stream(0, Purpose::Restart);
+                // No candidate is missing. If one is not finite, there is nothing left to learn.
+                let _ = runs.update(&ranked, &mut rng);
+            }
+            None => {
+                let best = order.first().and_then(|&index| points.get(index).cloned());
+                self.start(best.unwrap_or_else(|| vec![0.5; self.search.dimension]));
+            }
+        }
+        self.search.generation += 1;
+    }
+
+    fn state(&self) -> StrategyState {
+        StrategyState::of(&self.runs)
+    }
+
+    fn apply_settings(&mut self, plan: &RunPlan) {
+        // The runs depend on no setting that may change.
+        self.settings = Self::settings(plan);
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let parents = if self.runs.is_some() { Parents::Distribution } else { Parents::None };
+        vec![parents; self.population()]
+    }
+}

@@ -1,0 +1,60 @@
+//! The registry of strategies.
+//!
+//! A new strategy is a file here and a line in [`constructors`], a row of
+//! [`StrategyKind`] and, if it has any, its settings in [`super::settings`].
+
+mod cma;
+mod cma_es;
+mod ga;
+mod halving;
+mod map_elites;
+mod novelty;
+mod random;
+mod search;
+
+use super::plan::RunPlan;
+use super::settings::StrategyKind;
+use super::strategy::{Strategy, StrategyState};
+use crate::check::Invalid;
+
+/// The constructors of each strategy.
+fn constructors(kind: StrategyKind) -> Constructors {
+    match kind {
+        StrategyKind::Halving => Constructors::of::<halving::Halving>(),
+        StrategyKind::Ga => Constructors::of::<ga::Ga>(),
+        StrategyKind::CmaEs => Constructors::of::<cma_es::CmaEs>(),
+        StrategyKind::MapElites => Constructors::of::<map_elites::MapElites>(),
+        StrategyKind::Novelty => Constructors::of::<novelty::Novelty>(),
+        StrategyKind::Random => Constructors::of::<random::Random>(),
+    }
+}
+
+type Resumed = Result<Box<dyn Strategy>, Invalid>;
+
+/// How a strategy begins and resumes.
+struct Constructors {
+    begin: fn(&RunPlan) -> Box<dyn Strategy>,
+    resume: fn(&RunPlan, u32, &StrategyState) -> Resumed,
+}
+
+impl Constructors {
+    fn of<S: Strategy + 'static>() -> Self {
+        Self {
+            begin: |plan| Box::new(S::begin(plan)),
+            resume: |plan, finished, state| Ok(Box::new(S::resume(plan, finished, state)?)),
+        }
+    }
+}
+
+/// The strategy of a run at its beginning.
+pub fn begin(plan: &RunPlan) -> Box<dyn Strategy> {
+    (constructors(plan.settings.evolution.strategy).begin)(plan)
+}
+
+/// The strategy of a run after its first `finished` generations.
+///
+/// # Errors
+/// The state does not fit the plan: another strategy has written it, or a value is not allowed.
+pub fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Resumed {
+    (constructors(plan.settings.evolution.strategy).resume)(plan, finished, state)
+}

@@ -1,0 +1,169 @@
+//! The interface of all strategies, and how a generation is ranked.
+
+use ron::ser::{PrettyConfig, to_string_pretty};
+use ron::value::RawValue;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::archives::Archive;
+use super::parents::{IndividualId, Parents};
+use super::plan::RunPlan;
+use crate::check::Invalid;
+use crate::genome::Genome;
+use crate::score::Evaluation;
+
+/// A way to search, one generation at a time.
+///
+/// A strategy sees genomes and evaluations, never the world, a thread or a clock. All its random numbers come from
+/// streams named after the individual they are for.
+pub trait Strategy: Send {
+    /// The search at the beginning of a run.
+    fn begin(plan: &RunPlan) -> Self
+    where
+        Self: Sized;
+
+    /// The search after the first `finished` generations of a run.
+    ///
+    /// # Errors
+    /// The state is not one of this strategy and this plan. A state that is accepted bounds memory and time as the
+    /// settings do, wherever it comes from.
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid>
+    where
+        Self: Sized;
+
+    /// The genomes of the next generation, in the order of their indices. Asking twice gives the same.
+    fn ask(&self) -> Vec<Genome>;
+
+    /// Number of individuals in the next generation.
+    fn population(&self) -> usize;
+
+    /// Learns from the evaluations of the genomes that the last `ask` returned, in the same order.
+    fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]);
+
+    /// Everything it has learned: together with settings, seed and the number of finished generations, enough to
+    /// continue bit for bit.
+    fn state(&self) -> StrategyState;
+
+    /// Adopts the settings of a plan in which some have changed that
+    /// [`may_change_during_run`](super::may_change_during_run) allows. They apply from the next generation on.
+    fn apply_settings(&mut self, plan: &RunPlan);
+
+    /// The parents of the genomes that `ask` returns, in the same order.
+    fn parents(&self) -> Vec<Parents>;
+
+    /// The individuals that may become parents from now on, in an order of the strategy's own.
+    fn parent_pool(&self) -> Vec<IndividualId> {
+        Vec::new()
+    }
+
+    /// Restores, after [`Self::resume`], what [`Self::parent_pool`] returned before: a state has the genes of the
+    /// parents, but not their ids. Ids that do not fit the state are ignored, and stay unknown.
+    fn restore_parents(&mut self, _pool: &[IndividualId]) {}
+
+    /// The archive of elites, if it keeps one.
+    fn archive(&self) -> Option<&Archive> {
+        None
+    }
+}
+
+/// The state of a strategy, as a value of RON that only the strategy itself can read. Numbers keep every bit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StrategyState {
+    ron: String,
+}
+
+impl StrategyState {
+    /// Maximum length of a parser's message, in characters.
+    const LONGEST_PROBLEM: usize = 200;
+
+    /// Writes down plain data.
+    pub fn of(data: &impl Serialize) -> Self {
+        let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
+        // Plain data can always be written. If not, storing the empty state reports it.
+        Self { ron: to_string_pretty(data, layout).unwrap_or_default() }
+    }
+
+    /// Reads the data again.
+    ///
+    /// # Errors
+    /// It is damaged, or another strategy has written it.
+    pub fn read<T: DeserializeOwned>(&self) -> Result<T, Invalid> {
+        ron::from_str(&self.ron).map_err(|error| {
+            let problem = error.code.to_string();
+            let problem: String = problem.chars().take(Self::LONGEST_PROBLEM).collect();
+            let value = format!("unreadable ({})", problem.escape_debug());
+            Invalid::new("state", value, "the state of the run's strategy")
+        })
+    }
+}
+
+impl Serialize for StrategyState {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        RawValue::from_ron(&self.ron).map_err(serde::ser::Error::custom)?.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for StrategyState {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = Box::<RawValue>::deserialize(deserializer)?;
+        Ok(Self { ron: value.get_ron().trim().to_owned() })
+    }
+}
+
+/// The indices of the individuals that may become parents, best first. Disqualified ones may not; of equals the one
+/// with the lower index is first.
+pub fn ranking(evaluations: &[Evaluation]) -> Vec<usize> {
+    let mut ranked: Vec<usize> =
+        (0..evaluations.len()).filter(|&i| evaluations[i].disqualified.is_none()).collect();
+    ranked.sort_by(|&a, &b| evaluations[b].fitness.total_cmp(&evaluations[a].fitness));
+    ranked
+}
+
+/// The indices of all individuals, best first: those of [`ranking`], then the disqualified, the longer they lasted
+/// the better, so that a strategy that needs all ranks learns to avoid disqualification.
+pub fn full_ranking(evaluations: &[Evaluation]) -> Vec<usize> {
+    let mut ranked = ranking(evaluations);
+    let mut others: Vec<usize> =
+        (0..evaluations.len()).filter(|&i| evaluations[i].disqualified.is_some()).collect();
+    others.sort_by_key(|&i| std::cmp::Reverse(evaluations[i].steps));
+    ranked.append(&mut others);
+    ranked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Disqualification;
+
+    #[test]
+    fn the_disqualified_rank_last_and_ties_go_to_the_lower_index() {
+        let evaluation = |fitness, steps, disqualified| Evaluation {
+            steps,
+            disqualified,
+            ..Evaluation::of_fitness(fitness)
+        };
+        let evaluations = [
+            evaluation(1.0, 9, None),
+            evaluation(180.0, 3, Some(Disqualification::TooFast)),
+            evaluation(3.0, 9, None),
+            evaluation(150.0, 7, Some(Disqualification::TooFast)),
+            evaluation(1.0, 9, None),
+        ];
+        assert_eq!(ranking(&evaluations), [2, 0, 4]);
+        assert_eq!(full_ranking(&evaluations), [2, 0, 4, 3, 1]);
+    }
+
+    #[test]
+    fn a_state_keeps_every_bit_and_is_refused_as_another_type() {
+        let numbers = [0.1, -0.0, 5e-324, f64::MAX, 1.0 / 3.0, f64::NEG_INFINITY];
+        let singles = [0.1_f32, f32::MIN_POSITIVE, 16_777_216.0, f32::EPSILON];
+        let state = StrategyState::of(&(numbers, singles));
+        let file = ron::to_string(&state).expect("written");
+        let state: StrategyState = ron::from_str(&file).expect("read");
+        let (read, read_singles): ([f64; 6], [f32; 4]) = state.read().expect("the same type");
+        assert_eq!(read.map(f64::to_bits), numbers.map(f64::to_bits));
+        assert_eq!(read_singles.map(f32::to_bits), singles.map(f32::to_bits));
+        let error = state.read::<Vec<f64>>().expect_err("another type").to_string();
+        assert!(error.starts_with("state is unreadable ("), "{error}");
+    }
+}

@@ -1,0 +1,62 @@
+//! The genes of the body, which every genome has.
+
+use serde::{Deserialize, Serialize};
+
+use super::gene::{Gene, GeneRange, GeneVisitor};
+use super::space::{DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_LIMIT_RAD};
+use crate::check::{Invalid, within};
+
+/// The limits of the joints and the material. Champion files store it as it stands here.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyGenes {
+    /// Largest bend of every joint to either side, in radians.
+    pub bend_limit_rad: f32,
+    /// Largest twist of every joint to either side, in radians.
+    pub twist_limit_rad: f32,
+    /// Density of the material, in kg/m³.
+    pub density_kg_m3: f32,
+}
+
+impl BodyGenes {
+    /// Genes of zeros.
+    pub(super) const ZEROED: Self =
+        Self { bend_limit_rad: 0.0, twist_limit_rad: 0.0, density_kg_m3: 0.0 };
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// The first value out of range.
+    pub fn check(&self) -> Result<(), Invalid> {
+        within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
+        within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
+        within("density_kg_m3", self.density_kg_m3, DENSITY_RANGE_KG_M3)
+    }
+
+    /// Visits every gene, in a fixed order.
+    pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        let range = GeneRange::OneOf(&space.bend_limits_rad);
+        let (field, name) = (format_args!("bend_limit_rad"), format_args!("bend limit"));
+        visit(Gene { field, name, unit: "rad", range }, &mut self.bend_limit_rad);
+        let range = GeneRange::OneOf(&space.twist_limits_rad);
+        let (field, name) = (format_args!("twist_limit_rad"), format_args!("twist limit"));
+        visit(Gene { field, name, unit: "rad", range }, &mut self.twist_limit_rad);
+        let range = GeneRange::Between(space.density_min_kg_m3, space.density_max_kg_m3);
+        let (field, name) = (format_args!("density_kg_m3"), format_args!("density"));
+        visit(Gene { field, name, unit: "kg/m³", range }, &mut self.density_kg_m3);
+    }
+
+    /// Widens a space so that it contains these genes.
+    pub(super) fn widen(&self, space: &mut GenomeSpace) {
+        for (limits, limit) in [
+            (&mut space.bend_limits_rad, self.bend_limit_rad),
+            (&mut space.twist_limits_rad, self.twist_limit_rad),
+        ] {
+            if !limits.contains(&limit) {
+                limits.push(limit);
+            }
+        }
+        space.density_min_kg_m3 = space.density_min_kg_m3.min(self.density_kg_m3);
+        space.density_max_kg_m3 = space.density_max_kg_m3.max(self.density_kg_m3);
+    }
+}

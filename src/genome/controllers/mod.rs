@@ -1,0 +1,145 @@
+//! The registry of controllers: the genes of each kind, in a file of their own.
+//!
+//! A new kind is a variant of [`ControllerKind`], a line in `registry!` below, and the file that it names; what
+//! moves the joints by these genes is registered in [`crate::control`].
+
+mod encoding;
+mod gait;
+mod signal;
+mod wave;
+
+pub use encoding::{ControllerInfo, JointCommands};
+pub use gait::Gait;
+pub use signal::{JointSignals, TorqueSignals};
+pub use wave::{Harmonic, JointWaves, Wave, Waves};
+
+use serde::{Deserialize, Serialize};
+
+use super::gene::GenomeShape;
+use super::kind::ControllerKind;
+use super::space::GenomeSpace;
+use crate::check::Invalid;
+use encoding::ControllerEncoding;
+
+/// Makes the enum of all kinds of genes from one line for each kind.
+macro_rules! registry {
+    ($($(#[$doc:meta])* $kind:ident($genes:ty),)*) => {
+        /// The genes of a controller. Champion files store them as they stand here.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        pub enum ControllerGenes { $($(#[$doc])* $kind($genes),)* }
+
+        impl ControllerKind {
+            fn info(self) -> &'static ControllerInfo {
+                match self { $(Self::$kind => <$genes>::info(),)* }
+            }
+
+            /// Genes of zeros, in the layout that a space prescribes for a shape.
+            pub(super) fn zeroed(self, space: &GenomeSpace, shape: GenomeShape) -> ControllerGenes {
+                match self { $(Self::$kind => ControllerGenes::$kind(<$genes>::zeroed(space, shape)),)* }
+            }
+        }
+
+        impl ControllerGenes {
+            /// Its kind.
+            pub fn kind(&self) -> ControllerKind {
+                match self { $(Self::$kind(_) => ControllerKind::$kind,)* }
+            }
+
+            pub(super) fn encoding(&self) -> &dyn ControllerEncoding {
+                match self { $(Self::$kind(genes) => genes,)* }
+            }
+
+            pub(super) fn encoding_mut(&mut self) -> &mut dyn ControllerEncoding {
+                match self { $(Self::$kind(genes) => genes,)* }
+            }
+        }
+    };
+}
+
+registry! {
+    /// Free torque signals, the report's: point after point, without a rule.
+    Signal(TorqueSignals),
+    /// Periodic torques. The waves are in N·m.
+    Wave(Waves),
+    /// Periodic joint angles, followed by a servo.
+    Gait(Gait),
+}
+
+impl ControllerKind {
+    /// The name in flags and files.
+    pub fn name(self) -> &'static str {
+        self.info().name
+    }
+
+    /// The name at the head of a list or a chart.
+    pub fn title(self) -> &'static str {
+        self.info().title
+    }
+
+    /// A description in a few words.
+    pub fn words(self) -> &'static str {
+        self.info().words
+    }
+
+    /// Whether a setting below `genome`, by its path there, matters to this kind. Settings that no kind names
+    /// matter to all.
+    pub fn uses(self, setting: &str) -> bool {
+        let names = |kind: Self| kind.info().settings.contains(&setting);
+        names(self) || !Self::ALL.into_iter().any(names)
+    }
+}
+
+impl ControllerGenes {
+    /// Number of joints that it drives.
+    pub fn joints(&self) -> usize {
+        self.encoding().joints()
+    }
+
+    /// Frequency of the motion, in Hz. A signal has no period: half the number of sign changes of its torques
+    /// per second, which is the same for a sine.
+    pub fn frequency_hz(&self) -> f32 {
+        self.encoding().frequency_hz()
+    }
+
+    /// Checks every value against the limits of all spaces.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub fn check(&self) -> Result<(), Invalid> {
+        self.encoding().check()
+    }
+
+    /// The commands that the genes alone determine for a trial; none where they depend on senses.
+    pub fn commands(&self, duration_s: f64) -> Option<JointCommands> {
+        self.encoding().commands(duration_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_in_files_are_those_of_the_registry() {
+        for kind in ControllerKind::ALL {
+            assert_eq!(ron::to_string(&kind).expect("written"), kind.name());
+            assert_eq!(kind.title().to_lowercase(), kind.name());
+        }
+    }
+
+    #[test]
+    fn settings_of_other_kinds_do_not_matter_and_common_ones_do() {
+        use ControllerKind::{Gait, Signal, Wave};
+        for (setting, users) in [
+            ("torque_range_nm", vec![Signal, Wave]),
+            ("points_per_s", vec![Signal]),
+            ("wave.harmonics", vec![Wave, Gait]),
+            ("wave.angle_range_rad", vec![Gait]),
+            ("density_min_kg_m3", vec![Signal, Wave, Gait]),
+        ] {
+            for kind in ControllerKind::ALL {
+                assert_eq!(kind.uses(setting), users.contains(&kind), "{setting} of {kind}");
+            }
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Torque signals: how they are drawn and how they vary, as the report has it.
+
+use rand::RngExt;
+use rand::seq::IndexedRandom;
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use super::encoding::{ControllerEncoding, ControllerInfo, JointCommands};
+use crate::check::{Invalid, within};
+use crate::genome::body::BodyGenes;
+use crate::genome::gene::{Feature, Gene, GeneRange, GeneVisitor, GenomeShape, shifted};
+use crate::genome::space::{
+    GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_TORQUE_NM, POINTS_PER_S_RANGE,
+};
+
+/// One torque signal per joint axis. Each holds its value until the next point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TorqueSignals {
+    /// Points that take effect per simulated second.
+    pub points_per_s: f32,
+    /// The signals of each joint, from the head; all signals have the same number of points.
+    pub joints: Vec<JointSignals>,
+}
+
+/// The two signals of one joint, in N·m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointSignals {
+    /// Torque about the bend axis, point by point.
+    pub bend_nm: Vec<f32>,
+    /// Torque about the twist axis, point by point.
+    pub twist_nm: Vec<f32>,
+}
+
+impl JointSignals {
+    /// The signals with the names of their fields and of their axes.
+    fn axes(&self) -> [(&'static str, &'static str, &Vec<f32>); 2] {
+        [("bend_nm", "bend", &self.bend_nm), ("twist_nm", "twist", &self.twist_nm)]
+    }
+}
+
+impl TorqueSignals {
+    /// Every signal of the snake in a fixed order: joints from the head, bend before twist.
+    pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
+        self.joints.iter_mut().flat_map(|joint| [&mut joint.bend_nm, &mut joint.twist_nm])
+    }
+
+    /// Every signal of the snake in the same order, to read.
+    pub fn all(&self) -> impl Iterator<Item = &Vec<f32>> {
+        self.joints.iter().flat_map(|joint| [&joint.bend_nm, &joint.twist_nm])
+    }
+}
+
+const INFO: ControllerInfo = ControllerInfo {
+    name: "signal",
+    title: "Signal",
+    words: "free torque signals, point after point, as in the report",
+    settings: &["torque_range_nm", "torque_step_nm", "points_per_s"],
+};
+
+impl ControllerEncoding for TorqueSignals {
+    fn info() -> &'static ControllerInfo {
+        &INFO
+    }
+
+    fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
+        let signal = vec![0.0; space.points(shape.duration_s)];
+        let joint = JointSignals { bend_nm: signal.clone(), twist_nm: signal };
+        Self { points_per_s: space.points_per_s, joints: vec![joint; shape.joints] }
+    }
+
+    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        let range = GeneRange::Fixed(space.points_per_s);
+        let (field, name) = (format_args!("points_per_s"), format_args!("points per second"));
+        visit(Gene { field, name, unit: "Hz", range }, &mut self.points_per_s);
+        let range = GeneRange::Between(-space.torque_range_nm, space.torque_range_nm);
+        for (joint, signals) in self.joints.iter_mut().enumerate() {
+            for (axis, signal) in [("bend", &mut signals.bend_nm), ("twist", &mut signals.twist_nm)]
+            {
+                for (point, torque_nm) in signal.iter_mut().enumerate() {
+                    let field = format_args!("joints[{joint}].{axis}_nm[{point}]");
+                    let name = format_args!("joint {} {axis}, point {}", joint + 1, point + 1);
+                    visit(Gene { field, name, unit: "N·m", range }, torque_nm);
+                }
+            }
+        }
+    }
+
+    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
+        self.all().for_each(|signal| visit("points of a signal", signal.len()));
+    }
+
+    fn joints(&self) -> usize {
+        self.joints.len()
+    }
+
+    fn frequency_hz(&self) -> f32 {
+        let changes = |signal: &Vec<f32>| {
+            signal.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count()
+        };
+        let points: usize = self.all().map(Vec::len).sum();
+        let changes: usize = self.all().map(changes).sum();
+        self.points_per_s * changes as f32 / points.max(1) as f32 / 2.0
+    }
+
+    fn check(&self) -> Result<(), Invalid> {
+        within("signals.points_per_s", self.points_per_s, POINTS_PER_S_RANGE)?;
+        let torques: usize = self.all().map(Vec::len).sum();
+        within("signals.torque points", torques, 1..=LARGEST_GENOME_TORQUES)?;
+        for (index, joint) in self.joints.iter().enumerate() {
+            for (field, _, signal) in joint.axes() {
+                let field = format!("signals.joints[{index}].{field}");
+                if signal.is_empty() {
+                    return Err(Invalid::new(field, "empty", "at least one point"));
+                }
+                let range = -LARGEST_TORQUE_NM..=LARGEST_TORQUE_NM;
+                signal.iter().try_for_each(|&torque| within(&field, torque, range.clone()))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn widen(&self, space: &mut GenomeSpace) {
+        space.points_per_s = self.points_per_s;
+        let torques = self.all().flatten().map(|torque_nm| torque_nm.abs());
+        space.torque_range_nm = torques.fold(space.torque_range_nm, f32::max);
+    }
+
+    fn randomize(&mut self, body: &mut BodyGenes, space: &GenomeSpace, rng: &mut ChaCha8Rng) {
+        // `check` refuses empty lists; a list that is empty all the same means a joint held fast.
+        let choose =
+            |limits: &[f32], rng: &mut ChaCha8Rng| limits.choose(rng).copied().unwrap_or(0.0);
+        body.bend_limit_rad = choose(&space.bend_limits_rad, rng);
+        body.twist_limit_rad = choose(&space.twist_limits_rad, rng);
+        body.density_kg_m3 = rng.random_range(space.density_min_kg_m3..=space.density_max_kg_m3);
+        for signal in self.all_mut() {
+            random_walk(signal, space.torque_range_nm, space.torque_step_nm, rng);
+        }
+    }
+
+    /// Shifts every point of every signal, and the density by the same share of its range. The joint limits,
+    /// chosen once per snake, are inherited.
+    fn mutate(
+        &mut self,
+        body: &mut BodyGenes,
+        space: &GenomeSpace,
+        shift_nm: f32,
+        rng: &mut ChaCha8Rng,
+    ) {
+        for torque_nm in self.all_mut().flatten() {
+            *torque_nm = shifted(*torque_nm, shift_nm, space.torque_range_nm, rng);
+        }
+        let (least, most) = (space.density_min_kg_m3, space.density_max_kg_m3);
+        let shift_kg_m3 = space.shift_share(shift_nm) * (most - least);
+        body.density_kg_m3 =
+            (body.density_kg_m3 + rng.random_range(-shift_kg_m3..=shift_kg_m3)).clamp(least, most);
+    }
+
+    fn summary(&self, space: &GenomeSpace) -> Option<Vec<Feature>> {
+        let feature = |name: String, unit, value, most: f32| {
+            let range = GeneRange::Between(0.0, most.max(f32::MIN_POSITIVE));
+            Feature::new(name, unit, value, range)
+        };
+        // Torques that change their sign with every point have the highest frequency.
+        let most_hz = self.points_per_s / 2.0;
+        let mut features = vec![feature("rhythm".to_owned(), "Hz", self.frequency_hz(), most_hz)];
+        for (joint, signals) in (1..).zip(&self.joints) {
+            for (_, axis, torques) in signals.axes() {
+                let sum: f32 = torques.iter().map(|torque| torque.abs()).sum();
+                let mean = sum / torques.len().max(1) as f32;
+                let name = format!("joint {joint} {axis}, strength");
+                features.push(feature(name, "N·m", mean, space.torque_range_nm));
+            }
+        }
+        Some(features)
+    }
+
+    fn commands(&self, _duration_s: f64) -> Option<JointCommands> {
+        let at_s = |index: usize| index as f64 / f64::from(self.points_per_s);
+        let points = |torques: &[f32]| {
+            let points = torques.iter().enumerate();
+            points.map(|(index, &torque_nm)| (at_s(index), f64::from(torque_nm))).collect()
+        };
+        let joint = |joint: &JointSignals| [points(&joint.bend_nm), points(&joint.twist_nm)];
+        let joints = self.joints.iter().map(joint).collect();
+        let quantity = "torque in N·m";
+        Some(JointCommands { quantity, least_range: 1000.0, is_held: true, joints })
+    }
+}
+
+/// Fills a signal by the report's random walk: the first point anywhere in ±`range_nm`, each next
+/// one within ±`step_nm` of the one before, clamped to the range.
+fn random_walk(signal: &mut [f32], range_nm: f32, step_nm: f32, rng: &mut ChaCha8Rng) {
+    let mut torque_nm = rng.random_range(-range_nm..=range_nm);
+    for (index, point) in signal.iter_mut().enumerate() {
+        if index > 0 {
+            torque_nm = shifted(torque_nm, step_nm, range_nm, rng);
+        }
+        *point = torque_nm;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::{Purpose, stream};
+
+    #[test]
+    fn a_walk_stays_in_its_range_and_within_its_step() {
+        let mut walk = [0.0; 2000];
+        random_walk(&mut walk, 1000.0, 300.0, &mut stream(1, 0, 0, Purpose::Birth));
+        assert!(walk.iter().all(|torque| torque.abs() <= 1000.0));
+        assert!(walk.windows(2).all(|pair| (pair[1] - pair[0]).abs() <= 300.0));
+        assert!(walk.iter().any(|torque| *torque > 500.0), "the walk explores the range");
+        assert!(walk.iter().any(|torque| *torque < -500.0), "on both sides");
+    }
+
+    #[test]
+    fn first_points_are_spread_evenly_over_the_range() {
+        let firsts: Vec<f32> = (0..4000)
+            .map(|i| {
+                let mut walk = [0.0];
+                random_walk(&mut walk, 1000.0, 1000.0, &mut stream(7, 0, i, Purpose::Birth));
+                walk[0]
+            })
+            .collect();
+        for quarter in 0..4 {
+            let low = -1000.0 + 500.0 * quarter as f32;
+            let count = firsts.iter().filter(|&&x| x >= low && x < low + 500.0).count();
+            assert!((850..1150).contains(&count), "quarter {quarter} has {count} of 4000");
+        }
+    }
+}

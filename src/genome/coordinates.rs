@@ -1,0 +1,202 @@
+//! Genomes as points of the unit cube, which lets any strategy search in any space.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::body::BodyGenes;
+use super::gene::GenomeShape;
+use super::individual::Genome;
+use super::space::GenomeSpace;
+
+impl GenomeSpace {
+    /// Genes of zeros, in the layout of this space.
+    pub(super) fn zeroed(&self, shape: GenomeShape) -> Genome {
+        Genome { body: BodyGenes::ZEROED, controller: self.controller.zeroed(self, shape) }
+    }
+
+    /// Number of coordinates of a genome: one per gene that has a choice.
+    pub fn dimension(&self, shape: GenomeShape) -> usize {
+        let mut count = 0;
+        self.zeroed(shape).genes(self, &mut |gene, _| count += usize::from(!gene.range.is_point()));
+        count
+    }
+
+    /// The genome at a point of the unit cube: a coordinate from 0 to 1 per gene that has a choice.
+    /// Every point outside the cube has a genome too: see `GeneRange::at`.
+    pub fn genome_at(&self, point: &[f64], shape: GenomeShape) -> Genome {
+        let mut genome = self.zeroed(shape);
+        let mut coordinates = point.iter().copied();
+        genome.genes(self, &mut |gene, value| {
+            let coordinate = if gene.range.is_point() { None } else { coordinates.next() };
+            *value = gene.range.at(coordinate.unwrap_or(0.0));
+        });
+        genome
+    }
+
+    /// The point of the unit cube that has the same genome as a point outside it.
+    pub fn wrapped(&self, point: &[f64], shape: GenomeShape) -> Vec<f64> {
+        let mut coordinates = point.iter();
+        let mut wrapped = Vec::with_capacity(point.len());
+        self.zeroed(shape).genes(self, &mut |gene, _| {
+            if !gene.range.is_point()
+                && let Some(coordinate) = coordinates.next()
+            {
+                wrapped.push(gene.range.wrapped(*coordinate));
+            }
+        });
+        wrapped
+    }
+
+    /// The coordinates of a genome in the unit cube: [`Self::genome_at`] returns the genome, except for rounding.
+    pub fn point_of(&self, genome: &Genome) -> Vec<f64> {
+        let mut point = Vec::new();
+        genome.clone().genes(self, &mut |gene, value| {
+            if !gene.range.is_point() {
+                point.push(gene.range.coordinate(*value));
+            }
+        });
+        point
+    }
+
+    /// The point of a genome that passes [`Self::check_genome`]: [`Self::genome_at`] returns the genome to the
+    /// last bit if it came from a point itself, otherwise except for rounding.
+    pub fn exact_point_of(&self, genome: &Genome) -> Vec<f64> {
+        let mut point = Vec::new();
+        genome.clone().genes(self, &mut |gene, value| {
+            if !gene.range.is_point() {
+                point.push(gene.range.exact_coordinate(*value));
+            }
+        });
+        point
+    }
+
+    /// Draws a genome at random: signals by the report's random walk, other genes anywhere in their ranges.
+    pub fn random_genome(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
+        let Genome { mut body, mut controller } = self.zeroed(shape);
+        controller.encoding_mut().randomize(&mut body, self, rng);
+        Genome { body, controller }
+    }
+
+    /// A child: the parent with every torque of its signals shifted at random within ±`shift_nm`, and the other
+    /// genes by the same share of their own ranges. The joint limits are inherited.
+    pub fn mutate(&self, parent: &Genome, shift_nm: f32, rng: &mut ChaCha8Rng) -> Genome {
+        let Genome { mut body, mut controller } = parent.clone();
+        controller.encoding_mut().mutate(&mut body, self, shift_nm, rng);
+        Genome { body, controller }
+    }
+
+    /// The share of the range of torques that a shift is, at most 1.
+    pub(super) fn shift_share(&self, shift_nm: f32) -> f32 {
+        (shift_nm / self.torque_range_nm).min(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::{ControllerGenes, ControllerKind, TorqueSignals};
+    use crate::rng::{Purpose, stream};
+
+    const SHAPE: GenomeShape = GenomeShape { joints: 4, duration_s: 2.0 };
+
+    fn space(controller: ControllerKind) -> GenomeSpace {
+        GenomeSpace { controller, ..GenomeSpace::default() }
+    }
+
+    #[test]
+    fn genomes_of_every_kind_return_from_their_points() {
+        for kind in ControllerKind::ALL {
+            let mut space = space(kind);
+            space.wave.harmonics = 2;
+            for individual in 0..20 {
+                let mut rng = stream(1, 1, individual, Purpose::Birth);
+                let genome = space.random_genome(SHAPE, &mut rng);
+                let point = space.point_of(&genome);
+                assert_eq!(point.len(), space.dimension(SHAPE), "{kind}");
+                assert!(point.iter().all(|x| (0.0..=1.0).contains(x)), "{kind}: {point:?}");
+                let again = space.point_of(&space.genome_at(&point, SHAPE));
+                let off = point.iter().zip(&again).map(|(a, b)| (a - b).abs());
+                assert!(off.fold(0.0, f64::max) < 1e-5, "{kind}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_genes_with_a_choice_have_coordinates() {
+        assert_eq!(space(ControllerKind::Signal).dimension(SHAPE), 3 + 8 * 20);
+        assert_eq!(space(ControllerKind::Wave).dimension(SHAPE), 3 + 1 + 8 * 3);
+        assert_eq!(space(ControllerKind::Gait).dimension(SHAPE), 3 + 2 + 8 * 3);
+        let mut narrow = space(ControllerKind::Gait);
+        narrow.density_max_kg_m3 = narrow.density_min_kg_m3;
+        narrow.bend_limits_rad = vec![1.0];
+        narrow.twist_limits_rad = vec![1.0, 1.0];
+        assert_eq!(narrow.dimension(SHAPE), 2 + 8 * 3);
+        narrow.twist_limits_rad = vec![0.0];
+        assert_eq!(narrow.dimension(SHAPE), 2 + 4 * 3, "no twist, no genes of twist");
+        narrow.twist_limits_rad = vec![1.0];
+        let genome = narrow.genome_at(&[0.5; 26], SHAPE);
+        assert_eq!((genome.body.bend_limit_rad, genome.body.density_kg_m3), (1.0, 2.0));
+    }
+
+    #[test]
+    fn mutation_stays_within_its_share_of_each_range() {
+        for kind in [ControllerKind::Wave, ControllerKind::Gait] {
+            let space = space(kind);
+            let parent = space.random_genome(SHAPE, &mut stream(1, 1, 0, Purpose::Birth));
+            let child = space.mutate(&parent, 100.0, &mut stream(1, 2, 0, Purpose::Mutation));
+            assert_ne!(child, parent);
+            assert_eq!(
+                child.body.bend_limit_rad, parent.body.bend_limit_rad,
+                "limits are inherited"
+            );
+            for (a, b) in space.point_of(&child).iter().zip(space.point_of(&parent)) {
+                let off = (a - b).abs();
+                let off = off.min(1.0 - off);
+                assert!(off <= 0.0501, "{kind}: {a} and {b}");
+            }
+        }
+    }
+
+    const FIVE_SECONDS: GenomeShape = GenomeShape { joints: 4, duration_s: 5.0 };
+
+    fn signals(genome: &mut Genome) -> &mut TorqueSignals {
+        match &mut genome.controller {
+            ControllerGenes::Signal(signals) => signals,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn random_signals_are_drawn_as_the_report_says() {
+        let space = GenomeSpace::default();
+        let mut bends = Vec::new();
+        for individual in 0..200 {
+            let mut genome =
+                space.random_genome(FIVE_SECONDS, &mut stream(1, 1, individual, Purpose::Birth));
+            assert_eq!(signals(&mut genome).joints.len(), 4);
+            assert!(signals(&mut genome).joints.iter().all(|joint| joint.bend_nm.len() == 50));
+            assert!(space.twist_limits_rad.contains(&genome.body.twist_limit_rad));
+            assert!((2.0..=2.5).contains(&genome.body.density_kg_m3));
+            bends.push(genome.body.bend_limit_rad);
+        }
+        for limit in &space.bend_limits_rad {
+            assert!(bends.contains(limit), "{limit} rad was never chosen in 200 genomes");
+        }
+    }
+
+    #[test]
+    fn mutation_changes_every_torque_by_at_most_the_shift() {
+        let space = GenomeSpace::default();
+        let mut parent = space.random_genome(FIVE_SECONDS, &mut stream(1, 1, 0, Purpose::Birth));
+        let mut child = space.mutate(&parent, 25.0, &mut stream(1, 2, 0, Purpose::Mutation));
+        assert_eq!(child.body.bend_limit_rad, parent.body.bend_limit_rad);
+        let pairs =
+            signals(&mut child).all_mut().flatten().zip(signals(&mut parent).all_mut().flatten());
+        let pairs: Vec<(f32, f32)> = pairs.map(|(child, parent)| (*child, *parent)).collect();
+        assert_eq!(pairs.len(), 400);
+        for (child, parent) in pairs {
+            assert!((child - parent).abs() <= 25.001, "{parent} became {child}");
+            assert!(child.abs() <= 1000.0);
+            assert!(child != parent || parent.abs() == 1000.0, "{parent} did not change");
+        }
+    }
+}

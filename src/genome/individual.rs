@@ -1,0 +1,45 @@
+//! One individual: the genes of its body and of its controller.
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::body::BodyGenes;
+use super::controllers::ControllerGenes;
+use super::gene::GeneVisitor;
+use super::space::GenomeSpace;
+
+/// One individual. Champion files store it as it stands here.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Genome {
+    /// The limits of the joints and the material.
+    pub body: BodyGenes,
+    /// The genes that drive the joints.
+    pub controller: ControllerGenes,
+}
+
+impl Genome {
+    /// Visits every gene in a fixed order, with its range in `space`.
+    pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        self.body.genes(space, visit);
+        self.controller.encoding_mut().genes(space, visit);
+    }
+
+    /// Number of genes.
+    pub fn gene_count(&self) -> usize {
+        let mut count = 0;
+        self.clone().genes(&GenomeSpace::default(), &mut |_, _| count += 1);
+        count
+    }
+
+    /// A hash (XXH3, 64 bits) over the bits of all genes: equal genomes have equal hashes. It seeds repeated
+    /// trials, so the order of genes is part of the bits of a run.
+    pub fn hash(&self) -> u64 {
+        let mut hash = Xxh3Default::new();
+        // Values alone are hashed, so any space serves.
+        self.clone().genes(&GenomeSpace::default(), &mut |_, value| {
+            hash.update(&value.to_bits().to_le_bytes());
+        });
+        hash.digest()
+    }
+}

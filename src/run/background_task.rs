@@ -1,0 +1,162 @@
+//! Work on a thread of its own, for callers that must not wait.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
+
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+
+use super::panics::caught;
+
+/// Work in progress that ends with one result. Dropping this does not end the work: see [`Self::cancel`].
+#[derive(Debug)]
+pub struct BackgroundTask<T> {
+    result: Receiver<Result<T, String>>,
+    pub(super) progress: Arc<TaskProgress>,
+    total: usize,
+}
+
+/// Shared between the work and its [`BackgroundTask`].
+#[derive(Debug, Default)]
+pub struct TaskProgress {
+    done: AtomicUsize,
+    is_cancelled: AtomicBool,
+}
+
+impl TaskProgress {
+    /// Number of items finished.
+    pub fn done(&self) -> usize {
+        self.done.load(Ordering::Relaxed)
+    }
+
+    /// Publishes the number of items finished.
+    pub fn set_done(&self, done: usize) {
+        self.done.store(done, Ordering::Relaxed);
+    }
+
+    /// Whether the work should stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::Relaxed)
+    }
+}
+
+impl<T: Send + 'static> BackgroundTask<T> {
+    /// Starts work that is one item.
+    ///
+    /// # Errors
+    /// The thread could not be started.
+    pub fn start(work: impl FnOnce() -> T + Send + 'static) -> io::Result<Self> {
+        Self::start_counted(1, |_| work())
+    }
+
+    /// Starts work on `total` items that publishes its progress and stops early when cancelled.
+    ///
+    /// # Errors
+    /// The thread could not be started.
+    pub fn start_counted(
+        total: usize,
+        work: impl FnOnce(&TaskProgress) -> T + Send + 'static,
+    ) -> io::Result<Self> {
+        let (sender, result) = bounded(1);
+        let progress = Arc::new(TaskProgress::default());
+        let shared = Arc::clone(&progress);
+        // A send fails only when the task was dropped.
+        let run = move || drop(sender.send(caught(|| work(&shared))));
+        thread::Builder::new().name("background task".to_owned()).spawn(run)?;
+        Ok(Self { result, progress, total })
+    }
+
+    /// Number of items finished.
+    pub fn done(&self) -> usize {
+        self.progress.done()
+    }
+
+    /// Number of items in all.
+    pub fn total(&self) -> usize {
+        self.total
+    }
+
+    /// Asks the work to stop after the current item.
+    pub fn cancel(&self) {
+        self.progress.is_cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// The result, once and as soon as it is there; the message of the panic if the work panicked.
+    pub fn poll(&self) -> Option<Result<T, String>> {
+        match self.result.try_recv() {
+            Ok(result) => Some(result),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err(NO_RESULT.to_owned())),
+        }
+    }
+
+    /// Blocks until the work ends.
+    ///
+    /// # Errors
+    /// The work panicked.
+    pub fn wait(&self) -> Result<T, String> {
+        self.result.recv().unwrap_or_else(|_| Err(NO_RESULT.to_owned()))
+    }
+}
+
+/// The thread is gone and its result was taken before.
+const NO_RESULT: &str = "the work ended without a result";
+
+impl<T: Send + 'static> BackgroundTask<Vec<T>> {
+    /// Starts `act` on each item in turn. After a cancellation, `skip` makes the results of the items left.
+    ///
+    /// # Errors
+    /// The thread could not be started.
+    pub fn for_each<I: Send + 'static>(
+        items: Vec<I>,
+        act: impl Fn(I) -> T + Send + 'static,
+        skip: impl Fn(I) -> T + Send + 'static,
+    ) -> io::Result<Self> {
+        Self::start_counted(items.len(), move |progress| {
+            let each = |(index, item)| {
+                if progress.is_cancelled() {
+                    return skip(item);
+                }
+                let result = act(item);
+                progress.set_done(index + 1);
+                result
+            };
+            items.into_iter().enumerate().map(each).collect()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_task_returns_its_result_or_the_message_of_its_panic() {
+        assert_eq!(BackgroundTask::start(|| 6 * 7).expect("a thread").wait(), Ok(42));
+        let failed: BackgroundTask<u32> =
+            BackgroundTask::start(|| panic!("no such thing")).expect("a thread");
+        assert!(failed.wait().expect_err("it failed").contains("no such thing"));
+    }
+
+    #[test]
+    fn progress_is_counted_and_cancelling_skips_the_remaining_items() {
+        let (go_on, may_go_on) = bounded::<()>(5);
+        let act = move |number: u32| {
+            let _ = may_go_on.recv();
+            Ok(number)
+        };
+        let task = BackgroundTask::for_each((0..5).collect(), act, Err).expect("a thread");
+        assert_eq!((task.done(), task.total()), (0, 5));
+        for _ in 0..2 {
+            go_on.send(()).expect("it waits");
+        }
+        while task.done() < 2 {
+            thread::yield_now();
+        }
+        assert!(task.poll().is_none());
+        task.cancel();
+        go_on.send(()).expect("it waits");
+        assert_eq!(task.wait(), Ok(vec![Ok(0), Ok(1), Ok(2), Err(3), Err(4)]));
+    }
+}

@@ -1,0 +1,126 @@
+//! Evaluating genomes: the one place that decides where and in which order simulations run.
+//!
+//! An evaluator cannot change a result. An evaluation depends on its genome and its trial only, and the experiment
+//! puts the results in the order of the individuals before the strategy sees them. Another evaluator, which sends
+//! its jobs to other processes or machines, implements [`Evaluator`] and is chosen where the command line is read.
+
+use std::fmt::Debug;
+use std::num::NonZero;
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+
+use super::panics::caught;
+use super::run_control::{Cancelled, RunControl};
+use crate::genome::Genome;
+use crate::score::{Evaluation, Trial, evaluate};
+
+/// The result of evaluating one genome; an error is the message of the panic in it.
+pub type EvaluationResult = Result<Evaluation, String>;
+
+/// Evaluates batches of genomes.
+pub trait Evaluator: Debug + Send + Sync {
+    /// Evaluates each genome in `trial`, in any order, and calls `report` with its index and result as soon as that
+    /// is known. `report` may be called from several threads at once.
+    ///
+    /// Before each evaluation, an evaluator calls [`RunControl::wait_while_paused`]. A genome for which it reports
+    /// nothing is evaluated by its caller: an evaluator that loses its workers may simply return.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if `control` was.
+    fn evaluate_batch(
+        &self,
+        trial: &Trial,
+        genomes: &[&Genome],
+        control: &RunControl,
+        report: &(dyn Fn(usize, EvaluationResult) + Sync),
+    ) -> Result<(), Cancelled>;
+
+    /// Maximum number of evaluations at the same time.
+    fn workers(&self) -> usize;
+
+    /// An evaluator of the same kind with another number of workers.
+    ///
+    /// # Errors
+    /// The workers could not be started.
+    fn with_workers(&self, workers: usize) -> Result<Arc<dyn Evaluator>, WorkersError>;
+}
+
+/// The workers of an evaluator could not be started.
+#[derive(Debug, thiserror::Error)]
+#[error("threads: cannot be started: {0}")]
+pub struct WorkersError(#[from] ThreadPoolBuildError);
+
+/// Allowed numbers of worker threads.
+pub const THREADS_RANGE: RangeInclusive<usize> = 1..=1024;
+
+/// Number of processors that this program may use.
+pub fn available_cores() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZero::get)
+}
+
+/// Evaluates a genome in a trial; a panic in it becomes its message.
+///
+/// # Errors
+/// The evaluation panicked.
+pub fn evaluate_caught(genome: &Genome, trial: &Trial) -> EvaluationResult {
+    caught(|| evaluate(genome, trial))
+}
+
+/// Evaluates on threads of this process.
+#[derive(Debug)]
+pub struct LocalPool(ThreadPool);
+
+impl LocalPool {
+    /// Starts the worker threads.
+    ///
+    /// # Errors
+    /// The system refused to start that many threads.
+    pub fn new(threads: usize) -> Result<Self, WorkersError> {
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|index| format!("evolution-{index}"))
+            .build()?;
+        Ok(Self(pool))
+    }
+
+    /// Calls `work` with each index below `count` and returns the results in the order of the indices.
+    ///
+    /// # Errors
+    /// The first error of `work`; the remaining calls are skipped.
+    pub(super) fn map<T: Send, E: Send>(
+        &self,
+        count: usize,
+        work: impl Fn(usize) -> Result<T, E> + Send + Sync,
+    ) -> Result<Vec<T>, E> {
+        self.0.install(|| (0..count).into_par_iter().map(work).collect())
+    }
+}
+
+impl Evaluator for LocalPool {
+    fn evaluate_batch(
+        &self,
+        trial: &Trial,
+        genomes: &[&Genome],
+        control: &RunControl,
+        report: &(dyn Fn(usize, EvaluationResult) + Sync),
+    ) -> Result<(), Cancelled> {
+        self.0.install(|| {
+            genomes.par_iter().enumerate().try_for_each(|(index, genome)| {
+                control.wait_while_paused()?;
+                report(index, evaluate_caught(genome, trial));
+                Ok(())
+            })
+        })
+    }
+
+    fn workers(&self) -> usize {
+        self.0.current_num_threads()
+    }
+
+    fn with_workers(&self, workers: usize) -> Result<Arc<dyn Evaluator>, WorkersError> {
+        Ok(Arc::new(Self::new(workers)?))
+    }
+}

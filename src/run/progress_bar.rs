@@ -1,0 +1,51 @@
+//! Progress bars on the terminal; where standard error is no terminal, none is drawn.
+
+use std::time::Duration;
+
+use crossbeam_channel::RecvTimeoutError;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::evaluator::Evaluator;
+use super::experiment::Experiment;
+use super::report::GenerationReport;
+use super::run_control::{Cancelled, RunControl};
+use crate::score::Evaluation;
+
+/// Runs one generation with a progress bar; for `record`, see [`Experiment::run_generation_recording`].
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn run_generation_with_bar(
+    experiment: &mut Experiment,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+    record: impl Fn(u32, u32, &Evaluation) + Sync,
+) -> Result<GenerationReport, Cancelled> {
+    let bar = ProgressBar::new(experiment.population().into());
+    // The template is a constant; if it were wrong, the default bar would do.
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_message(format!("generation {}", experiment.finished() + 1));
+    with_bar(&bar, control, || experiment.run_generation_recording(evaluator, control, record))
+}
+
+/// Does `work` while a bar shows the number of evaluations that `control` has counted.
+pub fn with_bar<T>(bar: &ProgressBar, control: &RunControl, work: impl FnOnce() -> T) -> T {
+    let result = std::thread::scope(|scope| {
+        let (finished, is_finished) = crossbeam_channel::bounded::<()>(0);
+        scope.spawn(move || {
+            // Ends when the sender is dropped.
+            while is_finished.recv_timeout(Duration::from_millis(100))
+                == Err(RecvTimeoutError::Timeout)
+            {
+                bar.set_position(control.done().into());
+            }
+        });
+        let result = work();
+        drop(finished);
+        result
+    });
+    bar.finish_and_clear();
+    result
+}

@@ -1,0 +1,95 @@
+//! Replays a saved champion without a window and compares it with its record.
+
+use std::io::Write;
+use std::path::Path;
+
+use serde_json::json;
+
+use super::headless::HeadlessError;
+use super::panics::caught;
+use crate::ENGINE_VERSION;
+use crate::evolve::Champion;
+use crate::save::load_champion;
+use crate::score::evaluate;
+use crate::world::{Effort, HealthLimits};
+
+/// Re-simulates a saved champion and compares it with its record, bit for bit.
+///
+/// # Errors
+/// The file cannot be used, or fitness or trace differ from what was recorded.
+pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), HeadlessError> {
+    let loaded = load_champion(path)?;
+    let recorded = loaded.champion.evaluation;
+    let Champion { genome, trial, .. } = &loaded.champion;
+    let found = caught(|| evaluate(genome, trial))
+        .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })?;
+    let matches = found.agrees_with(&recorded);
+    let meaning = loaded.champion.trial.meaning(f64::from(found.centre_y_m));
+    if json {
+        let line = json!({
+            "fitness": found.fitness,
+            "trace_hash": format!("{:016x}", found.trace_hash),
+            "recorded_fitness": recorded.fitness,
+            "recorded_trace_hash": format!("{:016x}", recorded.trace_hash),
+            "steps": found.steps,
+            "energy_j": found.effort.map(|effort| effort.energy_j),
+            "top_speed_m_s": found.effort.map(|effort| effort.top_speed_m_s),
+            "joint_drift_m": found.effort.map(|effort| effort.joint_drift_m),
+            "sideways_m": found.effort.map(|effort| effort.sideways_m),
+            "disqualified": found.disqualified.map(|reason| reason.words()),
+            "meaning": meaning,
+            "engine": loaded.engine,
+            "matches": matches,
+        });
+        writeln!(out, "{line}")?;
+    } else {
+        let unit = loaded.champion.trial.fitness.unit();
+        writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;
+        if let Some(reason) = found.disqualified {
+            let words = reason.words();
+            writeln!(out, "disqualified after {} steps: {words}", found.steps)?;
+        }
+        if let Some(effort) = &found.effort {
+            writeln!(out, "{}", effort_lines(effort, &trial.health))?;
+        }
+        writeln!(out, "trace_hash  {:016x}", found.trace_hash)?;
+        if matches {
+            writeln!(out, "equal to the record, bit for bit")?;
+        }
+    }
+    if matches {
+        return Ok(());
+    }
+    let engine = if loaded.is_of_this_engine() {
+        "the file was edited, or this machine computes other bits".to_owned()
+    } else {
+        format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
+    };
+    let difference = format!(
+        "fitness {}, {} steps, trace {:016x}; recorded {}, {} steps, {:016x} ({engine})",
+        found.fitness,
+        found.steps,
+        found.trace_hash,
+        recorded.fitness,
+        recorded.steps,
+        recorded.trace_hash,
+    );
+    Err(HeadlessError::Differs { path: path.to_owned(), difference })
+}
+
+/// Effort of a rollout, each value with the limit beyond which it would have been disqualified.
+fn effort_lines(effort: &Effort, health: &HealthLimits) -> String {
+    format!(
+        "energy      {:.1} J\n\
+         top speed   {:.2} m/s of {} m/s\n\
+         joint drift {:.4} m of {} m\n\
+         sideways    {:.2} m of {} m",
+        effort.energy_j,
+        effort.top_speed_m_s,
+        health.speed_m_s,
+        effort.joint_drift_m,
+        health.joint_drift_m,
+        effort.sideways_m,
+        health.arena_half_width_m,
+    )
+}

@@ -1,0 +1,141 @@
+//! Pauses and cancels the workers of a run, and counts their progress.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+/// A run was cancelled before its generation was finished.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+/// Shared between the workers of a run and its user interface.
+///
+/// Workers pass a gate before each evaluation. Pausing and cancelling therefore take effect within
+/// one evaluation (some milliseconds with the shipped presets), and cannot change a result: they decide
+/// when an evaluation happens, not its value.
+#[derive(Debug, Default)]
+pub struct RunControl {
+    done: AtomicU32,
+    gate: Mutex<Gate>,
+    gate_moved: Condvar,
+}
+
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+enum Gate {
+    #[default]
+    Open,
+    Paused,
+    Cancelled,
+}
+
+impl RunControl {
+    /// Number of evaluations of the current generation that are finished.
+    pub fn done(&self) -> u32 {
+        self.done.load(Ordering::Relaxed)
+    }
+
+    /// Lets the workers continue, unless the run is cancelled.
+    pub fn resume(&self) {
+        self.move_gate(Gate::Open);
+    }
+
+    /// Holds the workers before their next evaluation.
+    pub fn pause(&self) {
+        self.move_gate(Gate::Paused);
+    }
+
+    /// Whether the workers are held.
+    pub fn is_paused(&self) -> bool {
+        *self.gate() == Gate::Paused
+    }
+
+    /// Ends the run, for good.
+    pub fn cancel(&self) {
+        self.move_gate(Gate::Cancelled);
+    }
+
+    /// Whether the run was cancelled.
+    pub(super) fn is_cancelled(&self) -> bool {
+        *self.gate() == Gate::Cancelled
+    }
+
+    /// Blocks while paused.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if the run was.
+    pub fn wait_while_paused(&self) -> Result<(), Cancelled> {
+        self.wait_while_paused_unless(|| false).map(drop)
+    }
+
+    /// Blocks while paused, until `has_request`; then returns whether to continue (true) or to serve the request
+    /// first. After making a request, call [`Self::wake`].
+    pub(super) fn wait_while_paused_unless(
+        &self,
+        has_request: impl Fn() -> bool,
+    ) -> Result<bool, Cancelled> {
+        let waits = |gate: &mut Gate| *gate == Gate::Paused && !has_request();
+        let held = self.gate_moved.wait_while(self.gate(), waits);
+        match *held.unwrap_or_else(PoisonError::into_inner) {
+            Gate::Cancelled => Err(Cancelled),
+            Gate::Open | Gate::Paused => Ok(!has_request()),
+        }
+    }
+
+    /// Lets waiting workers check for requests.
+    pub(super) fn wake(&self) {
+        // Taking the lock ensures that no worker is between its check and its wait: no call is lost.
+        drop(self.gate());
+        self.gate_moved.notify_all();
+    }
+
+    pub(super) fn start_generation(&self) {
+        self.done.store(0, Ordering::Relaxed);
+    }
+
+    pub(super) fn count_one(&self) {
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn move_gate(&self, to: Gate) {
+        let mut gate = self.gate();
+        if *gate != Gate::Cancelled {
+            *gate = to;
+        }
+        drop(gate);
+        self.gate_moved.notify_all();
+    }
+
+    /// A panic elsewhere cannot leave a `Copy` value half-changed, so poison does no harm.
+    fn gate(&self) -> MutexGuard<'_, Gate> {
+        self.gate.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossbeam_channel::bounded;
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    #[test]
+    fn a_paused_worker_waits_until_it_is_resumed() {
+        let control = Arc::new(RunControl::default());
+        control.pause();
+        let (passed, result) = bounded(1);
+        let worker = Arc::clone(&control);
+        std::thread::spawn(move || passed.send(worker.wait_while_paused()));
+        assert!(result.recv_timeout(Duration::from_millis(50)).is_err(), "still held");
+        control.resume();
+        assert_eq!(result.recv_timeout(Duration::from_secs(10)), Ok(Ok(())));
+    }
+
+    #[test]
+    fn cancelling_releases_a_paused_worker_and_is_final() {
+        let control = RunControl::default();
+        control.pause();
+        control.cancel();
+        control.resume();
+        assert_eq!(control.wait_while_paused(), Err(Cancelled));
+    }
+}

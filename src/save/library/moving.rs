@@ -1,0 +1,40 @@
+//! Moves files and folders without overwriting any.
+
+use std::fs::{self, OpenOptions};
+use std::io::ErrorKind;
+use std::path::Path;
+
+use crate::check::Invalid;
+use crate::save::SaveError;
+
+/// The error that a name is taken.
+pub fn taken(path: &Path) -> SaveError {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let source = Invalid::new("name", format!("{name:?}"), "a name that is not taken yet");
+    SaveError::Invalid { path: path.to_owned(), source }
+}
+
+/// Moves a file or folder to a name that must not be taken.
+pub fn move_new(from: &Path, to: &Path) -> Result<(), SaveError> {
+    let unwritable = |source| SaveError::Unwritable { path: to.to_owned(), source };
+    let about = fs::symlink_metadata(from)
+        .map_err(|source| SaveError::Unreadable { path: from.to_owned(), source })?;
+    if about.is_dir() {
+        if to.symlink_metadata().is_ok() {
+            return Err(taken(to));
+        }
+        // A folder that appears there between the check and the move is replaced only if it is empty.
+        return fs::rename(from, to).map_err(unwritable);
+    }
+    // A rename would replace a file, so reserve the name first.
+    match OpenOptions::new().write(true).create_new(true).open(to) {
+        Ok(reserved) => drop(reserved),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => return Err(taken(to)),
+        Err(error) => return Err(unwritable(error)),
+    }
+    fs::rename(from, to).map_err(|source| {
+        // Remove the reservation, an empty file.
+        let _ = fs::remove_file(to);
+        unwritable(source)
+    })
+}

@@ -1,0 +1,110 @@
+//! Settings by name: listing, checking, finding, setting.
+
+use super::value::SettingField;
+use super::walk::{ListedSetting, SettingGroup, SettingPlace, SettingVisitor, walk};
+use crate::check::Invalid;
+
+/// All settings with their rows and values, in the order of their structs.
+pub fn list(group: &(impl SettingGroup + Clone)) -> Vec<ListedSetting> {
+    struct Listing(Vec<ListedSetting>);
+    impl SettingVisitor for Listing {
+        fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField) {
+            let SettingPlace { path, section, setting, is_used, fixed, live } = *place;
+            let (path, value) = (path.to_owned(), field.value());
+            self.0.push(ListedSetting { path, section, setting, value, is_used, fixed, live });
+        }
+    }
+    let mut listing = Listing(Vec::new());
+    walk(&mut group.clone(), &mut listing);
+    listing.0
+}
+
+/// Checks every setting against its range, and those that depend on each other together.
+///
+/// # Errors
+/// The first that is not allowed: its dotted name, its value, and what is allowed.
+pub fn check(group: &(impl SettingGroup + Clone)) -> Result<(), Invalid> {
+    struct Checking(Result<(), Invalid>);
+    impl SettingVisitor for Checking {
+        fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField) {
+            if self.0.is_ok() {
+                self.0 = place.setting.check(place.path, &field.value());
+            }
+        }
+
+        fn leave(&mut self, path: &str, group: &dyn SettingGroup) {
+            if self.0.is_ok() {
+                let inside =
+                    |error: Invalid| if path.is_empty() { error } else { error.inside(path) };
+                self.0 = group.check_together().map_err(inside);
+            }
+        }
+    }
+    let mut checking = Checking(Ok(()));
+    walk(&mut group.clone(), &mut checking);
+    checking.0
+}
+
+/// Sets one setting, by its full dotted name, to the value that a text says, which is not checked against its range.
+///
+/// # Errors
+/// There is no such setting, or the text is no value for it.
+pub fn set_text(group: &mut dyn SettingGroup, path: &str, text: &str) -> Result<(), Invalid> {
+    struct Setter<'a> {
+        path: &'a str,
+        text: &'a str,
+        done: Option<Result<(), Invalid>>,
+    }
+    impl SettingVisitor for Setter<'_> {
+        fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField) {
+            if place.path == self.path {
+                let value = place.setting.parse(self.text);
+                let is_set = value.is_some_and(|value| field.set(value));
+                let text = format!("{:?}", self.text);
+                let refused = || Invalid::new(place.path, text, place.setting.allowed());
+                self.done = Some(is_set.then_some(()).ok_or_else(refused));
+            }
+        }
+    }
+    let mut setter = Setter { path, text, done: None };
+    walk(group, &mut setter);
+    let unknown = || Invalid::new("setting", format!("{path:?}"), "the full name of a setting");
+    setter.done.unwrap_or_else(|| Err(unknown()))
+}
+
+/// The full dotted name of the one setting that ends like `path`.
+///
+/// # Errors
+/// No setting ends like that (the nearest names are listed), or several do.
+pub fn find(group: &(impl SettingGroup + Clone), path: &str) -> Result<String, Invalid> {
+    let mut known: Vec<String> = list(group).into_iter().map(|listed| listed.path).collect();
+    known.sort();
+    let ending = format!(".{path}");
+    let matches = |known: &&String| *known == path || known.ends_with(&ending);
+    let matching: Vec<&String> = known.iter().filter(matches).collect();
+    match matching.as_slice() {
+        [only] => Ok((*only).clone()),
+        [] => {
+            let words = path.split('.').count();
+            let mut near: Vec<(f64, &str)> =
+                known.iter().map(|known| (likeness(known, path, words), known.as_str())).collect();
+            near.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let names: Vec<&str> = near.iter().take(4).map(|(_, name)| *name).collect();
+            let value = format!("{path:?}, an unknown setting");
+            Err(Invalid::new("set", value, format!("(nearest) {}", names.join(", "))))
+        }
+        several => {
+            let names: Vec<&str> = several.iter().map(|name| name.as_str()).collect();
+            let value = format!("{path:?}, an ambiguous name");
+            Err(Invalid::new("set", value, names.join(", ")))
+        }
+    }
+}
+
+/// How similar the last `words` words of a known path are to what was typed, and its last word to the last typed one.
+fn likeness(known: &str, typed: &str, words: usize) -> f64 {
+    let parts: Vec<&str> = known.split('.').collect();
+    let tail = parts[parts.len().saturating_sub(words)..].join(".");
+    let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
+    strsim::jaro_winkler(&tail, typed) + strsim::jaro_winkler(&last(known), &last(typed))
+}

@@ -1,0 +1,33 @@
+//! Settings that are one of some names.
+
+/// One of the names that a setting may have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// The name in files and flags.
+    pub name: &'static str,
+    /// The name in panels.
+    pub title: &'static str,
+    /// A sentence about it.
+    pub sentence: String,
+}
+
+impl Choice {
+    /// A choice with its sentence.
+    pub fn new(name: &'static str, title: &'static str, sentence: impl Into<String>) -> Self {
+        Self { name, title, sentence: sentence.into() }
+    }
+}
+
+/// A type whose values all have names.
+pub trait Choices: Copy + 'static {
+    /// Its values, in the order of lists.
+    const OPTIONS: &'static [Self];
+
+    /// The name of a value, its title and its sentence.
+    fn choice(self) -> Choice;
+
+    /// All names with their titles and sentences.
+    fn choices() -> Vec<Choice> {
+        Self::OPTIONS.iter().map(|option| option.choice()).collect()
+    }
+}

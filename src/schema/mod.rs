@@ -1,0 +1,38 @@
+//! The settings schema: one row for each setting, beside the field that it describes.
+//!
+//! A struct of settings implements [`SettingGroup`]: its `walk` pairs each field with a row that has the setting's
+//! name, unit, range or choices, label, hint, and whether it may change during a run. Everything else reads these
+//! rows: the checks, the list of all settings, `--set`, live changes, the panels and `docs/settings.md`.
+//!
+//! To add a setting, add a field to its struct and a row to its `walk`, which does not compile without it.
+
+mod access;
+mod choice;
+mod per_part;
+mod setting;
+mod table;
+mod value;
+mod walk;
+
+pub use access::{check, find, list, set_text};
+pub use choice::{Choice, Choices};
+pub use per_part::PerPart;
+pub use setting::{NumberRange, Parts, Setting, SettingKind, SettingRow};
+pub use setting::{
+    absent, choice, list_of_numbers, number, optional_per_part, per_part, switch, whole,
+};
+pub use table::markdown;
+pub use value::{SettingField, SettingValue};
+pub use walk::{ListedSetting, Section, SettingGroup, SettingPlace, SettingVisitor, Walk, walk};
+
+/// Whether a value is the default of its type.
+///
+/// For a setting that a released format does not have. It bears `#[serde(default, skip_serializing_if =
+/// "is_default")]`, and its default acts as the program did before: files without it keep their meaning, and runs
+/// that do not use it keep their names.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+#[cfg(test)]
+mod tests;

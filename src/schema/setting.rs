@@ -1,0 +1,362 @@
+//! Rows of the schema: name, label, unit, hint, range or choices, rule for changes.
+
+use std::marker::PhantomData;
+use std::ops::RangeInclusive;
+
+use super::value::SettingValue;
+use super::{Choice, Choices, PerPart};
+use crate::check::{Invalid, within};
+
+/// What the program knows of a setting, apart from its value.
+#[derive(Debug, Clone, Copy)]
+pub struct Setting {
+    /// The name of its field.
+    pub name: &'static str,
+    /// The name in panels.
+    pub label: &'static str,
+    /// Its unit; empty if it has none.
+    pub unit: &'static str,
+    /// What it does to the snake or to the search.
+    pub hint: &'static str,
+    /// What its values may be.
+    pub kind: SettingKind,
+    /// Why it may not change during a run, as a sentence; none: it may.
+    pub(super) fixed: Option<&'static str>,
+}
+
+/// What the values of a setting may be.
+#[derive(Debug, Clone, Copy)]
+pub enum SettingKind {
+    /// A number; or, as the range says, one for each part of the snake, or none.
+    Number(NumberRange),
+    /// Several numbers.
+    List(NumberRange),
+    /// One of some names.
+    Choice(fn() -> Vec<Choice>),
+    /// On or off.
+    Switch,
+    /// A group of settings that is not there; the text says how to make it.
+    Absent(&'static str),
+}
+
+/// Which numbers a setting may have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NumberRange {
+    /// The least.
+    pub least: f32,
+    /// The greatest.
+    pub most: f32,
+    /// Whether only whole numbers are allowed.
+    pub is_whole: bool,
+    /// The ends of its slider; none: it has no slider.
+    pub slider: Option<[f32; 2]>,
+    /// From this value up the slider is logarithmic; none: it is linear.
+    pub logarithmic_from: Option<f32>,
+    /// The parts of the snake that may have a value each.
+    pub parts: Parts,
+    /// The value with which an optional setting begins; none: the setting is not optional.
+    pub begins_with: Option<f32>,
+}
+
+/// The parts of the snake that may have a value each, and their number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parts {
+    /// None: there is one value.
+    One,
+    /// The limbs.
+    Limbs(usize),
+    /// The joints.
+    Joints(usize),
+}
+
+impl Parts {
+    /// The number of parts.
+    pub fn count(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Limbs(count) | Self::Joints(count) => count,
+        }
+    }
+}
+
+/// The row of a setting whose field is a `T`.
+#[derive(Debug, Clone, Copy)]
+pub struct SettingRow<T> {
+    pub(super) setting: Setting,
+    field: PhantomData<fn(&mut T)>,
+}
+
+fn row<T>(name: &'static str, label: &'static str, kind: SettingKind) -> SettingRow<T> {
+    let setting = Setting { name, label, unit: "", hint: "", kind, fixed: None };
+    SettingRow { setting, field: PhantomData }
+}
+
+fn numbers(least: f32, most: f32) -> NumberRange {
+    NumberRange {
+        least,
+        most,
+        is_whole: false,
+        slider: None,
+        logarithmic_from: None,
+        parts: Parts::One,
+        begins_with: None,
+    }
+}
+
+fn numbers_in(range: RangeInclusive<f32>) -> NumberRange {
+    numbers(*range.start(), *range.end())
+}
+
+/// A number.
+pub fn number(
+    name: &'static str,
+    label: &'static str,
+    range: RangeInclusive<f32>,
+) -> SettingRow<f32> {
+    row(name, label, SettingKind::Number(numbers_in(range)))
+}
+
+/// A whole number. Its greatest value is at most 2^24, up to which a slider's numbers are exact.
+pub fn whole(
+    name: &'static str,
+    label: &'static str,
+    range: RangeInclusive<u32>,
+) -> SettingRow<u32> {
+    let range = numbers(*range.start() as f32, *range.end() as f32);
+    row(name, label, SettingKind::Number(NumberRange { is_whole: true, ..range }))
+}
+
+/// A number for all parts of the snake, or one for each.
+pub fn per_part(
+    name: &'static str,
+    label: &'static str,
+    range: RangeInclusive<f32>,
+    parts: Parts,
+) -> SettingRow<PerPart> {
+    row(name, label, SettingKind::Number(NumberRange { parts, ..numbers_in(range) }))
+}
+
+/// The same, or no value: then each genome has its own. A panel begins with the value `begins_with`.
+pub fn optional_per_part(
+    name: &'static str,
+    label: &'static str,
+    range: RangeInclusive<f32>,
+    parts: Parts,
+    begins_with: f32,
+) -> SettingRow<Option<PerPart>> {
+    let begins_with = Some(begins_with);
+    let range = NumberRange { parts, begins_with, ..numbers_in(range) };
+    row(name, label, SettingKind::Number(range))
+}
+
+/// A list of 1 to [`LONGEST_LIST`] numbers.
+pub fn list_of_numbers(
+    name: &'static str,
+    label: &'static str,
+    range: RangeInclusive<f32>,
+) -> SettingRow<Vec<f32>> {
+    row(name, label, SettingKind::List(numbers_in(range)))
+}
+
+/// The most numbers in a list.
+const LONGEST_LIST: usize = 100;
+
+/// One of some names.
+pub fn choice<T: Choices>(name: &'static str, label: &'static str) -> SettingRow<T> {
+    row(name, label, SettingKind::Choice(T::choices))
+}
+
+/// On or off.
+pub fn switch(name: &'static str, label: &'static str) -> SettingRow<bool> {
+    row(name, label, SettingKind::Switch)
+}
+
+/// A group of settings that is not there; `how` says how to make it.
+pub fn absent(name: &'static str, label: &'static str, how: &'static str) -> SettingRow<()> {
+    row(name, label, SettingKind::Absent(how))
+}
+
+impl<T> SettingRow<T> {
+    /// With a unit.
+    pub fn unit(mut self, unit: &'static str) -> Self {
+        self.setting.unit = unit;
+        self
+    }
+
+    /// With a sentence, without its full stop, about what it does to the snake or to the search.
+    pub fn hint(mut self, hint: &'static str) -> Self {
+        self.setting.hint = hint;
+        self
+    }
+
+    /// With a slider between these values.
+    pub fn slider(mut self, least: f32, most: f32) -> Self {
+        if let SettingKind::Number(range) = &mut self.setting.kind {
+            range.slider = Some([least, most]);
+        }
+        self
+    }
+
+    /// With a slider that is logarithmic from a value up.
+    pub fn logarithmic_from(mut self, value: f32) -> Self {
+        if let SettingKind::Number(range) = &mut self.setting.kind {
+            range.logarithmic_from = Some(value);
+        }
+        self
+    }
+
+    /// That may not change during a run; the reason is a sentence.
+    pub fn fixed(mut self, reason: &'static str) -> Self {
+        self.setting.fixed = Some(reason);
+        self
+    }
+}
+
+impl Setting {
+    /// Its label with its unit.
+    pub fn title(&self) -> String {
+        match self.unit {
+            "" => self.label.to_owned(),
+            unit => format!("{}, {unit}", self.label),
+        }
+    }
+
+    /// Its name in words, without the unit at its end: `rise_m` is "rise".
+    pub fn short_name(&self) -> String {
+        let name = self.name;
+        let short = UNITS_IN_NAMES.iter().find_map(|unit| name.strip_suffix(unit));
+        short.unwrap_or(name).replace('_', " ")
+    }
+
+    /// What may be typed for one number or for the list; empty for a choice and a switch.
+    pub fn range_in_words(&self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        match &self.kind {
+            SettingKind::Number(NumberRange { least, most, is_whole, .. }) => {
+                let whole = if *is_whole { ", whole numbers" } else { "" };
+                format!("{least} to {most}{unit}{whole}")
+            }
+            SettingKind::List(NumberRange { least, most, .. }) => {
+                format!("numbers from {least} to {most}{unit}, with commas between them")
+            }
+            SettingKind::Choice(_) | SettingKind::Switch | SettingKind::Absent(_) => String::new(),
+        }
+    }
+
+    /// Every text that [`Self::parse`] accepts, in words.
+    pub fn allowed(&self) -> String {
+        match &self.kind {
+            SettingKind::Number(range) => {
+                let list =
+                    if range.parts == Parts::One { "" } else { ", or a list such as [1, 2]" };
+                let none = if range.begins_with.is_none() { "" } else { ", or none" };
+                format!("{}{list}{none}", self.range_in_words())
+            }
+            SettingKind::List(_) => {
+                format!("a list such as [0.6, 0.8], {}", self.range_in_words())
+            }
+            SettingKind::Choice(choices) => names(*choices).join(", "),
+            SettingKind::Switch => "true, false".to_owned(),
+            SettingKind::Absent(how) => (*how).to_owned(),
+        }
+    }
+
+    /// Reads a value from a text. It may still be out of range: see [`Self::check`].
+    pub fn parse(&self, text: &str) -> Option<SettingValue> {
+        match &self.kind {
+            SettingKind::Number(range) if range.is_whole => {
+                text.parse().ok().map(SettingValue::Whole)
+            }
+            SettingKind::Number(range) => {
+                if text == "none" && range.begins_with.is_some() {
+                    return Some(SettingValue::None);
+                }
+                let list = || parse_list(text).filter(|_| range.parts != Parts::One);
+                parse_number(text)
+                    .map(SettingValue::Number)
+                    .or_else(|| list().map(SettingValue::List))
+            }
+            SettingKind::List(_) => parse_list(text).map(SettingValue::List),
+            SettingKind::Choice(choices) => {
+                let name = names(*choices).into_iter().find(|name| *name == text);
+                name.map(SettingValue::Name)
+            }
+            SettingKind::Switch => text.parse().ok().map(SettingValue::Switch),
+            SettingKind::Absent(_) => (text == "none").then_some(SettingValue::None),
+        }
+    }
+
+    /// Checks a value against the range; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// It is out of range, or a list of the wrong length.
+    pub fn check(&self, path: &str, value: &SettingValue) -> Result<(), Invalid> {
+        match (&self.kind, value) {
+            (SettingKind::Number(range), SettingValue::Number(number)) => {
+                within(path, *number, range.least..=range.most)
+            }
+            (SettingKind::Number(range), SettingValue::Whole(number)) => {
+                within(path, f64::from(*number), range.least.into()..=range.most.into())
+            }
+            (SettingKind::Number(range), SettingValue::List(numbers)) => {
+                let count = range.parts.count();
+                if numbers.len() != count {
+                    let allowed = format!("one value, or a list of {count}");
+                    return Err(Invalid::new(
+                        path,
+                        format!("a list of {}", numbers.len()),
+                        allowed,
+                    ));
+                }
+                numbers.iter().enumerate().try_for_each(|(index, &number)| {
+                    within(&format!("{path}[{index}]"), number, range.least..=range.most)
+                })
+            }
+            (SettingKind::List(range), SettingValue::List(numbers)) => {
+                if !(1..=LONGEST_LIST).contains(&numbers.len()) {
+                    let allowed = format!("1 to {LONGEST_LIST} values");
+                    return Err(Invalid::new(path, format!("{} values", numbers.len()), allowed));
+                }
+                numbers
+                    .iter()
+                    .try_for_each(|&number| within(path, number, range.least..=range.most))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether each of these words occurs in its label, name, hint or choices.
+    pub fn is_about(&self, words: &str) -> bool {
+        let mut text = format!("{} {} {}", self.title(), self.name.replace('_', " "), self.hint);
+        if let SettingKind::Choice(choices) = self.kind {
+            for choice in choices() {
+                text += &format!(" {} {}", choice.title, choice.name.replace('_', " "));
+            }
+        }
+        let text = text.to_lowercase();
+        words.to_lowercase().split_whitespace().all(|word| text.contains(word))
+    }
+}
+
+fn names(choices: fn() -> Vec<Choice>) -> Vec<&'static str> {
+    choices().iter().map(|choice| choice.name).collect()
+}
+
+/// A finite number. It is read as a 64-bit float first, as the settings of older runs were.
+#[expect(clippy::cast_possible_truncation, reason = "a setting is a 32-bit float")]
+fn parse_number(text: &str) -> Option<f32> {
+    text.parse::<f64>().ok().map(|number| number as f32).filter(|number| number.is_finite())
+}
+
+/// The numbers of a text such as `[1, 2]`.
+fn parse_list(text: &str) -> Option<Vec<f32>> {
+    let inside = text.trim().strip_prefix('[')?.strip_suffix(']')?.trim();
+    if inside.is_empty() {
+        return Some(Vec::new());
+    }
+    inside.split(',').map(|number| parse_number(number.trim())).collect()
+}
+
+/// The units with which names of settings end, the longer ones first.
+const UNITS_IN_NAMES: [&str; 10] =
+    ["_nms_per_rad", "_m_s_per_n", "_kg_m3", "_per_s", "_m_s2", "_m_s", "_rad", "_nm", "_m", "_s"];

@@ -1,0 +1,43 @@
+//! The settings as tables in Markdown: `docs/settings.md` holds what this writes.
+
+use std::fmt::Write;
+
+use super::walk::SettingGroup;
+use super::{ListedSetting, Section, SettingKind, list};
+
+/// All settings of a group, a table for each section, with their values as defaults.
+pub fn markdown(group: &(impl SettingGroup + Clone)) -> String {
+    let all = list(group);
+    let mut sections: Vec<Section> = Vec::new();
+    for listed in &all {
+        if !sections.contains(&listed.section) {
+            sections.push(listed.section);
+        }
+    }
+    let mut text = String::new();
+    for section in sections {
+        let Section { title, about } = section;
+        let _ = write!(text, "\n## {title}\n\n{about}\n\n");
+        text +=
+            "| setting | allowed | value | during a run | what it does |\n|---|---|---|---|---|\n";
+        for listed in all.iter().filter(|listed| listed.section == section) {
+            text += &line(listed);
+        }
+    }
+    text
+}
+
+fn line(listed: &ListedSetting) -> String {
+    let ListedSetting { path, setting, value, fixed, .. } = listed;
+    let allowed = match setting.kind {
+        SettingKind::Choice(choices) => {
+            let names: Vec<String> =
+                choices().iter().map(|choice| format!("`{}`", choice.name)).collect();
+            names.join(", ")
+        }
+        _ => setting.allowed(),
+    };
+    let live = if fixed.is_some() { "fixed" } else { "may change" };
+    let (label, hint) = (setting.label, setting.hint);
+    format!("| `{path}` | {allowed} | `{value}` | {live} | {label}: {hint}. |\n")
+}

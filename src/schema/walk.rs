@@ -1,0 +1,153 @@
+//! The way through all settings: groups, sections, and one visit for each field.
+
+use super::setting::{Setting, SettingRow};
+use super::value::{SettingField, SettingValue};
+use crate::check::Invalid;
+
+/// Settings that are shown together, under a title.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Section {
+    /// The title; no other section has it.
+    pub title: &'static str,
+    /// A sentence about these settings.
+    pub about: &'static str,
+}
+
+/// A struct of settings.
+pub trait SettingGroup {
+    /// Takes the walk to every field. Destructure `self` without `..`: a field without a row then does not compile.
+    fn walk(&mut self, walk: &mut Walk<'_>);
+
+    /// Checks what the range of a single setting cannot say: values that depend on each other.
+    ///
+    /// # Errors
+    /// The field, its value, and what is allowed beside the others.
+    fn check_together(&self) -> Result<(), Invalid> {
+        Ok(())
+    }
+}
+
+/// Where in the settings a row is, and what holds there.
+#[derive(Debug, Clone, Copy)]
+pub struct SettingPlace<'a> {
+    /// The full dotted name, from the struct at which the walk began.
+    pub path: &'a str,
+    /// The section that shows it.
+    pub section: Section,
+    /// Its row.
+    pub setting: Setting,
+    /// Whether the chosen strategy, or the chosen controller, uses it.
+    pub is_used: bool,
+    /// Why no run that goes on takes a change, as a sentence; none: a run that uses it does.
+    pub fixed: Option<&'static str>,
+    /// Whether this run takes a change while it goes on; if not, a sentence that says why.
+    pub live: Result<(), &'static str>,
+}
+
+/// Visits settings one after the other.
+pub trait SettingVisitor {
+    /// Visits a setting.
+    fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField);
+
+    /// Leaves a group whose dotted name is `path`, after all its settings.
+    fn leave(&mut self, _path: &str, _group: &dyn SettingGroup) {}
+}
+
+/// A walk through the settings: it knows the path, the section and the rule of the settings that come next.
+pub struct Walk<'a> {
+    visitor: &'a mut dyn SettingVisitor,
+    path: String,
+    state: State,
+}
+
+/// What holds for the settings that come next, until the end of their group.
+#[derive(Clone, Copy)]
+struct State {
+    section: Section,
+    is_used: bool,
+    fixed: Option<&'static str>,
+}
+
+/// Why a setting without an effect beside the others cannot change.
+const UNUSED: &str = "Takes effect with the next run, because the current run does not use it.";
+
+/// Takes a visitor to every setting of a group.
+pub fn walk(group: &mut dyn SettingGroup, visitor: &mut dyn SettingVisitor) {
+    let section = Section { title: "Settings", about: "All settings." };
+    let state = State { section, is_used: true, fixed: None };
+    let mut walk = Walk { visitor, path: String::new(), state };
+    group.walk(&mut walk);
+    walk.visitor.leave("", group);
+}
+
+impl Walk<'_> {
+    /// Puts the next settings of this group into a section.
+    pub fn section(&mut self, section: Section) {
+        self.state.section = section;
+    }
+
+    /// Says whether the next settings of this group have an effect beside what is chosen elsewhere.
+    pub fn used_if(&mut self, is_used: bool) {
+        self.state.is_used = is_used;
+    }
+
+    /// Says why no setting that comes next in this group may change during a run, as a sentence.
+    pub fn fixed(&mut self, reason: &'static str) {
+        self.state.fixed = Some(reason);
+    }
+
+    /// Visits a field under its row.
+    pub fn setting<T: SettingField>(&mut self, row: SettingRow<T>, field: &mut T) {
+        let State { section, is_used, fixed } = self.state;
+        let setting = row.setting;
+        let live = match fixed {
+            Some(reason) => Err(reason),
+            None if !is_used => Err(UNUSED),
+            None => setting.fixed.map_or(Ok(()), Err),
+        };
+        let length = self.enter(setting.name);
+        let fixed = fixed.or(setting.fixed);
+        let place = SettingPlace { path: &self.path, section, setting, is_used, fixed, live };
+        self.visitor.setting(&place, field);
+        self.path.truncate(length);
+    }
+
+    /// Visits a group of settings below this one.
+    pub fn group(&mut self, name: &str, group: &mut dyn SettingGroup) {
+        let state = self.state;
+        let length = self.enter(name);
+        group.walk(self);
+        self.visitor.leave(&self.path, group);
+        self.path.truncate(length);
+        self.state = state;
+    }
+
+    /// Goes one name down. Returns the length of the path before.
+    fn enter(&mut self, name: &str) -> usize {
+        let length = self.path.len();
+        if length > 0 {
+            self.path.push('.');
+        }
+        self.path.push_str(name);
+        length
+    }
+}
+
+/// A setting with its value, as the list of all settings has it.
+#[derive(Debug, Clone)]
+pub struct ListedSetting {
+    /// The full dotted name.
+    pub path: String,
+    /// The section that shows it.
+    pub section: Section,
+    /// Its row.
+    pub setting: Setting,
+    /// Its value.
+    pub value: SettingValue,
+    /// Whether the chosen strategy, or the chosen controller, uses it.
+    pub is_used: bool,
+    /// Why no run that goes on takes a change, as a sentence; none: a run that uses it does.
+    pub fixed: Option<&'static str>,
+    /// Whether this run takes a change while it goes on; if not, a sentence that says why.
+    pub live: Result<(), &'static str>,
+}

@@ -1,0 +1,193 @@
+//! The keyboard: maps key presses to the commands of actions.
+
+use bevy::input::keyboard::{Key, KeyboardInput};
+use bevy::prelude::*;
+use bevy_egui::input::EguiWantsInput;
+
+use crate::studio::commands::Command;
+use crate::studio::commands::actions::{Situation, of_keys};
+use crate::studio::schedule::FrameSet;
+use crate::studio::ui::viewport::StageArea;
+use crate::studio::workspace::situation::CurrentSituation;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(Update, read.in_set(FrameSet::TakeIn));
+}
+
+/// Sends the commands of this frame's key presses in their order, except for keys that a panel uses.
+///
+/// Uses the character on the key instead of its position, which differs between keyboard layouts.
+fn read(
+    mut presses: MessageReader<KeyboardInput>,
+    mut held: Local<Held>,
+    now: CurrentSituation,
+    (egui, area): (Res<EguiWantsInput>, Res<StageArea>),
+    mut send: MessageWriter<Command>,
+) {
+    for press in presses.read() {
+        match press.logical_key {
+            Key::Control | Key::Super => held.control = press.state.is_pressed(),
+            Key::Shift => held.shift = press.state.is_pressed(),
+            _ => {}
+        }
+        let repeats = matches!(press.logical_key, Key::ArrowLeft | Key::ArrowRight);
+        let is_echo = press.repeat && !repeats;
+        if !press.state.is_pressed() || is_echo {
+            continue;
+        }
+        let situation = now.situation();
+        let leaves = press.logical_key == Key::Escape && situation.is_covered;
+        let (is_typing, is_steering) = (area.has_text_cursor(), egui.wants_any_keyboard_input());
+        let is_taken = held.is_for_panel(&press.logical_key, is_typing, is_steering);
+        if is_taken && !leaves {
+            continue;
+        }
+        send.write_batch(command(&press.logical_key, *held, situation));
+    }
+}
+
+/// Modifier keys that are held down.
+#[derive(Debug, Clone, Copy, Default)]
+struct Held {
+    control: bool,
+    shift: bool,
+}
+
+impl Held {
+    /// Whether a panel uses a key: a text field, or a list or slider that has the keyboard focus. The help keys work
+    /// everywhere, but "?" can be typed.
+    fn is_for_panel(self, key: &Key, is_typing: bool, is_steering: bool) -> bool {
+        match key {
+            Key::F1 => false,
+            // With Ctrl it types no character.
+            key if is_typing => !self.is_command(key),
+            Key::Character(text) if text == "?" => false,
+            _ => is_steering && !self.control,
+        }
+    }
+
+    /// Whether it is a shortcut with Ctrl that text fields do not use.
+    fn is_command(self, key: &Key) -> bool {
+        let is_theirs =
+            |text: &str| ["a", "c", "v", "x", "z", "y"].contains(&text.to_lowercase().as_str());
+        self.control && !matches!(key, Key::Character(text) if is_theirs(text))
+    }
+}
+
+/// Name of the shortcut, such as `Ctrl Shift Z`.
+fn name_of(key: &Key, held: Held) -> Option<String> {
+    let (name, is_letter) = match key {
+        Key::Space => ("Space".to_owned(), true),
+        Key::Home => ("Home".to_owned(), true),
+        Key::End => ("End".to_owned(), true),
+        Key::ArrowLeft => ("Left".to_owned(), true),
+        Key::ArrowRight => ("Right".to_owned(), true),
+        Key::Escape => ("Esc".to_owned(), true),
+        Key::F1 => ("F1".to_owned(), true),
+        Key::Character(text) => (text.to_uppercase(), text.chars().all(char::is_alphabetic)),
+        _ => return None,
+    };
+    let control = if held.control { "Ctrl " } else { "" };
+    // Keyboards differ in which characters need Shift, so Shift is ignored for them.
+    let shift = if held.shift && is_letter { "Shift " } else { "" };
+    Some(format!("{control}{shift}{name}"))
+}
+
+/// The command of a key press.
+fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
+    let name = name_of(key, held)?;
+    let digit = name.parse().ok().filter(|digit| *digit > 0);
+    (of_keys(&name)?.asks)(Situation { digit, ..situation })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::commands::actions::ACTIONS;
+    use crate::studio::commands::pick::Pick;
+
+    const NONE: Held = Held { control: false, shift: false };
+    const CONTROL: Held = Held { control: true, shift: false };
+    const SHIFT: Held = Held { control: false, shift: true };
+
+    fn character(text: &str) -> Key {
+        Key::Character(text.into())
+    }
+
+    /// The key press for a shortcut's name.
+    fn pressed(name: &str) -> (Key, Held) {
+        let control = name.contains("Ctrl ");
+        let shift = name.contains("Shift ");
+        let last = name.rsplit(' ').next().expect("a key");
+        let key = match last {
+            "Space" => Key::Space,
+            "Home" => Key::Home,
+            "End" => Key::End,
+            "Left" => Key::ArrowLeft,
+            "Right" => Key::ArrowRight,
+            "Esc" => Key::Escape,
+            "F1" => Key::F1,
+            text => character(&text.to_lowercase()),
+        };
+        (key, Held { control, shift })
+    }
+
+    #[test]
+    fn every_shortcut_triggers_its_action() {
+        let situation =
+            Situation { is_race: true, can_undo: true, can_redo: true, ..Situation::default() };
+        for action in ACTIONS {
+            for name in action.keys {
+                let (key, held) = pressed(name);
+                assert_eq!(name_of(&key, held).as_deref(), Some(*name));
+                assert!(command(&key, held, situation).is_some(), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_command_of_a_key_depends_on_the_situation() {
+        let calm = Situation::default();
+        assert_eq!(command(&Key::Escape, NONE, calm), None, "nothing to leave");
+        let is_race = Situation { is_race: true, ..calm };
+        assert_eq!(command(&Key::Escape, NONE, is_race), Some(Command::Single));
+        let is_what_if = Situation { is_what_if: true, ..calm };
+        assert_eq!(command(&Key::Escape, NONE, is_what_if), Some(Command::DropChange));
+        let is_covered = Situation { is_covered: true, ..is_what_if };
+        assert_eq!(command(&Key::Escape, NONE, is_covered), Some(Command::CloseModal));
+        let is_running = Situation { is_running: true, ..calm };
+        assert_eq!(command(&character("e"), NONE, is_running), Some(Command::Pause));
+        assert_eq!(command(&character("e"), NONE, calm), Some(Command::Start));
+        let third = Command::Show(Pick::Generation(3));
+        assert_eq!(command(&character("3"), NONE, calm), Some(third));
+    }
+
+    #[test]
+    fn unused_keys_do_nothing() {
+        let calm = Situation::default();
+        for text in ["q", "x", "*"] {
+            assert_eq!(command(&character(text), NONE, calm), None, "{text}");
+        }
+        assert_eq!(command(&character("r"), CONTROL, calm), None, "control and R");
+        assert_eq!(command(&character("Q"), CONTROL, calm), Some(Command::Quit), "large letters");
+        assert_eq!(command(&character("R"), SHIFT, calm), Some(Command::Restart));
+    }
+
+    #[test]
+    fn a_text_field_keeps_its_editing_keys() {
+        assert!(!CONTROL.is_command(&character("z")));
+        assert!(CONTROL.is_command(&character("k")));
+        assert!(!NONE.is_command(&character("k")));
+    }
+
+    #[test]
+    fn help_keys_work_in_lists_and_a_question_mark_can_be_typed() {
+        let (help, letter) = (character("?"), character("n"));
+        assert!(!SHIFT.is_for_panel(&help, false, true));
+        assert!(SHIFT.is_for_panel(&help, true, true));
+        assert!(!NONE.is_for_panel(&Key::F1, true, true));
+        assert!(NONE.is_for_panel(&letter, false, true), "in a list");
+        assert!(!CONTROL.is_for_panel(&letter, false, true), "no letter");
+        assert!(!NONE.is_for_panel(&letter, false, false), "on the stage");
+    }
+}

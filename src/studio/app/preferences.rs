@@ -1,0 +1,236 @@
+//! Preferences of the user, kept across restarts.
+
+use bevy::ecs::system::SystemParam;
+use bevy::prelude::*;
+use bevy::window::PrimaryWindow;
+
+use crate::save::{Preferences, PreferencesFile};
+use crate::studio::commands::overlay::Overlay;
+use crate::studio::scene::camera::StageCamera;
+use crate::studio::scene::overlays::Overlays;
+use crate::studio::stage::playback::Playback;
+use crate::studio::ui::notifications::Notices;
+use crate::studio::ui::theme::Theme;
+use crate::studio::workspace::Workspace;
+use crate::studio::workspace::layout::Layout;
+
+/// The stored preferences and their file.
+#[derive(Resource, Debug, Clone)]
+pub(crate) struct StoredPreferences {
+    file: PreferencesFile,
+    /// Last known contents of the file.
+    stored: Preferences,
+    /// Preferences at the last check. A change is written once it has settled.
+    seen: Preferences,
+    /// Error of reading or writing the file, until it is shown.
+    problem: Option<String>,
+    /// Time of the last check, in seconds.
+    polled_s: f32,
+    /// Default for anti-aliasing.
+    was_smooth: Option<bool>,
+}
+
+/// Polling interval for changed preferences, in seconds.
+const POLL_S: f32 = 0.5;
+
+impl StoredPreferences {
+    /// Reads the preferences. An unreadable file is renamed as a backup.
+    pub fn read(file: &PreferencesFile) -> Self {
+        let (stored, problem) = match file.load() {
+            Ok(stored) => (stored.unwrap_or_default(), None),
+            Err(error) => {
+                let aside = file
+                    .put_aside()
+                    .map(|path| format!(" The old file is kept as {}.", path.display()));
+                let problem = format!(
+                    "The window settings were reset: {error}.{}",
+                    aside.unwrap_or_default()
+                );
+                (Preferences::default(), Some(problem))
+            }
+        };
+        let file = file.clone();
+        Self { file, seen: stored.clone(), stored, problem, polled_s: 0.0, was_smooth: None }
+    }
+
+    /// Disables writing.
+    pub fn only_read(mut self) -> Self {
+        self.file = PreferencesFile::nowhere();
+        self
+    }
+
+    /// The stored preferences.
+    pub fn chosen(&self) -> &Preferences {
+        &self.stored
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(PostStartup, restore).add_systems(Last, remember);
+}
+
+/// Everything that preferences cover, in its current state.
+#[derive(SystemParam)]
+struct Chosen<'w, 's> {
+    workspace: ResMut<'w, Workspace>,
+    theme: Res<'w, Theme>,
+    overlays: ResMut<'w, Overlays>,
+    playback: ResMut<'w, Playback>,
+    smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
+    window: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
+}
+
+impl Chosen<'_, '_> {
+    fn is_smooth(&self) -> Option<bool> {
+        self.smoothing.iter().next().map(|msaa| *msaa != Msaa::Off)
+    }
+}
+
+/// Applies the stored preferences to the window.
+fn restore(
+    mut remembered: ResMut<StoredPreferences>,
+    mut chosen: Chosen,
+    mut notices: ResMut<Notices>,
+) {
+    notices.problems(remembered.problem.take());
+    remembered.was_smooth = chosen.is_smooth();
+    let Preferences { ui_scale, layout, overlays, speed, loops, smooth_edges, .. } =
+        remembered.stored.clone();
+    chosen.workspace.scale = ui_scale;
+    chosen.workspace.layout = Layout::from_text(&layout);
+    for name in overlays {
+        let known = Overlay::ALL.into_iter().find(|overlay| overlay.words().0 == name);
+        if let Some(overlay) = known.filter(|overlay| !chosen.overlays.shows(*overlay)) {
+            chosen.overlays.toggle(overlay);
+        }
+    }
+    chosen.playback.set_speed(speed);
+    if chosen.playback.loops() != loops {
+        chosen.playback.toggle_loop();
+    }
+    if let Some(is_smooth) = smooth_edges {
+        for mut msaa in &mut chosen.smoothing {
+            *msaa = if is_smooth { Msaa::Sample4 } else { Msaa::Off };
+        }
+    }
+}
+
+/// Writes preferences after a change has settled, and when the window closes.
+fn remember(
+    mut remembered: ResMut<StoredPreferences>,
+    chosen: Chosen,
+    mut notices: ResMut<Notices>,
+    mut exits: MessageReader<AppExit>,
+    time: Res<Time<Real>>,
+) {
+    let ends = exits.read().next().is_some();
+    if !ends && time.elapsed_secs() - remembered.polled_s < POLL_S {
+        return;
+    }
+    remembered.polled_s = time.elapsed_secs();
+    let now = now(&remembered, &chosen);
+    let rests = now == remembered.seen;
+    remembered.seen = now.clone();
+    if (rests || ends) && now != remembered.stored {
+        // Report a failure only once; the next attempt would fail too.
+        if let Err(error) = remembered.file.store(&now) {
+            notices.problem(format!("The window settings could not be saved: {error}"));
+        }
+        remembered.stored = now;
+    }
+}
+
+fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
+    let before = &remembered.stored;
+    // Window sizes are requested in logical pixels. With physical pixels the window would grow at every start on a
+    // display with a scale factor above one.
+    let logical = |length: f32| length.round() as u32;
+    let window_size = chosen
+        .window
+        .iter()
+        .next()
+        .map(|window| (logical(window.width()), logical(window.height())));
+    let is_smooth = chosen.is_smooth();
+    let has_chosen = before.smooth_edges.is_some() || is_smooth != remembered.was_smooth;
+    let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
+    let now = Preferences {
+        theme: chosen.theme.name().to_owned(),
+        ui_scale: chosen.workspace.scale,
+        window_size: window_size.or(before.window_size),
+        layout: chosen.workspace.layout.to_text(),
+        overlays: shown.map(|overlay| overlay.words().0.to_owned()).collect(),
+        speed: chosen.playback.speed(),
+        loops: chosen.playback.loops(),
+        smooth_edges: is_smooth.filter(|_| has_chosen),
+        tour_is_over: chosen.workspace.tour_is_over,
+    };
+    // A closing window can have size zero; ignore that.
+    if now.check().is_ok() { now } else { before.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::window::WindowResolution;
+
+    fn app(file: &PreferencesFile) -> App {
+        let mut app = App::new();
+        app.add_message::<AppExit>()
+            .insert_resource(StoredPreferences::read(file))
+            .init_resource::<Workspace>()
+            .init_resource::<Theme>()
+            .init_resource::<Overlays>()
+            .init_resource::<Playback>()
+            .init_resource::<Notices>()
+            .init_resource::<Time<Real>>()
+            .add_plugins(plugin);
+        app.update();
+        app
+    }
+
+    #[test]
+    fn preferences_survive_a_restart() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = PreferencesFile::at(&folder.path().join("studio.ron"));
+        let mut first = app(&file);
+        first.world_mut().resource_mut::<Workspace>().scale = 1.5;
+        first.world_mut().resource_mut::<Workspace>().tour_is_over = true;
+        first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
+        first.world_mut().resource_mut::<Playback>().set_speed(0.5);
+        *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
+        first.world_mut().write_message(AppExit::Success);
+        first.update();
+        let second = app(&file);
+        assert_eq!(second.world().resource::<Workspace>().scale, 1.5);
+        assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
+        assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
+        let chosen = second.world().resource::<StoredPreferences>().chosen().clone();
+        assert!(chosen.theme == "dark" && chosen.tour_is_over);
+    }
+
+    #[test]
+    fn an_unreadable_file_is_reported_and_backed_up() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("studio.ron");
+        let long = format!("(kind: \"{}\")", "x".repeat(300));
+        let file = PreferencesFile::at(&path);
+        std::fs::write(&path, &long).expect("written");
+        let app = app(&file);
+        assert_eq!(app.world().resource::<Notices>().len(), 1);
+        assert!(folder.path().join("studio.ron.unreadable").exists());
+    }
+
+    #[test]
+    fn the_window_size_is_stable_on_scaled_displays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = PreferencesFile::at(&folder.path().join("studio.ron"));
+        let mut app = app(&file);
+        let mut resolution = WindowResolution::new(2560, 1440);
+        resolution.set_scale_factor(2.0);
+        app.world_mut().spawn((Window { resolution, ..default() }, PrimaryWindow));
+        app.world_mut().write_message(AppExit::Success);
+        app.update();
+        let chosen = StoredPreferences::read(&file).chosen().clone();
+        assert_eq!(chosen.window_size, Some((1280, 720)));
+    }
+}

@@ -1,0 +1,71 @@
+//! The window's title shows the state of the run and the stage, for taskbars, screen readers and scripts.
+
+use bevy::prelude::*;
+use bevy::window::PrimaryWindow;
+
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::StageMode;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
+use crate::studio::stage::staged_champion::ChampionSource;
+use crate::studio::state::current_run::{CurrentRun, RunStatus};
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(Update, update.in_set(FrameSet::Draw));
+}
+
+fn update(
+    evolution: Res<CurrentRun>,
+    lanes: Query<&Lane>,
+    (mode, playback): (Res<StageMode>, Res<Playback>),
+    mut window: Single<&mut Window, With<PrimaryWindow>>,
+) {
+    let status = match evolution.status() {
+        RunStatus::Ready => "ready",
+        RunStatus::Running => "running",
+        RunStatus::Paused => "paused",
+        RunStatus::Finished => "finished",
+    };
+    let first = lanes.iter().min_by_key(|lane| lane.number());
+    let shown = match (&*mode, first) {
+        (_, None) => "nothing".to_owned(),
+        (StageMode::Race, _) => format!("a race of {}", lanes.iter().len()),
+        (mode, Some(lane)) => {
+            let generation = lane.staged().generation();
+            let what = match lane.staged().source() {
+                ChampionSource::Opened(_) | ChampionSource::Library(_) => {
+                    "saved champion".to_owned()
+                }
+                ChampionSource::Lesson => "a lesson".to_owned(),
+                ChampionSource::Run(run) if run == evolution.number() => {
+                    format!("generation {generation}")
+                }
+                ChampionSource::Run(_) => format!("generation {generation} of an earlier run"),
+            };
+            let is_what_if = matches!(mode, StageMode::WhatIf { .. });
+            let manner = match (lane.staged().is_changed(), lane.staged().recording()) {
+                _ if is_what_if => " and what if",
+                (true, _) => " in another world",
+                (false, Some(_)) => " as recorded",
+                (false, None) => "",
+            };
+            let disturbed = if lane.is_disturbed() { ", disturbed" } else { "" };
+            format!("{what}{manner}{disturbed}")
+        }
+    };
+    let held = match playback.is_playing() {
+        true => String::new(),
+        false => format!(", held at {:.2} s", playback.time_s()),
+    };
+    let from = evolution.founder().map(|name| format!(", from {name}")).unwrap_or_default();
+    let title = format!(
+        "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{held}",
+        evolution.preset(),
+        evolution.seed(),
+        evolution.reports().len(),
+        evolution.settings().evolution.generations,
+    );
+    if window.title != title {
+        window.title = title;
+    }
+}

@@ -1,0 +1,230 @@
+//! The list of all named actions. Menus, keys, the command palette and the list of shortcuts all read this one list, so
+//! they cannot disagree.
+
+use super::Command;
+use super::camera_mode::CameraMode;
+use super::modal::Modal;
+use super::overlay::Overlay;
+use super::panel::PanelKind;
+use super::pick::Pick;
+use super::screenshot_area::ScreenshotArea;
+
+/// A menu, and a group in the list of shortcuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Menu {
+    /// Evolution, and the choice of champions.
+    Run,
+    /// Undo and redo.
+    Edit,
+    /// Playback.
+    Stage,
+    /// Camera, overlays, theme and pictures.
+    View,
+    /// Panels.
+    Panels,
+    /// Help.
+    Help,
+}
+
+impl Menu {
+    /// All menus, in the order of the menu bar.
+    pub const ALL: [Self; 6] =
+        [Self::Run, Self::Edit, Self::Stage, Self::View, Self::Panels, Self::Help];
+
+    /// Label.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Run => "Run",
+            Self::Edit => "Edit",
+            Self::Stage => "Stage",
+            Self::View => "View",
+            Self::Panels => "Panels",
+            Self::Help => "Help",
+        }
+    }
+}
+
+/// The state that decides which command an action stands for.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Situation {
+    /// Evolution is running.
+    pub is_running: bool,
+    /// The stage shows a what-if.
+    pub is_what_if: bool,
+    /// The stage shows a race.
+    pub is_race: bool,
+    /// A modal view is open, or the panels are hidden.
+    pub is_covered: bool,
+    /// There is a change to undo.
+    pub can_undo: bool,
+    /// There is a change to redo.
+    pub can_redo: bool,
+    /// The digit key that was pressed, if any.
+    pub digit: Option<u32>,
+}
+
+/// A named action.
+pub(crate) struct Action {
+    /// Menu that lists the action.
+    pub menu: Menu,
+    /// Label.
+    pub name: &'static str,
+    /// Keyboard shortcuts, such as `Ctrl Z`. The first is the one that is displayed.
+    pub keys: &'static [&'static str],
+    /// The command in this situation; `None` if there is nothing to do.
+    pub asks: fn(Situation) -> Option<Command>,
+}
+
+const fn action(
+    menu: Menu,
+    name: &'static str,
+    keys: &'static [&'static str],
+    asks: fn(Situation) -> Option<Command>,
+) -> Action {
+    Action { menu, name, keys, asks }
+}
+
+impl Action {
+    /// The displayed shortcut, or an empty text.
+    pub fn key(&self) -> &'static str {
+        match self.keys {
+            ["1", ..] => "1 ... 9",
+            [first, ..] => first,
+            [] => "",
+        }
+    }
+}
+
+/// The action of a shortcut. Without an exact match, Shift is ignored.
+pub(crate) fn of_keys(keys: &str) -> Option<&'static Action> {
+    let exact = |keys: &str| ACTIONS.iter().find(|action| action.keys.contains(&keys));
+    exact(keys).or_else(|| exact(keys.strip_prefix("Shift ")?))
+}
+
+/// All actions, grouped by menu.
+pub(crate) const ACTIONS: &[Action] = &[
+    action(Menu::Run, "Start or pause evolution", &["E"], |now| {
+        Some(if now.is_running { Command::Pause } else { Command::Start })
+    }),
+    action(Menu::Run, "Evolve one generation", &["G"], |_| Some(Command::SingleGeneration)),
+    action(Menu::Run, "Reset the run", &[], |_| Some(Command::Reset)),
+    action(
+        Menu::Run,
+        "Show a generation's champion",
+        &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
+        |now| now.digit.map(|generation| Command::Show(Pick::Generation(generation))),
+    ),
+    action(Menu::Run, "Show the saved champion", &["0"], |_| Some(Command::Show(Pick::Opened(0)))),
+    action(Menu::Run, "Race generations", &["N"], |_| Some(Command::RaceGenerations)),
+    action(Menu::Run, "Race best 10 of the latest generation", &["M"], |_| {
+        Some(Command::RaceLeaders(None))
+    }),
+    action(Menu::Run, "Quit", &["Ctrl Q"], |_| Some(Command::Quit)),
+    action(Menu::Edit, "Undo", &["Ctrl Z"], |now| now.can_undo.then_some(Command::Undo)),
+    action(Menu::Edit, "Redo", &["Ctrl Shift Z", "Ctrl Y"], |now| {
+        now.can_redo.then_some(Command::Redo)
+    }),
+    action(Menu::Edit, "Keep this change", &[], |now| {
+        now.is_what_if.then_some(Command::KeepChange)
+    }),
+    action(Menu::Edit, "Leave race / Discard change", &["Esc"], |now| match now {
+        Situation { is_covered: true, .. } => Some(Command::CloseModal),
+        Situation { is_what_if: true, .. } => Some(Command::DropChange),
+        Situation { is_race: true, .. } => Some(Command::Single),
+        _ => None,
+    }),
+    action(Menu::Stage, "Pause / Play", &["Space"], |_| Some(Command::TogglePlayback)),
+    action(Menu::Stage, "Previous physics step", &["Left"], |_| {
+        Some(Command::Step { forward: false })
+    }),
+    action(Menu::Stage, "Next physics step", &["Right"], |_| Some(Command::Step { forward: true })),
+    action(Menu::Stage, "Go to start", &["R"], |_| Some(Command::Restart)),
+    action(Menu::Stage, "Go to end", &["End"], |_| Some(Command::SeekEnd)),
+    action(Menu::Stage, "Faster", &["+", "="], |_| Some(Command::ChangeSpeed { faster: true })),
+    action(Menu::Stage, "Slower", &["-"], |_| Some(Command::ChangeSpeed { faster: false })),
+    action(Menu::Stage, "Loop", &["O"], |_| Some(Command::ToggleLoop)),
+    action(Menu::View, "Follow snake", &["F"], |_| Some(Command::ToggleFollow)),
+    action(Menu::View, "Next camera", &["C"], |_| Some(Command::NextCameraMode)),
+    action(Menu::View, "View from the side", &[], |_| Some(Command::SetCamera(CameraMode::Side))),
+    action(Menu::View, "View from above", &[], |_| Some(Command::SetCamera(CameraMode::Top))),
+    action(Menu::View, "Reset camera", &["Home"], |_| Some(Command::ResetCamera)),
+    action(Menu::View, "Contacts and forces", &["V"], |_| {
+        Some(Command::ToggleOverlay(Overlay::Contacts))
+    }),
+    action(Menu::View, "Joint torques", &["J"], |_| Some(Command::ToggleOverlay(Overlay::Torques))),
+    action(Menu::View, "Trail", &["B"], |_| Some(Command::ToggleOverlay(Overlay::Trail))),
+    action(Menu::View, "Fitness line", &["L"], |_| {
+        Some(Command::ToggleOverlay(Overlay::FitnessLine))
+    }),
+    action(Menu::View, "Collision shapes", &["D"], |_| {
+        Some(Command::ToggleOverlay(Overlay::Wireframe))
+    }),
+    action(Menu::View, "Anti-aliasing", &["A"], |_| Some(Command::ToggleSmoothEdges)),
+    action(Menu::View, "Light / dark theme", &["T"], |_| Some(Command::ToggleTheme)),
+    action(Menu::View, "Larger panels", &["Ctrl +", "Ctrl ="], |_| {
+        Some(Command::ChangeScale { larger: true })
+    }),
+    action(Menu::View, "Smaller panels", &["Ctrl -"], |_| {
+        Some(Command::ChangeScale { larger: false })
+    }),
+    action(Menu::View, "Reset panel size", &["Ctrl 0"], |_| Some(Command::ResetScale)),
+    action(Menu::View, "Show only the stage", &["H"], |_| Some(Command::TogglePanels)),
+    action(Menu::View, "Save picture of the stage", &["P"], |_| {
+        Some(Command::TakePicture(ScreenshotArea::Stage))
+    }),
+    action(Menu::View, "Save picture of the window", &["Shift P"], |_| {
+        Some(Command::TakePicture(ScreenshotArea::Window))
+    }),
+    action(Menu::Panels, "Run", &["Ctrl 1"], |_| Some(Command::OpenPanel(PanelKind::Run))),
+    action(Menu::Panels, "World", &["Ctrl 2"], |_| Some(Command::OpenPanel(PanelKind::World))),
+    action(Menu::Panels, "Charts", &["Ctrl 3"], |_| Some(Command::OpenPanel(PanelKind::Charts))),
+    action(Menu::Panels, "Champions", &["Ctrl 4"], |_| {
+        Some(Command::OpenPanel(PanelKind::Champions))
+    }),
+    action(Menu::Panels, "Library", &["Ctrl 5"], |_| Some(Command::OpenPanel(PanelKind::Library))),
+    action(Menu::Panels, "Lessons", &["Ctrl 6"], |_| Some(Command::OpenPanel(PanelKind::Lessons))),
+    action(Menu::Panels, "Close panel", &["Ctrl W"], |_| Some(Command::ClosePanel)),
+    action(Menu::Panels, "Reset layout", &[], |_| Some(Command::ResetLayout)),
+    action(Menu::Help, "Keyboard shortcuts", &["?", "F1"], |_| {
+        Some(Command::ToggleModal(Modal::Keys))
+    }),
+    action(Menu::Help, "Find a command", &["Ctrl K", "Ctrl P"], |_| {
+        Some(Command::ToggleModal(Modal::CommandPalette))
+    }),
+    action(Menu::Help, "Take the tour", &[], |_| Some(Command::ToggleModal(Modal::Tour(0)))),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn names_and_keys_are_unique() {
+        let mut names = BTreeSet::new();
+        let mut keys = BTreeSet::new();
+        for action in ACTIONS {
+            assert!(names.insert(action.name), "{} twice", action.name);
+            for key in action.keys {
+                assert!(keys.insert(*key), "{key} twice");
+            }
+        }
+    }
+
+    #[test]
+    fn actions_are_grouped_by_menu_and_no_menu_is_empty() {
+        let mut menus: Vec<Menu> = ACTIONS.iter().map(|action| action.menu).collect();
+        menus.dedup();
+        assert_eq!(menus, Menu::ALL);
+    }
+
+    #[test]
+    fn shift_is_ignored_unless_the_shortcut_exists_with_shift() {
+        assert_eq!(of_keys("Shift R").map(|action| action.name), Some("Go to start"));
+        assert_eq!(
+            of_keys("Shift P").map(|action| action.name),
+            Some("Save picture of the window")
+        );
+        assert!(of_keys("Ctrl R").is_none());
+    }
+}

@@ -1,0 +1,25 @@
+//! Export of a chart to a file.
+
+use std::sync::Arc;
+
+use crate::plot::Figure;
+
+/// A chart to export.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ChartExport {
+    /// The chart's data.
+    pub figure: Arc<Figure>,
+    /// First part of the file name.
+    pub name: &'static str,
+    /// File format.
+    pub format: ChartFormat,
+}
+
+/// A file format for charts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ChartFormat {
+    /// PNG image of 1600 by 900 pixels.
+    Png,
+    /// CSV table.
+    Csv,
+}

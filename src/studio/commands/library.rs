@@ -1,0 +1,62 @@
+//! Commands to the library of saves.
+
+use std::path::PathBuf;
+
+use crate::save::library::SavePlace;
+
+/// A command to the library of saves.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum LibraryCommand {
+    /// Read the folder of saves, or reread it.
+    Refresh,
+    /// Load these entries first, because they are visible.
+    LoadFirst(Vec<SavePlace>),
+    /// Show the champion of an entry on the stage; of a run, its best champion.
+    Replay(SavePlace),
+    /// Race the champions of entries.
+    Race(Vec<SavePlace>),
+    /// Show the champion of a run's generation on the stage.
+    ReplayGeneration {
+        /// The run's folder.
+        run: PathBuf,
+        /// The generation; the first is 1.
+        generation: u32,
+    },
+    /// Race the champions of these generations of a run. Of many generations, an evenly spaced selection races.
+    RaceGenerations {
+        /// The run's folder.
+        run: PathBuf,
+        /// The generations that have a champion.
+        generations: Vec<u32>,
+    },
+    /// Start a run with the champion of an entry as a parent.
+    StartFrom(SavePlace),
+    /// Rename a champion.
+    Rename {
+        /// The champion.
+        place: SavePlace,
+        /// The new name.
+        name: String,
+    },
+    /// Copy champions within the folder of saves.
+    Duplicate(Vec<SavePlace>),
+    /// Move entries to the trash folder, from where undo restores them.
+    Delete(Vec<SavePlace>),
+    /// Copy entries to another folder.
+    Export {
+        /// The entries.
+        places: Vec<SavePlace>,
+        /// Target folder, or target file for a single champion; without it, the default export folder.
+        to: Option<PathBuf>,
+    },
+    /// Copy champions or runs into the folder of saves.
+    Import(Vec<PathBuf>),
+    /// Undo the latest file operation.
+    Undo,
+    /// Redo the latest undone file operation.
+    Redo,
+    /// Stop a batch operation after the current file.
+    Cancel,
+    /// Show the champions that were loaded in the background.
+    ShowLoaded,
+}

@@ -1,0 +1,54 @@
+//! Panels and their names.
+
+use serde::{Deserialize, Serialize};
+
+/// A tab of the window. Panels can be docked anywhere; the stage stays in the main window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum PanelKind {
+    /// The 3D view with its player.
+    Stage,
+    /// Start, pause and configure evolution.
+    Run,
+    /// Settings of the world and the snake.
+    World,
+    /// Charts of the run.
+    Charts,
+    /// Champions of the generations.
+    Champions,
+    /// Saved champions and runs.
+    Library,
+    /// Lessons that reproduce findings of the report.
+    Lessons,
+}
+
+impl PanelKind {
+    /// All panels except the stage, in the order of the menu.
+    pub const ALL: [Self; 6] =
+        [Self::Run, Self::World, Self::Charts, Self::Champions, Self::Library, Self::Lessons];
+
+    /// Label of the tab.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stage => "Stage",
+            Self::Run => "Run",
+            Self::World => "World",
+            Self::Charts => "Charts",
+            Self::Champions => "Champions",
+            Self::Library => "Library",
+            Self::Lessons => "Lessons",
+        }
+    }
+
+    /// Tooltip.
+    pub fn hint(self) -> &'static str {
+        match self {
+            Self::Stage => "The snake on its stairs",
+            Self::Run => "Start, pause and configure evolution (Ctrl 1)",
+            Self::World => "Change the surface, the snake and the stairs (Ctrl 2)",
+            Self::Charts => "See how evolution works (Ctrl 3)",
+            Self::Champions => "Replay the best of every generation (Ctrl 4)",
+            Self::Library => "All saved champions and runs: replay, race, export (Ctrl 5)",
+            Self::Lessons => "Five two-minute experiments (Ctrl 6)",
+        }
+    }
+}

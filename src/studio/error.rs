@@ -1,0 +1,38 @@
+//! Reasons why the studio cannot open or ends with an error.
+
+use std::path::PathBuf;
+
+use crate::save::SaveError;
+
+/// Reason why the studio could not open or ended with an error.
+#[derive(Debug, thiserror::Error)]
+pub enum StudioError {
+    /// No display or no graphics driver is available.
+    #[error("no window can be opened ({0}); use --no-render to work in the terminal")]
+    NoWindow(String),
+    /// A picture could not be drawn.
+    #[error(
+        "no picture can be drawn ({0}); drawing needs a graphics driver, a software one will do"
+    )]
+    NoPicture(String),
+    /// A champion cannot be built.
+    #[error("{0}")]
+    Unfit(String),
+    /// The champion to open with could not be read.
+    #[error(transparent)]
+    Champion(#[from] SaveError),
+    /// The program panicked while the window was open.
+    #[error("the studio failed: {message}; {}", match run {
+        Some(folder) => format!("the run is safe, it goes on with --resume {}", folder.display()),
+        None => "no run was going on".to_owned(),
+    })]
+    Crashed {
+        /// The panic's message.
+        message: String,
+        /// Folder of the current run, if any.
+        run: Option<PathBuf>,
+    },
+    /// The window closed with an error.
+    #[error("the studio ended with an error (exit code {0})")]
+    Ended(u8),
+}

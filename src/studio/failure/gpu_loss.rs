@@ -1,0 +1,138 @@
+//! Recovery from a lost graphics device, for example after a driver restart or a switch between two GPUs.
+//!
+//! If the renderer reports the loss, drawing restarts on another device. Usually the renderer panics in the middle of a
+//! frame instead, and this process cannot draw any more. The program then restarts itself with the same arguments, and
+//! the run continues from its folder.
+
+#[cfg(unix)]
+use std::ffi::OsString;
+
+use std::io::Write;
+use std::panic::PanicHookInfo;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bevy::prelude::*;
+use bevy::render::error_handler::{ErrorType, RenderError, RenderErrorHandler, RenderErrorPolicy};
+use bevy::render::settings::RenderCreation;
+
+use crate::studio::error::StudioError;
+use crate::studio::state::run_context::RunInProgress;
+use crate::studio::ui::notifications::Notices;
+
+/// Reason why drawing ended for good, if it did. The caller reads it after the window is closed.
+#[derive(Resource, Debug, Clone, Default)]
+pub(crate) struct Failure(Arc<Mutex<Option<String>>>);
+
+impl Failure {
+    /// The reason, or `None` while drawing works.
+    pub fn message(&self) -> Option<String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// Environment variable that counts how often the program has restarted itself.
+const REOPENED: &str = "SNAKES_REOPENED";
+/// Maximum number of restarts. A driver that has failed more often will fail again.
+const MAX_RESTARTS: u32 = 3;
+
+/// Number of lost devices.
+#[derive(Resource, Debug, Default)]
+struct Losses(u32);
+
+/// Maximum number of lost devices per session before drawing is given up.
+const MAX_LOSSES: u32 = 5;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Losses>()
+        .insert_resource(RenderErrorHandler(recover))
+        .add_systems(Startup, report_restart);
+}
+
+/// How often the program has restarted itself.
+fn restarts() -> u32 {
+    std::env::var(REOPENED).ok().and_then(|text| text.parse().ok()).unwrap_or(0)
+}
+
+fn report_restart(mut notices: ResMut<Notices>) {
+    if restarts() > 0 {
+        notices.problem(
+            "The graphics driver failed and the studio restarted. Evolution continues where it was; runs \
+             started later are under \"Resume a stopped run\"."
+                .to_owned(),
+        );
+    }
+}
+
+/// Restarts the program if the graphics driver caused this panic, or ends it with a message if a restart fails. Returns
+/// for any other panic.
+///
+/// After a panic in the renderer, dropping its buffers panics again, which would abort the process without a message.
+pub(crate) fn recover_or_exit(info: &PanicHookInfo<'_>, run_folder: &RunInProgress) {
+    if !info.location().is_some_and(|place| place.file().contains("wgpu")) {
+        return;
+    }
+    if restarts() < MAX_RESTARTS {
+        restart_program();
+    }
+    let said = info.payload_as_str().unwrap_or_default().lines().next().unwrap_or_default();
+    let message = format!("the graphics driver failed ({said})");
+    // The panicking thread may hold this lock, so do not block on it.
+    let run = run_folder.try_lock().ok().and_then(|mut run| run.take());
+    // Writing to standard error may fail. There is no other place to report that.
+    let _ = writeln!(std::io::stderr(), "error: {}", StudioError::Crashed { message, run });
+    std::process::exit(1)
+}
+
+/// Replaces this process by a new one, which releases all locks and so frees the run's folder.
+#[cfg(unix)]
+fn restart_program() {
+    use std::os::unix::process::CommandExt;
+    let Ok(program) = std::env::current_exe() else { return };
+    let arguments = restart_arguments(std::env::args_os().skip(1));
+    let mut command = std::process::Command::new(program);
+    // `exec` returns only on failure.
+    let _ = command.args(arguments).env(REOPENED, (restarts() + 1).to_string()).exec();
+}
+
+/// The arguments for the new process. `--restart` is dropped, because that run has begun and must continue now.
+#[cfg(unix)]
+fn restart_arguments(arguments: impl Iterator<Item = OsString>) -> impl Iterator<Item = OsString> {
+    arguments.filter(|argument| argument != "--restart")
+}
+
+/// Other systems cannot replace a process; the message explains how to continue.
+#[cfg(not(unix))]
+fn restart_program() {}
+
+/// Requests a new device, or gives up with a message.
+fn recover(error: &RenderError, studio: &mut World, _: &mut World) -> RenderErrorPolicy {
+    let mut losses = studio.resource_mut::<Losses>();
+    losses.0 += 1;
+    let is_lost = matches!(error.ty, ErrorType::DeviceLost | ErrorType::OutOfMemory);
+    if is_lost && losses.0 <= MAX_LOSSES {
+        studio.resource_mut::<Notices>().problem(
+            "The graphics device was lost; drawing restarts and evolution continues. If this happens \
+             repeatedly, try a smaller window or another graphics driver."
+                .to_owned(),
+        );
+        return RenderErrorPolicy::Recover(RenderCreation::default());
+    }
+    let what = error.description.lines().next().unwrap_or_default();
+    let message = format!("the graphics driver failed: {:?} {what}", error.ty);
+    let failure = studio.resource::<Failure>().0.clone();
+    failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
+    studio.write_message(AppExit::error());
+    RenderErrorPolicy::StopRendering
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_restart_continues_a_run_that_was_started_afresh() {
+        let given = ["--seed", "7", "--restart", "--preset", "quick"].map(OsString::from);
+        let again: Vec<OsString> = restart_arguments(given.into_iter()).collect();
+        assert_eq!(again, ["--seed", "7", "--preset", "quick"]);
+    }
+}

@@ -1,0 +1,175 @@
+//! Ancestors of the best snake, drawn over all other snakes of the run. A click replays one.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::fitness::axis_title;
+use super::view::{ChartHit, ChartView, HitShape};
+use crate::evolve::{IndividualId, Parents, Settings};
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use crate::run::{Ancestor, Ancestry, FitnessSpread};
+use crate::studio::commands::pick::Pick;
+use crate::studio::ui::plot_axes::padded_range;
+
+/// Maximum number of other snakes, limited by drawing time.
+const MAX_OTHERS: usize = 3000;
+/// Number of latest ancestors whose second parent is connected to its child. More lines would hide the main one.
+const MAX_BRANCHES: usize = 150;
+/// Minimum number of snakes drawn per generation.
+const MIN_PER_GENERATION: usize = 3;
+
+/// Chart of a line of ancestry.
+pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
+    let unit = settings.trial.fitness.unit();
+    let place = |ancestor: &Ancestor| {
+        let fitness = f64::from(ancestor.fitness?);
+        Some([f64::from(ancestor.place.generation), fitness])
+    };
+    let line: Vec<[f64; 2]> = ancestry.line.iter().rev().filter_map(|of| place(of)).collect();
+    let seconds: Vec<[f64; 2]> = ancestry.others.iter().filter_map(|of| place(of)).collect();
+    let mut series = vec![
+        Series::new("all other snakes", Role::Others, Shape::Points(others(ancestry))),
+        Series::new("second parents", Role::Second, Shape::Points(seconds)),
+        Series::new("the best and its ancestors", Role::First, Shape::Line(line.clone())),
+    ];
+    // Empty series need no legend entry.
+    series.retain(|series| match &series.shape {
+        Shape::Points(points) | Shape::Line(points) => !points.is_empty(),
+        _ => true,
+    });
+    if line.len() > 1 {
+        // Connects second parents to their children.
+        let others: BTreeMap<IndividualId, &Arc<Ancestor>> =
+            ancestry.others.iter().map(|other| (other.place, other)).collect();
+        let branches = ancestry.line.iter().take(MAX_BRANCHES).filter_map(|child| {
+            let parent = others.get(&child.parents.ids().nth(1)?)?;
+            Some(Shape::Dashed(vec![place(parent)?, place(child)?]))
+        });
+        let branches = branches.map(|branch| Series::new("", Role::Second, branch));
+        let before_line = series.len() - 1;
+        series.splice(before_line..before_line, branches);
+    }
+    let last = ancestry.spreads.last().map_or(1, |spread| spread.generation).max(2);
+    let values = series.iter().flat_map(|series| match &series.shape {
+        Shape::Points(points) | Shape::Line(points) | Shape::Dashed(points) => points.as_slice(),
+        _ => &[],
+    });
+    let aside = f64::from(last - 1) * 0.04;
+    let chart = Chart {
+        name: String::new(),
+        x: Axis::new("Generation", "", 1.0 - aside..=f64::from(last) + aside),
+        y: Axis::new(
+            axis_title(settings.trial.fitness),
+            unit.trim(),
+            padded_range(values.map(|value| value[1]), 1.0).unwrap_or(0.0..=1.0),
+        ),
+        series,
+        marks: Vec::new(),
+    };
+    let hit = |ancestor: &Ancestor| {
+        let at = ancestor.place;
+        let fitness = ancestor.fitness?;
+        let parents = ancestor.parents;
+        let words = move || {
+            format!(
+                "Generation {}, snake {}\nfitness {fitness:.2}{unit}\n{}",
+                at.generation,
+                at.individual + 1,
+                origin(parents)
+            )
+        };
+        let target = HitShape::Point(place(ancestor)?);
+        Some(ChartHit::of(target, words, Pick::Individual(at), at))
+    };
+    let hits = ancestry.line.iter().chain(&ancestry.others).filter_map(|of| hit(of)).collect();
+    let note = note_on_start(ancestry);
+    ChartView::new(Figure { note, ..Figure::of("Ancestors of the best", chart) }, vec![hits])
+}
+
+/// Sample of all fitness values that is small enough to draw.
+fn others(ancestry: &Ancestry) -> Vec<[f64; 2]> {
+    let generations = ancestry.spreads.len().max(1);
+    let each = (MAX_OTHERS / generations).max(MIN_PER_GENERATION);
+    let of = |spread: &Arc<FitnessSpread>| {
+        let generation = f64::from(spread.generation);
+        let count = spread.fitness.len();
+        let chosen = count.min(each);
+        let index = move |number: usize| number * (count - 1) / (chosen - 1).max(1);
+        let points = (0..chosen).map(|number| f64::from(spread.fitness[index(number)]));
+        points.map(|fitness| [generation, fitness]).collect::<Vec<_>>()
+    };
+    ancestry.spreads.iter().flat_map(of).collect()
+}
+
+/// Origin of a snake, in words.
+fn origin(parents: Parents) -> String {
+    let name = |place: IndividualId| {
+        format!("snake {} of generation {}", place.individual + 1, place.generation)
+    };
+    match parents {
+        Parents::None => "Created at random".to_owned(),
+        Parents::One(parent) => format!("Child of {}", name(parent)),
+        Parents::Two(first, second) => format!("Child of {}\nand {}", name(first), name(second)),
+        Parents::Distribution => "Drawn from the average that the search had learned".to_owned(),
+        Parents::Unknown => "Parents unknown".to_owned(),
+    }
+}
+
+/// Note about the start of the line.
+fn note_on_start(ancestry: &Ancestry) -> String {
+    let Some(first) = ancestry.line.last() else { return String::new() };
+    let generation = first.place.generation;
+    match first.parents {
+        Parents::None => {
+            format!("The line starts in generation {generation} with a random snake.")
+        }
+        Parents::Distribution => {
+            "CMA-ES draws each snake from a shared average, so no snake has parents.".to_owned()
+        }
+        Parents::One(_) | Parents::Two(..) | Parents::Unknown => {
+            format!("Ancestors before generation {generation} were not recorded.")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, StrategyKind};
+    use crate::run::{Experiment, LocalPool, RunControl};
+
+    /// Chart after three generations of a strategy, and the generation of the best snake.
+    fn shown(strategy: StrategyKind) -> (ChartView, u32) {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = strategy;
+        settings.evolution.population = 8;
+        settings.trial.duration_s = 0.5;
+        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings.clone()));
+        let pool = LocalPool::new(1).expect("threads");
+        for _ in 0..3 {
+            experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled");
+        }
+        let generation = experiment.best().expect("a healthy snake").origin.generation;
+        (view(&settings, &experiment.ancestry()), generation)
+    }
+
+    #[test]
+    fn every_ancestor_has_a_hover_text_and_can_be_clicked() {
+        let (view, generation) = shown(StrategyKind::Halving);
+        let hits = &view.hits[0];
+        assert_eq!(hits.len() as u32, generation, "one in each generation");
+        let last = hits.last().expect("the first ancestor");
+        assert!(last.words().contains("Created at random"), "{}", last.words());
+        assert!(view.figure.note.contains("starts in generation 1"), "{}", view.figure.note);
+        let place = last.place.expect("a snake");
+        assert_eq!((place.generation, last.pick), (1, Some(Pick::Individual(place))));
+        assert!(hits[..hits.len() - 1].iter().all(|hit| hit.words().contains("Child of")));
+    }
+
+    #[test]
+    fn missing_parents_are_explained() {
+        let (view, _) = shown(StrategyKind::CmaEs);
+        assert_eq!(view.hits[0].len(), 1, "the best alone");
+        assert!(view.figure.note.contains("no snake has parents"), "{}", view.figure.note);
+    }
+}

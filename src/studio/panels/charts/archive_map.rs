@@ -1,0 +1,207 @@
+//! Map of the MAP-Elites archive: a cell per kind of behaviour, coloured by fitness. A click replays the elite.
+
+use bevy_egui::egui;
+
+use crate::evolve::{Archive, Descriptor};
+use crate::studio::commands::Command;
+use crate::studio::commands::pick::Pick;
+use crate::studio::panels::shown::ShownChampion;
+use crate::studio::ui::plot_axes::{axis_name, number};
+use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::theme;
+
+/// Draws the archive `height` points high and collects the user's commands. `unit` is the unit of the fitness.
+pub(crate) fn archive_map(
+    ui: &mut egui::Ui,
+    archive: &Archive,
+    unit: &str,
+    shown: Option<ShownChampion>,
+    height: f32,
+    commands: &mut Vec<Command>,
+) {
+    let cells = archive.cells * archive.cells;
+    let (elites, percent) = (archive.elites().len(), archive.coverage() * 100.0);
+    let score = number(archive.qd_score());
+    let floor = number(f64::from(archive.floor));
+    ui.label(format!("Coverage {percent:.0} % ({elites} of {cells} cells), QD score {score}"))
+        .on_hover_text(format!(
+            "Quality-diversity score: fitness above {floor}{unit}, summed over all cells"
+        ));
+    let fitness = archive.elites().map(|(_, elite)| elite.fitness);
+    let (min, max) = fitness.fold((f32::MAX, f32::MIN), |(l, m), x| (l.min(x), m.max(x)));
+    if min > max {
+        return explain(ui, "All snakes so far were disqualified.");
+    }
+    ui.label(axis_name(ui, archive.y.label()));
+    let size = egui::vec2(ui.available_width(), height);
+    let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+    let map =
+        egui::Rect::from_min_max(egui::pos2(area.left() + LABELS_WIDTH, area.top()), area.max);
+    let response = ui.interact(map, ui.id().with("archive"), egui::Sense::click());
+    let palette = theme::of(ui);
+    let painter = ui.painter();
+    painter.rect_filled(map, 0.0, palette.empty_cell);
+    for (cell, elite) in archive.elites() {
+        let share = (elite.fitness - min) / (max - min).max(f32::MIN_POSITIVE);
+        painter.rect_filled(cell_rect(map, archive, cell), 0.0, theme::palette::ramp(share));
+    }
+    let is_shown =
+        |generation, individual| shown.is_some_and(|shown| shown.is(generation, individual));
+    let on_stage = archive.elites().find(|(_, elite)| is_shown(elite.generation, elite.individual));
+    let hovered = response.hover_pos().and_then(|at| cell_at(map, archive, at));
+    let hovered_elite = hovered.filter(|cell| archive.elite(*cell).is_some());
+    for (cell, color) in
+        [(hovered_elite, palette.text_weak), (on_stage.map(|(cell, _)| cell), palette.text)]
+    {
+        if let Some(cell) = cell {
+            let stroke = egui::Stroke::new(2.0, color);
+            let rect = cell_rect(map, archive, cell);
+            painter.rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Outside);
+        }
+    }
+    let line = egui::TextStyle::Small.resolve(ui.style()).size + 2.0;
+    let (below, _) = ui.allocate_exact_size(egui::vec2(area.width(), line), egui::Sense::hover());
+    let end = |descriptor: Descriptor, share| number(descriptor.at_share(share));
+    let left = map.left() - theme::GAP / 2.0;
+    let y = below.top();
+    for (x, y, anchor, text) in [
+        (left, map.top(), egui::Align2::RIGHT_TOP, end(archive.y, 1.0)),
+        (left, map.bottom(), egui::Align2::RIGHT_BOTTOM, end(archive.y, 0.0)),
+        (map.left(), y, egui::Align2::LEFT_TOP, end(archive.x, 0.0)),
+        (map.right(), y, egui::Align2::RIGHT_TOP, end(archive.x, 1.0)),
+        (map.center().x, y, egui::Align2::CENTER_TOP, archive.x.label().to_owned()),
+    ] {
+        small_label(ui, egui::pos2(x, y), anchor, &text);
+    }
+    colour_scale(ui, map.x_range(), [min, max], unit);
+
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "Map"));
+    if response.clicked() {
+        commands.extend(hovered_elite.map(|cell| Command::Show(Pick::Elite(cell))));
+    }
+    if let Some(cell) = hovered {
+        response.on_hover_text_at_pointer(hover_text(archive, cell, unit));
+    }
+}
+
+/// Width of the axis labels at the left, in points.
+const LABELS_WIDTH: f32 = 36.0;
+
+/// Draws a small label.
+fn small_label(ui: &egui::Ui, at: egui::Pos2, anchor: egui::Align2, text: &str) {
+    let small = egui::TextStyle::Small.resolve(ui.style());
+    ui.painter().text(at, anchor, text, small, theme::of(ui).text_weak);
+}
+
+/// Draws the colour scale.
+fn colour_scale(ui: &mut egui::Ui, x: egui::Rangef, [min, max]: [f32; 2], unit: &str) {
+    let small = egui::TextStyle::Small.resolve(ui.style());
+    let size = egui::vec2(ui.available_width(), small.size + 2.0);
+    let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+    let (left, right) = (x.min + x.span() * 0.3, x.max - x.span() * 0.2);
+    let painter = ui.painter();
+    let shades = 48;
+    let width = (right - left) / shades as f32;
+    for shade in 0..shades {
+        let at = left + width * shade as f32;
+        let rect = egui::Rect::from_x_y_ranges(at..=at + width + 0.5, area.y_range());
+        painter.rect_filled(rect, 0.0, theme::palette::ramp(shade as f32 / (shades - 1) as f32));
+    }
+    let middle = area.center().y;
+    let gap = theme::GAP / 2.0;
+    let low = format!("Fitness {}", number(f64::from(min)));
+    let high = format!("{}{unit}", number(f64::from(max)));
+    small_label(ui, egui::pos2(left - gap, middle), egui::Align2::RIGHT_CENTER, &low);
+    small_label(ui, egui::pos2(right + gap, middle), egui::Align2::LEFT_CENTER, &high);
+}
+
+/// Cell at a screen position. The first row is at the bottom.
+fn cell_at(map: egui::Rect, archive: &Archive, at: egui::Pos2) -> Option<u32> {
+    if !map.contains(at) {
+        return None;
+    }
+    let place = |share: f32| ((share * archive.cells as f32) as u32).min(archive.cells - 1);
+    let column = place((at.x - map.left()) / map.width());
+    let row = place((map.bottom() - at.y) / map.height());
+    Some(row * archive.cells + column)
+}
+
+fn cell_rect(map: egui::Rect, archive: &Archive, cell: u32) -> egui::Rect {
+    let size = map.size() / archive.cells as f32;
+    let (row, column) = (cell / archive.cells, cell % archive.cells);
+    let corner =
+        egui::pos2(map.left() + size.x * column as f32, map.bottom() - size.y * (row + 1) as f32);
+    // A thin gap separates cells if they are large enough.
+    let gap = if size.x > 6.0 { 0.5 } else { 0.0 };
+    egui::Rect::from_min_size(corner, size).shrink(gap)
+}
+
+/// Hover text of a cell.
+fn hover_text(archive: &Archive, cell: u32, unit: &str) -> String {
+    let span = |descriptor: Descriptor, place: u32| {
+        let [from, to] = [place, place + 1]
+            .map(|end| number(descriptor.at_share(f64::from(end) / f64::from(archive.cells))));
+        format!("{}: {from} to {to}\n", descriptor.label())
+    };
+    let kind = span(archive.x, cell % archive.cells) + &span(archive.y, cell / archive.cells);
+    match archive.elite(cell) {
+        Some(elite) => format!(
+            "{kind}Fitness {:.2}{unit}\nGeneration {}, snake {}\nClick to replay",
+            elite.fitness,
+            elite.generation,
+            elite.individual + 1
+        ),
+        None => kind + "Empty",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::state::current_run::explored_run;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Commands sent by a click in the middle of a cell, and whether the hover text calls it empty.
+    fn clicked(archive: &Archive, cell: u32) -> (Vec<Command>, bool) {
+        let size = egui::vec2(theme::PANEL_WIDTH, 500.0);
+        let mut harness = Harness::builder().with_size(size).build_ui_state(
+            |ui, commands| archive_map(ui, archive, " m", None, theme::MAP_HEIGHT, commands),
+            Vec::new(),
+        );
+        harness.run();
+        let map = harness.get_by_label("Map").rect();
+        let at = cell_rect(map, archive, cell).center();
+        harness.drag_at(at);
+        harness.run();
+        harness.drop_at(at);
+        harness.run();
+        harness.hover_at(at + egui::vec2(1.0, 0.0));
+        harness.run();
+        let is_empty = harness.query_by_label_contains("Empty").is_some();
+        (harness.state().clone(), is_empty)
+    }
+
+    #[test]
+    fn a_click_on_a_cell_replays_its_elite_and_an_empty_cell_does_nothing() {
+        let run = explored_run();
+        let exploration = run.exploration().expect("explored");
+        let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
+        let (cell, _) = archive.elites().next().expect("an elite");
+        assert_eq!(clicked(archive, cell), (vec![Command::Show(Pick::Elite(cell))], false));
+        let cells = archive.cells * archive.cells;
+        let empty = (0..cells).find(|cell| archive.elite(*cell).is_none()).expect("an empty cell");
+        assert_eq!(clicked(archive, empty), (vec![], true));
+    }
+
+    #[test]
+    fn a_click_in_a_drawn_cell_hits_that_cell() {
+        let archive = Archive::new(Descriptor::BodyHeight, Descriptor::Sideways, 7, 0.0);
+        let map = egui::Rect::from_min_size(egui::pos2(10.0, 20.0), egui::vec2(250.0, 250.0));
+        for cell in 0..49 {
+            let drawn = cell_rect(map, &archive, cell);
+            assert_eq!(cell_at(map, &archive, drawn.center()), Some(cell));
+        }
+        assert_eq!(cell_at(map, &archive, egui::pos2(0.0, 0.0)), None);
+    }
+}

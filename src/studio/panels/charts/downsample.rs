@@ -1,0 +1,110 @@
+//! Downsampling of chart series for the screen. Exported files contain all points.
+
+use egui_plot::PlotPoint;
+
+use crate::plot::{Chart, Shape};
+
+/// Maximum number of points of a drawn line: more than one per pixel of the screen's width.
+pub(super) const MAX_POINTS: usize = 1500;
+
+/// Series prepared for drawing.
+#[derive(Debug, Clone)]
+pub(super) enum DrawnSeries {
+    /// Points, joined or not.
+    Points(Vec<PlotPoint>),
+    /// Positions of a band with its lower and upper ends.
+    Band([Vec<f64>; 3]),
+    /// Drawn directly from its data, which is small.
+    AsItIs,
+}
+
+/// Prepares all series of a chart, in order.
+pub(super) fn drawn(chart: &Chart) -> Vec<DrawnSeries> {
+    let of_shape = |shape: &Shape| match shape {
+        Shape::Line(points) | Shape::Dashed(points) => DrawnSeries::Points(line(points)),
+        Shape::Points(points) => DrawnSeries::Points(points.iter().map(|&at| at.into()).collect()),
+        Shape::Band(ends) => DrawnSeries::Band(band(ends)),
+        Shape::Bars { .. } | Shape::Cells(_) => DrawnSeries::AsItIs,
+    };
+    chart.series.iter().map(|series| of_shape(&series.shape)).collect()
+}
+
+/// Number of neighbouring points that are merged, if each group is drawn with `each` points.
+fn bucket(count: usize, each: usize) -> usize {
+    if count <= MAX_POINTS { 1 } else { count.div_ceil(MAX_POINTS / each) }
+}
+
+/// Keeps the minimum and the maximum of each group, in order, so that no peak is lost.
+fn line(points: &[[f64; 2]]) -> Vec<PlotPoint> {
+    let size = bucket(points.len(), 2);
+    if size == 1 {
+        return points.iter().map(|&at| at.into()).collect();
+    }
+    let extremes = points.chunks(size).flat_map(|neighbours| {
+        let by_height = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
+        let (min, max) = (neighbours.iter().min_by(by_height), neighbours.iter().max_by(by_height));
+        let is_in_order = min.map(|at| at[0]) <= max.map(|at| at[0]);
+        let [first, second] = if is_in_order { [min, max] } else { [max, min] };
+        [first, second.filter(|second| first != Some(second))]
+    });
+    let mut drawn: Vec<PlotPoint> = extremes.flatten().map(|&at| at.into()).collect();
+    // The first and the last point are kept.
+    if let (Some(&first), Some(&last)) = (points.first(), points.last()) {
+        if drawn.first().is_some_and(|at| at.x > first[0]) {
+            drawn.insert(0, first.into());
+        }
+        if drawn.last().is_some_and(|at| at.x < last[0]) {
+            drawn.push(last.into());
+        }
+    }
+    drawn
+}
+
+/// Keeps the lowest and the highest end of each group.
+fn band(ends: &[[f64; 3]]) -> [Vec<f64>; 3] {
+    let mut drawn = [Vec::new(), Vec::new(), Vec::new()];
+    let count = ends.chunks(bucket(ends.len(), 1)).len();
+    for (index, neighbours) in ends.chunks(bucket(ends.len(), 1)).enumerate() {
+        // The last position is kept.
+        let place = if index + 1 == count { neighbours.last() } else { neighbours.first() };
+        let Some(place) = place else { continue };
+        let low = neighbours.iter().map(|end| end[1]).fold(place[1], f64::min);
+        let high = neighbours.iter().map(|end| end[2]).fold(place[2], f64::max);
+        for (along, value) in drawn.iter_mut().zip([place[0], low, high]) {
+            along.push(value);
+        }
+    }
+    drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_downsampled_line_keeps_its_peaks_ends_and_order() {
+        let mut points: Vec<[f64; 2]> =
+            (0..10_000).map(|x| [f64::from(x), f64::from(x % 7)]).collect();
+        points[4321][1] = 99.0;
+        points[8765][1] = -99.0;
+        let drawn = line(&points);
+        assert!(drawn.len() <= MAX_POINTS + 2, "{}", drawn.len());
+        assert!(drawn.iter().any(|at| (at.x, at.y) == (4321.0, 99.0)));
+        assert!(drawn.iter().any(|at| (at.x, at.y) == (8765.0, -99.0)));
+        assert_eq!((drawn[0].x, drawn[drawn.len() - 1].x), (0.0, 9999.0));
+        assert!(drawn.windows(2).all(|pair| pair[0].x < pair[1].x));
+        let few = &points[..MAX_POINTS];
+        assert_eq!(line(few).len(), few.len(), "short lines are drawn completely");
+    }
+
+    #[test]
+    fn a_downsampled_band_keeps_its_lowest_and_highest_ends() {
+        let mut ends: Vec<[f64; 3]> = (0..10_000).map(|x| [f64::from(x), 1.0, 2.0]).collect();
+        ends[1234] = [1234.0, -5.0, 7.0];
+        let [along, low, high] = band(&ends);
+        assert!(along.len() <= MAX_POINTS && along.len() == low.len() && low.len() == high.len());
+        assert!(low.contains(&-5.0) && high.contains(&7.0));
+        assert_eq!((along[0], along[along.len() - 1]), (0.0, 9999.0));
+        assert!(band(&[])[0].is_empty());
+    }
+}

@@ -1,0 +1,377 @@
+//! Charts of a run: fitness, distribution, ancestors, search results and comparisons. Charts have hover texts, replay
+//! snakes on click, and can be exported.
+
+mod ancestors;
+mod archive_map;
+mod downsample;
+mod draw;
+mod fitness;
+mod learning_curves;
+mod parents;
+mod pareto_front;
+mod runs;
+mod search_charts;
+mod spread;
+mod torques;
+mod view;
+
+use std::sync::Arc;
+
+use bevy_egui::egui;
+
+use super::shown::ShownChampion;
+use crate::evolve::IndividualId;
+use crate::plot::Figure;
+use crate::save::Comparison;
+use crate::studio::commands::Command;
+use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::text_rows::{explain, title, title_and};
+use crate::studio::ui::theme;
+
+use archive_map::archive_map;
+use learning_curves::CurvesPanel;
+use pareto_front::front_plot;
+use torques::TorqueComparison;
+use view::{ChartView, Version};
+
+/// Kind of chart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum ChartKind {
+    #[default]
+    Fitness,
+    Spread,
+    Ancestors,
+    Torques,
+    Parents,
+    Front,
+    Archive,
+    Runs,
+    Methods,
+}
+
+impl ChartKind {
+    const ALL: [Self; 9] = [
+        Self::Fitness,
+        Self::Spread,
+        Self::Ancestors,
+        Self::Torques,
+        Self::Parents,
+        Self::Front,
+        Self::Archive,
+        Self::Runs,
+        Self::Methods,
+    ];
+
+    /// Name on its button, and hover text.
+    fn labels(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Fitness => ("Fitness", "Best, mean and median fitness of each generation"),
+            Self::Spread => ("Spread", "Distribution of the fitness in the latest generation"),
+            Self::Ancestors => ("Ancestors", "Ancestors of the best snake"),
+            Self::Torques => (
+                "Torques",
+                "Joint torques of the snake on the stage (or of the best one) and of its parent",
+            ),
+            Self::Parents => ("Parents", "Gene values of the parents of the next generation"),
+            Self::Front => ("Front", "Best trade-offs between distance and energy"),
+            Self::Archive => ("Archive", "Best snake for each kind of behaviour (MAP-Elites)"),
+            Self::Runs => ("Runs", "Compare this run with other runs"),
+            Self::Methods => ("Methods", "Compare search methods over many runs"),
+        }
+    }
+
+    /// Prefix of exported file names.
+    fn file_name(self) -> &'static str {
+        match self {
+            Self::Fitness => "fitness",
+            Self::Spread => "spread",
+            Self::Ancestors => "ancestors",
+            Self::Torques => "torques",
+            Self::Parents => "parents",
+            Self::Front => "front",
+            Self::Archive => "archive",
+            Self::Runs => "runs",
+            Self::Methods => "methods",
+        }
+    }
+
+    /// Text shown while there is no data.
+    fn empty_text(self) -> &'static str {
+        match self {
+            Self::Fitness => {
+                "The fitness of each generation will appear here after the first generation."
+            }
+            Self::Spread => {
+                "The distribution of the fitness will appear here when this session finishes a generation."
+            }
+            Self::Ancestors => {
+                "The ancestors of the best snake will appear here after the first generation."
+            }
+            Self::Torques => "Computing torques ...",
+            Self::Parents => {
+                "The gene values of the parents will appear here when this session finishes a generation. Random \
+                 search and CMA-ES have no parents."
+            }
+            Self::Front => "The best trade-offs between distance and energy will appear here.",
+            Self::Archive => "The best snake for each kind of behaviour will appear here.",
+            Self::Runs => "The curves of this run will appear here after the first generation.",
+            Self::Methods => {
+                "No comparison is open. \"snakes compare\" makes one, \"snakes --comparison FILE\" opens it."
+            }
+        }
+    }
+}
+
+/// The panel with the selected chart.
+pub(super) struct ChartsPanel {
+    kind: ChartKind,
+    known: Option<(ChartKind, Version, Option<ChartView>)>,
+    /// Cached figure of the archive or the front, which draw themselves.
+    figure: Option<(ChartKind, Version, Arc<Figure>)>,
+    torques: TorqueComparison,
+    curves: Option<CurvesPanel>,
+    has_listed_runs: bool,
+}
+
+impl ChartsPanel {
+    /// Panel with an optional comparison of methods.
+    pub fn new(comparison: Option<&Comparison>) -> Self {
+        Self {
+            // A comparison that was given at start is shown first.
+            kind: if comparison.is_some() { ChartKind::Methods } else { ChartKind::default() },
+            known: None,
+            figure: None,
+            torques: TorqueComparison::default(),
+            curves: comparison.map(CurvesPanel::new),
+            has_listed_runs: false,
+        }
+    }
+
+    /// Draws the panel and collects the user's commands.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        shown: Option<ShownChampion>,
+        commands: &mut Vec<Command>,
+    ) {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
+            for kind in ChartKind::ALL {
+                let (name, hint) = kind.labels();
+                ui.selectable_value(&mut self.kind, kind, name).on_hover_text(hint);
+            }
+        });
+        let tallest = ui.available_width() * theme::MAX_CHART_ASPECT;
+        let height = (ui.available_height() - theme::CHART_CONTROLS_HEIGHT)
+            .min(tallest)
+            .max(theme::PLOT_HEIGHT);
+        match self.kind {
+            ChartKind::Front | ChartKind::Archive => {
+                self.search_chart(ui, run, height, shown, commands)
+            }
+            ChartKind::Methods => self.methods(ui, height, commands),
+            ChartKind::Torques => self.torques(ui, run, height, shown, commands),
+            kind => self.run_chart(ui, run, kind, height, shown, commands),
+        }
+    }
+
+    /// Draws a chart of the run's results.
+    fn run_chart(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        kind: ChartKind,
+        height: f32,
+        shown: Option<ShownChampion>,
+        commands: &mut Vec<Command>,
+    ) {
+        if kind == ChartKind::Runs && !self.has_listed_runs {
+            self.has_listed_runs = true;
+            commands.push(Command::ListRuns);
+        }
+        let version = run.version();
+        if !matches!(&self.known, Some((of, at, _)) if (*of, *at) == (kind, version)) {
+            self.known = Some((kind, version, view_of(kind, run)));
+        }
+        let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
+        let view = view.filter(|view| !view.figure.is_empty()).ok_or(kind.empty_text());
+        view_or_reason(ui, kind, view, height, place(shown), commands);
+        if kind == ChartKind::Runs {
+            runs::run_list(ui, run, commands);
+        }
+    }
+
+    fn torques(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        height: f32,
+        shown: Option<ShownChampion>,
+        commands: &mut Vec<Command>,
+    ) {
+        let view = match self.torques.update(run, place(shown)) {
+            Ok(()) => {
+                self.torques.view(&run.settings().trial).ok_or(ChartKind::Torques.empty_text())
+            }
+            Err(missing) => Err(missing),
+        };
+        // No individual is highlighted, because the chart shows only the one on the stage.
+        view_or_reason(ui, ChartKind::Torques, view, height, None, commands);
+    }
+
+    /// Draws the front or the archive.
+    fn search_chart(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        height: f32,
+        shown: Option<ShownChampion>,
+        commands: &mut Vec<Command>,
+    ) {
+        let (kind, version) = (self.kind, run.version());
+        let unit = run.settings().trial.fitness.unit();
+        let exploration = run.exploration();
+        let front = exploration.map(|of| &of.front).filter(|front| front.members().len() > 0);
+        let archive = exploration.and_then(|of| of.archive.as_ref());
+        let archive = archive.filter(|archive| archive.elites().len() > 0);
+        if !matches!(&self.figure, Some((of, at, _)) if (*of, *at) == (kind, version)) {
+            let figure = match kind {
+                ChartKind::Front => front.map(search_charts::front),
+                _ => archive.map(|archive| search_charts::archive(archive, unit)),
+            };
+            self.figure = figure.map(|figure| (kind, version, Arc::new(figure)));
+        }
+        match &self.figure {
+            Some((.., figure)) => header(ui, figure, kind.file_name(), commands),
+            None => title(ui, kind.labels().0),
+        }
+        match (kind, front, archive) {
+            (ChartKind::Front, Some(front), _) => front_plot(ui, front, shown, height, commands),
+            (ChartKind::Front, None, _) if exploration.is_some() => {
+                explain(ui, "No snake has moved ahead of its start yet.");
+            }
+            (ChartKind::Archive, _, Some(archive)) => {
+                archive_map(ui, archive, unit, shown, height, commands);
+            }
+            (ChartKind::Archive, ..) if !run.settings().evolution.strategy.info().has_archive => {
+                explain(
+                    ui,
+                    "Only MAP-Elites keeps an archive: the best snake for each kind of behaviour. Select it as the strategy in the Run panel and start a run.",
+                );
+            }
+            _ => explain(ui, kind.empty_text()),
+        }
+    }
+
+    fn methods(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
+        match &mut self.curves {
+            Some(curves) => {
+                header(ui, &curves.figure(), ChartKind::Methods.file_name(), commands);
+                curves.ui(ui, height);
+            }
+            None => {
+                title(ui, "Comparison of methods");
+                explain(ui, ChartKind::Methods.empty_text());
+            }
+        }
+    }
+}
+
+/// Draws a chart, or the reason why it is empty.
+fn view_or_reason(
+    ui: &mut egui::Ui,
+    kind: ChartKind,
+    view: Result<&ChartView, &str>,
+    height: f32,
+    shown: Option<IndividualId>,
+    commands: &mut Vec<Command>,
+) {
+    match view {
+        Ok(view) => {
+            header(ui, &view.figure, kind.file_name(), commands);
+            draw::draw(ui, kind.file_name(), view, height, shown, commands);
+        }
+        Err(why) => {
+            title(ui, kind.labels().0);
+            explain(ui, why);
+        }
+    }
+}
+
+/// Fitness chart of the Run panel.
+#[derive(Default)]
+pub(super) struct FitnessChart {
+    known: Option<(Version, ChartView)>,
+}
+
+impl FitnessChart {
+    /// Draws the chart `height` points high and collects the user's commands.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        height: f32,
+        shown: Option<ShownChampion>,
+        commands: &mut Vec<Command>,
+    ) {
+        let version = run.version();
+        if !matches!(&self.known, Some((at, _)) if *at == version) {
+            self.known = Some((version, fitness::view(run.settings(), run.reports())));
+        }
+        let Some((_, view)) = &self.known else { return };
+        header(ui, &view.figure, ChartKind::Fitness.file_name(), commands);
+        draw::draw(ui, "fitness alone", view, height, place(shown), commands);
+    }
+}
+
+/// Data of a chart, if there is any.
+fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
+    let settings = run.settings();
+    let exploration = run.exploration();
+    match kind {
+        ChartKind::Fitness => Some(fitness::view(settings, run.reports())),
+        ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
+        ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
+        ChartKind::Parents => parents::view(settings, &exploration?.parents),
+        ChartKind::Runs => Some(runs::view(run)),
+        ChartKind::Torques | ChartKind::Front | ChartKind::Archive | ChartKind::Methods => None,
+    }
+}
+
+/// Place of the champion on the stage, if it belongs to the current run.
+fn place(shown: Option<ShownChampion>) -> Option<IndividualId> {
+    match shown? {
+        ShownChampion::Found { generation, individual } => {
+            Some(IndividualId { generation, individual })
+        }
+        ShownChampion::Opening(_) => None,
+    }
+}
+
+/// Draws the title of a chart, and its export buttons.
+fn header(
+    ui: &mut egui::Ui,
+    figure: &Arc<Figure>,
+    name: &'static str,
+    commands: &mut Vec<Command>,
+) {
+    let is_empty = figure.is_empty();
+    title_and(ui, &figure.title, |ui| {
+        for (label, hint, format) in [
+            ("CSV", "Save the numbers as a table", ChartFormat::Csv),
+            ("PNG", "Save the chart as a picture of 1600 by 900 pixels", ChartFormat::Png),
+        ] {
+            let button = ui.add_enabled(!is_empty, egui::Button::new(label).small());
+            let not_yet = "The chart is still empty";
+            if button.on_hover_text(hint).on_disabled_hover_text(not_yet).clicked() {
+                let figure = Arc::clone(figure);
+                commands.push(Command::ExportChart(ChartExport { figure, name, format }));
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,231 @@
+//! Command palette: searches commands, presets, lessons and settings by name.
+
+use bevy_egui::egui;
+
+use crate::save::shipped_presets;
+use crate::studio::commands::Command;
+use crate::studio::commands::actions::{ACTIONS, Situation};
+use crate::studio::panels::settings::every_setting;
+use crate::studio::ui::theme;
+
+/// The palette with its search text.
+#[derive(Debug, Default)]
+pub(crate) struct CommandPalette {
+    typed: String,
+    /// Index of the selected match; the first is 0.
+    chosen: usize,
+    /// Whether the palette was open in the previous frame.
+    is_open: bool,
+    presets: Vec<(String, String)>,
+}
+
+/// Entry that the palette can find.
+#[derive(Debug, Clone, PartialEq)]
+struct PaletteEntry {
+    group: String,
+    name: String,
+    key: &'static str,
+    command: Command,
+}
+
+/// Maximum number of matches shown at once.
+const MAX_MATCHES: usize = 10;
+
+impl CommandPalette {
+    /// Draws the palette over the window and collects the user's commands.
+    pub fn ui(
+        &mut self,
+        context: &egui::Context,
+        situation: Situation,
+        lessons: &[&str],
+        commands: &mut Vec<Command>,
+    ) {
+        let is_new = !self.is_open;
+        if is_new {
+            *self = Self { presets: presets(), is_open: true, ..Self::default() };
+        }
+        let found = matching(&self.entries(situation, lessons), &self.typed);
+        self.chosen = self.chosen.min(found.len().saturating_sub(1));
+        let (down, up, enter) = context.input_mut(|input| {
+            let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
+            (pressed(egui::Key::ArrowDown), pressed(egui::Key::ArrowUp), pressed(egui::Key::Enter))
+        });
+        if down {
+            self.chosen = (self.chosen + 1).min(found.len().saturating_sub(1));
+        }
+        if up {
+            self.chosen = self.chosen.saturating_sub(1);
+        }
+        let mut taken = enter.then(|| found.get(self.chosen).cloned()).flatten();
+        let palette = theme::of_context(context);
+        let area = egui::Modal::default_area(egui::Id::new("palette"))
+            .anchor(egui::Align2::CENTER_TOP, [0.0, theme::GAP * 8.0]);
+        let modal = egui::Modal::new(egui::Id::new("palette")).area(area).frame(palette.dialog());
+        let shown = modal.show(context, |ui| {
+            ui.set_width(
+                theme::PALETTE_WIDTH.min(context.content_rect().width() - theme::GAP * 4.0),
+            );
+            let field = egui::TextEdit::singleline(&mut self.typed)
+                .hint_text("Search commands, settings, presets and lessons")
+                .desired_width(f32::INFINITY);
+            let field = ui.add(field);
+            field.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "Find a command")
+            });
+            if is_new {
+                field.request_focus();
+            }
+            if field.changed() {
+                self.chosen = 0;
+            }
+            if found.is_empty() {
+                crate::studio::ui::text_rows::explain(
+                    ui,
+                    "No command, setting, preset or lesson matches.",
+                );
+            }
+            for (index, entry) in found.iter().enumerate() {
+                let name = format!("{}: {}", entry.group, entry.name);
+                let key = egui::RichText::new(entry.key).color(palette.text_weak);
+                let button = egui::Button::selectable(index == self.chosen, name).right_text(key);
+                let row = ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)));
+                if row.clicked() {
+                    taken = Some(entry.clone());
+                }
+            }
+        });
+        if let Some(entry) = taken {
+            commands.extend([Command::CloseModal, entry.command]);
+        } else if shown.backdrop_response.clicked() {
+            commands.push(Command::CloseModal);
+        }
+    }
+
+    /// Marks the palette as closed, which clears the search text when it opens again.
+    pub fn close(&mut self) {
+        self.is_open = false;
+    }
+
+    fn entries(&self, situation: Situation, lessons: &[&str]) -> Vec<PaletteEntry> {
+        let of_action = |action: &crate::studio::commands::actions::Action| {
+            let is_itself = action.name == "Find a command";
+            let command = (action.asks)(situation).filter(|_| !is_itself)?;
+            let (group, name) = (action.menu.name().to_owned(), action.name.to_owned());
+            Some(PaletteEntry { group, name, key: action.key(), command })
+        };
+        let presets = self.presets.iter().map(|(name, about)| {
+            let name_and_words = format!("{name} - {}", first_sentence(about));
+            let command = Command::SetPreset(name.clone());
+            PaletteEntry { group: "Preset".to_owned(), name: name_and_words, key: "", command }
+        });
+        let lessons = lessons.iter().enumerate().map(|(index, name)| PaletteEntry {
+            group: "Lesson".to_owned(),
+            name: (*name).to_owned(),
+            key: "",
+            command: Command::BeginLesson(index),
+        });
+        let settings = every_setting().into_iter().map(|listed| PaletteEntry {
+            group: "Setting".to_owned(),
+            name: format!("{} ({})", listed.setting.label, listed.section.title.to_lowercase()),
+            key: "",
+            command: Command::FindSetting(listed.setting.label),
+        });
+        let actions = ACTIONS.iter().filter_map(of_action);
+        actions.chain(presets).chain(lessons).chain(settings).collect()
+    }
+}
+
+fn presets() -> Vec<(String, String)> {
+    // A test checks that the shipped presets are well formed.
+    let presets = shipped_presets().unwrap_or_default();
+    presets.into_iter().map(|preset| (preset.name, preset.about)).collect()
+}
+
+fn first_sentence(text: &str) -> String {
+    let sentence = text.split_once(". ").map_or(text, |(first, _)| first);
+    let line: Vec<&str> = sentence.split_whitespace().collect();
+    let short: String = line.join(" ").chars().take(60).collect();
+    short.trim_end_matches('.').to_owned()
+}
+
+/// Entries that contain all typed words. Matches at the start of a word come first.
+fn matching(entries: &[PaletteEntry], typed: &str) -> Vec<PaletteEntry> {
+    let words: Vec<String> = typed.split_whitespace().map(str::to_lowercase).collect();
+    let mut ranked: Vec<(usize, &PaletteEntry)> = entries
+        .iter()
+        .filter_map(|entry| {
+            let text = format!("{} {}", entry.group, entry.name).to_lowercase();
+            let place = |word: &String| {
+                let at = text.find(word.as_str())?;
+                let begins = at == 0 || text.as_bytes().get(at - 1) == Some(&b' ');
+                Some(if begins { at } else { at + 100 })
+            };
+            let places: Option<Vec<usize>> = words.iter().map(place).collect();
+            places.map(|places| (places.iter().sum(), entry))
+        })
+        .collect();
+    if !words.is_empty() {
+        ranked.sort_by_key(|(place, _)| *place);
+    }
+    ranked.into_iter().take(MAX_MATCHES).map(|(_, entry)| entry.clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Commands sent after `typed` is entered and `act` is performed.
+    fn sent(typed: &str, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+        let mut palette = CommandPalette::default();
+        let mut harness = Harness::new_ui_state(
+            |ui, commands| {
+                palette.ui(
+                    &ui.ctx().clone(),
+                    Situation::default(),
+                    &["The grip of a step"],
+                    commands,
+                );
+            },
+            Vec::new(),
+        );
+        harness.run();
+        harness.get_by_label("Find a command").type_text(typed);
+        harness.run();
+        act(&mut harness);
+        harness.run();
+        harness.state().clone()
+    }
+
+    #[test]
+    fn enter_runs_the_first_match() {
+        let press = |harness: &mut Harness<'_, Vec<Command>>| harness.key_press(egui::Key::Enter);
+        assert_eq!(sent("dark", press), [Command::CloseModal, Command::ToggleTheme]);
+        let ice = Command::SetPreset("ice".to_owned());
+        assert_eq!(sent("preset ice", press), [Command::CloseModal, ice]);
+        assert_eq!(sent("grip", press), [Command::CloseModal, Command::BeginLesson(0)]);
+        let setting = Command::FindSetting("Slip");
+        assert_eq!(sent("setting slip", press), [Command::CloseModal, setting]);
+        assert_eq!(sent("no such thing", press), []);
+    }
+
+    #[test]
+    fn arrow_keys_select_a_match() {
+        let sent = sent("picture", |harness| {
+            harness.key_press(egui::Key::ArrowDown);
+            harness.run();
+            harness.key_press(egui::Key::Enter);
+        });
+        let window = crate::studio::commands::screenshot_area::ScreenshotArea::Window;
+        assert_eq!(sent, [Command::CloseModal, Command::TakePicture(window)]);
+    }
+
+    #[test]
+    fn a_click_runs_a_match() {
+        let sent = sent("loop", |harness| {
+            harness.get_by_label_contains("Stage: Loop").click();
+        });
+        assert_eq!(sent, [Command::CloseModal, Command::ToggleLoop]);
+    }
+}

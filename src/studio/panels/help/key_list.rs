@@ -1,0 +1,132 @@
+//! Overlay that lists all keyboard shortcuts.
+
+use bevy_egui::egui;
+
+use crate::studio::commands::Command;
+use crate::studio::commands::actions::{ACTIONS, Menu};
+use crate::studio::ui::theme;
+
+/// Mouse actions on the stage.
+const MOUSE: [(&str, &str); 6] = [
+    ("Click", "Show a limb's numbers"),
+    ("Drag", "Turn the camera; on a limb, pull the limb"),
+    ("Right drag", "Move the camera"),
+    ("Wheel", "Zoom"),
+    ("Double click", "Centre the camera there"),
+    ("Drop a file", "Import a champion or a run"),
+];
+
+/// Draws the list and collects the user's commands.
+pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) {
+    let palette = theme::of_context(context);
+    let screen = context.content_rect();
+    let modal = egui::Modal::new(egui::Id::new("keys")).frame(palette.dialog());
+    let room = screen.width() - theme::GAP * 8.0;
+    let columns = ((room / theme::KEY_COLUMN_WIDTH) as usize).clamp(1, 3);
+    let shown = modal.show(context, |ui| {
+        ui.set_width(room.min(columns as f32 * theme::KEY_COLUMN_WIDTH));
+        ui.horizontal(|ui| {
+            ui.label(egui::RichText::new("Keyboard and mouse").size(theme::HEADING_SIZE).strong());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("Close").on_hover_text("Esc or ?").clicked() {
+                    commands.push(Command::CloseModal);
+                }
+            });
+        });
+        ui.label(
+            egui::RichText::new("Press Ctrl K to search all commands by name.")
+                .color(palette.text_weak),
+        );
+        ui.add_space(theme::GAP);
+        let height = screen.height() - theme::GAP * 16.0;
+        let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        area.show(ui, |ui| {
+            let groups = groups();
+            ui.columns(columns, |places| {
+                for (ui, column) in places.iter_mut().zip(in_columns(&groups, columns)) {
+                    // Rows of text need less height than buttons.
+                    ui.spacing_mut().interact_size.y = theme::GAP * 2.0;
+                    column.iter().for_each(|group| draw(ui, group));
+                }
+            });
+        });
+    });
+    if shown.backdrop_response.clicked() {
+        commands.push(Command::CloseModal);
+    }
+}
+
+/// Group of shortcuts: keys with their effects.
+struct Group {
+    name: &'static str,
+    keys: Vec<(&'static str, &'static str)>,
+}
+
+/// All groups in menu order, followed by the mouse.
+fn groups() -> Vec<Group> {
+    let of = |menu: Menu| {
+        let with_key = |action: &&crate::studio::commands::actions::Action| {
+            action.menu == menu && !action.keys.is_empty()
+        };
+        let keys = ACTIONS.iter().filter(with_key).map(|action| (action.key(), action.name));
+        Group { name: menu.name(), keys: keys.collect() }
+    };
+    let mut groups: Vec<Group> = Menu::ALL.map(of).into_iter().collect();
+    groups.push(Group { name: "Mouse", keys: MOUSE.to_vec() });
+    groups
+}
+
+/// Distributes the groups over columns of about equal length, in order.
+fn in_columns(groups: &[Group], columns: usize) -> Vec<&[Group]> {
+    // A heading is as high as two rows.
+    let length = |group: &Group| group.keys.len() + 2;
+    let all: usize = groups.iter().map(length).sum();
+    let mut found = Vec::new();
+    let mut rest = groups;
+    for column in (1..=columns).rev() {
+        let goal = rest.iter().map(length).sum::<usize>().min(all).div_ceil(column);
+        let mut used = 0;
+        let taken = rest.iter().take_while(|group| {
+            let is_first = used == 0;
+            used += length(group);
+            is_first || used <= goal + 3
+        });
+        let count = if column == 1 { rest.len() } else { taken.count() };
+        let (these, others) = rest.split_at(count);
+        found.push(these);
+        rest = others;
+    }
+    found
+}
+
+fn draw(ui: &mut egui::Ui, group: &Group) {
+    let palette = theme::of(ui);
+    ui.label(egui::RichText::new(group.name).size(theme::TITLE_SIZE).strong());
+    let spacing = [theme::GAP * 1.5, theme::GAP / 2.0];
+    egui::Grid::new(group.name).num_columns(2).spacing(spacing).show(ui, |ui| {
+        for (key, effect) in &group.keys {
+            ui.label(egui::RichText::new(*key).color(palette.accent));
+            ui.label(*effect);
+            ui.end_row();
+        }
+    });
+    ui.add_space(theme::GAP);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shortcut_is_listed_for_any_number_of_columns() {
+        let with_keys = ACTIONS.iter().filter(|action| !action.keys.is_empty()).count();
+        let groups = groups();
+        for columns in 1..=3 {
+            let in_columns = in_columns(&groups, columns);
+            assert_eq!(in_columns.len(), columns);
+            let listed: usize =
+                in_columns.iter().flat_map(|of| of.iter()).map(|of| of.keys.len()).sum();
+            assert_eq!(listed, with_keys + MOUSE.len(), "{columns} columns");
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Help: menu bar, command palette, keyboard shortcuts and tour.
+
+pub mod command_palette;
+pub mod key_list;
+pub mod menu;
+pub mod tour;

@@ -1,0 +1,328 @@
+//! Library: searchable and sortable list of all saves, with replay, race and file operations.
+//!
+//! Only visible rows are laid out, and rows are sorted only after a change, so the cost per frame does not depend on
+//! the number of saves. The list takes the keyboard focus as a whole; every mouse action has a key.
+
+mod actions;
+mod details;
+mod fields;
+mod header;
+mod keyboard;
+mod order;
+mod row;
+mod selection;
+#[cfg(test)]
+mod tests;
+mod thumbnail;
+
+use std::path::PathBuf;
+
+use bevy_egui::egui::{self, EventFilter, Sense, WidgetInfo, WidgetType};
+
+use crate::save::library::{EXPORTS, SavePlace, check_entry_name};
+use crate::studio::commands::Command;
+use crate::studio::commands::library::LibraryCommand;
+use crate::studio::state::library::{Library, LibraryItem};
+use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::theme;
+use actions::send;
+
+use actions::{LibraryAction, LibraryActionKind, actions};
+use fields::{PathPrompt, PathPurpose, RenameField};
+use order::{SortOrder, SortedItems};
+use row::{RowStyle, name_rect, row};
+use selection::ChosenSaves;
+
+/// The panel with its state between frames.
+#[derive(Debug, Default)]
+pub(super) struct LibraryPanel {
+    search: String,
+    sort: SortOrder,
+    order: SortedItems,
+    selection: ChosenSaves,
+    /// Actions for the selection, cached by the selection's change counter and the library's revision.
+    actions: (Option<(u64, u64)>, Vec<LibraryAction>),
+    /// Name being edited.
+    renaming: Option<RenameField>,
+    /// Path being typed.
+    path_prompt: Option<PathPrompt>,
+    /// Run whose champions are listed.
+    listed_run: Option<PathBuf>,
+    /// Visible unread places that were last sent to the loader.
+    visible: Vec<SavePlace>,
+    /// Listing to which the selection belongs.
+    listing: u64,
+    /// Number of new entries that were selected automatically.
+    new_entries: u64,
+    /// Row to scroll into view.
+    scroll_to: Option<SavePlace>,
+    /// Whether the list requests the focus in the next frame.
+    wants_keyboard: bool,
+    /// Scroll offset and height of the list, in points.
+    offset: f32,
+    height: f32,
+    /// Heights above and below the list in the previous frame, in points.
+    surrounding_heights: [f32; 2],
+}
+
+impl LibraryPanel {
+    /// Draws the panel and collects the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
+        if !library.is_open() {
+            send(commands, LibraryCommand::Refresh);
+        }
+        let available = ui.available_height();
+        if !available.is_finite() {
+            return self.parts(ui, library, theme::LIST_HEIGHTS[0], commands);
+        }
+        let [usual, least] = theme::LIST_HEIGHTS;
+        let rest = if self.surrounding_heights == [0.0; 2] {
+            usual
+        } else {
+            available - self.surrounding_heights[0] - self.surrounding_heights[1]
+        };
+        let area = egui::ScrollArea::vertical().id_salt("library").auto_shrink(false);
+        area.show(ui, |ui| self.parts(ui, library, rest.floor().max(least), commands));
+    }
+
+    fn parts(
+        &mut self,
+        ui: &mut egui::Ui,
+        library: &Library,
+        list_height: f32,
+        commands: &mut Vec<Command>,
+    ) {
+        let gaps = ui.spacing().item_spacing.y * 2.0;
+        let header = ui.scope(|ui| self.header(ui, library, commands)).response.rect.height();
+        self.follow(library);
+        let now_s = ui.input(|input| input.time);
+        self.order.update(library, &self.search, self.sort, now_s);
+        self.list(ui, library, list_height, commands);
+        let footer = ui.scope(|ui| self.footer(ui, library, commands)).response.rect.height();
+        self.surrounding_heights = [header + gaps, footer];
+    }
+
+    /// Drops entries that no longer exist from the selection, and selects new ones.
+    fn follow(&mut self, library: &Library) {
+        if self.listing != library.listings() {
+            self.listing = library.listings();
+            self.selection.retain(|place| library.item(place).is_some());
+            self.renaming =
+                self.renaming.take().filter(|renaming| library.item(&renaming.place).is_some());
+        }
+        let (count, newest) = library.newest();
+        let newest =
+            newest.filter(|place| count != self.new_entries && library.item(place).is_some());
+        if let Some(place) = newest {
+            self.new_entries = count;
+            self.selection.only(place);
+            self.scroll_to = Some(place.clone());
+        }
+    }
+
+    fn list(
+        &mut self,
+        ui: &mut egui::Ui,
+        library: &Library,
+        height: f32,
+        commands: &mut Vec<Command>,
+    ) {
+        let id = ui.id().with("list");
+        let size = egui::vec2(ui.available_width(), height);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        let list = ui.interact(rect, id, Sense::FOCUSABLE);
+        let cursor = self.selection.cursor().and_then(|place| library.item(place));
+        list.widget_info(|| {
+            let now = cursor.map_or("nothing selected".to_owned(), LibraryItem::label);
+            WidgetInfo::labeled(WidgetType::Other, true, format!("Saves: {now}"))
+        });
+        let role = egui::accesskit::Role::ListBox;
+        ui.ctx().accesskit_node_builder(id, |node| node.set_role(role));
+        if std::mem::take(&mut self.wants_keyboard) {
+            list.request_focus();
+        }
+        let has_keyboard = list.has_focus();
+        if has_keyboard {
+            let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+            self.keys(ui, library, commands);
+        }
+        let palette = theme::of(ui);
+        let edge = if has_keyboard { palette.accent } else { palette.field_hovered };
+        let edge = if library.is_drop_near() { palette.accent } else { edge };
+        let stroke = egui::Stroke::new(if library.is_drop_near() { 3.0 } else { 1.0 }, edge);
+        ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside);
+        let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(2.0)));
+        self.rows(&mut inside, library, has_keyboard, commands);
+    }
+
+    fn rows(
+        &mut self,
+        ui: &mut egui::Ui,
+        library: &Library,
+        has_keyboard: bool,
+        commands: &mut Vec<Command>,
+    ) {
+        let rows = self.order.rows();
+        if rows.is_empty() {
+            let text = match (library.problem(), library.is_listed(), self.search.is_empty()) {
+                (Some(problem), ..) => problem,
+                (_, false, _) => "Loading ...",
+                (_, true, true) => "There are no saves yet.",
+                (_, true, false) => "No save matches all of these words.",
+            };
+            ui.add_space(theme::GAP);
+            return explain(ui, text);
+        }
+        let items = library.items();
+        let row_of = |place: &SavePlace| rows.iter().position(|row| items[*row].place() == place);
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let view = ui.available_height();
+        if self.height != view {
+            // The details of a selected save shrink the list. The list scrolls so that the selected row stays visible.
+            let was_in_sight = |row: usize| {
+                let top = row as f32 * theme::LIBRARY_ROW_HEIGHT - self.offset;
+                top < self.height && top + theme::LIBRARY_ROW_HEIGHT > 0.0
+            };
+            let cursor = self.selection.cursor();
+            let cursor = cursor.filter(|place| row_of(place).is_some_and(was_in_sight));
+            self.scroll_to = self.scroll_to.take().or(cursor.cloned());
+            self.height = view;
+        }
+        let mut area = egui::ScrollArea::vertical().id_salt("saves").auto_shrink(false);
+        if let Some(row) = self.scroll_to.take().as_ref().and_then(row_of) {
+            let top = row as f32 * theme::LIBRARY_ROW_HEIGHT;
+            let lowest = top + theme::LIBRARY_ROW_HEIGHT - view;
+            area = area.vertical_scroll_offset(self.offset.clamp(lowest.min(top), top));
+        }
+        let mut visible = Vec::new();
+        let output = area.show_rows(ui, theme::LIBRARY_ROW_HEIGHT, rows.len(), |ui, range| {
+            for item in rows.get(range).unwrap_or_default().iter().filter_map(|row| items.get(*row))
+            {
+                let size = egui::vec2(ui.available_width(), theme::LIBRARY_ROW_HEIGHT);
+                let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+                self.row(ui, rect, library, item, has_keyboard, commands);
+                if !item.is_read() {
+                    visible.push(item.place().clone());
+                }
+            }
+        });
+        self.offset = output.state.offset.y;
+        if visible != self.visible && !visible.is_empty() {
+            send(commands, LibraryCommand::LoadFirst(visible.clone()));
+        }
+        self.visible = visible;
+    }
+
+    fn row(
+        &mut self,
+        ui: &mut egui::Ui,
+        rect: egui::Rect,
+        library: &Library,
+        item: &LibraryItem,
+        has_keyboard: bool,
+        commands: &mut Vec<Command>,
+    ) {
+        let place = item.place();
+        let style = RowStyle {
+            is_chosen: self.selection.has(place),
+            is_cursor: has_keyboard && self.selection.cursor() == Some(place),
+        };
+        let response = row(ui, rect, item, style);
+        if self.renaming.as_ref().is_some_and(|renaming| renaming.place == *place) {
+            return self.edit_name(ui, name_rect(rect), commands);
+        }
+        if response.clicked() {
+            let held = ui.input(|input| input.modifiers);
+            if held.shift {
+                let rows = self.order.rows();
+                self.selection.extend(place, rows.iter().map(|row| library.items()[*row].place()));
+            } else if held.command {
+                self.selection.toggle(place);
+            } else {
+                self.selection.only(place);
+            }
+            self.wants_keyboard = true;
+        }
+        if response.secondary_clicked() && !style.is_chosen {
+            self.selection.only(place);
+        }
+        if response.double_clicked() {
+            send(commands, LibraryCommand::Replay(place.clone()));
+        }
+        let mut wanted = None;
+        response.context_menu(|ui| {
+            self.update_actions(library);
+            wanted = details::menu(ui, &self.actions.1);
+        });
+        self.act(wanted, library, commands);
+    }
+
+    /// Items of the selected saves.
+    fn chosen<'a>(&self, library: &'a Library) -> Vec<&'a LibraryItem> {
+        self.selection.places().filter_map(|place| library.item(place)).collect()
+    }
+
+    /// Recomputes the actions after a change only, since every save may be selected.
+    fn update_actions(&mut self, library: &Library) {
+        let wanted = Some((self.selection.changes(), library.revision()));
+        if self.actions.0 != wanted {
+            self.actions = (wanted, actions(library, &self.chosen(library)));
+        }
+    }
+
+    fn act(
+        &mut self,
+        wanted: Option<LibraryActionKind>,
+        library: &Library,
+        commands: &mut Vec<Command>,
+    ) {
+        match wanted {
+            None => {}
+            Some(LibraryActionKind::Send(command)) => commands.push(command),
+            Some(LibraryActionKind::Rename(place)) => {
+                let text = place.name();
+                self.scroll_to = Some(place.clone());
+                self.renaming = Some(RenameField { place, text, has_had_focus: false });
+            }
+            Some(LibraryActionKind::Export) => {
+                let exports = library.folder().join(EXPORTS).to_string_lossy().into_owned();
+                self.toggle_path_field(PathPurpose::Export, exports);
+            }
+            Some(LibraryActionKind::ShowChampions(run)) => {
+                let is_listed = self.listed_run.as_ref() == Some(&run);
+                self.listed_run = (!is_listed).then_some(run);
+            }
+        }
+    }
+
+    /// Draws the details of the selection and its actions.
+    fn footer(&mut self, ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
+        let (shown, all) = (self.order.rows().len(), library.items().len());
+        let found =
+            if shown == all { format!("{all} saves") } else { format!("{shown} of {all} saves") };
+        let reading = match library.unread() {
+            0 => String::new(),
+            unread => format!(", {unread} not read yet"),
+        };
+        let chosen = self.selection.places().len();
+        let several = if chosen > 1 { format!(", {chosen} selected") } else { String::new() };
+        explain(ui, &format!("{found}{reading}{several}"));
+        let name = self.renaming.as_ref().map(|renaming| check_entry_name(renaming.text.trim()));
+        if let Some(Err(problem)) = name {
+            ui.colored_label(theme::of(ui).problem, problem.to_string());
+        }
+        self.update_actions(library);
+        let wanted = details::buttons(ui, &self.actions.1);
+        self.path_field(ui, commands);
+        let only = self.selection.places().next().filter(|_| chosen == 1);
+        if let Some(item) = only.and_then(|place| library.item(place)) {
+            details::details(ui, item);
+            let is_listed = item.place().run() == self.listed_run.as_deref();
+            if let Some(run) = item.run().filter(|_| is_listed) {
+                details::champions(ui, item.place(), run, commands);
+            }
+        }
+        self.act(wanted, library, commands);
+    }
+}

@@ -1,0 +1,97 @@
+//! Bar above the stage: camera modes, overlays, theme and screenshots.
+
+use bevy_egui::egui;
+use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
+
+use crate::studio::commands::Command;
+use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::overlay::Overlay;
+use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::scene::overlays::Overlays;
+use crate::studio::ui::theme::Theme;
+
+/// Draws the bar and collects the user's commands.
+pub(crate) fn view_bar(
+    ui: &mut egui::Ui,
+    camera_mode: CameraMode,
+    overlays: &Overlays,
+    has_smooth_edges: bool,
+    theme: Theme,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for choice in CameraMode::ALL {
+            let hint = match choice {
+                CameraMode::Follow => "Follow the snake, or all of them in a race (F, Home)",
+                CameraMode::Side => "Follow from the side (C: next camera)",
+                CameraMode::Top => "Follow from above (C: next camera)",
+                CameraMode::Free => {
+                    "Keep the camera where it is (F). Double-click a place to centre it"
+                }
+            };
+            if ui
+                .selectable_label(camera_mode == choice, choice.name())
+                .on_hover_text(hint)
+                .clicked()
+            {
+                commands.push(Command::SetCamera(choice));
+            }
+        }
+        ui.separator();
+        let stays = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+        MenuButton::new("Show").config(stays).ui(ui, |ui| {
+            for overlay in Overlay::ALL {
+                let (name, hint) = overlay.words();
+                let mut is_shown = overlays.shows(overlay);
+                if ui.checkbox(&mut is_shown, name).on_hover_text(hint).changed() {
+                    commands.push(Command::ToggleOverlay(overlay));
+                }
+            }
+            ui.separator();
+            let mut is_smooth = has_smooth_edges;
+            let hint = "Smooth edges with four samples per pixel; slow without a graphics card (A)";
+            if ui.checkbox(&mut is_smooth, "Anti-aliasing").on_hover_text(hint).changed() {
+                commands.push(Command::ToggleSmoothEdges);
+            }
+        });
+        let (name, hint) = match theme {
+            Theme::Light => ("Dark", "Switch to the dark theme (T)"),
+            Theme::Dark => ("Light", "Switch to the light theme (T)"),
+        };
+        if ui.button(name).on_hover_text(hint).clicked() {
+            commands.push(Command::ToggleTheme);
+        }
+        let hint = "Save a picture of the stage (P) or of the whole window (Shift P)";
+        if ui.button("Picture").on_hover_text(hint).clicked() {
+            commands.push(Command::TakePicture(ScreenshotArea::Stage));
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn each_button_sends_its_command() {
+        for (label, command) in [
+            ("Side", Command::SetCamera(CameraMode::Side)),
+            ("Dark", Command::ToggleTheme),
+            ("Picture", Command::TakePicture(ScreenshotArea::Stage)),
+        ] {
+            let overlays = Overlays::default();
+            let mut harness = Harness::new_ui_state(
+                |ui, commands| {
+                    view_bar(ui, CameraMode::Follow, &overlays, false, Theme::Light, commands)
+                },
+                Vec::new(),
+            );
+            harness.get_by_label(label).click();
+            harness.run();
+            assert_eq!(*harness.state(), [command], "{label}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Cards over the stage: camera bar, leaderboard, limb readings and lesson reminder.
+
+use bevy::prelude::Msaa;
+use bevy_egui::egui;
+
+use super::camera_bar::view_bar;
+use super::leaderboard::leaderboard;
+use super::limb_card::limb_card;
+use crate::studio::commands::Command;
+use crate::studio::commands::panel::PanelKind;
+use crate::studio::panels::on_stage::OnStage;
+use crate::studio::stage::StageMode;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::theme;
+
+/// Draws the reminder that a lesson is in progress, for when the lessons panel is hidden.
+pub(crate) fn lesson_card(
+    context: &egui::Context,
+    at: egui::Pos2,
+    lesson: usize,
+    commands: &mut Vec<Command>,
+) {
+    let palette = theme::of_context(context);
+    egui::Area::new(egui::Id::new("lesson")).fixed_pos(at).show(context, |ui| {
+        palette.card(palette.accent).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(format!("Lesson {} is in progress.", lesson + 1));
+                if ui.button("Show lesson").clicked() {
+                    commands.push(Command::OpenPanel(PanelKind::Lessons));
+                }
+                if ui.button("Back to my own run").clicked() {
+                    commands.push(Command::LeaveLesson);
+                }
+            });
+        });
+    });
+}
+
+/// Space left beside the cards.
+pub(crate) struct AroundStage {
+    /// Position for another card below the camera bar.
+    pub below_bar: egui::Pos2,
+    /// Width of the leaderboard with its margin, in points; 0 without one.
+    pub board_width: f32,
+}
+
+/// Draws the cards over the edges of the stage.
+pub(crate) fn around_stage(
+    context: &egui::Context,
+    stage: egui::Rect,
+    on_stage: &OnStage,
+    lanes: &[&Lane],
+    focused: &Lane,
+    theme: theme::Theme,
+    commands: &mut Vec<Command>,
+) -> AroundStage {
+    let stage = stage.shrink(theme::GAP * 1.5);
+    let palette = theme::of_context(context);
+    let card = |name: &str, pivot: egui::Align2, at: egui::Pos2| {
+        egui::Area::new(egui::Id::new(name)).pivot(pivot).fixed_pos(at).constrain_to(stage)
+    };
+    let frame = palette.card(palette.field_hovered);
+    let bar = card("view", egui::Align2::LEFT_TOP, stage.left_top()).show(context, |ui| {
+        let small = egui::Margin::symmetric(theme::GAP as i8 / 2, theme::GAP as i8 / 2);
+        frame.inner_margin(small).show(ui, |ui| {
+            let is_smooth = on_stage.smoothing.iter().any(|msaa| *msaa != Msaa::Off);
+            view_bar(
+                ui,
+                on_stage.rig.camera_mode(),
+                &on_stage.overlays,
+                is_smooth,
+                theme,
+                commands,
+            );
+        });
+    });
+    let is_narrow = stage.width() < theme::NARROW_STAGE;
+    let mut board_width = 0.0;
+    if *on_stage.mode != StageMode::Solo {
+        // With several lanes, the default camera shows no snake in the lower left corner.
+        let place = card("board", egui::Align2::LEFT_BOTTOM, stage.left_bottom());
+        let shown = place.show(context, |ui| {
+            frame.show(ui, |ui| {
+                let time_s = on_stage.playback.time_s();
+                let (mode, focus) = (&*on_stage.mode, focused.number());
+                leaderboard(ui, lanes, mode, focus, time_s, is_narrow, commands);
+            });
+        });
+        board_width = shown.response.rect.width() + theme::GAP * 1.5;
+    }
+    if let Some(limb) = on_stage.selection.limb {
+        // The card ignores the pointer, because the snake may be behind it.
+        let place = card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom());
+        place.interactable(false).show(context, |ui| {
+            frame.show(ui, |ui| limb_card(ui, focused, limb));
+        });
+    }
+    let below_bar = bar.response.rect.left_bottom() + egui::vec2(0.0, theme::GAP);
+    AroundStage { below_bar, board_width }
+}

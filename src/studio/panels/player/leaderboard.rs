@@ -1,0 +1,206 @@
+//! Leaderboard: ranking of several lanes, and buttons to keep or discard a change.
+
+use bevy_egui::egui;
+
+use crate::studio::commands::Command;
+use crate::studio::stage::StageMode;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::theme;
+
+/// State of a lane in the ranking.
+#[derive(Debug, Clone, PartialEq)]
+struct RankedLane {
+    lane: usize,
+    name: String,
+    /// Time of landing, in simulated seconds.
+    landed_s: Option<f64>,
+    is_disqualified: bool,
+    /// Whether the snake was pulled by hand, which disqualifies it from the ranking.
+    is_disturbed: bool,
+    y_m: f32,
+}
+
+/// The lanes in ranking order: landed lanes by time, then lanes by distance, then pulled and disqualified ones.
+fn ranking<'a>(lanes: impl IntoIterator<Item = &'a Lane>, time_s: f64) -> Vec<RankedLane> {
+    let mut ranking: Vec<RankedLane> = lanes
+        .into_iter()
+        .map(|lane| {
+            let evaluation = lane.evaluation();
+            RankedLane {
+                lane: lane.number(),
+                name: lane.staged().label().to_owned(),
+                landed_s: lane.landed_s(time_s),
+                is_disqualified: evaluation.disqualified.is_some(),
+                is_disturbed: lane.is_disturbed(),
+                y_m: evaluation.centre_y_m,
+            }
+        })
+        .collect();
+    order(&mut ranking);
+    ranking
+}
+
+fn order(ranking: &mut [RankedLane]) {
+    ranking.sort_by(|a, b| {
+        let landed = |ranked: &RankedLane| ranked.landed_s.unwrap_or(f64::INFINITY);
+        let by_place = b.y_m.total_cmp(&a.y_m).then(a.lane.cmp(&b.lane));
+        let counts = |ranked: &RankedLane| (ranked.is_disqualified, ranked.is_disturbed);
+        counts(a).cmp(&counts(b)).then(landed(a).total_cmp(&landed(b))).then(by_place)
+    });
+}
+
+/// Draws the leaderboard and collects the user's commands. `focus` is the lane whose numbers are shown. Over a narrow
+/// stage (`is_narrow`) the texts are shorter.
+pub(crate) fn leaderboard(
+    ui: &mut egui::Ui,
+    lanes: &[&Lane],
+    mode: &StageMode,
+    focus: usize,
+    time_s: f64,
+    is_narrow: bool,
+    commands: &mut Vec<Command>,
+) {
+    let palette = theme::of(ui);
+    let title = |ui: &mut egui::Ui, text: &str| {
+        ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
+    };
+    match mode {
+        StageMode::Solo => return,
+        StageMode::Race => title(ui, "Race"),
+        StageMode::WhatIf { .. } => title(ui, "What if"),
+    }
+    egui::Grid::new("board")
+        .num_columns(3)
+        .min_col_width(0.0)
+        .spacing([theme::GAP, theme::GAP / 4.0])
+        .show(ui, |ui| {
+            for (place, ranked) in ranking(lanes.iter().copied(), time_s).iter().enumerate() {
+                let rank = format!("{}", place + 1);
+                ui.label(egui::RichText::new(rank).color(palette.text_weak).monospace());
+                let hint = "Show the numbers and torques of this snake below";
+                let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
+                if name.on_hover_text(hint).clicked() {
+                    commands.push(Command::Focus(ranked.lane));
+                }
+                // A fixed width keeps the layout still while the values change.
+                let text = match (ranked.is_disqualified, ranked.landed_s) {
+                    _ if ranked.is_disturbed => "by hand".to_owned(),
+                    (true, _) => "out".to_owned(),
+                    (false, Some(landed_s)) if is_narrow => format!("{landed_s:.2} s"),
+                    (false, Some(landed_s)) => format!("landed {landed_s:.2} s"),
+                    (false, None) => format!("{:.2} m", ranked.y_m),
+                };
+                let color = match (ranked.is_disqualified || ranked.is_disturbed, ranked.landed_s) {
+                    (true, _) => palette.problem,
+                    (false, Some(_)) => palette.accent,
+                    (false, None) => palette.text,
+                };
+                let width = if is_narrow { 8 } else { 14 };
+                let text = egui::RichText::new(format!("{text:>width$}")).monospace().color(color);
+                let value = ui.label(text);
+                if ranked.landed_s.is_some() && !ranked.is_disqualified && !ranked.is_disturbed {
+                    value.on_hover_text("Time at which it arrived on the landing");
+                }
+                ui.end_row();
+            }
+        });
+    ui.horizontal(|ui| {
+        let buttons: &[(&str, &str, Command)] = match mode {
+            StageMode::WhatIf { .. } => &[
+                ("Keep", "Keep this change, also for the next run", Command::KeepChange),
+                (
+                    "Discard",
+                    "Discard this change, also for the next run (Esc)",
+                    Command::DropChange,
+                ),
+            ],
+            StageMode::Solo | StageMode::Race => {
+                &[("Leave race", "Show only the selected snake (Esc)", Command::Single)]
+            }
+        };
+        for (name, hint, command) in buttons {
+            if ui.button(*name).on_hover_text(*hint).clicked() {
+                commands.push(command.clone());
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::save::shipped_champion;
+    use crate::studio::stage::staged_champion::StagedChampion;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn the_ranking_puts_landed_lanes_first_and_pulled_or_disqualified_ones_last() {
+        let ranked = |lane, landed_s, is_disqualified, y_m| RankedLane {
+            lane,
+            name: lane.to_string(),
+            landed_s,
+            is_disqualified,
+            is_disturbed: lane == 5,
+            y_m,
+        };
+        let mut ranking = [
+            ranked(0, None, false, 12.0),
+            ranked(1, Some(9.0), false, 24.0),
+            ranked(2, None, true, 30.0),
+            ranked(3, Some(7.5), false, 22.0),
+            ranked(4, None, false, 14.0),
+            ranked(5, None, false, 40.0),
+        ];
+        order(&mut ranking);
+        let lanes = ranking.map(|ranked| ranked.lane);
+        assert_eq!(lanes, [3, 1, 4, 0, 5, 2]);
+    }
+
+    #[test]
+    fn a_click_focuses_a_lane_and_buttons_keep_or_discard_a_change() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = |number| {
+            Lane::new(
+                StagedChampion::from_file(&loaded, number, &format!("snake {number}")),
+                number,
+            )
+        };
+        let lanes = [lane(0), lane(1)];
+        let before = Box::new(RunPlan::new("climb", 1, Settings::default()));
+        for (mode, label, command) in [
+            (StageMode::Race, "snake 1", Command::Focus(1)),
+            (StageMode::Race, "Leave race", Command::Single),
+            (StageMode::WhatIf { before: before.clone() }, "Keep", Command::KeepChange),
+            (StageMode::WhatIf { before }, "Discard", Command::DropChange),
+        ] {
+            let lanes: Vec<&Lane> = lanes.iter().collect();
+            let mut harness = Harness::new_ui_state(
+                |ui, commands| leaderboard(ui, &lanes, &mode, 0, 0.0, false, commands),
+                Vec::new(),
+            );
+            harness.get_by_label(label).click();
+            harness.run();
+            assert_eq!(*harness.state(), [command], "{label}");
+        }
+    }
+
+    #[test]
+    fn the_leaderboard_is_narrower_over_a_narrow_stage() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "one"), 0);
+        let width = |is_narrow| {
+            let mut harness = Harness::new_ui_state(
+                |ui, commands: &mut Vec<Command>| {
+                    leaderboard(ui, &[&lane], &StageMode::Race, 0, 0.0, is_narrow, commands);
+                },
+                Vec::new(),
+            );
+            harness.run();
+            let [name, value] = ["one", " m"].map(|label| harness.get_by_label_contains(label));
+            value.rect().right() - name.rect().left()
+        };
+        assert!(width(true) + 30.0 < width(false), "{} of {}", width(true), width(false));
+    }
+}

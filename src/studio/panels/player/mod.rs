@@ -1,0 +1,8 @@
+//! Panels on the edges of the stage: the player below it, the camera buttons above it, the leaderboard beside it.
+
+pub mod camera_bar;
+pub mod cards;
+pub mod leaderboard;
+pub mod limb_card;
+pub mod timeline;
+pub mod torque_strip;

@@ -1,0 +1,223 @@
+//! Below the stage: caption, player controls, current readings and torques over time.
+
+use bevy_egui::egui;
+
+use super::torque_strip::TorqueStrip;
+use crate::score::Fitness;
+use crate::studio::commands::Command;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::{Playback, SPEED_RANGE};
+use crate::studio::stage::staged_champion::ChampionSource;
+use crate::studio::ui::icons::{Icon, icon_button};
+use crate::studio::ui::theme;
+
+/// The panel with its cached drawing.
+#[derive(Default)]
+pub(crate) struct TimelinePanel {
+    torque_strip: TorqueStrip,
+}
+
+/// Approximate width of a character, in points.
+const CHARACTER_WIDTH: f32 = 7.4;
+
+impl TimelinePanel {
+    /// Draws the panel and collects the user's commands. `run` is the number of the current run, `end_s` the end time
+    /// of the longest lane.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        lane: &Lane,
+        playback: &Playback,
+        end_s: f64,
+        run: u32,
+        commands: &mut Vec<Command>,
+    ) {
+        self.caption(ui, lane, run, commands);
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
+            player(ui, playback, end_s, commands);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                readings(ui, lane);
+            });
+        });
+        let height = theme::TORQUE_STRIP_HEIGHT;
+        let moment = self.torque_strip.ui(ui, lane, playback.time_s(), end_s, height);
+        commands.extend(moment.map(Command::Seek));
+    }
+
+    /// Caption of the replay, with buttons for recordings.
+    fn caption(&self, ui: &mut egui::Ui, lane: &Lane, run: u32, commands: &mut Vec<Command>) {
+        let staged = lane.staged();
+        ui.horizontal(|ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if staged.other_engine().is_some() && staged.could_be_as_found() {
+                    if ui.button("As recorded").on_hover_text("Play the recording").clicked() {
+                        commands.push(Command::ShowAsFound);
+                    }
+                } else if staged.recording().is_some() {
+                    let hint = "Simulate it with this version of the engine. The motion may differ from \
+                                the recording";
+                    if ui.button("Simulate here").on_hover_text(hint).clicked() {
+                        commands.push(Command::Simulate);
+                    }
+                }
+                if lane.is_disturbed() {
+                    let hint = "You pulled this snake, so its result does not count. Go back in time to undo it";
+                    let text = egui::RichText::new("disturbed by hand, not counted").color(theme::of(ui).problem);
+                    ui.label(text).on_hover_text(hint);
+                }
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    let is_earlier = matches!(staged.source(), ChampionSource::Run(of) if of != run);
+                    let prefix = if is_earlier { "Earlier run: " } else { "" };
+                    let text = format!("{prefix}{}", staged.caption());
+                    let text = egui::RichText::new(text).size(theme::TITLE_SIZE).strong();
+                    ui.add(egui::Label::new(text).truncate());
+                });
+            });
+        });
+    }
+}
+
+/// Draws the playback buttons, the speed and the time.
+fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec<Command>) {
+    let (play, play_hint) = if playback.is_playing() {
+        (Icon::Pause, "Pause (Space)")
+    } else {
+        (Icon::Play, "Play (Space)")
+    };
+    for (icon, is_on, hint, command) in [
+        (Icon::ToStart, false, "Play from the start (R)", Command::Restart),
+        (Icon::StepBack, false, "Previous physics step (Left)", Command::Step { forward: false }),
+        (play, false, play_hint, Command::TogglePlayback),
+        (Icon::StepForward, false, "Next physics step (Right)", Command::Step { forward: true }),
+        (Icon::Loop, playback.loops(), "Loop: start again at the end (O)", Command::ToggleLoop),
+    ] {
+        if icon_button(ui, icon, is_on, hint).clicked() {
+            commands.push(command);
+        }
+    }
+    ui.add_space(theme::GAP / 2.0);
+    let mut speed = playback.speed();
+    let field = egui::DragValue::new(&mut speed)
+        .range(SPEED_RANGE)
+        .speed(0.02 * f64::from(playback.speed()))
+        .max_decimals(2)
+        .prefix("× ");
+    let hint = "Speed in simulated seconds per second: drag, click to type, or press + and −";
+    if ui.add(field).on_hover_text(hint).changed() {
+        commands.push(Command::SetSpeed(speed));
+    }
+    ui.add_space(theme::GAP / 2.0);
+    let width = format!("{end_s:.2}").len();
+    let time = format!("{:width$.2} of {end_s:.2} s", playback.time_s());
+    ui.label(egui::RichText::new(time).monospace());
+}
+
+/// Draws the readings at the current time.
+fn readings(ui: &mut egui::Ui, lane: &Lane) {
+    let evaluation = lane.evaluation();
+    let trial = lane.trial();
+    let palette = theme::of(ui);
+    if let Some(reason) = evaluation.disqualified {
+        let text = format!("disqualified: {}", reason.words());
+        ui.label(egui::RichText::new(text).color(palette.problem));
+        return;
+    }
+    let unit = trial.fitness.unit();
+    // A recording stores only the final evaluation.
+    let is_on_record = lane.staged().recording().is_some() && !lane.is_over();
+    if is_on_record {
+        let place = format!("{:.2} m", evaluation.centre_y_m);
+        ui.label(egui::RichText::new(place).monospace());
+        ui.label(egui::RichText::new("position").color(palette.text_weak));
+        return;
+    }
+    let behaviour = evaluation.behaviour;
+    let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
+    let steps = behaviour.map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));
+    let more = match trial.fitness {
+        Fitness::Climb => "; the distance stops counting once the whole snake is on the landing",
+        _ => "",
+    };
+    let cost = match trial.energy_cost_per_kj {
+        0.0 => String::new(),
+        cost => format!(", minus {cost} per kJ that the joints use"),
+    };
+    let fitness_hint =
+        format!("Fitness if the trial ended now: {}{cost}{more}", trial.fitness.words());
+    // Ordered by importance, because a narrow window has room for only some of them.
+    let all = [
+        ("fitness", Some(format!("{:.2}{unit}", evaluation.fitness)), fitness_hint.as_str()),
+        ("steps", steps, "Steps that the middle block has climbed"),
+        ("speed", Some(format!("{:.2} m/s", lane.speed_m_s())), "Speed of the middle block"),
+        (
+            "energy",
+            energy_kj.map(|energy_kj| format!("{energy_kj:.2} kJ")),
+            "Energy that the joints have used so far",
+        ),
+    ];
+    let room = ui.available_width();
+    let mut used = 0.0;
+    let with_room = all.into_iter().filter_map(|(name, value, hint)| Some((name, value?, hint)));
+    let shown: Vec<(&str, String, &str)> = with_room
+        .take_while(|(name, value, _)| {
+            used +=
+                (name.len() + value.chars().count()) as f32 * CHARACTER_WIDTH + theme::GAP * 2.5;
+            used < room
+        })
+        .collect();
+    // The layout runs from right to left.
+    for (name, value, hint) in shown.into_iter().rev() {
+        ui.label(egui::RichText::new(value).monospace()).on_hover_text(hint);
+        ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(hint);
+        ui.add_space(theme::GAP / 2.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::stage::staged_champion::StagedChampion;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Commands sent after `act` in a panel of this width.
+    fn sent(width: f32, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
+        let size = egui::vec2(width, 200.0);
+        let mut harness = Harness::builder().with_size(size).build_ui_state(
+            |ui, commands| panel.ui(ui, &lane, &playback, 15.0, 0, commands),
+            Vec::new(),
+        );
+        act(&mut harness);
+        harness.run();
+        harness.state().clone()
+    }
+
+    #[test]
+    fn each_button_of_the_player_sends_its_command() {
+        for (label, command) in [
+            ("From the start", Command::Restart),
+            ("Step back", Command::Step { forward: false }),
+            ("Pause playback", Command::TogglePlayback),
+            ("Step forward", Command::Step { forward: true }),
+            ("Loop", Command::ToggleLoop),
+        ] {
+            assert_eq!(sent(900.0, |harness| harness.get_by_label(label).click()), [command]);
+        }
+    }
+
+    #[test]
+    fn a_narrow_panel_leaves_out_the_least_important_readings() {
+        let is_shown = |width: f32, name: &str| {
+            let mut seen = false;
+            sent(width, |harness| seen = harness.query_by_label(name).is_some());
+            seen
+        };
+        assert!(is_shown(900.0, "fitness") && is_shown(900.0, "energy"));
+        assert!(is_shown(540.0, "fitness") && !is_shown(540.0, "energy"));
+    }
+}

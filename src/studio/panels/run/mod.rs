@@ -1,0 +1,509 @@
+//! Run panel: start, pause, single generation and reset; progress; strategy and controller settings.
+
+pub mod progress;
+
+use bevy_egui::egui;
+
+use super::settings::Sheet;
+use crate::evolve::{EvolutionSettings, RunPlan};
+use crate::genome::GenomeSpace;
+use crate::run::THREADS_RANGE;
+use crate::schema::Section;
+use crate::studio::commands::Command;
+use crate::studio::state::current_run::{CurrentRun, RunStatus, news_of};
+use crate::studio::ui::number_field::NumberField;
+use crate::studio::ui::text_rows::{explain, row, title_and};
+use crate::studio::ui::theme;
+
+use progress::progress;
+
+/// The panel with its text fields.
+#[derive(Debug, Default)]
+pub(super) struct EvolutionPanel {
+    seed: NumberField,
+    threads: NumberField,
+    sheet: Sheet,
+}
+
+impl EvolutionPanel {
+    /// Draws the panel and collects the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        self.sheet.begin(ui, run);
+        title_and(ui, "Evolution", |ui| preset_switch(ui, run, commands));
+        // A click on a button also ends typing in a field. The typed value is sent before the button's command.
+        let mut pressed = Vec::new();
+        self.buttons(ui, run, &mut pressed);
+        progress(ui, run);
+        unfinished_runs(ui, run, commands);
+        self.fields(ui, run, commands);
+        commands.append(&mut pressed);
+    }
+
+    fn buttons(&self, ui: &mut egui::Ui, run: &CurrentRun, pressed: &mut Vec<Command>) {
+        let is_wrong = self.seed.problem().is_some() || self.sheet.has_problem();
+        let status = run.status();
+        let is_finished = status == RunStatus::Finished;
+        let (label, start) = match status {
+            RunStatus::Running => ("Pause", Command::Pause),
+            RunStatus::Finished => ("New run", Command::Start),
+            RunStatus::Ready => ("Start", Command::Start),
+            RunStatus::Paused => ("Resume", Command::Start),
+        };
+        let palette = theme::of(ui);
+        let can_start = !(is_finished && is_wrong);
+        let text = egui::RichText::new(label).strong();
+        let first = if can_start {
+            egui::Button::new(text.color(palette.on_accent)).fill(palette.accent)
+        } else {
+            egui::Button::new(text)
+        };
+        let first = first.min_size(egui::vec2(theme::GAP * 10.0, 0.0));
+        let single = if is_finished {
+            "The run is finished; \"New run\" starts another"
+        } else {
+            "Finish one generation, then pause (G)"
+        };
+        let first_hint = if is_finished && !run.next_run_differs() {
+            "Start a run with the next seed (E)"
+        } else {
+            "Start or pause evolution in the background (E)"
+        };
+        let reset = if is_wrong {
+            "Correct the invalid value below first"
+        } else {
+            "Start over with the current settings (saved champions are kept)"
+        };
+        ui.horizontal(|ui| {
+            for (is_on, button, hint, command) in [
+                (can_start, first, first_hint, start),
+                (
+                    !is_finished,
+                    egui::Button::new("One generation"),
+                    single,
+                    Command::SingleGeneration,
+                ),
+                (!is_wrong, egui::Button::new("Reset"), reset, Command::Reset),
+            ] {
+                let response = ui.add_enabled(is_on, button);
+                if response.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
+                    pressed.push(command);
+                }
+            }
+        });
+    }
+
+    fn fields(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        ui.horizontal(|ui| {
+            let hint = "The same seed and settings always give the same run, bit for bit";
+            let seed = self.seed.ui(ui, "Seed", hint, run.next_seed(), 0..=u64::MAX);
+            commands.extend(seed.map(Command::SetSeed));
+            let hint = "Number of snakes evaluated at the same time. More threads than processor cores are no \
+                        faster. The result does not depend on it";
+            let threads = self.threads.ui(ui, "Threads", hint, run.threads(), THREADS_RANGE);
+            commands.extend(threads.map(Command::SetThreads));
+        });
+        for problem in [self.seed.problem(), self.threads.problem()].into_iter().flatten() {
+            ui.colored_label(theme::of(ui).problem, problem);
+        }
+        self.sheet.section(ui, run, EvolutionSettings::RUN, commands);
+        founder(ui, run, commands);
+        changes(ui, run);
+        if run.next_run_differs() {
+            let hint = "These settings will be used by the next run. Press Reset to prepare it.";
+            ui.label(egui::RichText::new(hint).color(theme::of(ui).second));
+        }
+        self.strategy(ui, run, commands);
+        self.controller(ui, run, commands);
+    }
+
+    /// Strategy selection, with the settings of the selected and of all other strategies.
+    fn strategy(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        self.sheet.section(ui, run, EvolutionSettings::STRATEGY, commands);
+        let common = [EvolutionSettings::RUN, EvolutionSettings::STRATEGY];
+        let sections = self.sheet.sections("evolution.").into_iter();
+        let (used, others): (Vec<Section>, Vec<Section>) = sections
+            .filter(|section| !common.contains(section))
+            .partition(|section| self.is_used(*section));
+        let selected = format!("evolution.{}.", run.next_settings().evolution.strategy);
+        let own = self.sheet.sections(&selected);
+        for section in &own {
+            self.folded(ui, run, *section, true, commands);
+        }
+        for section in used.into_iter().filter(|section| !own.contains(section)) {
+            self.folded(ui, run, section, false, commands);
+        }
+        let header = egui::CollapsingHeader::new("Other strategies");
+        let shown = header.show(ui, |ui| {
+            for section in others {
+                self.folded(ui, run, section, false, commands);
+            }
+        });
+        shown.header_response.on_hover_text("Settings of the strategies that are not selected");
+    }
+
+    /// Controller selection, with the ranges of the genome.
+    fn controller(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        self.sheet.section(ui, run, GenomeSpace::CONTROLLER, commands);
+        let sections = self.sheet.sections("genome.").into_iter();
+        for section in sections.filter(|section| *section != GenomeSpace::CONTROLLER) {
+            self.folded(ui, run, section, false, commands);
+        }
+    }
+
+    /// Whether a setting of a section has an effect with the selected strategy and controller.
+    fn is_used(&self, section: Section) -> bool {
+        self.sheet.in_section(section).any(|listed| listed.is_used)
+    }
+
+    /// Section with a collapsible header.
+    fn folded(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        section: Section,
+        is_open: bool,
+        commands: &mut Vec<Command>,
+    ) {
+        // Sections of the genome that the selected controller does not use are dimmed.
+        let is_of_genome =
+            self.sheet.in_section(section).any(|listed| listed.path.starts_with("genome."));
+        let is_unused = is_of_genome && !self.is_used(section);
+        let name = egui::RichText::new(section.title);
+        let name = if is_unused { name.color(theme::of(ui).text_weak) } else { name };
+        // The salt includes `is_open`, so that a newly selected section opens regardless of its state under the
+        // others.
+        let header = egui::CollapsingHeader::new(name)
+            .id_salt((section.title, is_open))
+            .default_open(is_open);
+        let shown = header.show_unindented(ui, |ui| {
+            if is_unused {
+                explain(ui, "The selected controller does not use these settings.");
+            }
+            self.sheet.section(ui, run, section, commands);
+        });
+        shown.header_response.on_hover_text(section.about);
+    }
+}
+
+/// Founder of the next run, with a button to remove it.
+fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    let Some(name) = run.next_founder() else { return };
+    ui.horizontal(|ui| {
+        ui.label(format!("Starts from \"{name}\""));
+        let button = ui.small_button("Start from scratch");
+        if button.on_hover_text("Create the first generation of the next run at random").clicked() {
+            commands.push(Command::ForgetFounder);
+        }
+    });
+}
+
+/// Settings that were changed during the current run.
+fn changes(ui: &mut egui::Ui, run: &CurrentRun) {
+    let changes = run.changes();
+    let text = match changes.len() {
+        0 => return,
+        1 => "1 setting changed during the run".to_owned(),
+        several => format!("{several} settings changed during the run"),
+    };
+    let label = ui.label(egui::RichText::new(text).color(theme::of(ui).second));
+    label.on_hover_ui(|ui| {
+        let latest = &changes[changes.len().saturating_sub(MAX_LISTED_CHANGES)..];
+        let lines: Vec<String> = latest.iter().map(news_of).collect();
+        ui.label(lines.join("\n"));
+    });
+}
+
+/// Maximum number of changes in the hover text.
+const MAX_LISTED_CHANGES: usize = 12;
+/// Draws the button that switches between the original experiment and the standard climb.
+fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    let (label, preset, hint) = if run.next_preset() == REPORT {
+        ("Standard climb", CLIMB, "Use the preset that climbs to the landing for the next run")
+    } else {
+        (
+            "Original experiment",
+            REPORT,
+            "Use the method and the world of the original report for the next run",
+        )
+    };
+    if ui.small_button(label).on_hover_text(hint).clicked() {
+        commands.push(Command::SetPreset(preset.to_owned()));
+    }
+}
+
+/// Preset of the original experiment.
+const REPORT: &str = "report";
+/// Preset of the climb to the landing.
+const CLIMB: &str = "climb";
+
+/// List of unfinished runs that can be resumed.
+fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    let header = egui::CollapsingHeader::new("Resume a stopped run");
+    let opened = header.show(ui, |ui| {
+        let Some(stopped) = run.stopped() else {
+            return explain(ui, "Loading ...");
+        };
+        let mut stopped = stopped.peekable();
+        if stopped.peek().is_none() {
+            explain(ui, "There are no unfinished runs.");
+        }
+        for summary in stopped {
+            let RunPlan { preset, seed, settings, .. } = &summary.plan;
+            let (finished, all) = (summary.finished, settings.evolution.generations);
+            let (name, behind) = (format!("{preset}, seed {seed}"), format!("{finished} of {all}"));
+            let hint = format!(
+                "{finished} of {all} generations are finished. The current run stays saved.\n{}",
+                summary.folder.display()
+            );
+            if row(ui, false, &name, &behind).on_hover_text(hint).clicked() {
+                commands.push(Command::Continue(summary.folder.clone()));
+            }
+        }
+    });
+    if opened.header_response.clicked() {
+        commands.push(Command::ListRuns);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{HalvingSettings, StrategyKind};
+    use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+    use crate::studio::state::current_run::prepared_run as run;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Commands sent after `act`.
+    fn sent(run: &CurrentRun, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+        let mut panel = EvolutionPanel::default();
+        let mut harness = Harness::builder()
+            .with_size(egui::vec2(theme::PANEL_WIDTH, 1600.0))
+            .build_ui_state(|ui, commands| panel.ui(ui, run, commands), Vec::new());
+        act(&mut harness);
+        harness.run();
+        harness.state().clone()
+    }
+
+    #[test]
+    fn each_button_sends_its_command() {
+        let run = run();
+        for (label, command) in [
+            ("Start", Command::Start),
+            ("One generation", Command::SingleGeneration),
+            ("Reset", Command::Reset),
+        ] {
+            assert_eq!(sent(&run, |harness| harness.get_by_label(label).click()), [command]);
+        }
+    }
+
+    #[test]
+    fn the_first_button_pauses_a_running_run() {
+        let mut run = run();
+        run.start().expect("a thread");
+        assert_eq!(sent(&run, |harness| harness.get_by_label("Pause").click()), [Command::Pause]);
+    }
+
+    #[test]
+    fn the_founder_of_the_next_run_can_be_removed() {
+        let mut run = run();
+        let champion = crate::save::shipped_champion().expect("well formed").champion;
+        run.found_run(&champion, "climber").expect("it fits");
+        let commands = sent(&run, |harness| {
+            assert!(harness.query_by_label("Starts from \"climber\"").is_some());
+            harness.get_by_label("Start from scratch").click();
+        });
+        assert_eq!(commands, [Command::ForgetFounder]);
+    }
+
+    #[test]
+    fn a_valid_seed_is_sent_on_enter_and_an_invalid_one_is_not() {
+        let run = run();
+        let type_seed = |text: &'static str| {
+            sent(&run, move |harness| {
+                harness.get_by_label("Seed").focus();
+                harness.run();
+                harness.get_by_label("Seed").type_text(text);
+                harness.run();
+                harness.key_press(egui::Key::Enter);
+                harness.run();
+            })
+        };
+        assert_eq!(type_seed("23"), [Command::SetSeed(23)], "in place of the 1 that was there");
+        assert_eq!(type_seed("x"), []);
+    }
+
+    #[test]
+    fn reset_is_disabled_while_a_value_is_invalid() {
+        let run = run();
+        let sent = sent(&run, |harness| {
+            harness.get_by_label("Population").focus();
+            harness.run();
+            harness.get_by_label("Population").type_text("a");
+            harness.run();
+            assert!(
+                harness.query_by_label_contains("Population is \"a\"; allowed: 1 to").is_some()
+            );
+            harness.get_by_label("Reset").click();
+            harness.run();
+        });
+        assert_eq!(sent, []);
+    }
+
+    #[test]
+    fn a_typed_seed_is_sent_before_the_command_of_a_button() {
+        let run = run();
+        let sent = sent(&run, |harness| {
+            harness.get_by_label("Seed").focus();
+            harness.run();
+            harness.get_by_label("Seed").type_text("9");
+            harness.run();
+            harness.get_by_label("Start").click();
+            harness.run();
+        });
+        assert_eq!(sent, [Command::SetSeed(9), Command::Start]);
+    }
+
+    /// Commands sent after clicks on these labels.
+    fn clicked(run: &CurrentRun, labels: &[&str]) -> Vec<Command> {
+        sent(run, |harness| {
+            for label in labels {
+                match label.strip_prefix("list ") {
+                    Some(list) => {
+                        let role = egui::accesskit::Role::ComboBox;
+                        harness.get_by_role_and_label(role, list).click();
+                    }
+                    None => harness.get_by_label(label).click(),
+                }
+                harness.run();
+            }
+        })
+    }
+
+    fn set(field: &str, text: &str) -> Command {
+        Command::SetField { field: field.to_owned(), text: text.to_owned() }
+    }
+
+    #[test]
+    fn every_strategy_and_controller_can_be_chosen() {
+        let run = run();
+        for kind in &StrategyKind::ALL[1..] {
+            let commands = clicked(&run, &["list Strategy", kind.title()]);
+            assert_eq!(commands, [set("evolution.strategy", kind.name())]);
+        }
+        for (title, name) in [("Wave", "wave"), ("Gait", "gait")] {
+            let commands = clicked(&run, &["list Controller", title]);
+            assert_eq!(commands, [set("genome.controller", name)]);
+        }
+    }
+
+    #[test]
+    fn the_selected_strategy_shows_its_settings_and_the_others_are_reachable() {
+        let mut run = run();
+        let is_shown = |run: &CurrentRun, clicks: &[&str], label: &str| {
+            let mut is_shown = false;
+            sent(run, |harness| {
+                for click in clicks {
+                    harness.get_by_label(click).click();
+                    harness.run();
+                }
+                is_shown = harness.query_all_by_label(label).next().is_some();
+            });
+            is_shown
+        };
+        assert!(is_shown(&run, &[], "Mutation decay"));
+        assert!(!is_shown(&run, &[], "Tournament"));
+        assert!(is_shown(&run, &["Other strategies", "Genetic algorithm"], "Tournament"));
+        run.set_field("evolution.strategy", "cma_es").expect("allowed");
+        assert!(!is_shown(&run, &[], "Mutation decay"));
+        assert!(is_shown(&run, &[], "Random snakes first"));
+    }
+
+    #[test]
+    fn typed_population_and_threads_are_sent() {
+        let run = run();
+        for (label, commands) in [
+            ("Population", Command::SetPopulation(40)),
+            ("Generations", set("evolution.generations", "40")),
+            ("Threads", Command::SetThreads(40)),
+        ] {
+            let sent = sent(&run, |harness| {
+                harness.get_by_label(label).focus();
+                harness.run();
+                harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+                harness.run();
+                harness.get_by_label(label).type_text("40");
+                harness.run();
+                harness.key_press(egui::Key::Enter);
+                harness.run();
+            });
+            assert_eq!(sent, [commands]);
+        }
+    }
+
+    #[test]
+    fn a_button_switches_between_the_original_experiment_and_the_climb() {
+        let mut run = run();
+        assert_eq!(clicked(&run, &["Standard climb"]), [Command::SetPreset("climb".to_owned())]);
+        run.set_preset("climb").expect("shipped");
+        assert_eq!(
+            clicked(&run, &["Original experiment"]),
+            [Command::SetPreset("report".to_owned())]
+        );
+    }
+
+    #[test]
+    fn an_invalid_value_of_a_hidden_section_is_ignored() {
+        let mut run = run();
+        let mut sheet = Sheet::default();
+        let halving = HalvingSettings::SECTION;
+        let context = egui::Context::default();
+        let is_wrong = |run: &CurrentRun, sheet: &mut Sheet, is_drawn: bool| {
+            for _ in 0..3 {
+                drop(context.run_ui(egui::RawInput::default(), |ui| {
+                    sheet.begin(ui, run);
+                    if is_drawn {
+                        sheet.section(ui, run, halving, &mut Vec::new());
+                    }
+                }));
+            }
+            sheet.has_problem()
+        };
+        assert!(!is_wrong(&run, &mut sheet, true));
+        sheet.keep_wrong("evolution.halving.parents", "x", "4");
+        assert!(is_wrong(&run, &mut sheet, true));
+        assert!(!is_wrong(&run, &mut sheet, false), "out of sight");
+        run.set_field("evolution.halving.parents", "5").expect("allowed");
+        assert!(!is_wrong(&run, &mut sheet, true), "out of date");
+    }
+
+    #[test]
+    fn at_every_width_nothing_is_wider_than_the_panel() {
+        let run = run();
+        for width in [300.0, 459.0, 480.0, 900.0] {
+            let mut panel = EvolutionPanel::default();
+            let size = egui::vec2(width, 4000.0);
+            let mut harness = Harness::builder().with_size(size).build_ui_state(
+                |ui, commands| {
+                    theme::apply(ui.ctx());
+                    panel.ui(ui, &run, commands);
+                },
+                Vec::new(),
+            );
+            harness.run();
+            for title in ["Other strategies", "Torques", "Waves and gaits", "Random snakes"] {
+                harness.get_by_label(title).click();
+                harness.run();
+            }
+            for kind in &StrategyKind::ALL[1..5] {
+                harness.get_by_label(kind.title()).click();
+                harness.run();
+            }
+            assert_nothing_is_wider_than(&harness, width);
+            // Each section shows its settings.
+            for label in ["Cooling", "Initial step size", "Columns and rows", "Neighbours"] {
+                assert!(harness.query_all_by_label(label).next().is_some(), "{label}");
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Progress of a run: generations, hash, speed, remaining time and disqualifications.
+
+use bevy_egui::egui;
+
+use crate::run::GenerationReport;
+use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::ui::theme;
+
+/// Number of latest generations used to measure the speed.
+const MEASURED_GENERATIONS: usize = 5;
+
+/// Draws the progress of the run.
+pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
+    let (done, population) = run.progress();
+    let generations = run.settings().evolution.generations;
+    let finished = run.reports().len();
+    let (text, share) = match run.status() {
+        // The evaluation budget is fixed, so larger generations reduce their number.
+        RunStatus::Finished if finished < generations as usize => {
+            let tried: u64 = run.reports().iter().map(|of| u64::from(of.evaluations)).sum();
+            let text = format!(
+                "Finished: {tried} snakes in {finished} generations. Some generations were larger than \
+                 planned, so there were fewer than {generations}."
+            );
+            (text, 1.0)
+        }
+        RunStatus::Finished => (format!("Finished: {finished} generations"), 1.0),
+        status => {
+            let suffix = match status {
+                RunStatus::Ready => ", ready to start",
+                RunStatus::Paused => ", paused",
+                RunStatus::Running | RunStatus::Finished => "",
+            };
+            let text = format!("Generation {} of {generations}{suffix}", finished + 1);
+            (text, done as f32 / population.max(1) as f32)
+        }
+    };
+    ui.label(text);
+    let inside = match run.run_hash() {
+        Some(_) => "finished".to_owned(),
+        None => format!("{done} of {population} snakes"),
+    };
+    ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
+        .on_hover_text("Snakes evaluated in the current generation");
+    if let Some(hash) = run.run_hash() {
+        let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash on any computer";
+        let text = egui::RichText::new(format!("Run hash {hash:016x}"));
+        ui.label(text.color(theme::of(ui).text_weak)).on_hover_text(hint);
+    }
+    let color = theme::of(ui).text_weak;
+    let weak = |text: String| egui::RichText::new(text).color(color);
+    let evaluations_per_s = evaluations_per_s(run.reports());
+    let evaluations_left = evaluations_left(run, done);
+    // This line is always present, so that the layout stays still when the first generation finishes.
+    let text = match evaluations_per_s {
+        Some(per_s) if run.status() == RunStatus::Finished => {
+            format!("{} snakes per second", rounded(per_s))
+        }
+        Some(per_s) => {
+            let time = duration_text(evaluations_left as f64 / per_s);
+            format!("{time} left, {} snakes per second", rounded(per_s))
+        }
+        None => "The time left appears after the first generation".to_owned(),
+    };
+    let hint = "Estimated from the latest generations, including those of earlier sessions";
+    ui.add(egui::Label::new(weak(text)).wrap()).on_hover_text(hint);
+    if let Some(latest) = run.reports().last() {
+        let reasons_text = reasons_text(latest);
+        let disqualified = format!(
+            "Disqualified: {} of {}{reasons_text}",
+            latest.disqualified, latest.evaluations
+        );
+        let hint = "In the latest finished generation. The limits are in the World panel";
+        ui.add(egui::Label::new(weak(disqualified)).wrap()).on_hover_text(hint);
+    }
+}
+
+/// Evaluations per second in the latest generations, if there are any.
+fn evaluations_per_s(reports: &[GenerationReport]) -> Option<f64> {
+    let latest = || reports.iter().rev().take(MEASURED_GENERATIONS);
+    let seconds: f64 = latest().map(|report| report.elapsed_s).sum();
+    let evaluations: f64 = latest().map(|report| f64::from(report.evaluations)).sum();
+    (seconds > 0.0 && evaluations > 0.0).then(|| evaluations / seconds)
+}
+
+/// Evaluations left in the budget; `done` of the current generation are finished.
+fn evaluations_left(run: &CurrentRun, done: u32) -> u64 {
+    let made: u64 = run.reports().iter().map(|report| u64::from(report.evaluations)).sum();
+    run.budget().saturating_sub(made + u64::from(done))
+}
+
+/// Reasons for disqualification, the most frequent first.
+fn reasons_text(report: &GenerationReport) -> String {
+    let mut reasons: Vec<_> = report.reasons.iter().collect();
+    reasons.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+    let reasons: Vec<String> =
+        reasons.into_iter().map(|(reason, count)| format!("{count}: {}", reason.words())).collect();
+    if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join("; ")) }
+}
+
+/// Speed with a sensible number of digits.
+fn rounded(per_s: f64) -> String {
+    if per_s < 10.0 { format!("{per_s:.1}") } else { format!("{per_s:.0}") }
+}
+
+/// Remaining time in words.
+fn duration_text(seconds: f64) -> String {
+    let minutes = seconds / 60.0;
+    if seconds < 90.0 {
+        format!("About {seconds:.0} s")
+    } else if minutes < 90.0 {
+        format!("About {minutes:.0} min")
+    } else if minutes < 48.0 * 60.0 {
+        format!("About {:.0} h", minutes / 60.0)
+    } else {
+        format!("About {:.0} days", minutes / (24.0 * 60.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::run::{Experiment, LocalPool, RunControl};
+    use crate::world::Disqualification;
+
+    /// Report of a small generation with the given duration.
+    fn report(elapsed_s: f64) -> GenerationReport {
+        let mut settings = Settings::default();
+        settings.evolution.population = 4;
+        settings.trial.duration_s = 0.2;
+        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
+        let report =
+            experiment.run_generation(&LocalPool::new(1).expect("threads"), &RunControl::default());
+        GenerationReport { elapsed_s, ..report.expect("not cancelled") }
+    }
+
+    #[test]
+    fn the_speed_is_measured_over_the_latest_generations() {
+        assert_eq!(evaluations_per_s(&[]), None);
+        let reports: Vec<GenerationReport> =
+            [100.0, 2.0, 2.0, 2.0, 1.0, 1.0].map(report).into_iter().collect();
+        assert_eq!(evaluations_per_s(&reports), Some(20.0 / 8.0));
+        assert_eq!(evaluations_per_s(&[report(0.0)]), None, "known from nowhere");
+    }
+
+    #[test]
+    fn the_remaining_time_has_a_suitable_unit() {
+        for (seconds, words) in [
+            (12.3, "About 12 s"),
+            (240.0, "About 4 min"),
+            (3.0 * 3600.0, "About 3 h"),
+            (5.0 * 86_400.0, "About 5 days"),
+        ] {
+            assert_eq!(duration_text(seconds), words);
+        }
+    }
+
+    #[test]
+    fn the_most_frequent_reason_comes_first() {
+        let mut report = report(1.0);
+        report.reasons.clear();
+        assert_eq!(reasons_text(&report), "");
+        report.reasons.insert(Disqualification::JointBroke, 2);
+        report.reasons.insert(Disqualification::LeftArena, 7);
+        assert_eq!(reasons_text(&report), " (7: it left the arena; 2: a joint came apart)");
+    }
+}

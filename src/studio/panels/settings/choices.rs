@@ -1,0 +1,61 @@
+//! Controls for what is no number: a choice among names, a box to tick, a list of numbers.
+
+use bevy_egui::egui;
+
+use super::form::{Sheet, Shown};
+use super::number::Control;
+use crate::schema::Choice;
+
+impl Sheet {
+    /// A list of names to choose from. Returns the one that is chosen.
+    pub(super) fn choice(
+        &mut self,
+        ui: &mut egui::Ui,
+        shown: &Shown,
+        choices: &[Choice],
+    ) -> Option<String> {
+        let chosen = choices.iter().find(|choice| choice.name == shown.value);
+        let title = chosen.map_or(shown.value, |choice| choice.title);
+        self.row(ui, shown, false, |_, ui, width, _| {
+            let mut requested = None;
+            let list = egui::ComboBox::from_id_salt(shown.field)
+                .selected_text(title)
+                .truncate()
+                .width(width)
+                .show_ui(ui, |ui| {
+                    for choice in choices {
+                        let is_chosen = choice.name == shown.value;
+                        let option = ui.selectable_label(is_chosen, choice.title);
+                        if option.on_hover_text(&choice.sentence).clicked() && !is_chosen {
+                            requested = Some(choice.name.to_owned());
+                        }
+                    }
+                });
+            let is_on = ui.is_enabled();
+            let said = shown.setting.label;
+            list.response
+                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, said));
+            let sentence = chosen.map_or("", |choice| &choice.sentence);
+            list.response.on_hover_text(format!("{}\n\nNow: {sentence}", shown.hint));
+            requested
+        })
+    }
+
+    /// A box to tick. Returns what it is set to.
+    pub(super) fn on_off(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
+        self.row(ui, shown, true, |_, ui, _, name| {
+            let mut is_on = shown.value == "true";
+            let ticked = ui.checkbox(&mut is_on, "").labelled_by(name).on_hover_text(&shown.hint);
+            ticked.changed().then(|| is_on.to_string())
+        })
+    }
+
+    /// Several numbers with commas between them. Returns them when the field is left.
+    pub(super) fn list(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
+        let check = |text: &str| shown.check.typed(text);
+        let plain = shown.value.trim_start_matches('[').trim_end_matches(']');
+        self.row(ui, shown, false, |sheet, ui, width, name| {
+            sheet.text_field(ui, &Control::of(shown, name, &check), plain, width)
+        })
+    }
+}

@@ -1,0 +1,296 @@
+//! The controls of settings, and what is being dragged or typed in them.
+//!
+//! A change also goes to the stage: beside what is on show the same genome begins under it. So that a drag does not
+//! start the stage again with every pixel, a slider is taken when it is let go, or rests for a moment. What is typed
+//! is taken when its field is left; what is wrong stays there, with the reason under it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use bevy_egui::egui;
+
+use super::columns::{Columns, Part};
+use super::sections_of;
+use super::validation::Check;
+use super::values::Values;
+use crate::schema::{ListedSetting, Section, Setting, SettingKind};
+use crate::studio::commands::Command;
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::icons::{Icon, small_icon_button};
+use crate::studio::ui::theme;
+
+/// What is being dragged or typed in a panel's controls.
+#[derive(Debug, Default)]
+pub struct Sheet {
+    pub(super) values: Arc<Values>,
+    /// What is being dragged.
+    pub(super) changing: Option<Changing>,
+    /// What is being typed, or was and is wrong, by control.
+    pub(super) typed: BTreeMap<String, Typed>,
+    /// The frame in which the panel was drawn last.
+    pub(super) drawn_in: u64,
+}
+
+/// A slider that is being moved.
+#[derive(Debug)]
+pub(super) struct Changing {
+    /// Which control.
+    pub id: String,
+    /// The value it has so far.
+    pub so_far: f32,
+    /// Since when, in seconds.
+    pub since_s: f64,
+}
+
+/// A text that is not taken yet.
+#[derive(Debug)]
+pub(super) struct Typed {
+    pub text: String,
+    /// What is wrong with it.
+    pub problem: Option<String>,
+    /// The value beside which it was typed: with another it is out of date.
+    pub beside: String,
+    /// The frame in which its control was drawn last.
+    pub seen_in: u64,
+}
+
+impl Sheet {
+    /// Takes in what the settings are now; to be called before anything is drawn.
+    pub fn begin(&mut self, ui: &egui::Ui, run: &CurrentRun) {
+        let frame = ui.ctx().cumulative_frame_nr();
+        if frame > self.drawn_in + 1 {
+            // A drag that was left unfinished when the panel was left is forgotten.
+            self.changing = None;
+        }
+        self.drawn_in = frame;
+        if !self.values.are_of(run) {
+            self.values = Arc::new(Values::of(run));
+        }
+    }
+
+    /// Whether something wrong stands in a field that is on show.
+    pub fn has_problem(&self) -> bool {
+        let is_on_show = |typed: &Typed| typed.seen_in + 1 >= self.drawn_in;
+        self.typed.values().any(|typed| typed.problem.is_some() && is_on_show(typed))
+    }
+
+    /// Keeps a text that is not taken yet.
+    pub(super) fn keep(&mut self, id: &str, text: String, problem: Option<String>, beside: &str) {
+        let (beside, seen_in) = (beside.to_owned(), self.drawn_in);
+        self.typed.insert(id.to_owned(), Typed { text, problem, beside, seen_in });
+    }
+
+    /// Keeps a text that is wrong.
+    #[cfg(test)]
+    pub fn keep_wrong(&mut self, id: &str, text: &str, beside: &str) {
+        self.keep(id, text.to_owned(), Some("wrong".to_owned()), beside);
+    }
+
+    /// The sections of the next run's settings whose names begin with `prefix`.
+    pub fn sections(&self, prefix: &str) -> Vec<Section> {
+        let listed = self.values.listed().iter();
+        sections_of(listed.filter(|listed| listed.path.starts_with(prefix)))
+    }
+
+    /// The settings of a section.
+    pub fn in_section(&self, section: Section) -> impl Iterator<Item = &ListedSetting> {
+        self.values.listed().iter().filter(move |listed| listed.section == section)
+    }
+
+    /// Draws a section's settings, and the way back for all of them.
+    pub fn section(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        section: Section,
+        commands: &mut Vec<Command>,
+    ) {
+        self.entries(ui, run, section, |_| true, commands);
+        self.reset_section(ui, section, commands);
+    }
+
+    /// Draws those of a section's settings that are wanted.
+    pub fn entries(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        section: Section,
+        is_wanted: impl Fn(&ListedSetting) -> bool,
+        commands: &mut Vec<Command>,
+    ) {
+        let values = Arc::clone(&self.values);
+        let listed = values.listed().iter().filter(|listed| listed.section == section);
+        for listed in listed.filter(|listed| is_wanted(listed)) {
+            self.entry(ui, run, listed, commands);
+        }
+    }
+
+    fn reset_section(&self, ui: &mut egui::Ui, section: Section, commands: &mut Vec<Command>) {
+        let fields = self.in_section(section).map(|listed| listed.path.as_str());
+        let back = self.values.back(fields);
+        if back.is_empty() {
+            return;
+        }
+        let name = self.values.preset_name();
+        let hint = format!("All of \"{}\" back to what the preset {name} has", section.title);
+        if ui.small_button("Reset section").on_hover_text(hint).clicked() {
+            commands.push(Command::SetFields(back));
+        }
+    }
+
+    /// Draws one setting; nothing where there is no such setting now.
+    pub fn entry(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        listed: &ListedSetting,
+        commands: &mut Vec<Command>,
+    ) {
+        let values = Arc::clone(&self.values);
+        let (field, setting) = (listed.path.as_str(), &listed.setting);
+        let Some(value) = values.now(field) else { return };
+        let answer = run.is_under_way().then(|| run.takes_changes().and(values.live(field)));
+        let is_from_next_generation = answer == Some(Ok(()));
+        let shown = Shown {
+            setting,
+            hint: hint(setting, answer),
+            check: Check { settings: run.next_settings(), field, setting, all: values.listed() },
+            field,
+            value,
+            is_from_next_generation,
+        };
+        let new = match &setting.kind {
+            SettingKind::Number(range) => self.number(ui, &shown, range),
+            SettingKind::List(_) => self.list(ui, &shown),
+            SettingKind::Choice(choices) => self.choice(ui, &shown, &choices()),
+            SettingKind::Switch => self.on_off(ui, &shown),
+            SettingKind::Absent(_) => None,
+        };
+        if let Some(text) = new {
+            commands.push(set(field, &text));
+        }
+    }
+
+    /// Draws the way back to the preset's value, if the value is another. Returns the preset's value when it is
+    /// asked for.
+    pub(super) fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
+        let preset = self.values.changed_from(shown.field)?.to_owned();
+        let in_words = match preset.as_str() {
+            "none" => "each snake's own",
+            other => other,
+        };
+        let hint = format!("Back to {in_words}, the preset's value");
+        let label = format!("Reset {}", shown.setting.label);
+        small_icon_button(ui, Icon::Reset, &label, &hint).clicked().then_some(preset)
+    }
+
+    /// Draws what is wrong with what stands in a control.
+    pub(super) fn problem(&self, ui: &mut egui::Ui, id: &str) {
+        if let Some(problem) = self.typed.get(id).and_then(|typed| typed.problem.as_deref()) {
+            let text = egui::RichText::new(problem).color(theme::of(ui).problem);
+            ui.add(egui::Label::new(text).wrap());
+        }
+    }
+
+    /// A row of a setting with its name and its way back; `control` is drawn between them. Returns a new value.
+    pub(super) fn row(
+        &mut self,
+        ui: &mut egui::Ui,
+        shown: &Shown,
+        is_small: bool,
+        mut control: impl FnMut(&mut Self, &mut egui::Ui, f32, egui::Id) -> Option<String>,
+    ) -> Option<String> {
+        let mut name = ui.id();
+        let mut new = None;
+        Columns::of(ui, is_small).row(ui, |ui, part, width| match part {
+            Part::Label => name = shown.name(ui, width).id,
+            Part::Control => new = control(self, ui, width, name).or(new.take()),
+            Part::Reset => new = self.reset(ui, shown).or(new.take()),
+        });
+        self.problem(ui, shown.field);
+        new
+    }
+}
+
+/// A setting as it is on show.
+pub(super) struct Shown<'a> {
+    pub setting: &'a Setting,
+    /// The text of its tooltip.
+    pub hint: String,
+    /// What may be typed.
+    pub check: Check<'a>,
+    /// Its full name.
+    pub field: &'a str,
+    /// Its value as text.
+    pub value: &'a str,
+    is_from_next_generation: bool,
+}
+
+impl Shown<'_> {
+    /// Draws its name.
+    pub fn name(&self, ui: &mut egui::Ui, width: f32) -> egui::Response {
+        ui.set_max_width(width);
+        if self.is_from_next_generation {
+            next_generation_mark(ui);
+        }
+        let text = egui::RichText::new(self.setting.title());
+        ui.add(egui::Label::new(text).wrap()).on_hover_text(&self.hint)
+    }
+}
+
+/// A dot at what may change while the run goes on.
+fn next_generation_mark(ui: &mut egui::Ui) {
+    let (rect, response) =
+        ui.allocate_exact_size(egui::Vec2::splat(theme::GAP), egui::Sense::hover());
+    ui.painter().circle_filled(rect.center(), theme::GAP * 0.375, theme::of(ui).accent);
+    response.on_hover_text("A change takes effect from the next generation");
+}
+
+/// What stands in a setting's tooltip: what it does, what may be typed, when a change takes effect.
+fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
+    let mut hint = format!("{}.", setting.hint.trim_end_matches('.'));
+    let allowed = setting.range_in_words();
+    if !allowed.is_empty() {
+        hint += &format!("\nAllowed: {allowed}.");
+    }
+    if let Some(answer) = answer {
+        hint += &format!("\n{}", when(answer));
+    }
+    hint
+}
+
+/// What asks for a new value.
+fn set(field: &str, text: &str) -> Command {
+    match text.parse() {
+        Ok(population) if field == "evolution.population" => Command::SetPopulation(population),
+        _ => Command::SetField { field: field.to_owned(), text: text.to_owned() },
+    }
+}
+
+/// When a change takes effect, in a sentence.
+fn when(answer: Result<(), &'static str>) -> String {
+    match answer {
+        Ok(()) => "Takes effect from the next generation.".to_owned(),
+        Err(reason) => format!("{}.", reason.trim_end_matches('.')),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::panels::settings::every_setting;
+
+    #[test]
+    fn a_tooltip_says_what_it_does_what_is_allowed_and_when_it_takes_effect() {
+        let all = every_setting();
+        let listed = all.iter().find(|listed| listed.path == "evolution.generations");
+        let generations = &listed.expect("a setting").setting;
+        let said = hint(generations, Some(Ok(())));
+        assert!(said.starts_with("Generations in a run."), "{said}");
+        assert!(said.contains("\nAllowed: 1 to 10000, whole numbers."), "{said}");
+        assert!(said.ends_with("\nTakes effect from the next generation."), "{said}");
+        let said = hint(generations, Some(Err("The map is laid out by it; the next run takes it")));
+        assert!(said.ends_with("\nThe map is laid out by it; the next run takes it."), "{said}");
+        assert!(!hint(generations, None).contains("next"), "no run is under way");
+    }
+}

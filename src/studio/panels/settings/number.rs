@@ -1,0 +1,331 @@
+//! Controls for numbers: a slider and a field, for one value or for one of each part.
+
+use bevy_egui::egui;
+
+use super::columns::{Columns, Part, VALUE_WIDTH};
+use super::form::{Changing, Sheet, Shown};
+use super::values::{list_of, numbers, rounded};
+use crate::schema::{NumberRange, Parts};
+use crate::studio::ui::number_field::select_all_on_focus;
+use crate::studio::ui::theme;
+
+/// A slider that is held still for so long shows what it does, in seconds.
+const REST_S: f64 = 0.35;
+/// Width of the switch between one value for all parts and one for each, in points.
+const SWITCH_WIDTH: f32 = 52.0;
+
+/// A control for one text.
+pub(super) struct Control<'a> {
+    /// Which one.
+    pub id: &'a str,
+    /// The name on the screen.
+    pub name: egui::Id,
+    /// What a screen reader says, if the name on the screen is not enough.
+    pub said: Option<String>,
+    /// The value as text.
+    pub value: &'a str,
+    pub hint: &'a str,
+    /// The text of the setting, from what was typed.
+    pub check: &'a dyn Fn(&str) -> Result<String, String>,
+}
+
+impl<'a> Control<'a> {
+    /// That of a setting as a whole, with its name on the screen.
+    pub(super) fn of(
+        shown: &'a Shown,
+        name: egui::Id,
+        check: &'a dyn Fn(&str) -> Result<String, String>,
+    ) -> Self {
+        let Shown { field, value, ref hint, .. } = *shown;
+        Self { id: field, name, said: None, value, hint, check }
+    }
+}
+
+impl Sheet {
+    /// Draws a number, or one for each part. Returns a new value.
+    pub(super) fn number(
+        &mut self,
+        ui: &mut egui::Ui,
+        shown: &Shown,
+        range: &NumberRange,
+    ) -> Option<String> {
+        let each = numbers(shown.value);
+        let is_given = shown.value != "none";
+        let mut name = ui.id();
+        let mut new = None;
+        let is_by_limb = matches!(range.parts, Parts::Limbs(_));
+        let is_small = range.slider.is_none() && range.begins_with.is_none();
+        Columns::of(ui, is_small).row(ui, |ui, part, width| {
+            let requested = match part {
+                Part::Label => {
+                    let (id, requested) = number_name(ui, shown, range, each.as_deref(), width);
+                    name = id;
+                    requested
+                }
+                Part::Control if !is_given => {
+                    weak(ui, "each snake's own");
+                    None
+                }
+                Part::Control if each.is_some() => {
+                    weak(ui, if is_by_limb { "limb by limb" } else { "joint by joint" });
+                    None
+                }
+                Part::Control => {
+                    let check = |text: &str| shown.check.typed(text);
+                    let control = Control::of(shown, name, &check);
+                    self.slider_and_field(ui, &control, range, width)
+                }
+                Part::Reset => self.reset(ui, shown),
+            };
+            new = requested.or(new.take());
+        });
+        self.problem(ui, shown.field);
+        for index in 0..each.as_ref().map_or(0, Vec::len) {
+            let each = each.as_deref().unwrap_or_default();
+            new = self.part(ui, shown, range, each, index).or(new.take());
+        }
+        new
+    }
+
+    /// Draws the number of one part. Returns the new list of all.
+    fn part(
+        &mut self,
+        ui: &mut egui::Ui,
+        shown: &Shown,
+        range: &NumberRange,
+        each: &[f32],
+        index: usize,
+    ) -> Option<String> {
+        let part = match (range.parts, index) {
+            (Parts::Limbs(_), 0) => "Limb 1, the head".to_owned(),
+            (Parts::Limbs(_), _) => format!("Limb {}", index + 1),
+            (_, _) => format!("Joint {}", index + 1),
+        };
+        let id = format!("{}[{index}]", shown.field);
+        let value = each[index].to_string();
+        let with = |text: &str| {
+            let number: f32 = text.parse().unwrap_or(each[index]);
+            let mut all = each.to_vec();
+            all[index] = number;
+            list_of(&all)
+        };
+        let check = |text: &str| {
+            let text = shown.check.typed(text)?;
+            shown.check.whole(&with(&text)).map(|()| text)
+        };
+        let mut name = ui.id();
+        let mut new = None;
+        Columns::of(ui, false).row(ui, |ui, place, width| match place {
+            Part::Label => {
+                ui.add_space(theme::GAP * 2.0);
+                name = ui.label(egui::RichText::new(&part).color(theme::of(ui).text_weak)).id;
+            }
+            Part::Control => {
+                let said = Some(format!("{} of {}", shown.setting.label, part.to_lowercase()));
+                let control = Control {
+                    id: &id,
+                    name,
+                    said,
+                    value: &value,
+                    hint: &shown.hint,
+                    check: &check,
+                };
+                new = self.slider_and_field(ui, &control, range, width);
+            }
+            Part::Reset => {}
+        });
+        self.problem(ui, &id);
+        new.map(|text| with(&text))
+    }
+
+    /// A slider, if there is one, and a field. What the slider is set to is returned when it is let go, what is
+    /// typed when the field is left.
+    fn slider_and_field(
+        &mut self,
+        ui: &mut egui::Ui,
+        control: &Control,
+        range: &NumberRange,
+        width: f32,
+    ) -> Option<String> {
+        let mut slid = None;
+        if let Some(ends) = range.slider {
+            ui.spacing_mut().slider_width =
+                (width - VALUE_WIDTH - theme::GAP).max(theme::GAP * 4.0);
+            slid = self.slider(ui, control, range, ends);
+        } else {
+            // In the column of the other fields.
+            ui.add_space(width - VALUE_WIDTH);
+        }
+        let value = match &self.changing {
+            Some(changing) if changing.id == control.id => rounded(changing.so_far),
+            _ => control.value.to_owned(),
+        };
+        let typed = self.text_field(ui, control, &value, VALUE_WIDTH);
+        slid.or(typed)
+    }
+
+    fn slider(
+        &mut self,
+        ui: &mut egui::Ui,
+        control: &Control,
+        range: &NumberRange,
+        [least, most]: [f32; 2],
+    ) -> Option<String> {
+        let value: f32 = control.value.parse().unwrap_or(least);
+        let mut so_far = match &self.changing {
+            Some(changing) if changing.id == control.id => changing.so_far,
+            _ => value,
+        };
+        let mut slider = egui::Slider::new(&mut so_far, least..=most)
+            .clamping(egui::SliderClamping::Never)
+            .show_value(false);
+        if let Some(from) = range.logarithmic_from {
+            slider = slider.logarithmic(true).smallest_positive(f64::from(from));
+        }
+        if range.is_whole {
+            slider = slider.step_by(1.0);
+        }
+        let response = ui.add(slider).labelled_by(control.name).on_hover_text(control.hint);
+        if let Some(said) = &control.said {
+            let (is_on, value) = (ui.is_enabled(), f64::from(so_far));
+            response.widget_info(|| egui::WidgetInfo::slider(is_on, value, said));
+        }
+        let now_s = ui.input(|input| input.time);
+        if response.changed() {
+            let id = control.id.to_owned();
+            self.changing = Some(Changing { id, so_far, since_s: now_s });
+        }
+        let since_s = match &self.changing {
+            Some(changing) if changing.id == control.id => changing.since_s,
+            _ => return None,
+        };
+        // With the arrow keys it has the keyboard's focus and is never let go.
+        let is_held = response.dragged() || response.has_focus();
+        let rests = is_held && now_s - since_s > REST_S;
+        if !is_held {
+            self.changing = None;
+        }
+        let text = rounded(so_far);
+        if (is_held && !rests) || text == rounded(value) {
+            return None;
+        }
+        if rests {
+            // Once, until it is moved again.
+            let id = control.id.to_owned();
+            self.changing = Some(Changing { id, so_far, since_s: f64::INFINITY });
+        }
+        match (control.check)(&text) {
+            Ok(text) => {
+                self.typed.remove(control.id);
+                Some(text)
+            }
+            Err(problem) => {
+                self.keep(control.id, text, Some(problem), control.value);
+                None
+            }
+        }
+    }
+
+    /// A field to type into. Its text is returned when the field is left, if it is allowed.
+    pub(super) fn text_field(
+        &mut self,
+        ui: &mut egui::Ui,
+        control: &Control,
+        value: &str,
+        width: f32,
+    ) -> Option<String> {
+        if self.typed.get(control.id).is_some_and(|typed| typed.beside != control.value) {
+            // The value has changed meanwhile: by an undo, another preset, the slider.
+            self.typed.remove(control.id);
+        }
+        let seen_in = self.drawn_in;
+        let typed = self.typed.get_mut(control.id).map(|typed| {
+            typed.seen_in = seen_in;
+            typed.text.clone()
+        });
+        let mut text = typed.unwrap_or_else(|| value.to_owned());
+        let field = egui::TextEdit::singleline(&mut text)
+            .id_salt(control.id)
+            .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2));
+        let size = egui::vec2(width, ui.spacing().interact_size.y);
+        let response = ui.add_sized(size, field).labelled_by(control.name);
+        let response = response.on_hover_text(control.hint);
+        select_all_on_focus(ui, &response, &text);
+        if let Some(said) = &control.said {
+            let is_on = ui.is_enabled();
+            response
+                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, is_on, said));
+        }
+        if response.changed() {
+            let problem = (control.check)(&text).err();
+            self.keep(control.id, text, problem, control.value);
+        }
+        if !response.lost_focus() {
+            return None;
+        }
+        if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+            self.typed.remove(control.id);
+            return None;
+        }
+        if self.typed.get(control.id).is_some_and(|typed| typed.problem.is_some()) {
+            // What is wrong stays to be corrected.
+            return None;
+        }
+        let typed = self.typed.remove(control.id)?;
+        (control.check)(&typed.text).ok().filter(|text| text != control.value)
+    }
+}
+
+/// The name of a number: with a box to tick where it has a value only if it is given, and a switch between one
+/// value and several where there can be several. Returns what was asked for, too.
+fn number_name(
+    ui: &mut egui::Ui,
+    shown: &Shown,
+    range: &NumberRange,
+    each: Option<&[f32]>,
+    width: f32,
+) -> (egui::Id, Option<String>) {
+    let is_given = shown.value != "none";
+    let has_switch = range.parts != Parts::One && is_given;
+    let name_width = if has_switch { width - SWITCH_WIDTH - theme::GAP } else { width };
+    let mut requested = None;
+    let size = egui::vec2(name_width, ui.spacing().interact_size.y);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let name = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_width(name_width);
+        let Some(begins_with) = range.begins_with else { return shown.name(ui, name_width) };
+        let mut given = is_given;
+        let name = ui.checkbox(&mut given, shown.setting.title()).on_hover_text(&shown.hint);
+        if name.changed() {
+            requested = Some(if given { begins_with.to_string() } else { "none".to_owned() });
+        }
+        name
+    });
+    if has_switch {
+        let is_each = each.is_some();
+        let of_what = if matches!(range.parts, Parts::Limbs(_)) { "limb" } else { "joint" };
+        let hint = if is_each {
+            format!("Back to one value for every {of_what}: that of the first")
+        } else {
+            format!("A value of its own for each {of_what}")
+        };
+        let switch = ui.selectable_label(is_each, "each").on_hover_text(hint);
+        let (is_on, said) =
+            (ui.is_enabled(), format!("{}: {of_what} by {of_what}", shown.setting.label));
+        switch.widget_info(|| {
+            egui::WidgetInfo::selected(egui::WidgetType::SelectableLabel, is_on, is_each, &said)
+        });
+        if switch.clicked() {
+            let count = range.parts.count();
+            requested = Some(match each {
+                Some(each) => each.first().copied().unwrap_or_default().to_string(),
+                None => list_of(&vec![shown.value.parse().unwrap_or_default(); count]),
+            });
+        }
+    }
+    (name.inner.id, requested)
+}
+
+fn weak(ui: &mut egui::Ui, text: &str) {
+    ui.label(egui::RichText::new(text).color(theme::of(ui).text_weak));
+}

@@ -1,0 +1,333 @@
+//! No setting is missing, none is made up, and every control sends what was asked of it.
+
+use std::collections::BTreeSet;
+
+use bevy_egui::egui;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use super::values::list_of;
+use super::*;
+use crate::evolve::{Settings, fields, with_field};
+use crate::schema::{NumberRange, Parts, SettingKind};
+use crate::studio::commands::Command;
+use crate::studio::state::current_run::{CurrentRun, prepared_run};
+
+/// That nothing one reads or uses lies beside a panel of this width, in points.
+pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
+    harness: &Harness<'_, S>,
+    width: f32,
+) {
+    use egui::accesskit::Role;
+    let roles =
+        [Role::Label, Role::Slider, Role::TextInput, Role::Button, Role::CheckBox, Role::ComboBox];
+    for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
+        let rect = node.rect();
+        let is_inside = rect.left() >= 0.0 && rect.right() <= width;
+        assert!(is_inside, "{rect:?} of {width} points: {node:?}");
+    }
+}
+
+/// A run in which everything that can be given is given, and whatever has a least value has it.
+fn run_with_all_given() -> CurrentRun {
+    let mut run = prepared_run();
+    let given = [
+        ("trial.ground.friction", "0.5"),
+        ("trial.agent.density_kg_m3", "2"),
+        ("trial.agent.bend_limit_rad", "1"),
+        ("trial.agent.twist_limit_rad", "1"),
+        ("genome.density_min_kg_m3", "0.1"),
+        ("genome.wave.frequency_min_hz", "0.01"),
+        ("genome.wave.stiffness_min_nm_per_rad", "0"),
+    ];
+    let given = given.map(|(field, text)| (field.to_owned(), text.to_owned()));
+    run.set_fields(&given).expect("allowed");
+    run
+}
+
+/// A setting by its full name.
+fn setting(run: &CurrentRun, field: &str) -> ListedSetting {
+    let all = list(run.next_settings());
+    all.into_iter().find(|listed| listed.path == field).expect("a setting")
+}
+
+/// A number that is allowed and is not there yet.
+fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) -> String {
+    let [least, most] = range.slider.unwrap_or([range.least, range.most]);
+    let places = [0.5, 0.25, 0.1, 0.02, 0.0].map(|share| least + (most - least) * share);
+    let places = places.map(|place| if range.is_whole { place.ceil() } else { place }.to_string());
+    let mut others = places.into_iter().filter(|text| text != now && is_allowed(text));
+    others.next().expect("an allowed one")
+}
+
+/// A panel with one setting in it.
+fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Harness<'a, Vec<Command>> {
+    let listed = setting(run, field);
+    let mut sheet = Sheet::default();
+    Harness::builder().with_size(egui::vec2(320.0, 400.0)).with_step_dt(1.0 / 60.0).build_ui_state(
+        move |ui, commands| {
+            sheet.begin(ui, run);
+            sheet.entry(ui, run, &listed, commands);
+        },
+        Vec::new(),
+    )
+}
+
+/// Types into a panel's only field, and leaves it.
+fn type_into(harness: &mut Harness<'_, Vec<Command>>, text: &str) {
+    let field = || egui::accesskit::Role::TextInput;
+    harness.get_by_role(field()).focus();
+    harness.run();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    harness.run();
+    harness.get_by_role(field()).type_text(text);
+    harness.run();
+    harness.key_press(egui::Key::Enter);
+    harness.run();
+}
+
+#[test]
+fn every_setting_is_shown_once_by_the_panels() {
+    let run = run_with_all_given();
+    let mut sheet = Sheet::default();
+    let context = egui::Context::default();
+    drop(context.run_ui(egui::RawInput::default(), |ui| sheet.begin(ui, &run)));
+    let sections: Vec<Section> = ["evolution.", "genome.", "trial."]
+        .into_iter()
+        .flat_map(|prefix| sheet.sections(prefix))
+        .collect();
+    let titles: BTreeSet<&str> = sections.iter().map(|section| section.title).collect();
+    assert_eq!(titles.len(), sections.len(), "each section is there once: {sections:?}");
+    let mut shown: Vec<String> = sections
+        .into_iter()
+        .flat_map(|section| sheet.in_section(section).map(|listed| listed.path.clone()))
+        .collect();
+    shown.sort();
+    let there: Vec<String> =
+        fields(run.next_settings()).into_iter().map(|(field, _)| field).collect();
+    assert_eq!(shown, there);
+}
+
+#[test]
+fn every_setting_can_be_changed_by_hand_and_is_changed_to_what_was_asked() {
+    let run = run_with_all_given();
+    let settings = run.next_settings();
+    let values: Vec<(String, String)> = fields(settings);
+    for listed in list(settings) {
+        let full = listed.path;
+        let now = &values.iter().find(|(field, _)| *field == full).expect("there").1;
+        let mut panel = panel_of(&run, &full);
+        panel.run();
+        let expected = match &listed.setting.kind {
+            SettingKind::Number(range) => {
+                let is_allowed = |text: &str| with_field(settings, &full, text).is_ok();
+                let text = another(range, now, is_allowed);
+                type_into(&mut panel, &text);
+                text
+            }
+            SettingKind::List(_) => {
+                type_into(&mut panel, "0.5, 0.75");
+                "[0.5, 0.75]".to_owned()
+            }
+            SettingKind::Choice(choices) => {
+                let choices = choices();
+                let taken = |name: &str| with_field(settings, &full, name).is_ok();
+                let other = choices.iter().find(|choice| choice.name != now && taken(choice.name));
+                let other = other.expect("two that are allowed");
+                panel.get_by_role(egui::accesskit::Role::ComboBox).click();
+                panel.run();
+                panel.get_by_label(other.title).click();
+                other.name.to_owned()
+            }
+            SettingKind::Switch => {
+                panel.get_by_role(egui::accesskit::Role::CheckBox).click();
+                if now == "true" { "false".to_owned() } else { "true".to_owned() }
+            }
+            SettingKind::Absent(_) => panic!("{full} is not there"),
+        };
+        panel.run();
+        let sent = match &panel.state()[..] {
+            [Command::SetField { field, text }] => (field.clone(), text.clone()),
+            [Command::SetPopulation(size)] => (full.clone(), size.to_string()),
+            other => panic!("{full}: {other:?}"),
+        };
+        assert_eq!(sent, (full.clone(), expected.clone()));
+        let changed = with_field(settings, &full, &expected).expect(&full);
+        assert_ne!(changed, *settings, "{full} = {expected}");
+    }
+}
+
+#[test]
+fn what_a_tooltip_calls_allowed_is_what_the_settings_allow() {
+    let run = run_with_all_given();
+    let settings = run.next_settings();
+    for listed in list(settings) {
+        let (full, kind) = (listed.path, listed.setting.kind);
+        let (SettingKind::Number(range) | SettingKind::List(range)) = kind else { continue };
+        let (least, most) = (range.least, range.most);
+        let is_list = matches!(kind, SettingKind::List(_));
+        let text = |value: f32| if is_list { list_of(&[value]) } else { value.to_string() };
+        let below = least - least.abs() * 0.5 - if least == 0.0 { 1.0 } else { 0.0 };
+        let above = if range.is_whole { most + 1.0 } else { most * 1.1 + 1.0 };
+        for wrong in [below, above] {
+            if range.is_whole && wrong < 0.0 {
+                continue;
+            }
+            let wrong = if range.is_whole { wrong.floor() } else { wrong };
+            let refused = with_field(settings, &full, &text(wrong)).expect_err(&full);
+            assert_eq!(refused.allowed, format!("{least} to {most}"), "{full} = {wrong}");
+        }
+        let ends = range.slider.unwrap_or([range.least, range.most]);
+        assert!(least <= ends[0] && ends[0] < ends[1] && ends[1] <= most, "{full}");
+    }
+}
+
+#[test]
+fn the_names_in_a_list_are_all_that_there_are_and_each_has_a_sentence() {
+    let settings = Settings::default();
+    for listed in list(&settings) {
+        let full = listed.path;
+        let SettingKind::Choice(choices) = listed.setting.kind else { continue };
+        let choices = choices();
+        let names: Vec<&str> = choices.iter().map(|choice| choice.name).collect();
+        let refused = with_field(&settings, &full, "nothing-of-the-sort").expect_err(&full);
+        assert_eq!(names.join(", "), refused.allowed, "{full}");
+        for choice in choices {
+            assert!(choice.sentence.len() > 15 && choice.sentence.ends_with('.'), "{choice:?}");
+        }
+    }
+}
+
+#[test]
+fn every_setting_says_what_it_does_in_plain_words() {
+    let mut labels = BTreeSet::new();
+    for listed in every_setting() {
+        let ListedSetting { path: full, section, setting: entry, .. } = listed;
+        assert!(entry.hint.len() > 5 && !entry.hint.ends_with('.'), "{full}: {}", entry.hint);
+        assert!(entry.label.chars().next().is_some_and(char::is_uppercase), "{full}");
+        assert!(!entry.label.contains('_'), "{full}");
+        let has_unit = ["_m", "_s", "_rad", "_hz", "_nm"].iter().any(|unit| full.ends_with(unit));
+        let says_unit = !entry.unit.is_empty() || entry.label.ends_with("per second");
+        assert!(!has_unit || says_unit, "{full} has a unit");
+        // In one section no two are called the same.
+        assert!(labels.insert((section.title, entry.label)), "{full}");
+    }
+}
+
+#[test]
+fn what_is_typed_wrong_stays_with_its_reason_and_nothing_is_sent() {
+    let run = prepared_run();
+    let mut panel = panel_of(&run, "trial.stairs.rise_m");
+    type_into(&mut panel, "9");
+    assert_eq!(*panel.state(), []);
+    let said = "Rise is \"9\"; allowed: 0.01 to 5 m";
+    assert!(panel.query_by_label_contains(said).is_some());
+    let field = panel.get_by_role(egui::accesskit::Role::TextInput);
+    assert_eq!(field.value().as_deref(), Some("9"), "to be corrected");
+    type_into(&mut panel, "4");
+    let set = |field: &str, text: &str| Command::SetField {
+        field: field.to_owned(),
+        text: text.to_owned(),
+    };
+    assert_eq!(*panel.state(), [set("trial.stairs.rise_m", "4")], "beyond the slider's end");
+}
+
+/// What one click on a label sends.
+fn clicked(run: &CurrentRun, field: &str, label: &str) -> Vec<Command> {
+    let mut panel = panel_of(run, field);
+    panel.run();
+    panel.get_by_label(label).click();
+    panel.run();
+    panel.state().clone()
+}
+
+fn set(field: &str, text: &str) -> Command {
+    Command::SetField { field: field.to_owned(), text: text.to_owned() }
+}
+
+#[test]
+fn a_value_for_all_becomes_one_for_each_and_back() {
+    let mut run = prepared_run();
+    let width = "trial.agent.limb_width_m";
+    let switch = "Limb width: limb by limb";
+    let commands = clicked(&run, width, switch);
+    assert_eq!(commands, [set(width, "[1, 1, 1, 1, 1]")]);
+    run.set_field(width, "[1.5, 1, 1, 1, 1]").expect("allowed");
+    let commands = clicked(&run, width, switch);
+    assert_eq!(commands, [set(width, "1.5")]);
+    let torque = "trial.agent.max_bend_torque_nm";
+    let commands = clicked(&run, torque, "Largest bend torque: joint by joint");
+    assert_eq!(commands, [set(torque, "[1000, 1000, 1000, 1000]")]);
+}
+
+#[test]
+fn one_limb_is_changed_and_the_others_stay() {
+    let mut run = prepared_run();
+    run.set_field("trial.agent.limb_width_m", "[1.5, 1, 1, 1, 1]").expect("allowed");
+    let mut panel = panel_of(&run, "trial.agent.limb_width_m");
+    panel.run();
+    let slider = "Limb width of limb 3";
+    let role = egui::accesskit::Role::Slider;
+    let rail = panel.get_by_role_and_label(role, slider).rect();
+    panel.drag_at(rail.left_center() + egui::vec2(6.0, 0.0));
+    panel.run();
+    panel.drop_at(rail.center());
+    panel.run();
+    let [Command::SetField { field, text }] = &panel.state()[..] else { panic!("one command") };
+    assert_eq!(field, "trial.agent.limb_width_m");
+    let numbers = values::numbers(text).expect("a list");
+    assert_eq!((numbers.len(), numbers[0], numbers[1]), (5, 1.5, 1.0));
+    assert!((1.2..2.0).contains(&numbers[2]), "half way along the rail: {}", numbers[2]);
+}
+
+#[test]
+fn a_limit_is_each_snakes_own_until_it_is_given() {
+    let mut run = prepared_run();
+    let commands = clicked(&run, "trial.agent.bend_limit_rad", "Bend limit, rad");
+    assert_eq!(commands, [set("trial.agent.bend_limit_rad", "1")]);
+    run.set_field("trial.agent.bend_limit_rad", "0.5").expect("allowed");
+    let mut panel = panel_of(&run, "trial.agent.bend_limit_rad");
+    panel.run();
+    panel.get_by_role(egui::accesskit::Role::CheckBox).click();
+    panel.run();
+    assert_eq!(*panel.state(), [set("trial.agent.bend_limit_rad", "none")]);
+}
+
+#[test]
+fn what_may_have_a_value_for_each_part_is_what_the_settings_allow_a_list_for() {
+    let run = run_with_all_given();
+    for listed in list(run.next_settings()) {
+        let full = listed.path;
+        let SettingKind::Number(range) = listed.setting.kind else { continue };
+        let count = match range.parts {
+            Parts::One | Parts::Limbs(_) => 5,
+            Parts::Joints(_) => 4,
+        };
+        let now = fields(run.next_settings()).into_iter().find(|(field, _)| *field == full);
+        let value: f32 = now.expect("there").1.parse().expect("a number");
+        let listed = with_field(run.next_settings(), &full, &list_of(&vec![value; count]));
+        assert_eq!(listed.is_ok(), range.parts != Parts::One, "{full}");
+    }
+}
+
+#[test]
+fn a_slider_shows_what_the_shipped_presets_have() {
+    let mut beyond = Vec::new();
+    for preset in crate::save::shipped_presets().expect("well formed") {
+        let values = fields(&preset.settings);
+        for listed in every_setting() {
+            let (full, entry) = (listed.path, listed.setting);
+            let SettingKind::Number(NumberRange { slider: Some([least, most]), .. }) = entry.kind
+            else {
+                continue;
+            };
+            let now = values.iter().find(|(field, _)| *field == full);
+            let Some(value) = now.and_then(|(_, text)| text.parse::<f32>().ok()) else { continue };
+            // Frictions as large as the engine manual's 150 all hold alike.
+            if !(least..=most).contains(&value) && entry.label != "Friction" {
+                beyond.push(format!("{full} = {value} of {}", preset.name));
+            }
+        }
+    }
+    assert!(beyond.is_empty(), "{beyond:?}");
+}

@@ -1,0 +1,346 @@
+//! World and snake of the next run, section by section, with a search over all settings.
+
+pub mod presets;
+
+use bevy_egui::egui;
+
+use super::settings::Sheet;
+use crate::schema::{ListedSetting, Section, SettingKind};
+use crate::score::Trial;
+use crate::studio::commands::Command;
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::state::undo::{UndoDirection, UndoHistory};
+use crate::studio::ui::icons::{Icon, small_icon_button};
+use crate::studio::ui::text_rows::{explain, title_and};
+use crate::studio::ui::theme;
+
+use presets::PresetChoice;
+
+/// The panel with its search text and fields.
+#[derive(Debug, Default)]
+pub(super) struct WorldPanel {
+    sheet: Sheet,
+    presets: PresetChoice,
+    /// Search text.
+    search: String,
+}
+
+impl WorldPanel {
+    /// Draws the panel and collects the user's commands.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        history: &UndoHistory,
+        commands: &mut Vec<Command>,
+    ) {
+        self.sheet.begin(ui, run);
+        title_and(ui, "World", |ui| undo_buttons(ui, history, commands));
+        self.presets.ui(ui, run, commands);
+        next_run(ui, run, commands);
+        self.search_field(ui);
+        if self.search.trim().is_empty() {
+            self.sections(ui, run, commands);
+        } else {
+            self.search_results(ui, run, commands);
+        }
+    }
+
+    /// Sets the search text.
+    pub fn set_search(&mut self, text: &str) {
+        text.clone_into(&mut self.search);
+    }
+
+    /// Draws the search field.
+    fn search_field(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            let is_searching = !self.search.is_empty();
+            let clear = if is_searching { theme::GAP * 8.0 } else { 0.0 };
+            let field = egui::TextEdit::singleline(&mut self.search)
+                .hint_text("Find a setting")
+                .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2))
+                .desired_width(ui.available_width() - clear - theme::GAP);
+            let response = ui.add(field);
+            let is_on = ui.is_enabled();
+            response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, is_on, "Find a setting")
+            });
+            response.on_hover_text(
+                "Searches the settings of all sections, including those of the Run panel",
+            );
+            if is_searching && ui.small_button("Clear").clicked() {
+                self.search.clear();
+            }
+        });
+    }
+
+    fn sections(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        for section in self.sheet.sections("trial.") {
+            ui.add_space(theme::GAP / 2.0);
+            let name = egui::RichText::new(section.title).size(theme::TITLE_SIZE).strong();
+            let header =
+                egui::CollapsingHeader::new(name).default_open(OPEN_AT_FIRST.contains(&section));
+            let shown = header.show_unindented(ui, |ui| {
+                if section == Trial::GROUND {
+                    ground_switch(ui, run, commands);
+                }
+                self.sheet.section(ui, run, section, commands);
+            });
+            shown.header_response.on_hover_text(section.about);
+        }
+    }
+
+    /// Draws the settings that match the search, by section.
+    fn search_results(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        let search = self.search.clone();
+        let mut is_anything = false;
+        for section in self.sheet.sections("") {
+            let is_section =
+                section.title.to_lowercase().contains(search.trim().to_lowercase().as_str());
+            let is_wanted = |listed: &ListedSetting| {
+                let is_present = !matches!(listed.setting.kind, SettingKind::Absent(_));
+                is_present && (is_section || listed.setting.is_about(&search))
+            };
+            if self.sheet.in_section(section).any(is_wanted) {
+                is_anything = true;
+                ui.add_space(theme::GAP / 2.0);
+                explain(ui, section.title);
+                self.sheet.entries(ui, run, section, is_wanted, commands);
+            }
+        }
+        if !is_anything {
+            explain(ui, "No setting matches.");
+        }
+    }
+}
+
+/// Sections that are open when the panel is shown for the first time.
+const OPEN_AT_FIRST: [Section; 3] = [Trial::SURFACE, Trial::GROUND, Trial::REWARD];
+
+/// Draws the switch for a separate ground surface.
+fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    let trial = &run.next_settings().trial;
+    let mut differs = trial.ground.is_some();
+    let hint = "On: the ground gets its own settings, copied from the stairs. Off: ground and stairs share one surface";
+    let name = "The ground has its own surface";
+    if ui.checkbox(&mut differs, name).on_hover_text(hint).changed() {
+        let (field, text) = if differs {
+            ("ground.friction", trial.surface.friction.to_string())
+        } else {
+            ("trial.ground", "none".to_owned())
+        };
+        commands.push(Command::SetField { field: field.to_owned(), text });
+    }
+}
+
+/// Tells which settings the current run uses, with a button that starts the next run.
+fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    // The row is always present, so that the layout stays still when a slider is released.
+    let differs = run.next_run_differs();
+    let palette = theme::of(ui);
+    let (text, color) = if !run.is_under_way() {
+        ("These settings will be used by the next run.", palette.text_weak)
+    } else if run.settings().trial != run.next_settings().trial {
+        ("The current run still uses the old settings.", palette.second)
+    } else {
+        ("The current run uses these settings.", palette.text_weak)
+    };
+    ui.label(egui::RichText::new(text).color(color));
+    if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
+        commands.extend([Command::Reset, Command::Start]);
+    }
+}
+
+/// Draws the undo and redo buttons and collects the user's commands.
+pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &UndoHistory, commands: &mut Vec<Command>) {
+    for (way, icon, name, command) in [
+        (UndoDirection::Forth, Icon::Redo, "Redo", Command::Redo),
+        (UndoDirection::Back, Icon::Undo, "Undo", Command::Undo),
+    ] {
+        let hint = match history.next(way) {
+            Some(step) => format!("{name} {step}"),
+            None => way.nothing().to_owned(),
+        };
+        let is_on = history.next(way).is_some();
+        let button = |ui: &mut egui::Ui| small_icon_button(ui, icon, name, &hint);
+        if ui.add_enabled_ui(is_on, button).inner.clicked() {
+            commands.push(command);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+    use crate::studio::state::current_run::prepared_run;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Commands sent after `act`.
+    fn sent(run: &CurrentRun, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+        sent_at(run, theme::PANEL_WIDTH, &UndoHistory::default(), act)
+    }
+
+    /// Commands sent after `act`, at a given width and with a given history.
+    fn sent_at(
+        run: &CurrentRun,
+        width: f32,
+        history: &UndoHistory,
+        act: impl FnOnce(&mut Harness<'_, Vec<Command>>),
+    ) -> Vec<Command> {
+        let mut panel = WorldPanel::default();
+        let mut harness = Harness::builder()
+            .with_size(egui::vec2(width, 4000.0))
+            .with_step_dt(1.0 / 60.0)
+            .build_ui_state(
+                |ui, commands| {
+                    theme::apply(ui.ctx());
+                    panel.ui(ui, run, history, commands);
+                },
+                Vec::new(),
+            );
+        harness.run();
+        act(&mut harness);
+        harness.run();
+        harness.state().clone()
+    }
+
+    fn set(field: &str, text: &str) -> Command {
+        Command::SetField { field: field.to_owned(), text: text.to_owned() }
+    }
+
+    #[test]
+    fn a_slider_value_is_sent_when_it_is_released_or_rests() {
+        let run = prepared_run();
+        let drag = |rests_for_frames: usize, lets_go: bool| {
+            sent(&run, |harness| {
+                let slider = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Bounce");
+                let rail = slider.rect();
+                harness.drag_at(rail.left_center() + egui::vec2(6.0, 0.0));
+                harness.run();
+                harness.hover_at(rail.center());
+                harness.run_steps(1 + rests_for_frames);
+                if lets_go {
+                    harness.drop_at(rail.center());
+                }
+            })
+        };
+        for commands in [drag(0, true), drag(30, false)] {
+            let [Command::SetField { field, text }] = &commands[..] else { panic!("one command") };
+            assert_eq!(field, "trial.surface.bounce");
+            let value: f32 = text.parse().expect("a number");
+            assert!((0.3..0.7).contains(&value), "half way along the rail: {value}");
+        }
+        assert_eq!(drag(0, false), []);
+    }
+
+    #[test]
+    fn the_ground_surface_starts_as_a_copy_of_the_stairs() {
+        let run = prepared_run();
+        let commands = sent(&run, |harness| {
+            harness.get_by_label("The ground has its own surface").click();
+        });
+        assert_eq!(commands, [set("ground.friction", "1")]);
+    }
+
+    #[test]
+    fn a_changed_world_offers_a_new_run() {
+        let mut run = prepared_run();
+        run.single_generation().expect("started");
+        run.set_field("surface.friction", "0.5").expect("allowed");
+        let commands = sent(&run, |harness| harness.get_by_label("New run in this world").click());
+        assert_eq!(commands, [Command::Reset, Command::Start]);
+    }
+
+    #[test]
+    fn a_changed_value_can_be_reset_alone_or_with_its_section() {
+        let mut run = prepared_run();
+        run.set_preset("report").expect("shipped");
+        let calm = sent(&run, |harness| {
+            assert!(harness.query_by_label("Reset Friction").is_none(), "nothing differs");
+        });
+        assert_eq!(calm, []);
+        run.set_field("surface.friction", "0.5").expect("allowed");
+        run.set_field("surface.bounce", "0.25").expect("allowed");
+        let preset = run.preset_settings().expect("shipped").trial.surface.clone();
+        let (friction, bounce) = (preset.friction.to_string(), preset.bounce.to_string());
+        let commands = sent(&run, |harness| harness.get_by_label("Reset Friction").click());
+        assert_eq!(commands, [set("trial.surface.friction", &friction)]);
+        let commands = sent(&run, |harness| harness.get_by_label("Reset section").click());
+        let back = [("friction", friction), ("bounce", bounce)]
+            .map(|(field, text)| (format!("trial.surface.{field}"), text));
+        assert_eq!(commands, [Command::SetFields(back.to_vec())]);
+    }
+
+    #[test]
+    fn the_search_finds_settings_of_closed_sections_and_of_the_run_panel() {
+        let run = prepared_run();
+        let assert_finds = |word: &'static str, found: &'static str| {
+            sent(&run, move |harness| {
+                harness.get_by_label("Find a setting").focus();
+                harness.run();
+                harness.get_by_label("Find a setting").type_text(word);
+                harness.run();
+                assert!(
+                    harness.query_all_by_label_contains(found).next().is_some(),
+                    "{word}: {found}"
+                );
+            })
+        };
+        assert_finds("moon", "Gravity, m/s²");
+        assert_finds("Tournament", "Selection");
+        assert_finds("joint DAMP", "Joint damping, N·m·s/rad");
+        assert_finds("xyz", "No setting matches.");
+    }
+
+    #[test]
+    fn undo_and_redo_are_disabled_without_history() {
+        let mut run = prepared_run();
+        let mut history = UndoHistory::default();
+        let off = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Undo").click());
+        assert_eq!(off, []);
+        let before = run.next_plan().clone();
+        run.set_field("surface.friction", "0.5").expect("allowed");
+        history.note(&set("trial.surface.friction", "0.5"), before, run.next_plan());
+        let on = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Undo").click());
+        assert_eq!(on, [Command::Undo]);
+        history.take(UndoDirection::Back);
+        let on = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Redo").click());
+        assert_eq!(on, [Command::Redo]);
+    }
+
+    #[test]
+    fn columns_align_and_fit_at_every_panel_width() {
+        use egui::accesskit::Role;
+        let mut run = prepared_run();
+        // These settings show the widest rows: reset buttons, lists of limbs, limits.
+        let given = [
+            ("trial.surface.soft_cfm_m_s_per_n", "0.00012345"),
+            ("trial.agent.limb_width_m", "[1, 1.5, 1, 1, 1]"),
+            ("trial.agent.bend_limit_rad", "1"),
+            ("trial.agent.joint_damping_nms_per_rad", "12.5"),
+        ];
+        for (field, text) in given {
+            run.set_field(field, text).expect("allowed");
+        }
+        for width in [300.0, 320.0, 459.0, 480.0, 600.0, 900.0] {
+            sent_at(&run, width, &UndoHistory::default(), |harness| {
+                for title in ["Body", "Joints", "Repeated trials", "Disqualification"] {
+                    harness.get_by_label(title).click();
+                    harness.run();
+                }
+                let rect = |label: &str| harness.get_by_role_and_label(Role::Slider, label).rect();
+                let one = rect("Friction");
+                for other in
+                    ["Softness (CFM), m/s per N", "Limb length, m", "Joint damping, N·m·s/rad"]
+                {
+                    let other = rect(other);
+                    let are_aligned = one.left() == other.left() && one.width() == other.width();
+                    assert!(are_aligned, "{one:?} and {other:?} at {width} points");
+                }
+                assert_nothing_is_wider_than(harness, width);
+            });
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Preset selection: shipped and own presets, and a field to save a new one.
+
+use bevy_egui::egui;
+
+use crate::save::{PresetList, check_own_name};
+use crate::studio::commands::Command;
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::theme;
+
+/// The selection with its text field.
+#[derive(Debug, Default)]
+pub(crate) struct PresetChoice {
+    /// Name of the preset to save, while it is typed.
+    name: Option<String>,
+}
+
+impl PresetChoice {
+    /// Draws the selection and collects the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Preset");
+            let list = egui::ComboBox::from_id_salt("preset")
+                .selected_text(run.next_preset())
+                .width(theme::COMBO_WIDTH)
+                .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
+            let is_on = ui.is_enabled();
+            list.response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, "Preset")
+            });
+            if list.response.clicked() {
+                // The folder may have new files.
+                commands.push(Command::ListPresets);
+            }
+            list.response.on_hover_text("Replaces all settings of the next run");
+            let hint = "Save the settings of the next run under a name, to use them again later";
+            let mut is_open = self.name.is_some();
+            if ui.toggle_value(&mut is_open, "Save as preset…").on_hover_text(hint).changed() {
+                self.name = is_open.then(String::new);
+            }
+        });
+        if let Some(mut name) = self.name.take() {
+            let is_saved = name_field(ui, run.presets(), &mut name, commands);
+            self.name = (!is_saved).then_some(name);
+        }
+    }
+}
+
+/// Draws the list of presets.
+fn presets(ui: &mut egui::Ui, presets: &PresetList, chosen: &str, commands: &mut Vec<Command>) {
+    let mut choice = |ui: &mut egui::Ui, name: &str, about: &str| {
+        if ui.selectable_label(name == chosen, name).on_hover_text(about).clicked() {
+            commands.push(Command::SetPreset(name.to_owned()));
+        }
+    };
+    for preset in presets.shipped() {
+        choice(ui, &preset.name, &preset.about);
+    }
+    if presets.own().is_empty() {
+        return;
+    }
+    ui.separator();
+    explain(ui, "Your presets");
+    for own in presets.own() {
+        match &own.preset {
+            Ok(preset) => choice(ui, &own.name, &preset.about),
+            Err(reason) => {
+                let button = egui::Button::selectable(false, &own.name);
+                ui.add_enabled(false, button).on_disabled_hover_text(reason);
+            }
+        }
+    }
+}
+
+/// Draws the name field. Returns whether the preset was saved.
+fn name_field(
+    ui: &mut egui::Ui,
+    presets: &PresetList,
+    name: &mut String,
+    commands: &mut Vec<Command>,
+) -> bool {
+    let problem = if name.is_empty() { None } else { problem_with(presets, name) };
+    let mut is_saved = false;
+    ui.horizontal(|ui| {
+        let label = ui.label("Name");
+        let field = egui::TextEdit::singleline(name)
+            .desired_width(theme::COMBO_WIDTH)
+            .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2))
+            .hint_text("my-preset");
+        let field = ui.add(field).labelled_by(label.id);
+        let is_entered =
+            field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        let is_valid = problem.is_none() && !name.is_empty();
+        let hint = "Writes a file into the folder \"presets\" of the saves";
+        let save = ui.add_enabled(is_valid, egui::Button::new("Save")).on_hover_text(hint);
+        is_saved = is_valid && (save.clicked() || is_entered);
+    });
+    if let Some(problem) = problem {
+        let text = egui::RichText::new(problem).color(theme::of(ui).problem);
+        ui.add(egui::Label::new(text).wrap());
+    }
+    if is_saved {
+        commands.push(Command::StorePreset(name.clone()));
+    }
+    is_saved
+}
+
+/// Problem with a name, as a message.
+fn problem_with(presets: &PresetList, name: &str) -> Option<String> {
+    if presets.has(name) {
+        return Some(format!("A preset named {name} already exists; choose another name."));
+    }
+    check_own_name(name).err().map(|invalid| {
+        let start: String = name.chars().take(30).collect();
+        let rest = if name.chars().count() > 30 { "…" } else { "" };
+        format!("The name is \"{start}{rest}\"; allowed: {}.", invalid.allowed)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::state::current_run::prepared_run;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    type Panel<'a> = Harness<'a, Vec<Command>>;
+
+    fn panel(run: &CurrentRun) -> Panel<'_> {
+        let mut choice = PresetChoice::default();
+        let size = egui::vec2(theme::PANEL_WIDTH, 600.0);
+        Harness::builder()
+            .with_size(size)
+            .build_ui_state(move |ui, commands| choice.ui(ui, run, commands), Vec::new())
+    }
+
+    /// Opens the field and types a name.
+    fn type_name(panel: &mut Panel, name: &str) {
+        panel.get_by_label("Save as preset…").click();
+        panel.run();
+        panel.get_by_label("Name").focus();
+        panel.run();
+        panel.get_by_label("Name").type_text(name);
+        panel.run();
+    }
+
+    #[test]
+    fn a_shipped_preset_is_selected_from_the_list() {
+        let run = prepared_run();
+        let mut panel = panel(&run);
+        panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();
+        panel.run();
+        panel.get_by_label("ice").click();
+        panel.run();
+        let commands = [Command::ListPresets, Command::SetPreset("ice".to_owned())];
+        assert_eq!(*panel.state(), commands);
+    }
+
+    #[test]
+    fn settings_are_saved_under_a_name() {
+        let run = prepared_run();
+        let mut panel = panel(&run);
+        type_name(&mut panel, "my-slope-2");
+        panel.get_by_label("Save").click();
+        panel.run();
+        assert_eq!(*panel.state(), [Command::StorePreset("my-slope-2".to_owned())]);
+        assert!(panel.query_by_label("Name").is_none(), "done");
+    }
+
+    #[test]
+    fn an_invalid_name_is_refused_with_a_reason() {
+        let long = "x".repeat(300);
+        for (name, said) in [
+            ("a/b", "The name is \"a/b\"; allowed: 1 to 40 of a-z, 0-9 and -."),
+            (long.as_str(), "; allowed: 1 to 40 of a-z, 0-9 and -."),
+            ("climb", "A preset named climb already exists"),
+        ] {
+            let run = prepared_run();
+            let mut panel = panel(&run);
+            type_name(&mut panel, name);
+            assert!(panel.query_by_label_contains(said).is_some(), "{name}");
+            panel.get_by_label("Save").click();
+            panel.run();
+            assert_eq!(*panel.state(), []);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Pictures of the scene: screenshots of the window, and renderings without a window.
+
+pub mod figures;
+pub mod offscreen;
+pub mod render;
+pub mod screenshot;
+
+use bevy::prelude::*;
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins(screenshot::plugin);
+}

@@ -1,0 +1,116 @@
+//! Renders one moment of one champion, or of several side by side, without a window.
+
+use bevy::prelude::*;
+
+use super::offscreen::Offscreen;
+use crate::save::{LoadedChampion, Picture};
+use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::overlay::Overlay;
+use crate::studio::error::StudioError;
+use crate::studio::scene::camera::view::CameraView;
+use crate::studio::scene::overlays::Overlays;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::lanes;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::ui::theme::Theme;
+
+/// The content and style of the picture.
+#[derive(Debug, Clone)]
+pub struct RenderedScene {
+    /// The named champions, one per lane.
+    pub champions: Vec<(String, LoadedChampion)>,
+    /// Time in simulated seconds, or `None` for the end.
+    pub at_s: Option<f64>,
+    /// Size of the picture, in pixels.
+    pub size: (u32, u32),
+    /// Camera mode: follow, side or top.
+    pub camera: CameraMode,
+    /// Theme.
+    pub theme: Theme,
+    /// Overlays.
+    pub overlays: Vec<Overlay>,
+}
+
+/// A name tag above a head.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NameTag {
+    /// Text of the tag.
+    pub text: String,
+    /// Middle of its lower edge, in pixels from the picture's top left.
+    pub at: (f32, f32),
+}
+
+/// Height of a tag's anchor above the head's centre, in metres.
+const OVER_HEAD_M: f32 = 1.4;
+
+/// Renders the scene. Returns the picture and, for several lanes, the name tags.
+///
+/// # Errors
+/// No graphics driver is available, or a champion cannot be built.
+pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioError> {
+    let saved = scene.champions.iter().enumerate();
+    let champions =
+        saved.map(|(index, (name, loaded))| StagedChampion::from_file(loaded, index, name));
+    let (mut lanes, problems) = lanes(champions.collect());
+    if let Some(problem) = problems.into_iter().next() {
+        return Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned()));
+    }
+    for lane in &mut lanes {
+        if scene.overlays.contains(&Overlay::Trail) {
+            lane.finish_lookahead();
+        }
+        lane.skip_to(scene.at_s.unwrap_or(f64::MAX));
+    }
+    let (width, height) = scene.size;
+    let place = overview(&lanes, scene.camera, width as f32 / height.max(1) as f32);
+    let heads: Vec<(Vec3, String)> = lanes
+        .iter()
+        .filter(|_| lanes.len() > 1)
+        .filter_map(|lane| {
+            let head = lane.drawn_poses().next()?.translation + lane.offset();
+            let text = format!("{}  {:.1} m", lane.staged().label(), lane.drawn_middle().y);
+            Some((head + Vec3::Z * OVER_HEAD_M, text))
+        })
+        .collect();
+    Offscreen::draw(scene.size, scene.theme, |studio| {
+        let world = studio.app.world_mut();
+        let mut overlays = world.resource_mut::<Overlays>();
+        scene.overlays.iter().for_each(|overlay| overlays.toggle(*overlay));
+        for lane in lanes {
+            let place = Transform::from_translation(lane.offset());
+            world.spawn((lane, place, Visibility::default()));
+        }
+        studio.place_camera(place);
+        let picture = studio.picture()?;
+        let places = studio.pixels_of(heads.iter().map(|(head, _)| *head));
+        let tags = heads.iter().zip(places).filter_map(|((_, text), place)| {
+            let at = place?;
+            Some(NameTag { text: text.clone(), at: (at.x, at.y) })
+        });
+        Ok((picture, tags.collect()))
+    })
+}
+
+/// Camera transform with all snakes and some of the stairs in view.
+fn overview(lanes: &[Lane], camera_mode: CameraMode, aspect: f32) -> Transform {
+    /// Visible length of the lane ahead of and behind a snake, in metres.
+    const AROUND_M: f32 = 3.0;
+    let mut points = Vec::new();
+    for lane in lanes {
+        let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
+        for pose in lane.last_poses() {
+            let at = pose.translation + lane.offset();
+            let along = [Vec3::ZERO, Vec3::Y * AROUND_M, Vec3::NEG_Y * AROUND_M];
+            points.extend(along.map(|along| at + along));
+        }
+        let middle = lane.drawn_middle() + lane.offset();
+        points.extend([middle - half_width, middle + half_width]);
+    }
+    let (least, most) = points
+        .iter()
+        .fold((Vec3::MAX, Vec3::MIN), |(least, most), point| (least.min(*point), most.max(*point)));
+    let target = (least + most) / 2.0;
+    let mut view = CameraView::of(camera_mode, lanes.len());
+    view.distance_m = view.distance_to_see(target, points, aspect);
+    view.looking_at(target)
+}

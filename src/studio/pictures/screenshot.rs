@@ -1,0 +1,110 @@
+//! Screenshots of the window, and of the stage alone at its size in the window.
+
+use bevy::camera::RenderTarget;
+use bevy::image::Image;
+use bevy::prelude::*;
+use bevy::render::render_resource::TextureFormat;
+use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+
+use crate::save::{Picture, store_picture};
+use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::scene::camera::{StageCamera, camera_components};
+use crate::studio::schedule::FrameSet;
+use crate::studio::state::run_context::RunContext;
+use crate::studio::ui::notifications::Notices;
+use crate::studio::ui::theme::Theme;
+
+/// A second camera that renders the stage to an image.
+#[derive(Component)]
+struct PendingScreenshot {
+    picture: Handle<Image>,
+    /// Frames left until the picture is taken.
+    frames: u32,
+}
+
+/// Frames until a new camera's picture is complete, because its pipelines are compiled first.
+const FRAMES: u32 = 4;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_message::<ScreenshotArea>()
+        .add_systems(Update, (take, take_stage_pictures).chain().in_set(FrameSet::Draw));
+}
+
+/// Takes a screenshot of the window at once; for the stage, spawns a second camera.
+fn take(
+    mut requests: MessageReader<ScreenshotArea>,
+    camera: Single<(&Camera, &Transform, &Msaa), With<StageCamera>>,
+    mut images: ResMut<Assets<Image>>,
+    theme: Res<Theme>,
+    mut commands: Commands,
+) {
+    let (camera, place, msaa) = *camera;
+    for area in requests.read() {
+        match area {
+            ScreenshotArea::Window => {
+                commands.spawn(Screenshot::primary_window()).observe(keep);
+            }
+            ScreenshotArea::Stage => {
+                let size = camera.physical_viewport_size().unwrap_or(UVec2::new(1280, 720));
+                let format = TextureFormat::Rgba8UnormSrgb;
+                let picture = images.add(Image::new_target_texture(size.x, size.y, format, None));
+                commands.spawn((
+                    PendingScreenshot { picture: picture.clone(), frames: FRAMES },
+                    camera_components(*msaa, theme.palette()),
+                    RenderTarget::Image(picture.into()),
+                    *place,
+                ));
+            }
+        }
+    }
+}
+
+/// Takes the picture of the second camera and despawns it.
+fn take_stage_pictures(
+    mut cameras: Query<(Entity, &mut PendingScreenshot)>,
+    mut commands: Commands,
+) {
+    for (entity, mut pending) in &mut cameras {
+        pending.frames = pending.frames.saturating_sub(1);
+        match pending.frames {
+            1 => {
+                let screenshot = Screenshot::image(pending.picture.clone());
+                commands.spawn(screenshot).observe(keep);
+            }
+            0 => commands.entity(entity).despawn(),
+            _ => {}
+        }
+    }
+}
+
+/// Saves a picture and reports its path.
+fn keep(captured: On<ScreenshotCaptured>, engine: Res<RunContext>, mut notices: ResMut<Notices>) {
+    let Some(picture) = picture_of(&captured.image) else {
+        return notices.problem("The renderer returned no picture.".to_owned());
+    };
+    let folder = engine.saves.pictures();
+    let kept = folder.prepare().and_then(|()| {
+        let path = folder.free_name("snakes-and-stairs", "png");
+        store_picture(&path, &picture).map(|()| path)
+    });
+    match kept {
+        Ok(path) => notices.info(format!("Picture saved to {}", path.display())),
+        Err(error) => notices.problem(error.to_string()),
+    }
+}
+
+/// The image's colours without its alpha channel.
+pub(crate) fn picture_of(image: &Image) -> Option<Picture> {
+    let bgr = matches!(
+        image.texture_descriptor.format,
+        TextureFormat::Bgra8Unorm | TextureFormat::Bgra8UnormSrgb
+    );
+    let pixels = image.data.as_ref()?.as_chunks::<4>().0;
+    let rgb = pixels
+        .iter()
+        .flat_map(|&[a, b, c, _]| if bgr { [c, b, a] } else { [a, b, c] })
+        .collect::<Vec<u8>>();
+    let (width, height) = (image.width(), image.height());
+    let is_whole = rgb.len() == width as usize * height as usize * 3;
+    is_whole.then_some(Picture { width, height, rgb })
+}

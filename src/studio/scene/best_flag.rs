@@ -1,0 +1,171 @@
+//! A flag at the best distance of the run.
+
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+
+use super::mesh_builder::MeshBuilder;
+use super::text::{TextMeshes, TextPlacement};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::theme::Theme;
+use crate::world::Stairs;
+
+/// Greatest y that a middle limb reached in the current run, in metres; `None` without a champion.
+#[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct BestSoFar(pub Option<f32>);
+
+/// Marks the entities of a lane's flag.
+#[derive(Component)]
+struct Flag;
+
+/// Materials of flags.
+#[derive(Resource, Debug)]
+struct Cloth {
+    post: Handle<StandardMaterial>,
+    cloth: Handle<StandardMaterial>,
+}
+
+/// Height of the post, in metres, so that the flag flies above the snake.
+const POST_M: f32 = 2.3;
+/// Radius of the post, in metres.
+const POST_RADIUS_M: f32 = 0.035;
+/// Distance of the post from the left edge of the stairs, in metres. Seen from the right, it stands behind the snake.
+const ASIDE_M: f32 = 0.2;
+/// Height of the cloth and of its digits, in metres.
+const CLOTH_M: f32 = 0.62;
+const DIGIT_M: f32 = 0.27;
+/// Half the thickness of the cloth, in metres.
+const CLOTH_HALF_M: f32 = 0.012;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<BestSoFar>()
+        .init_resource::<Cloth>()
+        .add_systems(Update, (look_up, plant).chain().in_set(FrameSet::Draw))
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+impl FromWorld for Cloth {
+    fn from_world(world: &mut World) -> Self {
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let mut material = || {
+            materials.add(StandardMaterial {
+                perceptual_roughness: 0.9,
+                reflectance: 0.1,
+                ..default()
+            })
+        };
+        Self { post: material(), cloth: material() }
+    }
+}
+
+fn dress(theme: Res<Theme>, cloth: Res<Cloth>, mut materials: ResMut<Assets<StandardMaterial>>) {
+    let palette = theme.palette();
+    for (handle, color) in [(&cloth.post, palette.metal), (&cloth.cloth, palette.flag)] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Reads the best distance from the run's champions.
+fn look_up(evolution: Option<Res<CurrentRun>>, mut best: ResMut<BestSoFar>) {
+    let Some(evolution) = evolution else { return };
+    let champions = evolution.reports().iter().filter_map(|report| report.champion.as_ref());
+    let reached_m = champions.map(|champion| champion.evaluation.centre_y_m);
+    best.set_if_neq(BestSoFar(reached_m.reduce(f32::max)));
+}
+
+/// Spawns a flag on the first lane and removes outdated ones.
+fn plant(
+    best: Res<BestSoFar>,
+    lanes: Query<(Entity, Ref<Lane>)>,
+    flags: Query<Entity, With<Flag>>,
+    cloth: Res<Cloth>,
+    lettering: Res<TextMeshes>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    if best.is_changed() {
+        flags.iter().for_each(|flag| commands.entity(flag).despawn());
+    }
+    let Some(y_m) = best.0 else { return };
+    // Only the nearest lane has a flag.
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| lane.number() == 0) {
+        if !best.is_changed() && !lane.is_added() {
+            continue;
+        }
+        let text = format!("furthest {y_m:.1} m");
+        let width_m = lettering.width_m(&text, DIGIT_M) + CLOTH_M - DIGIT_M;
+        let middle = Vec3::new(0.0, width_m / 2.0, POST_M - CLOTH_M / 2.0);
+        let mut writing = lettering.begin();
+        for side in [1.0, -1.0] {
+            // Readable from the right, where the camera usually is, and from the left.
+            let right = if side > 0.0 { Dir3::Y } else { Dir3::NEG_Y };
+            let middle = middle + Vec3::X * side * (CLOTH_HALF_M + 0.006);
+            writing.text(&text, DIGIT_M, TextPlacement { middle, right, up: Dir3::Z });
+        }
+        commands.entity(entity).with_children(|parent| {
+            parent
+                .spawn((
+                    Flag,
+                    Transform::from_translation(foot(&lane.trial().stairs, y_m)),
+                    Mesh3d(meshes.add(post().into_mesh())),
+                    MeshMaterial3d(cloth.post.clone()),
+                ))
+                .with_children(|post| {
+                    post.spawn((
+                        Mesh3d(meshes.add(sheet(middle, width_m).into_mesh())),
+                        MeshMaterial3d(cloth.cloth.clone()),
+                    ));
+                    post.spawn((
+                        Mesh3d(meshes.add(writing.into_mesh())),
+                        MeshMaterial3d(lettering.on_flag.clone()),
+                        NotShadowCaster,
+                    ));
+                });
+        });
+    }
+}
+
+/// Base of the post: at the left edge of the stairs, on the surface there.
+fn foot(stairs: &Stairs, y_m: f32) -> Vec3 {
+    let x_m = ASIDE_M - stairs.width_m / 2.0;
+    Vec3::new(x_m, y_m, stairs.surface_z_m(x_m, y_m))
+}
+
+fn post() -> MeshBuilder {
+    let mut solid = MeshBuilder::default();
+    solid.cylinder(Vec3::ZERO, Vec3::Z * POST_M, POST_RADIUS_M);
+    solid.ball(Vec3::Z * POST_M, POST_RADIUS_M * 2.0);
+    solid
+}
+
+fn sheet(middle: Vec3, width_m: f32) -> MeshBuilder {
+    let mut solid = MeshBuilder::default();
+    let size = Vec3::new(CLOTH_HALF_M * 2.0, width_m, CLOTH_M);
+    solid.rounded_box(middle, size, CLOTH_HALF_M, 1);
+    solid
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_flag_stands_on_the_surface_below_it() {
+        let stairs = Stairs::default();
+        for (y_m, z_m) in [(-7.0, 0.0), (3.5, 0.5), (21.3, 5.0), (30.0, 5.0), (60.0, 0.0)] {
+            assert_eq!(foot(&stairs, y_m).z, z_m, "at {y_m}");
+        }
+    }
+
+    #[test]
+    fn without_a_run_a_flag_needs_an_explicit_distance() {
+        let mut app = App::new();
+        app.init_resource::<BestSoFar>().add_systems(Update, look_up);
+        app.insert_resource(BestSoFar(Some(2.0)));
+        app.update();
+        assert_eq!(*app.world().resource::<BestSoFar>(), BestSoFar(Some(2.0)));
+    }
+}

@@ -1,0 +1,353 @@
+//! The camera: orbit, pan, zoom, follow.
+//!
+//! The world keeps the core's axes, so the camera has z up instead of everything being turned.
+
+pub mod mouse;
+pub mod view;
+
+use bevy::camera::visibility::RenderLayers;
+use bevy::camera::{CameraOutputMode, Viewport};
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::input::gestures::PinchGesture;
+use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
+use bevy::pbr::{DistanceFog, FogFalloff};
+use bevy::prelude::*;
+use bevy::render::render_resource::BlendState;
+use bevy::render::renderer::RenderAdapterInfo;
+use bevy::window::PrimaryWindow;
+use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
+
+use super::quality::Quality;
+use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::selection::Selection;
+use crate::studio::ui::theme::{Palette, Theme};
+use crate::studio::ui::viewport::StageArea;
+
+use view::CameraView;
+
+/// Transform of a fixed camera from the default side, with a stretch of the y axis in view, in metres.
+pub(crate) fn overview_transform(from_y_m: f32, to_y_m: f32) -> Transform {
+    // At this distance the stretch, seen at an angle, fills the width of a 16:9 picture.
+    const DISTANCE_PER_LENGTH: f32 = 0.95;
+    let distance_m =
+        ((to_y_m - from_y_m) * DISTANCE_PER_LENGTH).max(*CameraView::DISTANCE_M.start());
+    let view = CameraView { distance_m, ..CameraView::of(CameraMode::Follow, 1) };
+    view.looking_at(Vec3::new(0.0, (from_y_m + to_y_m) / 2.0, 1.5))
+}
+
+/// Components that every camera of the scene shares: no tone mapping, and fog that hides the end of the
+/// ground.
+pub(crate) fn camera_components(msaa: Msaa, palette: &Palette) -> impl Bundle {
+    (
+        Camera3d::default(),
+        Tonemapping::None,
+        msaa,
+        DistanceFog {
+            color: palette.horizon,
+            falloff: FogFalloff::Linear { start: 50.0, end: 190.0 },
+            ..default()
+        },
+    )
+}
+
+/// State of the camera.
+#[derive(Resource, Debug)]
+pub(crate) struct CameraRig {
+    camera_mode: CameraMode,
+    /// The target view.
+    view: CameraView,
+    /// The current view, which approaches the target view.
+    shown: CameraView,
+    /// Whether the camera follows the snake, or all snakes.
+    follows: bool,
+    /// The followed lane; `None` follows all.
+    lane: Option<usize>,
+    /// Smoothed position of the followed snakes, in metres.
+    anchor: Option<Vec3>,
+    lanes: usize,
+}
+
+impl Default for CameraRig {
+    fn default() -> Self {
+        let view = CameraView::of(CameraMode::Follow, 1);
+        Self {
+            camera_mode: CameraMode::Follow,
+            view,
+            shown: view,
+            follows: true,
+            lane: None,
+            anchor: None,
+            lanes: 1,
+        }
+    }
+}
+
+impl CameraRig {
+    /// The current camera mode.
+    pub fn camera_mode(&self) -> CameraMode {
+        self.camera_mode
+    }
+
+    /// Switches to a camera mode.
+    pub fn take(&mut self, camera_mode: CameraMode) {
+        self.camera_mode = camera_mode;
+        self.follows = camera_mode != CameraMode::Free;
+        if self.follows {
+            // Turn the short way round.
+            let turn = std::f32::consts::TAU;
+            self.shown.yaw_rad -= libm::roundf(self.shown.yaw_rad / turn) * turn;
+            self.view = CameraView::of(camera_mode, self.lanes);
+            self.lane = None;
+        } else {
+            // The free camera keeps its current view.
+            self.view = self.shown;
+        }
+    }
+
+    /// Focuses on a lane's snake or, without a lane, on a fixed point, in metres.
+    pub fn focus_on(&mut self, lane: Option<usize>, point: Vec3) {
+        self.view.distance_m = self.view.distance_m.min(FOCUS_M);
+        self.lane = lane;
+        if lane.is_some() {
+            self.view.offset = Vec3::ZERO;
+            (self.camera_mode, self.follows) = (CameraMode::Follow, true);
+        } else {
+            (self.camera_mode, self.follows) = (CameraMode::Free, false);
+            // Glide from the current target to the point.
+            self.view.offset = point - self.anchor.unwrap_or_default();
+        }
+    }
+
+    /// Whether the camera keeps all lanes in view.
+    fn frames_all(&self) -> bool {
+        self.follows && self.lane.is_none() && self.lanes > 1
+    }
+
+    /// Current transform of the camera.
+    pub fn place(&self) -> Transform {
+        self.shown.looking_at(self.anchor.unwrap_or_default() + self.shown.offset)
+    }
+}
+
+/// Distance to a point that was double-clicked, in metres.
+const FOCUS_M: f32 = 12.0;
+
+/// The camera that draws the stage.
+#[derive(Component)]
+pub(crate) struct StageCamera;
+
+/// Rotation per 1000 pixels of dragging, in radians.
+const TURN_RAD_PER_PIXEL: f32 = 0.006;
+/// Movement of the target per pixel of dragging, as a fraction of the distance.
+const PAN_PER_PIXEL: f32 = 0.0012;
+/// Zoom factor per wheel line.
+const ZOOM_PER_LINE: f32 = 0.12;
+/// Trackpad scroll that equals a wheel line, in pixels.
+const PIXELS_PER_LINE: f32 = 40.0;
+/// Follow rate, in 1/s. In a short time t the camera covers the fraction `rate * t` of the distance.
+const FOLLOW_PER_S: f32 = 4.0;
+/// Distance below which the camera stops moving, in metres.
+const FOLLOWED_M: f32 = 0.005;
+/// Visible length of the lanes ahead of and behind the snakes, in metres.
+const AHEAD_M: f32 = 9.0;
+const BEHIND_M: f32 = 6.0;
+/// Maximum fraction of the picture that is left free for a card.
+const MAX_ASIDE: f32 = 0.25;
+/// Rate at which the camera approaches its target view, in 1/s.
+const GLIDE_PER_S: f32 = 14.0;
+/// Zoom factor for a pinch over the trackpad's whole scale.
+const ZOOM_PER_PINCH: f32 = 1.0;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<CameraRig>()
+        .init_resource::<StageArea>()
+        .add_systems(Startup, set_up)
+        .add_systems(Update, (steer, follow, glide, fit_to_area).chain().in_set(FrameSet::Draw));
+}
+
+/// Spawns a camera for the stage and one for egui over the whole window.
+fn set_up(
+    mut commands: Commands,
+    mut egui_settings: ResMut<EguiGlobalSettings>,
+    adapter: Res<RenderAdapterInfo>,
+    theme: Res<Theme>,
+) {
+    egui_settings.auto_create_primary_context = false;
+    commands.spawn((
+        StageCamera,
+        camera_components(Quality::for_adapter(&adapter).msaa, theme.palette()),
+    ));
+    commands.spawn((
+        PrimaryEguiContext,
+        Camera2d,
+        RenderLayers::none(),
+        Msaa::Off,
+        Camera {
+            order: 1,
+            output_mode: CameraOutputMode::Write {
+                blend_state: Some(BlendState::ALPHA_BLENDING),
+                clear_color: ClearColorConfig::None,
+            },
+            clear_color: ClearColorConfig::Custom(Color::NONE),
+            ..default()
+        },
+    ));
+}
+
+/// State of a mouse drag.
+#[derive(Debug, Default)]
+pub(crate) struct CameraDrag {
+    last_cursor: Option<Vec2>,
+    /// Whether the button was pressed over the stage. A drag that starts on a panel belongs to the panel.
+    began_on_stage: bool,
+}
+
+/// Applies drags, wheel and trackpad gestures to the view, unless a panel or a limb uses them.
+fn steer(
+    mut rig: ResMut<CameraRig>,
+    (buttons, keys): (Res<ButtonInput<MouseButton>>, Res<ButtonInput<KeyCode>>),
+    window: Single<&Window, With<PrimaryWindow>>,
+    area: Res<StageArea>,
+    selection: Res<Selection>,
+    mut grip: Local<CameraDrag>,
+    scroll: Res<AccumulatedMouseScroll>,
+    mut pinches: MessageReader<PinchGesture>,
+) {
+    // Use the cursor position, because tablets and remote desktops report no relative motion.
+    let cursor = window.cursor_position();
+    let drag = match (grip.last_cursor, cursor) {
+        (Some(last), Some(now)) => now - last,
+        _ => Vec2::ZERO,
+    };
+    grip.last_cursor = cursor;
+    let is_over_stage = cursor.is_some_and(|cursor| area.has_pointer_at(cursor));
+    let drag_buttons = [MouseButton::Left, MouseButton::Right, MouseButton::Middle];
+    if buttons.any_just_pressed(drag_buttons) {
+        grip.began_on_stage = is_over_stage && !selection.is_holding();
+    }
+    let pinched: f32 = pinches.read().map(|pinch| pinch.0).sum();
+    let view = &mut rig.view;
+    if is_over_stage {
+        // Horizontal trackpad scrolling rotates; the wheel, vertical scrolling and pinching zoom.
+        let (lines, sideways) = match scroll.unit {
+            MouseScrollUnit::Line => (scroll.delta.y, 0.0),
+            MouseScrollUnit::Pixel => (scroll.delta.y / PIXELS_PER_LINE, scroll.delta.x),
+        };
+        view.yaw_rad -= sideways * TURN_RAD_PER_PIXEL;
+        let factor = 1.0 - lines.clamp(-4.0, 4.0) * ZOOM_PER_LINE;
+        let factor = factor * (1.0 - pinched.clamp(-0.5, 0.5) * ZOOM_PER_PINCH);
+        let distance_m = view.distance_m * factor;
+        view.distance_m =
+            distance_m.clamp(*CameraView::DISTANCE_M.start(), *CameraView::DISTANCE_M.end());
+    }
+    if !grip.began_on_stage {
+        return;
+    }
+    let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
+    let pans = buttons.any_pressed([MouseButton::Right, MouseButton::Middle]);
+    if pans || (shift && buttons.pressed(MouseButton::Left)) {
+        let turn = Quat::from_rotation_z(view.yaw_rad);
+        let (right, up) = (turn * Vec3::Y, Vec3::Z);
+        view.offset += (up * drag.y - right * drag.x) * view.distance_m * PAN_PER_PIXEL;
+        view.offset = view.offset.clamp(Vec3::splat(-60.0), Vec3::splat(60.0));
+    } else if buttons.pressed(MouseButton::Left) {
+        view.yaw_rad -= drag.x * TURN_RAD_PER_PIXEL;
+        let pitch_rad = view.pitch_rad + drag.y * TURN_RAD_PER_PIXEL;
+        view.pitch_rad =
+            pitch_rad.clamp(*CameraView::PITCH_RAD.start(), *CameraView::PITCH_RAD.end());
+    }
+}
+
+/// Keeps the middle of the snake or of all snakes in view.
+fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Real>>) {
+    let count = lanes.iter().len();
+    if count == 0 {
+        return;
+    }
+    let is_new = lanes.iter().any(|lane| lane.is_added());
+    if is_new && (count > 1) != (rig.lanes > 1) {
+        // A view for one lane does not suit several.
+        rig.lanes = count;
+        let camera_mode = rig.camera_mode;
+        rig.take(if camera_mode == CameraMode::Free { CameraMode::Follow } else { camera_mode });
+    }
+    rig.lanes = count;
+    rig.lane = rig.lane.filter(|lane| *lane < count && !is_new);
+    let of_one = |lane: &Lane| {
+        // Following the snake's sideways motion would make viewers seasick.
+        let middle = lane.drawn_middle();
+        Vec3::new(lane.offset().x, middle.y, middle.z.max(0.0))
+    };
+    let chosen = lanes.iter().filter(|lane| rig.lane.is_none_or(|number| number == lane.number()));
+    let (mut least, mut most) = (Vec3::MAX, Vec3::MIN);
+    chosen.map(|lane| of_one(&lane)).for_each(|middle| {
+        least = least.min(middle);
+        most = most.max(middle);
+    });
+    let goal = (least + most) / 2.0;
+    match rig.anchor {
+        None => rig.anchor = Some(goal),
+        Some(anchor) if rig.follows => {
+            let share = 1.0 - (1.0 + FOLLOW_PER_S * time.delta_secs()).recip();
+            // Stop at a small distance, or a paused picture would keep changing by single pixels.
+            let is_there = anchor.distance(goal) < FOLLOWED_M;
+            rig.anchor = Some(if is_there { goal } else { anchor.lerp(goal, share) });
+        }
+        Some(_) => {}
+    }
+}
+
+/// Moves towards the target view, and far enough away to see all lanes if the camera follows all.
+fn glide(
+    mut rig: ResMut<CameraRig>,
+    lanes: Query<&Lane>,
+    area: Res<StageArea>,
+    time: Res<Time<Real>>,
+    mut camera: Single<&mut Transform, With<StageCamera>>,
+) {
+    let mut goal = rig.view;
+    if rig.frames_all() {
+        let points = lanes.iter().flat_map(|lane| {
+            let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
+            let middle = lane.drawn_middle() + lane.offset();
+            let around = [Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along);
+            let ends = lane.last_poses().iter().map(move |pose| pose.translation + lane.offset());
+            ends.chain([middle - half_width, middle + half_width]).chain(around)
+        });
+        // The card is low, and only a tail is in that corner, so half its width is enough.
+        let left_share = (area.card_share() / 2.0).min(MAX_ASIDE);
+        goal = goal.framing(rig.anchor.unwrap_or_default(), points, area.aspect(), left_share);
+    }
+    let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
+    rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };
+    let place = rig.place();
+    if **camera != place {
+        **camera = place;
+    }
+}
+
+/// Limits the stage's viewport to the area beside the panels.
+fn fit_to_area(
+    area: Res<StageArea>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    mut camera: Single<&mut Camera, With<StageCamera>>,
+) {
+    let scale = window.scale_factor();
+    let place = area.in_window();
+    let pixels = |at: Vec2| (at * scale).max(Vec2::ZERO).as_uvec2().min(window.physical_size());
+    let (start, end) = (pixels(place.min), pixels(place.max));
+    let size = end.saturating_sub(start);
+    if size.x == 0 || size.y == 0 {
+        return;
+    }
+    let viewport = Viewport { physical_position: start, physical_size: size, ..default() };
+    let is_new = camera.viewport.as_ref().is_none_or(|now| {
+        (now.physical_position, now.physical_size)
+            != (viewport.physical_position, viewport.physical_size)
+    });
+    if is_new {
+        camera.viewport = Some(viewport);
+    }
+}

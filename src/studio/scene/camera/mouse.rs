@@ -1,0 +1,188 @@
+//! The mouse on the snake: click a limb to see its numbers, drag it to pull it by a spring, double click to look at it.
+//!
+//! A ray through the pointer is cast at the drawn boxes of the limbs, the steps and the ground, so that it hits
+//! the visible surface in simulations and recordings alike.
+
+use bevy::input::mouse::MouseButtonInput;
+use bevy::prelude::*;
+use bevy::window::PrimaryWindow;
+use rapier3d::parry::query::{Ray, RayCast};
+use rapier3d::parry::shape::{Cuboid, HalfSpace};
+
+use super::{CameraRig, StageCamera};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
+use crate::studio::stage::selection::{HeldLimb, Selection};
+use crate::studio::ui::notifications::Notices;
+use crate::studio::ui::viewport::StageArea;
+use crate::world::{Pose, Pull, StairBox, Vector};
+
+/// Presses of the mouse button that later presses and releases are compared with.
+#[derive(Resource, Debug, Default)]
+struct MousePresses {
+    /// Where the button went down beside all limbs, in pixels: a click there clears the selection.
+    beside: Option<Vec2>,
+    /// When and where the button went down last, in seconds and pixels.
+    last: Option<(f32, Vec2)>,
+}
+
+/// The first surface that a ray hits.
+struct RayHit {
+    entity: Entity,
+    lane: usize,
+    /// The limb; none for the stairs and the ground.
+    limb: Option<usize>,
+    /// Along the ray, in metres.
+    distance_m: f32,
+}
+
+/// A pointer that moves less than this has clicked, in pixels.
+const CLICK_PIXELS: f32 = 5.0;
+/// Two presses within this time, in seconds, at one place are a double click, on the stage and in panels.
+pub(crate) const DOUBLE_CLICK_S: f32 = 0.4;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Selection>()
+        .init_resource::<MousePresses>()
+        .add_systems(Update, (press, drag, release).chain().in_set(FrameSet::Apply))
+        .add_systems(Update, clear_selection.in_set(FrameSet::Draw));
+}
+
+/// The ray through the pointer.
+fn ray_at(cursor: Vec2, (camera, place): (&Camera, &GlobalTransform)) -> Option<Ray3d> {
+    camera.viewport_to_world(place, cursor).ok()
+}
+
+/// The first surface of any lane that a ray hits.
+fn first_hit(ray: Ray3d, lanes: &Query<(Entity, &Lane)>) -> Option<RayHit> {
+    let mut first: Option<RayHit> = None;
+    for (entity, lane) in lanes {
+        let ray = Ray::new(ray.origin - lane.offset(), *ray.direction);
+        let nearest_m =
+            |first: &Option<RayHit>| first.as_ref().map_or(f32::MAX, |hit| hit.distance_m);
+        let mut hit = |limb: Option<usize>, shape: &dyn RayCast, pose: &Pose| {
+            if let Some(distance_m) = shape.cast_ray(pose, &ray, nearest_m(&first), true) {
+                first = Some(RayHit { entity, lane: lane.number(), limb, distance_m });
+            }
+        };
+        for (limb, (pose, plan)) in lane.drawn_poses().zip(&lane.body().limbs).enumerate() {
+            let size = Vector::from(plan.size_m());
+            hit(Some(limb), &Cuboid::new(size / 2.0), &pose);
+        }
+        for StairBox { min_m, max_m } in lane.trial().stairs.boxes() {
+            let (min, max) = (Vector::from(min_m), Vector::from(max_m));
+            let pose = Pose::from_translation((min + max) / 2.0);
+            hit(None, &Cuboid::new((max - min) / 2.0), &pose);
+        }
+        hit(None, &HalfSpace::new(Vector::Z), &Pose::IDENTITY);
+    }
+    first
+}
+
+/// A press on a limb selects and holds it; a double click turns the camera to the surface under the pointer.
+fn press(
+    mut selection: ResMut<Selection>,
+    mut earlier: ResMut<MousePresses>,
+    mut rig: ResMut<CameraRig>,
+    mut presses: MessageReader<MouseButtonInput>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
+    area: Res<StageArea>,
+    lanes: Query<(Entity, &Lane)>,
+    time: Res<Time<Real>>,
+) {
+    let is_press =
+        |press: &&MouseButtonInput| press.button == MouseButton::Left && press.state.is_pressed();
+    let presses = presses.read().filter(is_press).count();
+    if presses == 0 {
+        return;
+    }
+    let Some(cursor) = window.cursor_position().filter(|cursor| area.has_pointer_at(*cursor))
+    else {
+        return;
+    };
+    let Some(ray) = ray_at(cursor, *camera) else { return };
+    let hit = first_hit(ray, &lanes);
+    let now_s = time.elapsed_secs();
+    // Slow frames can deliver a press late, or two at once.
+    let follows_another = earlier.last.is_some_and(|(then_s, at)| {
+        now_s - then_s < DOUBLE_CLICK_S + time.delta_secs() && at.distance(cursor) < CLICK_PIXELS
+    });
+    let is_double = presses > 1 || follows_another;
+    earlier.last = (!is_double).then_some((now_s, cursor));
+    if is_double && let Some(hit) = &hit {
+        let lane = hit.limb.map(|_| hit.lane);
+        rig.focus_on(lane, ray.get_point(hit.distance_m));
+    }
+    let Some(RayHit { entity, lane, limb: Some(limb), distance_m }) = hit else {
+        earlier.beside = Some(cursor);
+        return;
+    };
+    let Ok((_, hit_lane)) = lanes.get(entity) else { return };
+    let Some(pose) = hit_lane.drawn_poses().nth(limb) else { return };
+    let point = ray.get_point(distance_m) - hit_lane.offset();
+    let pull = Pull { limb, held_at_m: pose.inverse() * point, to_m: point };
+    let held = HeldLimb { lane: entity, pull, pressed_at: cursor, is_pulling: false };
+    selection.grab(lane, held);
+}
+
+/// The pointer moves the held limb in the plane that faces the camera.
+fn drag(
+    mut selection: ResMut<Selection>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
+    lanes: Query<&Lane>,
+    playback: Res<Playback>,
+    mut notices: ResMut<Notices>,
+) {
+    let Some(held) = selection.held_mut() else { return };
+    let Some(cursor) = window.cursor_position() else { return };
+    if !held.is_pulling && held.pressed_at.distance(cursor) < CLICK_PIXELS {
+        return;
+    }
+    let Ok(lane) = lanes.get(held.lane) else { return };
+    if !held.is_pulling && !playback.is_playing() {
+        notices.info("Playback is paused: press Space to play, then pull.".to_owned());
+    }
+    if !held.is_pulling && lane.staged().recording().is_some() {
+        notices
+            .info("A recording cannot be pulled; \"Simulate here\" makes it a simulation.".into());
+    }
+    held.is_pulling = true;
+    let Some(ray) = ray_at(cursor, *camera) else { return };
+    let point: Vec3 = lane.point_of(held.pull.limb, held.pull.held_at_m) + lane.offset();
+    let facing = InfinitePlane3d::new(camera.1.back());
+    if let Some(distance_m) = ray.intersect_plane(point, facing) {
+        held.pull.to_m = Vector::from(ray.get_point(distance_m) - lane.offset());
+    }
+}
+
+/// Releases the limb when the button is up or its lane is gone. A click beside all limbs clears the selection; a drag
+/// there turns the camera and keeps the selection.
+fn release(
+    mut selection: ResMut<Selection>,
+    mut earlier: ResMut<MousePresses>,
+    buttons: Res<ButtonInput<MouseButton>>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    lanes: Query<&Lane>,
+) {
+    let is_up = !buttons.pressed(MouseButton::Left);
+    if selection.held().is_some_and(|held| is_up || !lanes.contains(held.lane)) {
+        selection.release();
+    }
+    if is_up && let Some(pressed_at) = earlier.beside.take() {
+        let is_click =
+            window.cursor_position().is_some_and(|now| now.distance(pressed_at) < CLICK_PIXELS);
+        if is_click {
+            selection.limb = None;
+        }
+    }
+}
+
+/// Clears the selection when other lanes take the stage.
+fn clear_selection(mut selection: ResMut<Selection>, added: Query<(), Added<Lane>>) {
+    if !added.is_empty() {
+        selection.reset();
+    }
+}

@@ -1,0 +1,88 @@
+//! The ground, and a grid that fades out before it could flicker.
+
+use bevy::asset::RenderAssetUsages;
+use bevy::mesh::PrimitiveTopology;
+use bevy::prelude::*;
+
+use crate::studio::schedule::FrameSet;
+use crate::studio::ui::theme::Theme;
+
+/// Half the side of the drawn ground, in metres. The physical ground is infinite; fog hides the end of this one.
+const GROUND_HALF_M: f32 = 600.0;
+/// Half the side of the grid, in metres.
+const GRID_HALF_M: f32 = 70.0;
+/// Distance between the grid's lines, in metres: a tread of the report's stairs.
+const GRID_CELL_M: f32 = 2.0;
+/// Height of the grid above the ground, in metres, to avoid z-fighting.
+const GRID_HEIGHT_M: f32 = 0.01;
+
+/// Materials of the ground.
+#[derive(Resource, Debug)]
+struct Earth {
+    ground: Handle<StandardMaterial>,
+    grid: Handle<StandardMaterial>,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Earth>()
+        .add_systems(Startup, set_up)
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+impl FromWorld for Earth {
+    fn from_world(world: &mut World) -> Self {
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let ground = materials.add(StandardMaterial {
+            perceptual_roughness: 1.0,
+            reflectance: 0.1,
+            ..default()
+        });
+        let grid = materials.add(StandardMaterial {
+            unlit: true,
+            // The grid is translucent, so that a line in the shadow is darker than the shadow.
+            alpha_mode: AlphaMode::Blend,
+            ..default()
+        });
+        Self { ground, grid }
+    }
+}
+
+fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, earth: Res<Earth>) {
+    let ground = meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)));
+    commands.spawn((Mesh3d(ground), MeshMaterial3d(earth.ground.clone())));
+    commands.spawn((Mesh3d(meshes.add(grid())), MeshMaterial3d(earth.grid.clone())));
+}
+
+fn dress(theme: Res<Theme>, earth: Res<Earth>, mut materials: ResMut<Assets<StandardMaterial>>) {
+    let palette = theme.palette();
+    for (handle, color) in [(&earth.ground, palette.ground), (&earth.grid, palette.grid)] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Lines on the ground, one tread apart in both directions, which make distances visible. The grid fades out towards
+/// its end.
+fn grid() -> Mesh {
+    let (mut points, mut colors) = (Vec::new(), Vec::new());
+    let mut half_line = |from: [f32; 2], to: [f32; 2], aside_m: f32| {
+        points.extend([from, to].map(|[x, y]| [x, y, GRID_HEIGHT_M]));
+        let opacity = 1.0 - aside_m.abs() / GRID_HALF_M;
+        colors.extend([[1.0, 1.0, 1.0, opacity], [1.0, 1.0, 1.0, 0.0]]);
+    };
+    let cells = (GRID_HALF_M / GRID_CELL_M) as i32;
+    // One line runs through the first riser, at y = 3.
+    let middle = [-1.0, 1.0];
+    for cell in -cells..=cells {
+        let aside_m = cell as f32 * GRID_CELL_M;
+        for end_m in [-GRID_HALF_M, GRID_HALF_M] {
+            let [x, y] = middle;
+            half_line([x + aside_m, y], [x + aside_m, y + end_m], aside_m);
+            half_line([x, y + aside_m], [x + end_m, y + aside_m], aside_m);
+        }
+    }
+    Mesh::new(PrimitiveTopology::LineList, RenderAssetUsages::RENDER_WORLD)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, points)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+}

@@ -1,0 +1,139 @@
+//! Builds meshes from a few curved patches that form one body and are drawn in one call.
+//!
+//! Bodies are closed or flat. Triangles are counterclockwise seen from outside.
+
+use std::f32::consts::{PI, TAU};
+
+use bevy::asset::RenderAssetUsages;
+use bevy::mesh::{Indices, PrimitiveTopology};
+use bevy::prelude::*;
+
+/// Vertices and triangles of a body.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct MeshBuilder {
+    pub positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
+    pub indices: Vec<u32>,
+}
+
+/// Sides of round shapes: enough for something as thick as an arm.
+const SIDES: usize = 14;
+
+impl MeshBuilder {
+    /// A patch of `columns` by `rows` cells. `at` gives the position and normal of a corner. Seen from outside, rows go
+    /// up if columns go to the right.
+    pub fn patch(
+        &mut self,
+        columns: usize,
+        rows: usize,
+        at: impl Fn(usize, usize) -> (Vec3, Vec3),
+    ) {
+        let first = self.positions.len() as u32;
+        for row in 0..=rows {
+            for column in 0..=columns {
+                let (position, normal) = at(column, row);
+                self.positions.push(position);
+                self.normals.push(normal);
+            }
+        }
+        let across = columns as u32 + 1;
+        for row in 0..rows as u32 {
+            for column in 0..columns as u32 {
+                let low = first + row * across + column;
+                let high = low + across;
+                self.indices.extend([low, low + 1, high + 1, low, high + 1, high]);
+            }
+        }
+    }
+
+    /// A flat rectangle around `centre`; `right` and `up` lead from there to the middle of its edges.
+    pub fn sheet(&mut self, centre: Vec3, right: Vec3, up: Vec3) {
+        let normal = right.cross(up).normalize_or_zero();
+        let share = |of: usize| of as f32 * 2.0 - 1.0;
+        self.patch(1, 1, |column, row| (centre + right * share(column) + up * share(row), normal));
+    }
+
+    /// A cylinder between two points.
+    pub fn cylinder(&mut self, from: Vec3, to: Vec3, radius: f32) {
+        let axis = (to - from).normalize_or_zero();
+        let (right, up) = axis.any_orthonormal_pair();
+        let out = |side: usize| {
+            let (sin, cos) = libm::sincosf(TAU * side as f32 / SIDES as f32);
+            right * cos + up * sin
+        };
+        let ends = [from, to];
+        self.patch(SIDES, 1, |side, end| (ends[end] + out(side) * radius, out(side)));
+        self.patch(SIDES, 1, |side, end| (to + out(side) * radius * (1 - end) as f32, axis));
+        self.patch(SIDES, 1, |side, end| (from + out(side) * radius * end as f32, -axis));
+    }
+
+    /// A sphere.
+    pub fn ball(&mut self, centre: Vec3, radius: f32) {
+        let rows = SIDES / 2;
+        self.patch(SIDES, rows, |side, row| {
+            let (sin, cos) = libm::sincosf(TAU * side as f32 / SIDES as f32);
+            let (rise, reach) = libm::sincosf(PI * (row as f32 / rows as f32 - 0.5));
+            let out = Vec3::new(cos * reach, sin * reach, rise);
+            (centre + out * radius, out)
+        });
+    }
+
+    /// The mesh, kept on the graphics card only.
+    pub fn into_mesh(self) -> Mesh {
+        let flat = |of: Vec<Vec3>| of.into_iter().map(|at| at.to_array()).collect::<Vec<_>>();
+        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, flat(self.positions))
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, flat(self.normals))
+            .with_inserted_indices(Indices::U32(self.indices))
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Vertices of each triangle.
+    fn triangles(solid: &MeshBuilder) -> impl Iterator<Item = [usize; 3]> + '_ {
+        solid.indices.chunks(3).map(|corners| [0, 1, 2].map(|corner| corners[corner] as usize))
+    }
+
+    /// Asserts that no edge is open and that every triangle faces outward. Returns the enclosed volume.
+    pub fn closed_volume(solid: &MeshBuilder) -> f32 {
+        let place =
+            |index: usize| solid.positions[index].to_array().map(|x| (x * 1.0e4).round() as i64);
+        let mut edges = std::collections::BTreeMap::new();
+        let mut volume = 0.0;
+        for corners in triangles(solid) {
+            let [a, b, c] = corners.map(|corner| solid.positions[corner]);
+            for [from, to] in [[0, 1], [1, 2], [2, 0]] {
+                let (from, to) = (place(corners[from]), place(corners[to]));
+                if from != to {
+                    *edges
+                        .entry(from.min(to))
+                        .or_insert(std::collections::BTreeMap::new())
+                        .entry(from.max(to))
+                        .or_insert(0) += if from < to { 1 } else { -1 };
+                }
+            }
+            let facing = (b - a).cross(c - a);
+            let outward: Vec3 = corners.iter().map(|corner| solid.normals[*corner]).sum();
+            assert!(facing.dot(outward) >= -1.0e-6, "{corners:?} faces inward");
+            volume += a.dot(b.cross(c)) / 6.0;
+        }
+        let open = edges.values().flat_map(|to| to.values()).filter(|count| **count != 0).count();
+        assert_eq!(open, 0, "edges that are not shared by two triangles");
+        volume
+    }
+
+    #[test]
+    fn cylinder_and_sphere_are_closed_with_about_the_exact_volume() {
+        let mut cylinder = MeshBuilder::default();
+        cylinder.cylinder(Vec3::new(1.0, 0.0, 0.0), Vec3::new(1.0, 2.0, 0.0), 0.5);
+        let share = closed_volume(&cylinder) / (PI * 0.25 * 2.0);
+        assert!((0.94..1.0).contains(&share), "{share}");
+        let mut ball = MeshBuilder::default();
+        ball.ball(Vec3::ONE, 0.5);
+        let share = closed_volume(&ball) / (PI / 6.0);
+        assert!((0.88..1.0).contains(&share), "{share}");
+    }
+}

@@ -1,0 +1,184 @@
+//! The static scene: lights and stairs. Each other part is in a file of its own. All colours come from the theme.
+
+pub mod best_flag;
+pub mod camera;
+pub mod ground;
+pub mod limb;
+pub mod mesh_builder;
+pub mod name_tags;
+pub mod overlays;
+pub mod props;
+pub mod quality;
+pub mod rounded_box;
+pub mod sky;
+pub mod snake;
+pub mod step_edges;
+pub mod step_labels;
+pub mod text;
+pub mod wireframe;
+
+use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder, DirectionalLightShadowMap};
+use bevy::pbr::DistanceFog;
+use bevy::prelude::*;
+use bevy::render::renderer::RenderAdapterInfo;
+
+use super::schedule::FrameSet;
+use super::stage::lane::Lane;
+use super::ui::theme::Theme;
+use crate::world::StairBox;
+
+use props::{Props, box_transform};
+use quality::Quality;
+
+/// The scene of the window: all that is drawn, with the camera and the mouse.
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins((
+        drawing,
+        camera::plugin,
+        camera::mouse::plugin,
+        wireframe::plugin,
+        name_tags::plugin,
+    ));
+}
+
+/// The parts of the scene that pictures without a window have, too.
+pub(super) fn drawing(app: &mut App) {
+    app.init_resource::<Theme>()
+        .init_resource::<Props>()
+        .add_plugins((
+            sky::plugin,
+            ground::plugin,
+            text::plugin,
+            step_edges::plugin,
+            step_labels::plugin,
+            best_flag::plugin,
+        ))
+        .add_plugins((snake::plugin, overlays::plugin))
+        .add_systems(Startup, set_up)
+        .add_systems(Update, (build_stairs, fit_shadows).in_set(FrameSet::Draw))
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+/// Ratio of the shadows' reach to the distance of the camera's target, so that they cover its surroundings.
+const SHADOWS_BEYOND: f32 = 1.7;
+/// Range of the shadows' reach, in metres from the camera.
+const SHADOWS_END_M: std::ops::RangeInclusive<f32> = 14.0..=150.0;
+/// Ratio between steps of the shadows' reach. Steps keep shadows from crawling while the camera moves.
+const SHADOW_STEP: f32 = 1.3;
+
+fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
+    let size = Quality::for_adapter(&adapter).shadow_map_pixels;
+    commands.insert_resource(DirectionalLightShadowMap { size });
+    commands.spawn((
+        DirectionalLight {
+            shadow_maps_enabled: true,
+            // A smaller depth bias, in metres, makes treads cast saw-tooth shadows on the risers behind them.
+            shadow_depth_bias: 0.09,
+            ..default()
+        },
+        // From behind the viewer's right shoulder, so that treads and risers are lit differently.
+        Transform::from_xyz(9.0, -12.0, 16.0).looking_at(Vec3::ZERO, Vec3::Z),
+        shadows_until(*SHADOWS_END_M.end()),
+    ));
+}
+
+fn shadows_until(end_m: f32) -> CascadeShadowConfig {
+    CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: end_m, ..default() }.build()
+}
+
+/// Fits the shadow map to the view: shadows are sharp from near by and still present from far away.
+fn fit_shadows(
+    cameras: Query<&Transform, With<Camera3d>>,
+    mut suns: Query<&mut CascadeShadowConfig, With<DirectionalLight>>,
+    mut end_m: Local<f32>,
+) {
+    let Some(camera) = cameras.iter().next() else { return };
+    let fitting_m = shadows_end_m(camera);
+    if *end_m != fitting_m {
+        *end_m = fitting_m;
+        suns.iter_mut().for_each(|mut sun| *sun = shadows_until(fitting_m));
+    }
+}
+
+/// Reach of the shadows for a camera: beyond the ground point that it looks at.
+fn shadows_end_m(camera: &Transform) -> f32 {
+    let down = (-camera.forward().z).max(0.01);
+    let looked_at_m = camera.translation.z.max(0.0) / down;
+    let (nearest_m, farthest_m) = (*SHADOWS_END_M.start(), *SHADOWS_END_M.end());
+    let wanted_m = (looked_at_m * SHADOWS_BEYOND).clamp(nearest_m, farthest_m);
+    let steps = (libm::logf(wanted_m / nearest_m) / libm::logf(SHADOW_STEP)).ceil();
+    nearest_m * libm::powf(SHADOW_STEP, steps)
+}
+
+/// Applies the colours of the theme.
+fn dress(
+    theme: Res<Theme>,
+    props: Res<Props>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut suns: Query<&mut DirectionalLight>,
+    mut fogs: Query<&mut DistanceFog>,
+    mut commands: Commands,
+) {
+    let palette = theme.palette();
+    for (handle, color) in [
+        (&props.red, palette.red_limb),
+        (&props.blue, palette.blue_limb),
+        (&props.stair, palette.stair),
+        (&props.stair_other, palette.stair_other),
+    ] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+    for mut sun in &mut suns {
+        sun.color = palette.sun;
+        sun.illuminance = palette.sun_lux;
+    }
+    fogs.iter_mut().for_each(|mut fog| fog.color = palette.horizon);
+    commands.insert_resource(ClearColor(palette.horizon));
+    commands.insert_resource(GlobalAmbientLight {
+        color: palette.ambient,
+        brightness: palette.ambient_cd_m2,
+        ..default()
+    });
+}
+
+/// Spawns the stairs of a new lane.
+fn build_stairs(
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
+    props: Res<Props>,
+    mut commands: Commands,
+) {
+    for (entity, lane) in &lanes {
+        commands.entity(entity).with_children(|parent| {
+            let boxes = lane.trial().stairs.boxes();
+            for (index, StairBox { min_m, max_m }) in boxes.into_iter().enumerate() {
+                let (min, max) = (Vec3::from(min_m), Vec3::from(max_m));
+                let material = if index % 2 == 0 { &props.stair } else { &props.stair_other };
+                parent.spawn((
+                    Mesh3d(props.cube.clone()),
+                    MeshMaterial3d(material.clone()),
+                    box_transform((min + max) / 2.0, max - min),
+                ));
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shadows_reach_beyond_the_target_and_change_in_steps() {
+        let from = |distance_m: f32| {
+            let eye = Vec3::new(distance_m * 0.8, 0.0, distance_m * 0.6);
+            shadows_end_m(&Transform::from_translation(eye).looking_at(Vec3::ZERO, Vec3::Z))
+        };
+        for distance_m in [3.0, 24.0, 60.0] {
+            assert!(from(distance_m) > distance_m * 1.5, "{distance_m}: {}", from(distance_m));
+        }
+        assert_eq!(from(24.0), from(24.1));
+        assert!(from(8.0) < from(24.0) && from(500.0) < 200.0);
+    }
+}

@@ -1,0 +1,189 @@
+//! Overlays of the scene: forces, torques, trail, fitness line.
+
+use bevy::prelude::*;
+use bevy_egui::egui::Color32;
+
+use crate::studio::commands::overlay::Overlay;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::selection::Selection;
+use crate::studio::ui::theme::{Palette, Theme};
+
+/// The visible overlays.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Overlays(Vec<Overlay>);
+
+/// Lines that are drawn in front of everything.
+#[derive(Default, Reflect, GizmoConfigGroup)]
+struct OnTop;
+
+impl Overlays {
+    /// Whether an overlay is visible.
+    pub fn shows(&self, overlay: Overlay) -> bool {
+        self.0.contains(&overlay)
+    }
+
+    /// Shows or hides an overlay.
+    pub fn toggle(&mut self, overlay: Overlay) {
+        if self.shows(overlay) {
+            self.0.retain(|shown| *shown != overlay);
+        } else {
+            self.0.push(overlay);
+        }
+    }
+}
+
+/// Width of lines, in pixels.
+const LINE_PIXELS: f32 = 3.0;
+/// Length of the arrow for a force equal to the snake's weight, in metres.
+const WEIGHT_M: f32 = 3.0;
+/// Maximum length of an arrow, in metres. An impact can be a hundred times the weight.
+const LONGEST_ARROW_M: f32 = 6.0;
+/// Radius of a torque's arrow, as a fraction of the limb's larger cross-section side.
+const TORQUE_RADIUS: f32 = 0.8;
+/// Angle of the arrow for the maximum torque, in radians.
+const FULL_TORQUE_RAD: f32 = 4.7;
+/// Smallest torque that is drawn, as a fraction of the maximum.
+const MIN_TORQUE_SHARE: f32 = 0.02;
+/// Height of the fitness line above a tread, in metres.
+const ABOVE_M: f32 = 0.04;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Overlays>()
+        .init_gizmo_group::<OnTop>()
+        .add_systems(Startup, set_up)
+        .add_systems(Update, draw.in_set(FrameSet::Draw));
+}
+
+fn set_up(mut config: ResMut<GizmoConfigStore>) {
+    let (on_top, _) = config.config_mut::<OnTop>();
+    on_top.depth_bias = -1.0;
+    on_top.line.width = LINE_PIXELS;
+    let (usual, _) = config.config_mut::<DefaultGizmoConfigGroup>();
+    usual.line.width = LINE_PIXELS;
+}
+
+fn draw(
+    overlays: Res<Overlays>,
+    selection: Option<Res<Selection>>,
+    lanes: Query<(Entity, &Lane)>,
+    theme: Res<Theme>,
+    mut on_top: Gizmos<OnTop>,
+    mut hidden: Gizmos,
+) {
+    let palette = theme.palette();
+    for (entity, lane) in &lanes {
+        if overlays.shows(Overlay::Contacts) {
+            contacts(lane, palette, &mut on_top);
+        }
+        if overlays.shows(Overlay::Torques) {
+            torques(lane, palette, &mut on_top);
+        }
+        if overlays.shows(Overlay::Trail) {
+            let color = if lane.is_disturbed() { palette.pull } else { palette.trail };
+            let way = lane.trail_m().into_iter().map(|at| at + lane.offset());
+            hidden.linestrip(way, color);
+        }
+        if overlays.shows(Overlay::FitnessLine) {
+            fitness_line(lane, palette, &mut on_top);
+        }
+        if let Some(selection) = &selection
+            && selection.lane == lane.number()
+            && let Some(limb) = selection.limb
+        {
+            outline(lane, limb, palette, &mut on_top);
+        }
+        let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
+        if let Some(pull) = pull {
+            let from = lane.point_of(pull.limb, pull.held_at_m) + lane.offset();
+            let to = pull.to_m + lane.offset();
+            on_top.line(from, to, palette.pull);
+            on_top.sphere(Isometry3d::from_translation(to), 0.12, palette.pull).resolution(12);
+        }
+    }
+}
+
+/// Outlines the selected limb.
+fn outline(lane: &Lane, limb: usize, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
+    let Some((pose, plan)) = lane.drawn_poses().zip(&lane.body().limbs).nth(limb) else { return };
+    let size = Vec3::from(plan.size_m()) * 1.02;
+    let at = Transform::from_translation(pose.translation + lane.offset());
+    gizmos.cube(at.with_rotation(pose.rotation).with_scale(size), in_scene(palette.second));
+}
+
+/// A cross at every contact, and the force on the limb as an arrow from it.
+fn contacts(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
+    let weight_n = lane.body().mass_kg() * lane.trial().physics.gravity_m_s2.max(0.1);
+    for contact in &lane.readings().contacts {
+        let at = contact.at_m + lane.offset();
+        let arrow = (contact.force_n * (WEIGHT_M / weight_n)).clamp_length_max(LONGEST_ARROW_M);
+        gizmos.cross(Isometry3d::from_translation(at), 0.1, palette.force);
+        if arrow.length() > 0.05 {
+            gizmos.arrow(at, at + arrow, palette.force).with_tip_length(0.18);
+        }
+    }
+}
+
+/// An arrow around each axis of each joint; its angle is proportional to the torque.
+fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
+    let body = lane.body();
+    let poses: Vec<_> = lane.drawn_poses().collect();
+    for (joint, torque) in body.joints.iter().zip(&lane.readings().torques) {
+        let Some(front) = poses.get(joint.parent) else { continue };
+        let [width_m, length_m, height_m] = body.limbs[joint.parent].size_m();
+        let at = *front * Vec3::new(0.0, -length_m / 2.0, 0.0) + lane.offset();
+        let radius_m = width_m.max(height_m) * TORQUE_RADIUS;
+        // About x, from the top; drawn at the limb's sides, where it is visible.
+        let share = torque.bend_nm / joint.max_bend_torque_nm.max(1.0e-6);
+        for side in [-1.0, 1.0] {
+            let centre = at + front.rotation * Vec3::X * (side * (width_m / 2.0 + 0.1));
+            let (up, ahead) = (front.rotation * Vec3::Z, front.rotation * Vec3::NEG_Y);
+            bent_arrow(gizmos, centre, [up, ahead], radius_m * 0.75, share, in_scene(palette.bend));
+        }
+        // About y, from the top.
+        let share = torque.twist_nm / joint.max_twist_torque_nm.max(1.0e-6);
+        let (up, aside) = (front.rotation * Vec3::Z, front.rotation * Vec3::X);
+        bent_arrow(gizmos, at, [up, aside], radius_m * 1.1, share, in_scene(palette.twist));
+    }
+}
+
+/// An arrow along a circle, from the direction `from` towards `towards`, or reversed.
+fn bent_arrow(
+    gizmos: &mut Gizmos<OnTop>,
+    centre: Vec3,
+    [from, towards]: [Vec3; 2],
+    radius_m: f32,
+    share: f32,
+    color: Color,
+) {
+    const PARTS: u32 = 20;
+    if share.abs() < MIN_TORQUE_SHARE {
+        return;
+    }
+    let point = |part: f32| {
+        let angle_rad = share.clamp(-1.0, 1.0) * FULL_TORQUE_RAD * part / PARTS as f32;
+        let (sin, cos) = libm::sincosf(angle_rad);
+        centre + (from * cos + towards * sin) * radius_m
+    };
+    gizmos.linestrip((0..PARTS).map(|part| point(part as f32)), color);
+    let (before, end) = (point(PARTS as f32 - 1.0), point(PARTS as f32));
+    gizmos.arrow(before, end, color).with_tip_length(0.16);
+}
+
+/// Converts a panel colour for the scene.
+fn in_scene(color: Color32) -> Color {
+    let [red, green, blue, _] = color.to_array();
+    Color::srgb_u8(red, green, blue)
+}
+
+/// A line across the lane below the centre of the middle limb, and one up to it.
+fn fitness_line(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
+    let middle = lane.drawn_middle();
+    let stairs = &lane.trial().stairs;
+    let on_floor = Vec3::new(0.0, middle.y, stairs.surface_z_m(0.0, middle.y) + ABOVE_M);
+    let half_width = Vec3::X * (stairs.width_m / 2.0);
+    let color = in_scene(palette.accent);
+    let at = on_floor + lane.offset();
+    gizmos.line(at - half_width, at + half_width, color);
+    gizmos.line(on_floor.with_x(middle.x) + lane.offset(), middle + lane.offset(), color);
+}

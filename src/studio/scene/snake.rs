@@ -1,0 +1,133 @@
+//! Draws the snake between the last two physics steps: red and blue blocks with joints.
+
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+
+use super::limb::LimbShape;
+use super::props::Props;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::theme::Theme;
+
+/// Index of a limb in its lane's snake; the head is 0.
+#[derive(Component, Debug)]
+struct Limb(usize);
+
+/// Meshes of a limb.
+#[derive(Debug, Clone)]
+struct LimbMeshes {
+    block: Handle<Mesh>,
+    white: Handle<Mesh>,
+    dark: Handle<Mesh>,
+}
+
+/// Cache of meshes by shape, shared by snakes of the same build.
+#[derive(Resource, Debug, Default)]
+struct Shapes(Vec<(LimbShape, LimbMeshes)>);
+
+/// Materials of the limbs' details.
+#[derive(Resource, Debug)]
+struct Trim {
+    white: Handle<StandardMaterial>,
+    dark: Handle<StandardMaterial>,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Shapes>()
+        .init_resource::<Trim>()
+        .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw))
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+/// Maximum number of cached shapes. Tuning a snake's size creates many.
+const MAX_SHAPES: usize = 64;
+
+impl Shapes {
+    fn of(&mut self, shape: LimbShape, meshes: &mut Assets<Mesh>) -> LimbMeshes {
+        if let Some((_, known)) = self.0.iter().find(|(of, _)| *of == shape) {
+            return known.clone();
+        }
+        if self.0.len() == MAX_SHAPES {
+            self.0.remove(0);
+        }
+        let [block, white, dark] =
+            [shape.block(), shape.white(), shape.dark()].map(|solid| meshes.add(solid.into_mesh()));
+        let new = LimbMeshes { block, white, dark };
+        self.0.push((shape, new.clone()));
+        new
+    }
+}
+
+impl FromWorld for Trim {
+    fn from_world(world: &mut World) -> Self {
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let white = StandardMaterial { perceptual_roughness: 0.4, ..default() };
+        let dark = StandardMaterial { perceptual_roughness: 0.35, metallic: 0.4, ..default() };
+        Self { white: materials.add(white), dark: materials.add(dark) }
+    }
+}
+
+fn dress(theme: Res<Theme>, trim: Res<Trim>, mut materials: ResMut<Assets<StandardMaterial>>) {
+    let palette = theme.palette();
+    for (handle, color) in [(&trim.white, palette.white), (&trim.dark, palette.metal)] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Spawns the limbs of a new lane.
+fn build(
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
+    props: Res<Props>,
+    trim: Res<Trim>,
+    mut shapes: ResMut<Shapes>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, lane) in &lanes {
+        let body = lane.body();
+        commands.entity(entity).with_children(|parent| {
+            for (index, (pose, plan)) in lane.drawn_poses().zip(&body.limbs).enumerate() {
+                let shape = LimbShape {
+                    size: Vec3::from(plan.size_m()),
+                    has_front: body.joints.iter().any(|joint| joint.child == index),
+                    has_rear: body.joints.iter().any(|joint| joint.parent == index),
+                };
+                let LimbMeshes { block, white, dark } = shapes.of(shape, &mut meshes);
+                let color = if index % 2 == 0 { &props.red } else { &props.blue };
+                let place = Transform::from_translation(pose.translation);
+                parent
+                    .spawn((
+                        Limb(index),
+                        Mesh3d(block),
+                        MeshMaterial3d(color.clone()),
+                        place.with_rotation(pose.rotation),
+                    ))
+                    .with_children(|limb| {
+                        for (mesh, material) in [(white, &trim.white), (dark, &trim.dark)] {
+                            limb.spawn((
+                                Mesh3d(mesh),
+                                MeshMaterial3d(material.clone()),
+                                // The block already casts the shadow.
+                                NotShadowCaster,
+                            ));
+                        }
+                    });
+            }
+        });
+    }
+}
+
+/// Moves the limbs. Unchanged transforms are not written, so Bevy does not propagate them again.
+fn place(lanes: Query<(&Lane, &Children)>, mut limbs: Query<(&Limb, &mut Transform)>) {
+    for (lane, children) in &lanes {
+        let mut limbs = limbs.iter_many_mut(children);
+        while let Some((limb, mut transform)) = limbs.fetch_next() {
+            if let Some(pose) = lane.drawn_poses().nth(limb.0) {
+                let place = Transform::from_translation(pose.translation);
+                transform.set_if_neq(place.with_rotation(pose.rotation));
+            }
+        }
+    }
+}

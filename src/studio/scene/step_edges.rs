@@ -1,0 +1,149 @@
+//! Strips at the front edges of the steps (nosings). Those of the steps below the snake glow.
+
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+
+use super::mesh_builder::MeshBuilder;
+use super::props::{Props, box_transform};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::theme::Theme;
+use crate::world::Stairs;
+
+/// Step index of a strip; the lowest is 0.
+#[derive(Component, Debug)]
+struct StepEdge {
+    step: u32,
+    is_lit: bool,
+}
+
+/// Materials of dark and lit strips, and of the glow.
+#[derive(Resource, Debug)]
+struct Strips {
+    dark: Handle<StandardMaterial>,
+    lit: Handle<StandardMaterial>,
+    glow: Handle<StandardMaterial>,
+}
+
+/// Depth of a strip along the tread and height along the riser, in metres.
+const DEPTH_M: f32 = 0.12;
+const HEIGHT_M: f32 = 0.06;
+/// How far a strip stands out of both, in metres.
+const OUT_M: f32 = 0.012;
+/// Extent of the glow over the tread and down the riser, in metres.
+const GLOW_BACK_M: f32 = 0.55;
+const GLOW_DOWN_M: f32 = 0.3;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Strips>()
+        .add_systems(Update, (build, light).chain().in_set(FrameSet::Draw))
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+impl FromWorld for Strips {
+    fn from_world(world: &mut World) -> Self {
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let dark = StandardMaterial { perceptual_roughness: 0.8, ..default() };
+        let lit = StandardMaterial { unlit: true, ..default() };
+        let glow = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
+        let [dark, lit, glow] = [dark, lit, glow].map(|material| materials.add(material));
+        Self { dark, lit, glow }
+    }
+}
+
+fn dress(theme: Res<Theme>, strips: Res<Strips>, mut materials: ResMut<Assets<StandardMaterial>>) {
+    let palette = theme.palette();
+    for (handle, color) in [
+        (&strips.dark, palette.nosing),
+        (&strips.lit, palette.nosing_lit),
+        (&strips.glow, palette.nosing_lit),
+    ] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Spawns the strips of a new lane.
+fn build(
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
+    props: Res<Props>,
+    strips: Res<Strips>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, lane) in &lanes {
+        let stairs = &lane.trial().stairs;
+        let glow = meshes.add(glow(stairs));
+        commands.entity(entity).with_children(|parent| {
+            for step in 0..stairs.steps {
+                let edge = edge(stairs, step);
+                let size = Vec3::new(stairs.width_m + OUT_M, DEPTH_M, HEIGHT_M);
+                let to_middle = Vec3::new(0.0, DEPTH_M / 2.0 - OUT_M, OUT_M - HEIGHT_M / 2.0);
+                parent.spawn((
+                    StepEdge { step, is_lit: false },
+                    Mesh3d(props.cube.clone()),
+                    MeshMaterial3d(strips.dark.clone()),
+                    box_transform(edge + to_middle, size),
+                    NotShadowCaster,
+                ));
+                parent.spawn((
+                    StepEdge { step, is_lit: false },
+                    Mesh3d(glow.clone()),
+                    MeshMaterial3d(strips.glow.clone()),
+                    Transform::from_translation(edge),
+                    Visibility::Hidden,
+                    NotShadowCaster,
+                ));
+            }
+        });
+    }
+}
+
+/// Middle of a step's front edge.
+fn edge(stairs: &Stairs, step: u32) -> Vec3 {
+    Vec3::new(0.0, stairs.riser_y_m(step), stairs.rise_m * (step + 1) as f32)
+}
+
+/// Two patches over the tread and down the riser that fade out away from the edge.
+fn glow(stairs: &Stairs) -> Mesh {
+    let mut solid = MeshBuilder::default();
+    let half = Vec3::X * stairs.width_m / 2.0;
+    let (back_m, down_m) = (GLOW_BACK_M.min(stairs.tread_m), GLOW_DOWN_M.min(stairs.rise_m));
+    let out_m = OUT_M / 2.0;
+    solid.sheet(Vec3::new(0.0, back_m / 2.0, out_m), half, Vec3::Y * back_m / 2.0);
+    solid.sheet(Vec3::new(0.0, -out_m, -down_m / 2.0), half, Vec3::Z * down_m / 2.0);
+    let opacity = |at: &Vec3| if at.y > out_m || at.z < -out_m { 0.0 } else { GLOW_OPACITY };
+    let colors: Vec<[f32; 4]> =
+        solid.positions.iter().map(|at| [1.0, 1.0, 1.0, opacity(at)]).collect();
+    solid.into_mesh().with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+}
+
+/// Opacity of the glow at the edge.
+const GLOW_OPACITY: f32 = 0.65;
+
+/// Lights the strips of the steps under the middle limb.
+fn light(
+    lanes: Query<(&Lane, &Children)>,
+    strips: Res<Strips>,
+    mut nosings: Query<(&mut StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
+) {
+    for (lane, children) in &lanes {
+        let middle = lane.drawn_poses().nth(lane.body().middle_limb());
+        let stairs = &lane.trial().stairs;
+        let climbed = middle.map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
+        let mut nosings = nosings.iter_many_mut(children);
+        while let Some((mut nosing, mut material, mut visibility)) = nosings.fetch_next() {
+            let is_lit = nosing.step < climbed;
+            if nosing.is_lit == is_lit {
+                continue;
+            }
+            nosing.is_lit = is_lit;
+            if material.0 == strips.glow {
+                *visibility = if is_lit { Visibility::Inherited } else { Visibility::Hidden };
+            } else {
+                material.0 = if is_lit { strips.lit.clone() } else { strips.dark.clone() };
+            }
+        }
+    }
+}

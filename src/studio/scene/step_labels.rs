@@ -1,0 +1,99 @@
+//! Labels on the ground and the stairs: distance along the lane, and step numbers.
+
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+
+use super::text::{TextMeshBuilder, TextMeshes, TextPlacement};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::world::Stairs;
+
+/// Distance between numbers, in metres.
+const NUMBER_EVERY_M: i32 = 5;
+/// Height of the ground's digits, in metres.
+const DIGIT_M: f32 = 0.7;
+/// Distance of the scale from the stairs, in metres.
+const ASIDE_M: f32 = 0.35;
+/// Length of the marks at numbers, in metres, and at each metre between them.
+const LONG_MARK_M: f32 = 0.7;
+const SHORT_MARK_M: f32 = 0.3;
+/// Width of a mark, in metres.
+const MARK_M: f32 = 0.07;
+/// Opacity of the scale, as a fraction of the step numbers' opacity.
+const SCALE_OPACITY: f32 = 0.62;
+/// Height of paint above its surface, in metres: above the ground's grid.
+const PAINT_M: f32 = 0.015;
+/// Height of a step's number, as a fraction of its rise.
+const NUMBER_SHARE: f32 = 0.5;
+/// Maximum height of a step's number, in metres.
+const MAX_NUMBER_M: f32 = 0.5;
+/// Distance from the right edge of the stairs to the middle of a step's number, in metres.
+const NUMBER_ASIDE_M: f32 = 0.45;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(Update, paint.in_set(FrameSet::Draw));
+}
+
+/// Spawns the labels of a new lane.
+fn paint(
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
+    lettering: Res<TextMeshes>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, lane) in &lanes {
+        let mut writing = lettering.begin();
+        if lane.number() == 0 {
+            // Only the nearest lane is labelled. Large digits need less contrast than small ones.
+            writing.thin(SCALE_OPACITY);
+            scale(&mut writing, lane);
+            writing.thin(1.0);
+        }
+        numbers(&mut writing, &lane.trial().stairs);
+        commands.entity(entity).with_child((
+            Mesh3d(meshes.add(writing.into_mesh())),
+            MeshMaterial3d(lettering.paint.clone()),
+            NotShadowCaster,
+        ));
+    }
+}
+
+/// Distances along the lane, readable from the right of the stairs.
+fn scale(writing: &mut TextMeshBuilder<'_>, lane: &Lane) {
+    let trial = lane.trial();
+    let start_m = trial.start_y_m - lane.body().length_m() / 2.0;
+    let begin = (start_m / NUMBER_EVERY_M as f32).floor() as i32 * NUMBER_EVERY_M;
+    let end = trial.stairs.end_y_m() as i32;
+    let edge_m = trial.stairs.width_m / 2.0 + ASIDE_M;
+    let place = |x_m: f32, y_m: i32| TextPlacement {
+        middle: Vec3::new(x_m, y_m as f32, PAINT_M),
+        right: Dir3::Y,
+        up: Dir3::NEG_X,
+    };
+    for y_m in begin..=end {
+        let is_numbered = y_m % NUMBER_EVERY_M == 0;
+        let length_m = if is_numbered { LONG_MARK_M } else { SHORT_MARK_M };
+        writing.bar(MARK_M, length_m, place(edge_m + length_m / 2.0, y_m));
+        if is_numbered {
+            let below_m = edge_m + LONG_MARK_M + DIGIT_M;
+            writing.text(&format!("{y_m} m"), DIGIT_M, place(below_m, y_m));
+        }
+    }
+}
+
+/// Step numbers on the risers.
+fn numbers(writing: &mut TextMeshBuilder<'_>, stairs: &Stairs) {
+    let digit_m = (stairs.rise_m * NUMBER_SHARE).min(MAX_NUMBER_M);
+    for step in 0..stairs.steps {
+        let place = TextPlacement {
+            middle: Vec3::new(
+                stairs.width_m / 2.0 - NUMBER_ASIDE_M,
+                stairs.riser_y_m(step) - PAINT_M,
+                stairs.rise_m * (step as f32 + 0.46),
+            ),
+            right: Dir3::X,
+            up: Dir3::Z,
+        };
+        writing.text(&(step + 1).to_string(), digit_m, place);
+    }
+}

@@ -1,0 +1,161 @@
+//! Text in the scene: on the ground, on risers, on flags.
+//!
+//! All characters share one atlas texture; a text is a mesh of one rectangle per character. The atlas is drawn once
+//! from the panels' font, slightly bolder, with mipmaps, without which distant numbers would shimmer.
+
+mod atlas;
+
+use bevy::asset::RenderAssetUsages;
+use bevy::mesh::{Indices, PrimitiveTopology};
+use bevy::prelude::*;
+
+use crate::studio::schedule::FrameSet;
+use crate::studio::ui::theme::Theme;
+
+use atlas::{Atlas, BASELINE, CELL, MARGIN};
+
+/// The atlas and its materials.
+#[derive(Resource, Debug)]
+pub(crate) struct TextMeshes {
+    atlas: Atlas,
+    /// Material for sunlit surfaces: a veil that darkens or lightens the surface below it.
+    pub paint: Handle<StandardMaterial>,
+    /// Material for a flag's cloth.
+    pub on_flag: Handle<StandardMaterial>,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<TextMeshes>()
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+impl FromWorld for TextMeshes {
+    fn from_world(world: &mut World) -> Self {
+        let (atlas, picture) = Atlas::draw();
+        let picture = world.resource_mut::<Assets<Image>>().add(picture);
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let mut paint = || {
+            materials.add(StandardMaterial {
+                base_color_texture: Some(picture.clone()),
+                unlit: true,
+                alpha_mode: AlphaMode::Blend,
+                ..default()
+            })
+        };
+        Self { atlas, paint: paint(), on_flag: paint() }
+    }
+}
+
+fn dress(
+    theme: Res<Theme>,
+    lettering: Res<TextMeshes>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let palette = theme.palette();
+    for (handle, color) in
+        [(&lettering.paint, palette.paint), (&lettering.on_flag, palette.flag_text)]
+    {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Builds one mesh from several texts.
+pub(crate) struct TextMeshBuilder<'a> {
+    atlas: &'a Atlas,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    colors: Vec<[f32; 4]>,
+    indices: Vec<u32>,
+    opacity: f32,
+}
+
+/// Position and orientation of a text.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TextPlacement {
+    /// Centre of the text.
+    pub middle: Vec3,
+    /// Direction of writing.
+    pub right: Dir3,
+    /// Up direction of the characters.
+    pub up: Dir3,
+}
+
+impl TextMeshes {
+    /// A builder without text.
+    pub fn begin(&self) -> TextMeshBuilder<'_> {
+        let (positions, normals, uvs, colors, indices) = default();
+        TextMeshBuilder {
+            atlas: &self.atlas,
+            positions,
+            normals,
+            uvs,
+            colors,
+            indices,
+            opacity: 1.0,
+        }
+    }
+
+    /// Width of a text with digits of a given height, in metres.
+    pub fn width_m(&self, text: &str, digit_height_m: f32) -> f32 {
+        let pixels: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
+        pixels * digit_height_m / self.atlas.digit_height()
+    }
+}
+
+impl TextMeshBuilder<'_> {
+    /// Sets the opacity of the following text, as a fraction of the usual opacity.
+    pub fn thin(&mut self, opacity: f32) {
+        self.opacity = opacity;
+    }
+
+    /// Adds a text with digits of a given height, in metres.
+    pub fn text(&mut self, text: &str, digit_height_m: f32, place: TextPlacement) {
+        let metres = digit_height_m / self.atlas.digit_height();
+        let width: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
+        let mut pen = -width / 2.0;
+        for letter in text.chars() {
+            let corner = Vec2::new(pen - MARGIN, BASELINE - self.atlas.digit_height() / 2.0 - CELL);
+            let cell = Rect::from_corners(corner * metres, (corner + CELL) * metres);
+            self.rectangle(cell, self.atlas.cell(letter), place);
+            pen += self.atlas.advance(letter);
+        }
+    }
+
+    /// Adds a bar around a place, with a width and a height in metres.
+    pub fn bar(&mut self, width_m: f32, height_m: f32, place: TextPlacement) {
+        let bar = Rect::from_center_size(Vec2::ZERO, Vec2::new(width_m, height_m));
+        self.rectangle(bar, self.atlas.solid(), place);
+    }
+
+    /// Adds a rectangle in the plane of a place, with a part of the atlas, whose y runs downwards.
+    fn rectangle(&mut self, on_plane: Rect, part: Rect, place: TextPlacement) {
+        let first = self.positions.len() as u32;
+        let TextPlacement { middle, right, up } = place;
+        let (min, max) = (on_plane.min, on_plane.max);
+        for (x, y, u, v) in [
+            (min.x, min.y, part.min.x, part.max.y),
+            (max.x, min.y, part.max.x, part.max.y),
+            (max.x, max.y, part.max.x, part.min.y),
+            (min.x, max.y, part.min.x, part.min.y),
+        ] {
+            self.positions.push((middle + right * x + up * y).to_array());
+            self.normals.push(right.cross(*up).to_array());
+            self.uvs.push([u, v]);
+            self.colors.push([1.0, 1.0, 1.0, self.opacity]);
+        }
+        self.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
+    }
+
+    /// The finished mesh.
+    pub fn into_mesh(self) -> Mesh {
+        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
+            .with_inserted_indices(Indices::U32(self.indices))
+    }
+}

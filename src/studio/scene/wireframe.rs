@@ -1,0 +1,50 @@
+//! The physics engine's debug drawing of every lane: shapes, joints, contacts.
+
+use bevy::prelude::*;
+use rapier3d::pipeline::{
+    DebugRenderBackend, DebugRenderMode, DebugRenderObject, DebugRenderPipeline, DebugRenderStyle,
+};
+use rapier3d::prelude::Vector;
+
+use super::overlays::Overlays;
+use crate::studio::commands::overlay::Overlay;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(Update, draw.in_set(FrameSet::Draw));
+}
+
+/// Draws lines with a lane's offset.
+struct CollisionLines<'a, 'w, 's> {
+    gizmos: &'a mut Gizmos<'w, 's>,
+    offset: Vec3,
+}
+
+impl DebugRenderBackend for CollisionLines<'_, '_, '_> {
+    fn draw_line(&mut self, _: DebugRenderObject, from: Vector, to: Vector, hsla: [f32; 4]) {
+        let [hue, saturation, lightness, alpha] = hsla;
+        let color = Color::hsla(hue, saturation, lightness, alpha);
+        self.gizmos.line(from + self.offset, to + self.offset, color);
+    }
+}
+
+fn draw(overlays: Res<Overlays>, lanes: Query<&Lane>, mut gizmos: Gizmos) {
+    if !overlays.shows(Overlay::Wireframe) {
+        return;
+    }
+    let mode = DebugRenderMode::default() | DebugRenderMode::CONTACTS;
+    let mut pipeline = DebugRenderPipeline::new(DebugRenderStyle::default(), mode);
+    for lane in &lanes {
+        let Some(simulation) = lane.simulation() else { continue };
+        let physics = simulation.physics();
+        pipeline.render(
+            &mut CollisionLines { gizmos: &mut gizmos, offset: lane.offset() },
+            &physics.bodies,
+            &physics.colliders,
+            &physics.impulse_joints,
+            &physics.multibody_joints,
+            &physics.narrow_phase,
+        );
+    }
+}

@@ -1,0 +1,369 @@
+//! A lane of the stage: one snake on its stairs, shown at the time of the stage's clock.
+//!
+//! A replay has one lane, a what-if two, a race several. The rollout takes whole constant steps; the clock only decides
+//! how many. The limbs are drawn between the last two steps.
+
+use std::sync::Arc;
+
+use bevy::prelude::*;
+
+use super::replay::Replay;
+use super::staged_champion::StagedChampion;
+use crate::run::{Lookahead, caught};
+use crate::score::{Evaluation, KeyframeHistory, Trial};
+use crate::world::{
+    BodyPlan, ContactForce, JointState, JointTorque, Pose, Pull, Simulation, Vector,
+};
+
+/// A lane, with the rollout that is scored.
+#[derive(Component)]
+pub(crate) struct Lane {
+    staged: StagedChampion,
+    body: BodyPlan,
+    /// Index of the lane; the first is 0.
+    number: usize,
+    /// Offset of this lane's world along x, in metres.
+    offset_x_m: f32,
+    replay: Replay,
+    lookahead: Lookahead,
+    /// For a recording: the step at which the snake first stood on the landing.
+    recorded_landing: Option<u32>,
+    /// Poses before the last step, from head to tail.
+    before: Vec<Pose>,
+    /// Displayed fraction of the last step, from 0 to 1.
+    share: f32,
+    step_s: f64,
+    /// Readings after the last step.
+    readings: Readings,
+    /// Path of the middle limb since the first pull by the mouse, in metres.
+    detour_m: Vec<Vector>,
+    /// Whether simulating this lane panicked. It then keeps its last state.
+    is_broken: bool,
+    /// Whether the final state was compared with the champion's record.
+    is_checked: bool,
+}
+
+/// Contacts, torques and joints after the last step.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Readings {
+    /// Contact forces on the limbs.
+    pub contacts: Vec<ContactForce>,
+    /// Joint torques, from the head.
+    pub torques: Vec<JointTorque>,
+    /// Joint states, from the head.
+    pub joints: Vec<JointState>,
+    /// Speeds of the limbs' centres, from head to tail, in m/s.
+    pub speeds_m_s: Vec<f32>,
+}
+
+/// Maximum physics steps per frame over all lanes (about 60 ms on one core).
+pub(crate) const MAX_STEPS_PER_FRAME: u32 = 3000;
+/// A time within this fraction of a step counts as exactly on the step.
+const ON_STEP: f32 = 1.0e-4;
+
+impl Lane {
+    /// A lane at the start of a replay. The lookahead starts computing the rest at once.
+    pub fn new(staged: StagedChampion, number: usize) -> Self {
+        let replay = Replay::of(&staged);
+        let lookahead = match staged.recording() {
+            // A recording needs no lookahead.
+            Some(_) => Lookahead::default(),
+            None => Lookahead::begin(&staged.champion().genome, staged.trial()),
+        };
+        Self {
+            recorded_landing: replay.recorded_landing(&staged.trial().stairs),
+            before: replay.poses().to_vec(),
+            step_s: 1.0 / f64::from(staged.trial().physics.steps_per_s),
+            lookahead,
+            body: staged.body(),
+            staged,
+            number,
+            offset_x_m: 0.0,
+            share: 1.0,
+            readings: readings_of(&replay),
+            replay,
+            detour_m: Vec::new(),
+            is_broken: false,
+            is_checked: false,
+        }
+    }
+
+    /// Places the lane at this offset along x, in metres.
+    pub fn at_x(mut self, offset_x_m: f32) -> Self {
+        self.offset_x_m = offset_x_m;
+        self
+    }
+
+    /// The champion in this lane.
+    pub fn staged(&self) -> &StagedChampion {
+        &self.staged
+    }
+
+    /// Index of the lane; the first is 0.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Offset of this lane's world along x, in metres.
+    pub fn offset(&self) -> Vec3 {
+        Vec3::new(self.offset_x_m, 0.0, 0.0)
+    }
+
+    /// The snake's body: number, sizes and joints of its limbs.
+    pub fn body(&self) -> &BodyPlan {
+        &self.body
+    }
+
+    /// The trial that is simulated.
+    pub fn trial(&self) -> &Trial {
+        self.staged.trial()
+    }
+
+    /// Length of a physics step, in seconds.
+    pub fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
+    /// End of the lane, in simulated seconds: the end of the trial or, as far as known, the time of disqualification.
+    pub fn end_s(&self) -> f64 {
+        let steps = if self.replay.is_over() {
+            self.replay.step()
+        } else {
+            match self.history() {
+                Some(history) if !self.is_disturbed() => history.evaluation().steps,
+                _ => self.replay.last_step(),
+            }
+        };
+        f64::from(steps) * self.step_s
+    }
+
+    /// Evaluation of the rollout so far; at its end, the final score.
+    pub fn evaluation(&self) -> Evaluation {
+        self.replay.evaluation(&self.staged)
+    }
+
+    /// Precomputed history of the rollout, once the lookahead has finished. A recording has none.
+    pub fn history(&self) -> Option<&Arc<KeyframeHistory>> {
+        self.lookahead.history()
+    }
+
+    /// Progress of the lookahead from 0 to 1, while it is running.
+    pub fn lookahead_share(&self) -> Option<f32> {
+        let steps = self.lookahead.steps_done()?;
+        Some(steps as f32 / self.replay.last_step().max(1) as f32)
+    }
+
+    /// Whether the rollout has ended.
+    pub fn is_over(&self) -> bool {
+        self.replay.is_over()
+    }
+
+    /// Whether the mouse has pulled the snake, so that the result does not count for the genome.
+    pub fn is_disturbed(&self) -> bool {
+        self.replay.is_disturbed()
+    }
+
+    /// Readings after the last step.
+    pub fn readings(&self) -> &Readings {
+        &self.readings
+    }
+
+    /// Path of the middle limb so far, in metres, in lane coordinates.
+    pub fn trail_m(&self) -> Vec<Vector> {
+        if let Some(way) = self.replay.recorded_way_m() {
+            return way;
+        }
+        let undisturbed = self.history().map_or(&[][..], |history| {
+            let steps = (self.replay.step() as usize).saturating_sub(self.detour_m.len());
+            let shown = steps / history.sample_steps() as usize + 1;
+            &history.middles_m()[..shown.min(history.middles_m().len())]
+        });
+        undisturbed.iter().chain(&self.detour_m).copied().collect()
+    }
+
+    /// Poses to draw, between the last two steps, from head to tail, in lane coordinates.
+    pub fn drawn_poses(&self) -> impl ExactSizeIterator<Item = Pose> + '_ {
+        let pairs = self.before.iter().zip(self.replay.poses());
+        // Paused on a step, the pose is exactly that step's.
+        let is_on_step = self.share > 1.0 - ON_STEP;
+        pairs.map(
+            move |(before, after)| {
+                if is_on_step { *after } else { before.lerp(after, self.share) }
+            },
+        )
+    }
+
+    /// Drawn position of the middle limb's centre, in lane coordinates.
+    pub fn drawn_middle(&self) -> Vec3 {
+        let mut poses = self.drawn_poses();
+        let middle = poses.len() / 2;
+        poses.nth(middle).map_or(Vec3::ZERO, |pose| pose.translation)
+    }
+
+    /// Poses after the last step, from head to tail, in lane coordinates.
+    pub fn last_poses(&self) -> &[Pose] {
+        self.replay.poses()
+    }
+
+    /// Position of a limb-local point after the last step, in lane coordinates.
+    pub fn point_of(&self, limb: usize, in_limb_m: Vector) -> Vector {
+        self.replay.poses().get(limb).map_or(in_limb_m, |pose| *pose * in_limb_m)
+    }
+
+    /// Speed of the middle limb between the last two steps, in m/s.
+    pub fn speed_m_s(&self) -> f32 {
+        if self.is_over() {
+            return 0.0;
+        }
+        let middle = self.before.len() / 2;
+        match (self.before.get(middle), self.replay.poses().get(middle)) {
+            (Some(before), Some(after)) => {
+                before.translation.distance(after.translation) / self.step_s as f32
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Time of the first landing, in simulated seconds, if that is at most `time_s`.
+    pub fn landed_s(&self, time_s: f64) -> Option<f64> {
+        let known = self.history().filter(|_| !self.is_disturbed());
+        let step = known.and_then(|history| history.landed_at_step()).or(self.recorded_landing)?;
+        let landed_s = f64::from(step) * self.step_s;
+        (landed_s <= time_s).then_some(landed_s)
+    }
+
+    /// Returns true once, when an undisturbed replay first reaches its end.
+    pub fn has_just_ended(&mut self) -> bool {
+        let has_ended = self.replay.is_over() && !self.is_disturbed() && !self.is_checked;
+        self.is_checked |= has_ended;
+        has_ended
+    }
+
+    /// The simulated world after the last step; a recording has none.
+    pub fn simulation(&self) -> Option<&Simulation> {
+        self.replay.simulation()
+    }
+
+    /// The replay of this lane.
+    #[cfg(test)]
+    pub fn replay(&self) -> &Replay {
+        &self.replay
+    }
+
+    /// Takes over results of the lookahead.
+    pub fn poll_lookahead(&mut self) {
+        self.lookahead.poll();
+    }
+
+    /// Blocks until the lookahead has finished.
+    pub fn finish_lookahead(&mut self) {
+        self.lookahead.wait();
+    }
+
+    /// Brings the lane to a time, in simulated seconds.
+    ///
+    /// # Errors
+    /// Simulating panicked. The lane keeps its last state.
+    pub fn show(&mut self, time_s: f64, pull: Option<Pull>) -> Result<(), String> {
+        if self.is_broken {
+            return Ok(());
+        }
+        let (step, share) = self.moment(time_s);
+        self.share = share;
+        let now = self.replay.step();
+        let is_at_end = self.replay.is_over() && step > now;
+        if step == now || is_at_end {
+            return Ok(());
+        }
+        let known = self.history().cloned();
+        // Jumping only pays if a keyframe lies between here and the target.
+        let pays = |history: &Arc<KeyframeHistory>| {
+            !self.is_disturbed() && pull.is_none() && history.keyframe_before(step) > now
+        };
+        let jumps = step < now || known.as_ref().is_some_and(pays);
+        let is_on_its_way = known.is_none() && self.lookahead_share().is_some();
+        if step < now && is_on_its_way && step > MAX_STEPS_PER_FRAME {
+            // The lookahead is already computing these steps; wait for it instead of repeating its work.
+            return Ok(());
+        }
+        let result = caught(|| {
+            if jumps {
+                self.jump(step, known.as_deref());
+            } else {
+                self.replay.pull(pull);
+                // A long distance is spread over several frames.
+                self.go_on(step.min(now + MAX_STEPS_PER_FRAME));
+            }
+        });
+        self.readings = readings_of(&self.replay);
+        self.is_broken = result.is_err();
+        result
+    }
+
+    /// The last step that has begun at a time, and the fraction of it that has passed.
+    fn moment(&self, time_s: f64) -> (u32, f32) {
+        // Rounding can move a time slightly off the step that it means.
+        let place = time_s / self.step_s;
+        let step = libm::ceil(place - f64::from(ON_STEP)).max(0.0);
+        let share = if step == 0.0 { 1.0 } else { 1.0 - (step - place) };
+        let last = self.replay.last_step();
+        if step > f64::from(last) {
+            (last, 1.0)
+        } else {
+            (step as u32, share.clamp(0.0, 1.0) as f32)
+        }
+    }
+
+    fn go_on(&mut self, step: u32) {
+        while self.replay.step() < step && !self.replay.is_over() {
+            self.before.copy_from_slice(self.replay.poses());
+            let goes_on = self.replay.advance();
+            if goes_on && self.replay.is_disturbed() {
+                let middle = self.replay.poses()[self.before.len() / 2].translation;
+                self.detour_m.push(middle);
+            }
+        }
+        if self.replay.is_over() {
+            self.share = 1.0;
+        }
+    }
+
+    fn jump(&mut self, step: u32, history: Option<&KeyframeHistory>) {
+        self.detour_m.clear();
+        self.replay.go_to(step.saturating_sub(1), &self.staged, history);
+        self.before.copy_from_slice(self.replay.poses());
+        self.go_on(step);
+    }
+
+    /// Advances a lane outside the stage to a time, for a picture.
+    pub fn skip_to(&mut self, time_s: f64) {
+        let (step, share) = self.moment(time_s);
+        self.share = share;
+        self.go_on(step);
+        self.readings = readings_of(&self.replay);
+    }
+
+    /// Advances to the end of the rollout. Returns the poses at `moments` equally spaced times, starting with the
+    /// initial pose.
+    pub fn skip_to_end(&mut self, moments: u32) -> Vec<Vec<Pose>> {
+        let last = self.replay.last_step();
+        let every = (last / moments.max(1)).max(1);
+        let mut seen = Vec::new();
+        for moment in 0..moments {
+            self.go_on(moment * every);
+            seen.push(self.replay.poses().to_vec());
+        }
+        self.go_on(last);
+        seen
+    }
+}
+
+/// Reads contacts, torques and joints off the world of a replay.
+fn readings_of(replay: &Replay) -> Readings {
+    replay.simulation().map_or_else(Readings::default, |simulation| Readings {
+        contacts: simulation.contact_forces(),
+        torques: simulation.applied_torques().collect(),
+        joints: simulation.joint_states().collect(),
+        speeds_m_s: simulation.speeds_m_s().collect(),
+    })
+}

@@ -1,0 +1,209 @@
+//! The stage: lanes side by side that show a replay, a race or a what-if.
+
+pub mod lane;
+pub mod opening;
+pub mod playback;
+pub mod replay;
+pub mod selection;
+pub mod staged_champion;
+
+use bevy::prelude::*;
+
+use super::OpeningChampions;
+use super::schedule::FrameSet;
+use super::ui::notifications::Notices;
+use crate::ENGINE_VERSION;
+use crate::evolve::RunPlan;
+use crate::run::caught;
+
+use lane::{Lane, MAX_STEPS_PER_FRAME};
+use playback::Playback;
+use selection::Selection;
+use staged_champion::StagedChampion;
+
+/// Request to replace the champions on the stage. The sender also sets the clock.
+#[derive(Message, Debug, Clone)]
+pub(super) struct Show {
+    /// One champion per lane.
+    pub champions: Vec<StagedChampion>,
+    /// How the lanes are related.
+    pub mode: StageMode,
+}
+
+/// Relation between the lanes of the stage.
+#[derive(Resource, Debug, Clone, PartialEq, Default)]
+pub(super) enum StageMode {
+    /// One snake.
+    #[default]
+    Solo,
+    /// Several snakes side by side.
+    Race,
+    /// The same snake in its own world and in a changed one.
+    WhatIf {
+        /// Plan of the next run before the first change.
+        before: Box<RunPlan>,
+    },
+}
+
+/// Maximum number of lanes. More could neither be told apart nor simulated within a frame.
+pub const MAX_LANES: usize = 10;
+/// Distance between two lanes, in metres.
+const GAP_M: f32 = 1.0;
+
+impl Show {
+    /// Shows one champion alone.
+    pub fn solo(staged: StagedChampion) -> Self {
+        Self { champions: vec![staged], mode: StageMode::Solo }
+    }
+
+    /// Shows champions side by side. A single champion is shown alone.
+    pub fn race(champions: Vec<StagedChampion>) -> Self {
+        let mode = if champions.len() > 1 { StageMode::Race } else { StageMode::Solo };
+        Self { champions, mode }
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_message::<Show>()
+        .init_resource::<Playback>()
+        .init_resource::<StageMode>()
+        .add_systems(Startup, show_opening)
+        .add_systems(Update, (put_on_stage, advance).chain().in_set(FrameSet::Advance));
+}
+
+/// End of the longest lane, in simulated seconds.
+pub(super) fn end_s<'a>(lanes: impl IntoIterator<Item = &'a Lane>) -> f64 {
+    lanes.into_iter().map(Lane::end_s).fold(0.0, f64::max)
+}
+
+/// Builds lanes for champions, the first one nearest to the default camera.
+///
+/// # Errors
+/// Each champion that cannot be shown, with the reason.
+pub(super) fn lanes(champions: Vec<StagedChampion>) -> (Vec<Lane>, Vec<String>) {
+    let mut problems = Vec::new();
+    let mut lanes = Vec::new();
+    for staged in champions {
+        let name = staged.name().to_owned();
+        let built = staged.check().map_err(|invalid| invalid.to_string()).and_then(|()| {
+            caught(|| Lane::new(staged, lanes.len()))
+                .map_err(|message| format!("the program failed on it: {message}"))
+        });
+        match built {
+            Ok(lane) => lanes.push(lane),
+            Err(reason) => problems.push(format!("{name} cannot be shown: {reason}.")),
+        }
+    }
+    let width_m = |lane: &Lane| lane.body().width_m().max(lane.trial().stairs.width_m);
+    let spacing_m = lanes.iter().map(width_m).fold(0.0, f32::max) + GAP_M;
+    let middle = (lanes.len().saturating_sub(1)) as f32 / 2.0;
+    let placed = lanes.into_iter().map(|lane| {
+        let offset_m = (middle - lane.number() as f32) * spacing_m;
+        lane.at_x(offset_m)
+    });
+    (placed.collect(), problems)
+}
+
+/// Shows the champions that the studio was opened with.
+fn show_opening(
+    opening: Res<OpeningChampions>,
+    mut show: MessageWriter<Show>,
+    mut notices: ResMut<Notices>,
+) {
+    let champions = (0..opening.0.len()).filter_map(|index| opening.staged(index));
+    show.write(Show::race(champions.take(MAX_LANES).collect()));
+    let left_out = opening.0.len().saturating_sub(MAX_LANES);
+    if left_out > 0 {
+        notices.info(format!(
+            "The stage has room for {MAX_LANES} lanes; {left_out} more are in the list of champions."
+        ));
+    }
+}
+
+/// Replaces the lanes of the stage.
+fn put_on_stage(
+    mut requests: MessageReader<Show>,
+    earlier: Query<Entity, With<Lane>>,
+    mut commands: Commands,
+    mut notices: ResMut<Notices>,
+    mut on_stage: ResMut<StageMode>,
+) {
+    // Only the last request of a frame would be visible.
+    let Some(Show { champions, mode }) = requests.read().last().cloned() else { return };
+    champions.iter().for_each(|staged| explain_other_engine(staged, &mut notices));
+    let (lanes, problems) = lanes(champions);
+    problems.into_iter().for_each(|problem| notices.problem(problem));
+    if lanes.is_empty() {
+        // Keep the earlier lanes if none of the new ones can be built.
+        return;
+    }
+    earlier.iter().for_each(|lane| commands.entity(lane).despawn());
+    *on_stage = if lanes.len() > 1 { mode } else { StageMode::Solo };
+    lanes.into_iter().for_each(|lane| spawn(&mut commands, lane));
+}
+
+/// Spawns a lane at its place beside the others.
+fn spawn(commands: &mut Commands, lane: Lane) {
+    commands.spawn((Transform::from_translation(lane.offset()), Visibility::default(), lane));
+}
+
+/// Advances the clock and brings every lane to its time.
+fn advance(
+    mut lanes: Query<(Entity, &mut Lane)>,
+    mut playback: ResMut<Playback>,
+    selection: Option<Res<Selection>>,
+    time: Res<Time<Real>>,
+    mut notices: ResMut<Notices>,
+) {
+    let (mut steps_per_s, mut end_s) = (0.0, 0.0_f64);
+    for (_, lane) in &lanes {
+        steps_per_s += lane.step_s().recip();
+        end_s = end_s.max(lane.end_s());
+    }
+    if steps_per_s == 0.0 {
+        return;
+    }
+    playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
+    for (entity, mut lane) in &mut lanes {
+        let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
+        let failed = lane.show(playback.time_s(), pull).err();
+        notices.problems(failed.map(|message| format!("The program failed on it: {message}")));
+        lane.poll_lookahead();
+        if lane.has_just_ended() {
+            notices.problems(differs_from_record(&lane));
+        }
+    }
+}
+
+/// Message for a replay that does not end as recorded.
+fn differs_from_record(lane: &Lane) -> Option<String> {
+    let recorded = lane.staged().champion().evaluation;
+    let mut seen = lane.evaluation();
+    if lane.trial().repeats.trials > 1 {
+        // The stage shows a single trial; the average of several repeats cannot be compared with it.
+        seen.fitness = recorded.fitness;
+    }
+    let differs = lane.staged().must_match_record() && !seen.agrees_with(&recorded);
+    differs.then(|| {
+        format!(
+            "This replay differs from its record ({:.2} instead of {:.2}): the file was \
+             edited, or this machine computes other bits (see snakes verify).",
+            lane.evaluation().fitness,
+            lane.staged().fitness(),
+        )
+    })
+}
+
+/// Explains the limits of showing a champion of another engine version.
+fn explain_other_engine(staged: &StagedChampion, notices: &mut Notices) {
+    let Some(engine) = staged.other_engine() else { return };
+    let text = if staged.recording().is_some() {
+        "you see what was recorded then. \"Simulate here\" shows what this engine makes of it."
+    } else {
+        "what you see is simulated anew, and may go another way than it did then."
+    };
+    notices.info(format!("Found by engine {engine}, this is engine {ENGINE_VERSION}: {text}"));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,217 @@
+//! The clock of the stage: play, hold, speed, loop, seek. All lanes are shown at its time.
+//!
+//! The clock decides only which time is shown. The rollouts decide what happens then.
+
+use std::ops::RangeInclusive;
+
+use bevy::prelude::*;
+
+/// The clock of the stage.
+#[derive(Resource, Debug, Clone, PartialEq)]
+pub(crate) struct Playback {
+    /// Displayed time, in simulated seconds.
+    time_s: f64,
+    speed: f32,
+    is_playing: bool,
+    loops: bool,
+    /// Time since the end was reached, in seconds.
+    rested_s: f32,
+    /// Set for one frame after a seek, so that this exact time is drawn.
+    is_sought: bool,
+}
+
+/// Playback speed, in simulated seconds per second.
+pub(crate) const SPEED_RANGE: RangeInclusive<f32> = 0.1..=16.0;
+/// Speeds that the keys step through.
+const SPEEDS: [f32; 8] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
+/// Pause at the end before a loop restarts, in seconds.
+const REST_S: f32 = 1.5;
+/// Maximum real time that a single frame may make up for, in seconds. After a longer pause (a dragged window, a
+/// sleeping laptop) playback continues where it was instead of racing.
+const MAX_CATCH_UP_S: f32 = 0.5;
+
+impl Default for Playback {
+    fn default() -> Self {
+        Self {
+            time_s: 0.0,
+            speed: 1.0,
+            is_playing: true,
+            loops: true,
+            rested_s: 0.0,
+            is_sought: false,
+        }
+    }
+}
+
+impl Playback {
+    /// Displayed time, in simulated seconds.
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Whether playback is running.
+    pub fn is_playing(&self) -> bool {
+        self.is_playing
+    }
+
+    /// Whether playback loops.
+    pub fn loops(&self) -> bool {
+        self.loops
+    }
+
+    /// Playback speed, in simulated seconds per second.
+    pub fn speed(&self) -> f32 {
+        self.speed
+    }
+
+    /// Plays from the start at the current speed.
+    pub fn restart(&mut self) {
+        (self.time_s, self.rested_s, self.is_playing) = (0.0, 0.0, true);
+    }
+
+    /// Pauses or plays. At the end, plays from the start.
+    pub fn toggle(&mut self, end_s: f64) {
+        if !self.is_playing && self.time_s >= end_s {
+            self.restart();
+        } else {
+            self.is_playing = !self.is_playing;
+        }
+    }
+
+    /// Turns looping on or off.
+    pub fn toggle_loop(&mut self) {
+        self.loops = !self.loops;
+    }
+
+    /// Sets the speed, clamped to the allowed range.
+    pub fn set_speed(&mut self, speed: f32) {
+        if speed.is_finite() {
+            self.speed = speed.clamp(*SPEED_RANGE.start(), *SPEED_RANGE.end());
+        }
+    }
+
+    /// Selects the next higher or lower of the preset speeds.
+    pub fn change_speed(&mut self, faster: bool) {
+        let next = if faster {
+            SPEEDS.into_iter().find(|speed| *speed > self.speed * 1.001)
+        } else {
+            SPEEDS.into_iter().rev().find(|speed| *speed < self.speed * 0.999)
+        };
+        self.speed = next.unwrap_or(self.speed);
+    }
+
+    /// Goes to a time, at most to the end.
+    pub fn seek(&mut self, time_s: f64, end_s: f64) {
+        if time_s.is_finite() {
+            (self.time_s, self.rested_s) = (time_s.clamp(0.0, end_s.max(0.0)), 0.0);
+            self.is_sought = true;
+        }
+    }
+
+    /// Goes to a time and pauses.
+    pub fn hold_at(&mut self, time_s: f64) {
+        self.is_playing = false;
+        self.seek(time_s, time_s);
+    }
+
+    /// Pauses one physics step later or earlier.
+    pub fn step(&mut self, forward: bool, step_s: f64, end_s: f64) {
+        self.is_playing = false;
+        let place = self.time_s / step_s;
+        let near = libm::round(place);
+        let is_on_step = (place - near).abs() < 1.0e-3;
+        let next = match (is_on_step, forward) {
+            (true, true) => near + 1.0,
+            (true, false) => near - 1.0,
+            (false, true) => libm::ceil(place),
+            (false, false) => libm::floor(place),
+        };
+        self.seek(next * step_s, end_s);
+    }
+
+    /// Advances by `elapsed_s` of real time, but by at most `most_s` of simulated time. `end_s` is the end of the
+    /// longest lane. Returns whether playback restarted.
+    pub fn pass(&mut self, elapsed_s: f32, most_s: f64, end_s: f64) -> bool {
+        // The known end can move closer while the lookahead runs.
+        self.time_s = self.time_s.min(end_s);
+        if std::mem::take(&mut self.is_sought) || !self.is_playing {
+            return false;
+        }
+        if self.time_s < end_s {
+            let wanted_s = f64::from(elapsed_s.min(MAX_CATCH_UP_S) * self.speed);
+            self.time_s = (self.time_s + wanted_s.min(most_s)).min(end_s);
+            self.rested_s = 0.0;
+            return false;
+        }
+        self.time_s = end_s;
+        self.rested_s += elapsed_s;
+        if self.rested_s > REST_S && self.loops {
+            self.restart();
+            return true;
+        }
+        self.is_playing = self.loops;
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP_S: f64 = 1.0 / 60.0;
+
+    #[test]
+    fn step_moves_by_exactly_one_physics_step() {
+        let mut playback = Playback::default();
+        playback.pass(0.0251, 1.0, 15.0);
+        let steps = |playback: &Playback| libm::round(playback.time_s() / STEP_S * 1000.0) / 1000.0;
+        let mut seen = Vec::new();
+        for forward in [true, true, false, false, false, false] {
+            playback.step(forward, STEP_S, 15.0);
+            seen.push(steps(&playback));
+        }
+        assert_eq!(seen, [2.0, 3.0, 2.0, 1.0, 0.0, 0.0]);
+        assert!(!playback.is_playing());
+    }
+
+    #[test]
+    fn playback_loops_after_a_pause_or_stops_at_the_end() {
+        let mut playback = Playback::default();
+        playback.set_speed(16.0);
+        while playback.time_s() < 2.0 {
+            assert!(!playback.pass(0.1, 1.0, 2.0));
+        }
+        let rests = (0..40).position(|_| playback.pass(0.1, 1.0, 2.0)).expect("it begins again");
+        assert!((14..17).contains(&rests), "{rests} frames of a tenth of a second");
+        playback.toggle_loop();
+        (0..40).for_each(|_| assert!(!playback.pass(0.1, 1.0, 2.0)));
+        assert_eq!((playback.time_s(), playback.is_playing()), (2.0, false));
+        playback.toggle(2.0);
+        assert_eq!((playback.time_s(), playback.is_playing()), (0.0, true), "play begins anew");
+    }
+
+    #[test]
+    fn speed_and_seek_are_clamped() {
+        let mut playback = Playback::default();
+        for (requested, taken) in [(0.0, 0.1), (99.0, 16.0), (f32::NAN, 16.0), (1.5, 1.5)] {
+            playback.set_speed(requested);
+            assert_eq!(playback.speed(), taken);
+        }
+        playback.change_speed(true);
+        assert_eq!(playback.speed(), 2.0);
+        for (requested, taken) in [(-1.0, 0.0), (7.0, 7.0), (1.0e9, 15.0), (f64::NAN, 15.0)] {
+            playback.seek(requested, 15.0);
+            assert_eq!(playback.time_s(), taken);
+        }
+    }
+
+    #[test]
+    fn a_long_frame_advances_by_the_maximum_only() {
+        let mut playback = Playback::default();
+        playback.pass(60.0, 10.0, 100.0);
+        assert_eq!(playback.time_s(), 0.5);
+        playback.set_speed(16.0);
+        playback.pass(0.5, 2.0, 100.0);
+        assert_eq!(playback.time_s(), 2.5, "no more than can be simulated in a frame");
+    }
+}

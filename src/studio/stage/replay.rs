@@ -1,0 +1,158 @@
+//! A replay, step by step: a live simulation, or a recording made by another engine version.
+
+use std::sync::Arc;
+
+use super::staged_champion::StagedChampion;
+use crate::score::{Evaluation, KeyframeHistory, Recording, Rollout};
+use crate::world::{Pose, Pull, Simulation, Stairs, Vector};
+
+/// A replay in progress.
+pub(crate) enum Replay {
+    /// A live rollout, which scores.
+    Simulated(Box<Rollout>),
+    /// A recording of another engine version.
+    Recorded(PendingRecording),
+}
+
+/// A recording in progress.
+pub(crate) struct PendingRecording {
+    recording: Arc<Recording>,
+    step: u32,
+    last_step: u32,
+    poses: Vec<Pose>,
+    middle_limb: usize,
+}
+
+impl Replay {
+    /// A replay at its start.
+    pub fn of(staged: &StagedChampion) -> Self {
+        match staged.recording() {
+            Some(recording) => Self::Recorded(PendingRecording {
+                poses: recording.at(0.0),
+                recording: Arc::clone(recording),
+                step: 0,
+                last_step: staged.trial().steps(),
+                middle_limb: staged.body().middle_limb(),
+            }),
+            None => {
+                let rollout = Rollout::new(&staged.champion().genome, staged.trial());
+                Self::Simulated(Box::new(rollout))
+            }
+        }
+    }
+
+    /// Takes one step unless the replay is over. Returns whether it took one.
+    pub fn advance(&mut self) -> bool {
+        match self {
+            Self::Simulated(rollout) => rollout.advance(),
+            Self::Recorded(recorded) => {
+                let goes_on = recorded.step < recorded.last_step;
+                if goes_on {
+                    recorded.step += 1;
+                    recorded.poses = recorded.recording.at(recorded.step as f32);
+                }
+                goes_on
+            }
+        }
+    }
+
+    /// Goes to the state after `step` steps, at most to the end: from the nearest keyframe of the history or, without
+    /// one, from the start. The effect of any pull is lost.
+    pub fn go_to(&mut self, step: u32, staged: &StagedChampion, history: Option<&KeyframeHistory>) {
+        match self {
+            Self::Simulated(rollout) => {
+                **rollout = match history {
+                    Some(history) => history.rollout_at(step),
+                    None => Rollout::new(&staged.champion().genome, staged.trial()),
+                };
+                while rollout.step() < step && rollout.advance() {}
+            }
+            Self::Recorded(recorded) => {
+                recorded.step = step.min(recorded.last_step);
+                recorded.poses = recorded.recording.at(recorded.step as f32);
+            }
+        }
+    }
+
+    /// Sets or clears the pull on a limb. A recording ignores it.
+    pub fn pull(&mut self, pull: Option<Pull>) {
+        if let Self::Simulated(rollout) = self {
+            rollout.pull(pull);
+        }
+    }
+
+    /// Whether the mouse has pulled the snake.
+    pub fn is_disturbed(&self) -> bool {
+        matches!(self, Self::Simulated(rollout) if rollout.is_disturbed())
+    }
+
+    /// Number of steps without disqualification.
+    pub fn last_step(&self) -> u32 {
+        match self {
+            Self::Simulated(rollout) => rollout.last_step(),
+            Self::Recorded(recorded) => recorded.last_step,
+        }
+    }
+
+    /// Whether the replay has ended.
+    pub fn is_over(&self) -> bool {
+        match self {
+            Self::Simulated(rollout) => rollout.is_over(),
+            Self::Recorded(recorded) => recorded.step >= recorded.last_step,
+        }
+    }
+
+    /// Steps taken so far.
+    pub fn step(&self) -> u32 {
+        match self {
+            Self::Simulated(rollout) => rollout.step(),
+            Self::Recorded(recorded) => recorded.step,
+        }
+    }
+
+    /// Poses of the limbs after the last step, from head to tail.
+    pub fn poses(&self) -> &[Pose] {
+        match self {
+            Self::Simulated(rollout) => rollout.poses(),
+            Self::Recorded(recorded) => &recorded.poses,
+        }
+    }
+
+    /// Evaluation so far. For a recording: the recorded result with the current position.
+    pub fn evaluation(&self, staged: &StagedChampion) -> Evaluation {
+        match self {
+            Self::Simulated(rollout) => rollout.evaluation(),
+            Self::Recorded(recorded) => Evaluation {
+                centre_y_m: recorded.poses[recorded.middle_limb].translation.y,
+                ..staged.champion().evaluation
+            },
+        }
+    }
+
+    /// Recorded path of the middle limb, frame by frame, in metres; `None` for a simulation.
+    pub fn recorded_way_m(&self) -> Option<Vec<Vector>> {
+        let Self::Recorded(recorded) = self else { return None };
+        let shown = recorded.step / recorded.recording.every_steps() + 1;
+        let frames = recorded.recording.frames().take(shown as usize);
+        Some(frames.map(|limbs| limbs[recorded.middle_limb].translation).collect())
+    }
+
+    /// Step at which the middle limb of a recording first stood on the landing, if it did.
+    pub fn recorded_landing(&self, stairs: &Stairs) -> Option<u32> {
+        let Self::Recorded(recorded) = self else { return None };
+        let landed = |limbs: &[Pose]| {
+            let at_m = limbs[recorded.middle_limb].translation.to_array();
+            stairs.steps > 0 && stairs.steps_under(at_m) == stairs.steps
+        };
+        let frame = recorded.recording.frames().position(landed)?;
+        Some(frame as u32 * recorded.recording.every_steps())
+    }
+
+    /// The simulated world; `None` for a recording.
+    pub fn simulation(&self) -> Option<&Simulation> {
+        match self {
+            Self::Simulated(rollout) => Some(rollout.simulation()),
+            Self::Recorded(_) => None,
+        }
+    }
+}

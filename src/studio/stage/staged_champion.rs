@@ -1,0 +1,209 @@
+//! A champion on the stage: where it is from and how it is shown.
+
+use std::sync::Arc;
+
+use crate::check::Invalid;
+use crate::evolve::Champion;
+use crate::save::LoadedChampion;
+use crate::score::{Recording, Trial};
+use crate::world::BodyPlan;
+
+/// A champion on the stage, with its caption.
+#[derive(Debug, Clone)]
+pub(crate) struct StagedChampion {
+    champion: Champion,
+    name: String,
+    source: ChampionSource,
+    /// The engine that found it and its recording, if that was another engine version.
+    elsewhere: Option<(u32, Option<Arc<Recording>>)>,
+    shown_as: ShownAs,
+}
+
+/// Origin of a staged champion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ChampionSource {
+    /// A file that the studio was opened with; the first is 0.
+    Opened(usize),
+    /// An entry of the library, by the number of its place.
+    Library(u64),
+    /// A run of this session; the first is 0. The champion's origin has the generation.
+    Run(u32),
+    /// A lesson.
+    Lesson,
+}
+
+/// World and engine in which a champion is shown.
+#[derive(Debug, Clone, PartialEq)]
+enum ShownAs {
+    /// In its own world. A champion of another engine plays from its recording, if there is one.
+    Found,
+    /// Simulated by this engine in the champion's own world.
+    Simulated,
+    /// Simulated by this engine in another world, with a description of the difference.
+    Changed(Box<Trial>, String),
+}
+
+impl StagedChampion {
+    /// A champion from a file that the studio was opened with: its index and name.
+    pub fn from_file(loaded: &LoadedChampion, index: usize, name: &str) -> Self {
+        let recording = loaded.recording.clone().map(Arc::new);
+        Self {
+            champion: loaded.champion.clone(),
+            name: name.to_owned(),
+            source: ChampionSource::Opened(index),
+            elsewhere: (!loaded.is_of_this_engine()).then_some((loaded.engine, recording)),
+            shown_as: ShownAs::Found,
+        }
+    }
+
+    /// A champion of the library: the number of its place, and its name.
+    pub fn from_library(loaded: &LoadedChampion, place: u64, name: &str) -> Self {
+        Self { source: ChampionSource::Library(place), ..Self::from_file(loaded, 0, name) }
+    }
+
+    /// A champion of a run of this session.
+    pub fn from_run(champion: &Champion, run: u32) -> Self {
+        Self {
+            champion: champion.clone(),
+            name: format!("Generation {}", champion.origin.generation),
+            source: ChampionSource::Run(run),
+            elsewhere: None,
+            shown_as: ShownAs::Found,
+        }
+    }
+
+    /// A champion of a lesson.
+    pub fn from_lesson(champion: &Champion) -> Self {
+        Self { source: ChampionSource::Lesson, ..Self::from_run(champion, 0) }
+    }
+
+    /// The same champion under another name.
+    pub fn named(self, name: String) -> Self {
+        Self { name, ..self }
+    }
+
+    /// The same champion in another world. The genome may not fit there: see [`Self::check`].
+    pub fn in_world(&self, trial: &Trial, what_is_other: String) -> Self {
+        if *trial == self.champion.trial {
+            return self.as_found();
+        }
+        let shown_as = ShownAs::Changed(Box::new(trial.clone()), what_is_other);
+        Self { shown_as, ..self.clone() }
+    }
+
+    /// Checks that the genome fits the world in which it is shown.
+    pub fn check(&self) -> Result<(), Invalid> {
+        self.trial().check().map_err(|error| error.inside("trial"))?;
+        self.trial().check_genome(&self.champion.genome).map_err(|error| error.inside("genome"))
+    }
+
+    /// The same champion in its own world.
+    pub fn as_found(&self) -> Self {
+        Self { shown_as: ShownAs::Found, ..self.clone() }
+    }
+
+    /// The same champion, simulated by this engine instead of played from a recording.
+    pub fn simulated(&self) -> Self {
+        let shown_as = match &self.shown_as {
+            ShownAs::Found if self.recording().is_some() => ShownAs::Simulated,
+            other => other.clone(),
+        };
+        Self { shown_as, ..self.clone() }
+    }
+
+    /// Whether it is shown in a changed world.
+    pub fn is_changed(&self) -> bool {
+        matches!(self.shown_as, ShownAs::Changed(..))
+    }
+
+    /// The recording to play instead of simulating, if any.
+    pub fn recording(&self) -> Option<&Arc<Recording>> {
+        match (&self.shown_as, &self.elsewhere) {
+            (ShownAs::Found, Some((_, recording))) => recording.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The engine that found it and its recording, if that was another engine version.
+    pub fn other_engine(&self) -> Option<u32> {
+        self.elsewhere.as_ref().map(|(engine, _)| *engine)
+    }
+
+    /// Whether a simulation must end as recorded, because this engine recorded it in this world.
+    pub fn must_match_record(&self) -> bool {
+        self.elsewhere.is_none() && !self.is_changed()
+    }
+
+    /// Whether it could be shown as found but is not.
+    pub fn could_be_as_found(&self) -> bool {
+        let is_resimulated = self.shown_as == ShownAs::Simulated && self.has_recording();
+        self.is_changed() || is_resimulated
+    }
+
+    fn has_recording(&self) -> bool {
+        matches!(self.elsewhere, Some((_, Some(_))))
+    }
+
+    /// The champion as it was found.
+    pub fn champion(&self) -> &Champion {
+        &self.champion
+    }
+
+    /// The body that the genome builds in the world in which it is shown.
+    pub fn body(&self) -> BodyPlan {
+        self.trial().agent.body_plan(&self.champion.genome)
+    }
+
+    /// The world in which it is shown.
+    pub fn trial(&self) -> &Trial {
+        match &self.shown_as {
+            ShownAs::Changed(trial, _) => trial,
+            ShownAs::Found | ShownAs::Simulated => &self.champion.trial,
+        }
+    }
+
+    /// Origin of the champion.
+    pub fn source(&self) -> ChampionSource {
+        self.source
+    }
+
+    /// The generation it is from, in its own run; the first is 1.
+    pub fn generation(&self) -> u32 {
+        self.champion.origin.generation
+    }
+
+    /// Recorded fitness.
+    pub fn fitness(&self) -> f32 {
+        self.champion.evaluation.fitness
+    }
+
+    /// Short name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Label that distinguishes it from other lanes: its name, or the difference of its world.
+    pub fn label(&self) -> &str {
+        match &self.shown_as {
+            ShownAs::Changed(_, what_is_other) => what_is_other,
+            ShownAs::Found | ShownAs::Simulated => &self.name,
+        }
+    }
+
+    /// One-line description with the recorded result.
+    pub fn caption(&self) -> String {
+        let name = &self.name;
+        let shown_as = match (&self.shown_as, self.other_engine()) {
+            (ShownAs::Changed(_, what), _) => {
+                // The description of the reached position belongs to the original world.
+                return format!("{name}, tried with {what} (originally {})", self.champion.score());
+            }
+            (_, None) => ": ".to_owned(),
+            (_, Some(engine)) if self.recording().is_some() => {
+                format!(" as engine {engine} recorded it: ")
+            }
+            (_, Some(engine)) => format!(" simulated anew; engine {engine} recorded "),
+        };
+        format!("{name}{shown_as}{}", self.champion.reached())
+    }
+}

@@ -1,0 +1,61 @@
+//! Charts as files: a picture, or a table.
+
+use std::path::PathBuf;
+
+use crate::plot;
+use crate::save::{SavesFolder, store_csv, store_picture};
+use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
+
+/// Writes a chart into the folder for them, under a name that is not taken yet. Returns the file's path.
+pub(crate) fn export(saves: &SavesFolder, export: &ChartExport) -> Result<PathBuf, String> {
+    let ChartExport { figure, name, format } = export;
+    let folder = saves.exports();
+    folder.prepare().map_err(|error| error.to_string())?;
+    match format {
+        ChartFormat::Png => {
+            let path = folder.free_name(name, "png");
+            let picture = plot::figure(figure).map_err(|error| error.to_string())?;
+            store_picture(&path, &picture).map_err(|error| error.to_string())?;
+            Ok(path)
+        }
+        ChartFormat::Csv => {
+            let path = folder.free_name(name, "csv");
+            store_csv(&path, &figure.table()).map_err(|error| error.to_string())?;
+            Ok(path)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::Figure;
+    use crate::plot::{Axis, Chart, Role, Series, Shape};
+    use std::sync::Arc;
+
+    #[test]
+    fn a_chart_becomes_a_picture_and_a_table_beside_those_before() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let points = vec![[1.0, 2.0], [2.0, 3.5]];
+        let chart = Chart {
+            name: String::new(),
+            x: Axis::new("Generation", "", 0.0..=3.0),
+            y: Axis::new("Fitness", "m", 0.0..=4.0),
+            series: vec![Series::new("best", Role::First, Shape::Line(points))],
+            marks: Vec::new(),
+        };
+        let figure = Arc::new(Figure::of("Fitness", chart));
+        let write = |format| {
+            let of = ChartExport { figure: Arc::clone(&figure), name: "fitness", format };
+            export(&saves, &of).expect("written")
+        };
+        assert_eq!(write(ChartFormat::Csv), folder.path().join("exports/fitness-1.csv"));
+        let table = write(ChartFormat::Csv);
+        assert_eq!(table, folder.path().join("exports/fitness-2.csv"));
+        let text = std::fs::read_to_string(table).expect("read");
+        assert_eq!(text, "Generation,best (m)\n1,2\n2,3.5\n");
+        let size = write(ChartFormat::Png).metadata().expect("there").len();
+        assert!(size > 5_000, "{size} bytes are no picture");
+    }
+}

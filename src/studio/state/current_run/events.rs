@@ -1,0 +1,329 @@
+//! Takes in what the background found, and shows what is better than all before.
+
+use bevy::prelude::*;
+
+use super::CurrentRun;
+use super::live_changes::news_of;
+use crate::evolve::Champion;
+use crate::run::{OpenedRun, RunEvent};
+use crate::save::ExistingRun;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{Show, StageMode};
+use crate::studio::ui::notifications::Notices;
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_systems(Startup, start_at_once).add_systems(Update, take_in.in_set(FrameSet::TakeIn));
+}
+
+/// A fresh run evolves from the first moment.
+fn start_at_once(mut evolution: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
+    if let Err(problem) = evolution.start() {
+        notices.problem(problem);
+    }
+}
+
+/// Takes in what the background found. A champion that beats the one on show and all before it takes the stage,
+/// unless that is held: then somebody is looking at something.
+fn take_in(
+    mut evolution: ResMut<CurrentRun>,
+    mut notices: ResMut<Notices>,
+    mut show: MessageWriter<Show>,
+    lanes: Query<&Lane>,
+    (mode, mut playback): (Res<StageMode>, ResMut<Playback>),
+) {
+    evolution.others.take_in();
+    let Some(background) = &evolution.background else { return };
+    let events: Vec<RunEvent> = std::iter::from_fn(|| background.poll()).collect();
+    // In most frames nothing has come: what is to be beaten need not be looked for among all reports.
+    if events.is_empty() {
+        return;
+    }
+    // Only what was found in the world of this run can be compared with what it finds.
+    let world = &evolution.settings().trial;
+    let rivals = lanes.iter().map(Lane::staged);
+    let rivals = rivals.filter(|staged| staged.champion().trial == *world);
+    let champions = evolution.reports.iter().filter_map(|report| report.champion.as_ref());
+    let known = champions.map(|champion| champion.evaluation.fitness);
+    let mut to_beat = rivals.map(StagedChampion::fitness).chain(known).fold(f32::MIN, f32::max);
+    // Who holds the stage, has several on it, or tries out another world than the run's, is looking at something.
+    let is_tried = |lane: &Lane| lane.staged().is_changed() && lane.trial() != world;
+    let is_looked_at =
+        evolution.is_lent || *mode != StageMode::Solo || lanes.iter().any(Lane::is_disturbed);
+    let is_held = is_looked_at || !playback.is_playing() || lanes.iter().any(is_tried);
+    let mut present = |champion: &Champion, number, notices: &mut Notices| {
+        if champion.evaluation.fitness <= to_beat {
+            return;
+        }
+        to_beat = champion.evaluation.fitness;
+        let staged = StagedChampion::from_run(champion, number);
+        if is_held {
+            notices.info(format!("New best of the run: {}", staged.caption()));
+        } else {
+            notices.info(format!("New on stage: {}", staged.caption()));
+            playback.restart();
+            show.write(Show::solo(staged));
+        }
+    };
+    let number = evolution.number;
+    for event in events {
+        match event {
+            RunEvent::Opened(opened) => {
+                let OpenedRun { plan_now, reports: behind, .. } = *opened;
+                evolution.take_in_opened_plan(plan_now);
+                // Whatever happens from now on, it is not thrown away once more.
+                evolution.source.earlier = ExistingRun::Keep;
+                evolution.discarded = None;
+                let generations = evolution.settings().evolution.generations;
+                let last = behind.last().filter(|last| last.generation < generations);
+                if let Some(last) = last {
+                    notices.info(format!("The run goes on after generation {}.", last.generation));
+                }
+                let champions = behind.iter().filter_map(|report| report.champion.as_ref());
+                let fitness = |champion: &&Champion| champion.evaluation.fitness;
+                let best = champions.max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
+                best.into_iter().for_each(|best| present(best, number, &mut notices));
+                evolution.reports = behind;
+            }
+            RunEvent::Refused(problem) => {
+                notices.problem(format!("Nothing is evolved: {problem}"));
+                evolution.background = None;
+                evolution.engine.set_run_folder(None);
+            }
+            RunEvent::SettingChanged { change, plan_now } => {
+                notices.info(news_of(&change));
+                evolution.take_in_change(&change.field, *plan_now);
+            }
+            RunEvent::SettingNotChanged { field, reason } => {
+                evolution.await_as_it_is(&field);
+                notices.problem(format!("The run keeps its {field}: {reason}"));
+            }
+            RunEvent::Explored(exploration) => evolution.explore(exploration),
+            RunEvent::Generation(report) => {
+                let champion = report.champion.iter();
+                champion.for_each(|champion| present(champion, number, &mut notices));
+                evolution.reports.push(*report);
+            }
+            RunEvent::Finished { run_hash } => {
+                evolution.run_hash = Some(run_hash);
+                // What was asked for too late concerns the next run alone.
+                evolution.await_no_change();
+                evolution.engine.set_run_folder(None);
+                notices.info("The run is finished; \"New run\" starts another.".to_owned());
+            }
+            RunEvent::Failed => {
+                let problem = "The run stopped because of a program error. Press E to resume from what was saved.";
+                notices.problem(problem.to_owned());
+                evolution.open_again();
+                return;
+            }
+            RunEvent::NotSaved(problem) => {
+                notices.problem(format!(
+                    "Not saved, so evolution is paused: {problem}. Press E to try again."
+                ));
+            }
+            RunEvent::Crashed(problem) => notices.problem(problem),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::run::RunSource;
+    use crate::save::SavesFolder;
+    use crate::studio::state::current_run::RunStatus;
+    use crate::studio::state::options::Options;
+    use crate::studio::state::run_context::RunContext;
+    use std::time::{Duration, Instant};
+    use tempfile::TempDir;
+
+    /// A studio without a window, whose run is saved in a folder.
+    fn studio(saves: &SavesFolder) -> App {
+        let mut settings = Settings::default();
+        settings.evolution.population = 6;
+        settings.evolution.generations = 3;
+        settings.trial.duration_s = 0.5;
+        let plan = RunPlan::new("test", 1, settings);
+        let run = RunSource::in_saves(saves, plan, ExistingRun::Keep);
+        let options = Options::of_test(run, saves.clone());
+        let mut app = App::new();
+        app.insert_resource(CurrentRun::new(RunContext::new(&options)))
+            .init_resource::<Notices>()
+            .init_resource::<StageMode>()
+            .init_resource::<Playback>()
+            .add_message::<Show>()
+            .add_systems(Update, take_in);
+        app
+    }
+
+    /// Lets frames pass until something is so.
+    fn wait_until(app: &mut App, is_so: impl Fn(&CurrentRun) -> bool) {
+        // Nobody ever sends: whoever listens rests.
+        let (_never, rest) = std::sync::mpsc::channel::<()>();
+        let began = Instant::now();
+        while began.elapsed() < Duration::from_secs(60) {
+            app.update();
+            if is_so(app.world().resource()) {
+                return;
+            }
+            let _ = rest.recv_timeout(Duration::from_millis(2));
+        }
+        panic!("it never came");
+    }
+
+    /// Does something with the run.
+    fn act<T>(app: &mut App, act: impl FnOnce(&mut CurrentRun) -> Result<T, String>) -> T {
+        act(&mut app.world_mut().resource_mut::<CurrentRun>()).expect("allowed")
+    }
+
+    /// A studio whose run is held after its first generation.
+    fn held_studio() -> (TempDir, App) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = studio(&SavesFolder::find(Some(folder.path())));
+        act(&mut app, |run| run.single_generation());
+        wait_until(&mut app, |run| run.reports().len() == 1 && run.status() == RunStatus::Paused);
+        (folder, app)
+    }
+
+    #[test]
+    fn settings_of_another_preset_or_run_do_not_change_the_run_under_way() {
+        let (_folder, mut app) = held_studio();
+        let before = act(&mut app, |run| {
+            let before = run.next_plan().clone();
+            run.set_preset("report")?;
+            run.set_population(9)?;
+            assert!(run.may_change("evolution.population").is_err());
+            assert_eq!(run.awaited.evolution.population, 6);
+            // As undoing does that.
+            run.set_next_plan(before.clone())?;
+            assert_eq!(run.may_change("evolution.population"), Ok(()));
+            Ok(before)
+        });
+        act(&mut app, |run| {
+            // As undoing does that somebody went on with this run, before which another was set.
+            let mut other = before;
+            other.settings.evolution.population = 5;
+            run.set_next_plan_alone(other)?;
+            run.set_field("halving.parents", "3")?;
+            let awaited = &run.awaited.evolution;
+            assert_eq!((awaited.population, awaited.halving.parents), (6, 4));
+            assert!(run.next_run_differs());
+            Ok(())
+        });
+    }
+
+    #[test]
+    fn a_run_that_was_reset_begins_anew_even_after_a_look_at_other_settings() {
+        let (_folder, mut app) = held_studio();
+        act(&mut app, |run| {
+            run.reset()?;
+            run.set_population(5)?;
+            run.set_population(6)?;
+            run.single_generation()
+        });
+        wait_until(&mut app, |run| !run.reports().is_empty());
+        let reports = app.world().resource::<CurrentRun>().reports();
+        assert_eq!(reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
+        // What was evolved since is not thrown away again.
+        act(&mut app, |run| {
+            run.set_seed(2)?;
+            run.begin_next()?;
+            run.pause()?;
+            run.set_seed(1)?;
+            run.begin_next()
+        });
+        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
+        let evolution = app.world().resource::<CurrentRun>();
+        assert_eq!((evolution.seed(), evolution.reports().len()), (1, 3));
+    }
+
+    #[test]
+    fn what_a_run_may_cost_counts_the_generations_before_a_change_as_they_were() {
+        let (_folder, mut app) = held_studio();
+        act(&mut app, |run| run.set_population(4));
+        wait_until(&mut app, |run| run.changes().len() == 1);
+        assert_eq!(app.world().resource::<CurrentRun>().budget(), 6 + 4 + 4);
+    }
+
+    #[test]
+    fn a_refused_change_takes_no_other_along() {
+        let (_folder, mut app) = held_studio();
+        act(&mut app, |run| {
+            // A strategy cannot change on the way: the run refuses that, and takes what is before and after it.
+            run.change_running("evolution.population", "5")?;
+            run.background()?.request_changes([("evolution.strategy".to_owned(), "ga".to_owned())]);
+            run.change_running("evolution.halving.parents", "2")
+        });
+        wait_until(&mut app, |run| run.changes().len() == 2);
+        let evolution = app.world().resource::<CurrentRun>();
+        assert_eq!(evolution.awaited, *evolution.settings());
+    }
+
+    #[test]
+    fn a_champion_that_founds_a_run_twice_founds_two() {
+        let (_folder, mut app) = held_studio();
+        act(&mut app, |run| run.begin_next());
+        let evolution = app.world().resource::<CurrentRun>();
+        assert_eq!((evolution.number(), evolution.seed()), (1, 2));
+    }
+
+    #[test]
+    fn a_run_that_broke_off_can_be_gone_on_with() {
+        let (_folder, mut app) = held_studio();
+        act(&mut app, |run| run.change_running("evolution.halving.parents", "2"));
+        wait_until(&mut app, |run| run.changes().len() == 1);
+        act(&mut app, |run| {
+            run.open_again();
+            assert_eq!((run.status(), run.changes().len()), (RunStatus::Ready, 0));
+            run.start()
+        });
+        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
+        let evolution = app.world().resource::<CurrentRun>();
+        assert_eq!((evolution.reports().len(), evolution.changes().len()), (3, 1));
+    }
+
+    #[test]
+    fn what_may_change_changes_in_the_run_and_the_next_and_what_may_not_in_the_next_alone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let mut app = studio(&saves);
+        act(&mut app, |run| run.single_generation());
+        wait_until(&mut app, |run| run.reports().len() == 1);
+        act(&mut app, |run| {
+            run.set_field("halving.parents", "2")?;
+            run.set_population(4)?;
+            run.set_field("surface.friction", "0.5")?;
+            assert!(run.next_run_differs(), "in its friction");
+            run.set_field("surface.friction", "1")?;
+            assert!(!run.next_run_differs(), "the run will soon be like the next");
+            run.change_running("evolution.generations", "4")
+        });
+        wait_until(&mut app, |run| run.changes().len() == 3);
+        act(&mut app, |run| {
+            let (now, next) = (&run.settings().evolution, &run.next_settings().evolution);
+            assert_eq!((now.halving.parents, now.population, now.generations), (2, 4, 4));
+            assert_eq!((next.halving.parents, next.population, next.generations), (2, 4, 3));
+            assert!(run.changes().iter().all(|change| change.generation == 2));
+            assert!(run.may_change("trial.surface.friction").is_err());
+            run.start()
+        });
+        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
+        let evolution = app.world().resource::<CurrentRun>();
+        let sizes: Vec<u32> = evolution.reports().iter().map(|report| report.evaluations).collect();
+        assert_eq!(sizes, [6, 4, 4, 4]);
+        // Gone on with by another session, it is what it was.
+        let (hash, folder) = (evolution.run_hash(), evolution.source.folder.clone());
+        drop(app);
+        let mut app = studio(&saves);
+        act(&mut app, |run| run.go_on_with(&folder));
+        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
+        let evolution = app.world().resource::<CurrentRun>();
+        assert_eq!((evolution.run_hash(), evolution.changes().len()), (hash, 3));
+        assert_eq!(evolution.settings().evolution.generations, 4);
+        assert!(!evolution.next_run_differs(), "the next run is like this one");
+    }
+}

@@ -1,0 +1,105 @@
+//! Runs for tests of panels.
+
+use super::*;
+use crate::evolve::{RunPlan, StrategyKind};
+use crate::genome::ControllerKind;
+use crate::run::{Experiment, LocalPool, RunControl};
+use crate::save::{SavesFolder, store_csv};
+use crate::score::evaluate;
+use crate::studio::state::options::Options;
+
+/// A run of the report's settings that has not begun.
+pub fn prepared_run() -> CurrentRun {
+    run_of(RunPlan::new("report", 1, Settings::default()))
+}
+
+/// A small run of MAP-Elites that has explored for two generations.
+pub fn explored_run() -> CurrentRun {
+    let mut settings = Settings::default();
+    settings.evolution.strategy = StrategyKind::MapElites;
+    settings.evolution.population = 20;
+    settings.genome.controller = ControllerKind::Gait;
+    settings.trial.duration_s = 1.0;
+    let plan = RunPlan::new("test", 1, settings);
+    let mut experiment = Experiment::new(plan.clone());
+    let pool = LocalPool::new(1).expect("threads");
+    let mut run = run_of(plan);
+    for _ in 0..2 {
+        let report = experiment.run_generation(&pool, &RunControl::default());
+        run.reports.push(report.expect("not cancelled"));
+    }
+    run.explore(Box::new(Exploration::of(&experiment)));
+    run
+}
+
+/// The explored run, compared with another in this folder of saves, which has two generations behind it; or whose log
+/// is damaged.
+pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
+    let mut settings = Settings::default();
+    settings.evolution.population = 4;
+    settings.trial.duration_s = 0.5;
+    let plan = RunPlan::new("other", 7, settings);
+    let source = RunSource::in_saves(&SavesFolder::find(Some(saves)), plan, ExistingRun::Keep);
+    let folder = source.folder.clone();
+    let mut other = source.open("a test").expect("opened");
+    let pool = LocalPool::new(1).expect("threads");
+    for _ in 0..2 {
+        let report = other.experiment.run_generation(&pool, &RunControl::default());
+        other
+            .recorder
+            .record_generation(&other.experiment, &report.expect("not cancelled"))
+            .expect("kept");
+    }
+    if is_damaged {
+        let nonsense = [vec!["no log".to_owned()]];
+        store_csv(&folder.join("log.jsonl"), &nonsense).expect("written");
+    }
+    let mut run = explored_run();
+    run.compare_with(&folder).expect("a thread");
+    while run.others.compared().iter().any(|compared| compared.read.is_none()) {
+        run.others.take_in();
+    }
+    run
+}
+
+#[test]
+fn another_run_is_laid_over_this_one_once_and_taken_away_again() {
+    let saves = tempfile::tempdir().expect("a folder");
+    let mut run = compared_run(saves.path(), false);
+    let version = run.version();
+    let folder = run.others.compared()[0].folder.clone();
+    for name in ["a", "b"] {
+        run.compare_with(&saves.path().join(name)).expect("a thread");
+    }
+    let refusal = run.compare_with(&saves.path().join("c")).expect_err("full");
+    assert!(refusal.contains("room for 3"), "{refusal}");
+    run.compare_with(&folder).expect("taken away");
+    assert_eq!(run.others.compared().len(), 2);
+    assert_ne!(run.version(), version);
+}
+
+fn run_of(plan: RunPlan) -> CurrentRun {
+    let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
+    let saves = SavesFolder::find(Some(&folder));
+    let run = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
+    let options = Options::of_test(run, saves);
+    CurrentRun::new(RunContext::new(&options))
+}
+
+#[test]
+fn an_elite_and_one_of_the_front_are_those_that_were_found() {
+    let run = explored_run();
+    let exploration = run.exploration().expect("explored");
+    let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
+    for (cell, elite) in archive.elites() {
+        let champion = run.elite(cell).expect("there");
+        assert_eq!(champion.evaluation.fitness, elite.fitness);
+        assert_eq!(archive.cell(&champion.evaluation, champion.trial.start_y_m), Some(cell));
+    }
+    for member in exploration.front.members() {
+        let champion = run.front_member(member.generation, member.individual).expect("there");
+        assert_eq!(evaluate(&champion.genome, &champion.trial), member.evaluation);
+    }
+    assert_eq!(run.front_member(9, 9), None);
+    assert_eq!(run.elite(u32::MAX), None);
+}

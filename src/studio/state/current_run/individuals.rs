@@ -1,0 +1,104 @@
+//! Somebody of the current run, by its place in it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::CurrentRun;
+use crate::evolve::{Champion, IndividualId, Origin, Parents, Settings};
+use crate::genome::Genome;
+use crate::run::{Ancestor, caught};
+use crate::score::{Evaluation, evaluate};
+
+/// Those who have descendants, by their places in the run.
+pub(super) type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;
+
+impl CurrentRun {
+    /// Somebody of the latest generation, a champion, or one who has descendants; none if nobody remembers it. What
+    /// is not known of it besides its genes is found out anew.
+    pub fn individual(&self, place: IndividualId) -> Option<Champion> {
+        let genome = self.genome_of(place)?;
+        let trial = self.settings().trial.clone();
+        let evaluation = match self.evaluation_of(place) {
+            Some(evaluation) => evaluation,
+            None => caught(|| evaluate(&genome, &trial)).ok()?,
+        };
+        let origin = self.origin(place.generation, place.individual);
+        Some(Champion { genome: (*genome).clone(), trial, evaluation, origin })
+    }
+
+    /// Somebody of the front of distance and energy.
+    pub fn front_member(&self, generation: u32, individual: u32) -> Option<Champion> {
+        let mut members = self.exploration()?.front.members();
+        let member =
+            members.find(|is| (is.generation, is.individual) == (generation, individual))?;
+        Some(Champion {
+            genome: member.genome.clone(),
+            trial: self.settings().trial.clone(),
+            evaluation: member.evaluation,
+            origin: self.origin(generation, individual),
+        })
+    }
+
+    /// The best of a cell of the archive. The archive keeps its genes and its fitness; what else there is to know
+    /// of it is found out anew.
+    pub fn elite(&self, cell: u32) -> Option<Champion> {
+        let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
+        let Settings { trial, genome: space, .. } = self.settings();
+        let genome = space.genome_at(&elite.point, trial.genome_shape());
+        let evaluation = caught(|| evaluate(&genome, trial)).ok()?;
+        let origin = self.origin(elite.generation, elite.individual);
+        Some(Champion { genome, trial: trial.clone(), evaluation, origin })
+    }
+
+    fn origin(&self, generation: u32, individual: u32) -> Origin {
+        Origin { preset: self.preset().to_owned(), seed: self.seed(), generation, individual }
+    }
+
+    /// The genes of somebody, if anybody remembers them.
+    pub fn genome_of(&self, place: IndividualId) -> Option<Arc<Genome>> {
+        let exploration = self.exploration()?;
+        let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
+        let of_latest = latest.and_then(|latest| latest.genomes.get(place.individual as usize));
+        let of_ancestor = || self.ancestor(place)?.genome.as_ref();
+        let of_champion = || {
+            let champion = self.champion_at(place)?;
+            Some(Arc::new(champion.genome.clone()))
+        };
+        of_latest.or_else(of_ancestor).cloned().or_else(of_champion)
+    }
+
+    /// Whom somebody comes from, if anybody remembers it.
+    pub fn parents_of(&self, place: IndividualId) -> Option<Parents> {
+        let exploration = self.exploration()?;
+        let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
+        let of_latest = latest.and_then(|of| of.parents.get(place.individual as usize)).copied();
+        of_latest.or_else(|| Some(self.ancestor(place)?.parents))
+    }
+
+    /// Somebody who has descendants.
+    fn ancestor(&self, place: IndividualId) -> Option<&Arc<Ancestor>> {
+        let exploration = self.exploration()?;
+        // A line may be ten thousand generations long, and who follows it looks somebody up at every step.
+        let ancestors = self.ancestors.get_or_init(|| {
+            let ancestry = &exploration.ancestry;
+            let parents = exploration.parents.iter().map(|(parent, _)| parent);
+            let all = parents.rev().chain(ancestry.others.iter().rev());
+            let all = all.chain(ancestry.line.iter().rev());
+            // Of several at one place the first of the line counts.
+            all.map(|ancestor| (ancestor.place, Arc::clone(ancestor))).collect()
+        });
+        ancestors.get(&place)
+    }
+
+    fn evaluation_of(&self, place: IndividualId) -> Option<Evaluation> {
+        let latest = self.exploration()?.generation.as_ref();
+        let latest = latest.filter(|latest| latest.number == place.generation);
+        let of_latest = latest.and_then(|of| of.evaluations.get(place.individual as usize));
+        of_latest.copied().or_else(|| Some(self.champion_at(place)?.evaluation))
+    }
+
+    fn champion_at(&self, place: IndividualId) -> Option<&Champion> {
+        let champion = self.champion_of(place.generation)?;
+        (champion.origin.individual == place.individual).then_some(champion)
+    }
+}

@@ -1,0 +1,165 @@
+//! The plan of the next run: what is set, taken from a preset, undone.
+
+use std::sync::Arc;
+
+use super::CurrentRun;
+use crate::check::Invalid;
+use crate::evolve::{RunPlan, Settings, fields, with_fields};
+use crate::save::{Preset, PresetList, load_preset};
+
+impl CurrentRun {
+    /// Seed of the next run.
+    pub fn next_seed(&self) -> u64 {
+        self.engine.next.seed
+    }
+
+    /// Settings of the next run.
+    pub fn next_settings(&self) -> &Settings {
+        &self.engine.next.settings
+    }
+
+    /// The plan of the next run.
+    pub fn next_plan(&self) -> &RunPlan {
+        &self.engine.next
+    }
+
+    /// Name of the preset that the next run starts from.
+    pub fn next_preset(&self) -> &str {
+        &self.engine.next.preset
+    }
+
+    /// Whether the next run has another seed, founder or settings than the current one has by now, or soon.
+    pub fn next_run_differs(&self) -> bool {
+        let (now, next) = (&self.source_now, &self.engine.next);
+        let of = |plan: &RunPlan| (plan.seed, plan.preset.clone());
+        of(now) != of(next) || now.founder != next.founder || self.awaited != next.settings
+    }
+
+    /// Sets the seed of the next run; a run that has not begun takes it at once.
+    pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
+        self.engine.next.seed = seed;
+        self.take_over_if_ready()
+    }
+
+    /// Sets the population of the next run; a run that has not begun takes it at once, and one that is under way from
+    /// its next generation on, if its method allows it.
+    pub fn set_population(&mut self, population: u32) -> Result<(), String> {
+        self.set_field("evolution.population", &population.to_string())
+    }
+
+    /// Sets one setting of the next run, by its name; a run that has not begun takes it at once, and one that is under
+    /// way from its next generation on, if it may.
+    pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
+        self.set_fields(&[(field.to_owned(), text.to_owned())])
+    }
+
+    /// Sets several settings of the next run at once, as [`Self::set_field`] does.
+    pub fn set_fields(&mut self, changes: &[(String, String)]) -> Result<(), String> {
+        let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+        let next = &self.engine.next;
+        let settings =
+            with_fields(&next.settings, changes).map_err(|error: Invalid| error.to_string())?;
+        self.set_next_plan(RunPlan { settings, ..next.clone() })
+    }
+
+    /// Gives the next run another plan; a run that has not begun takes it at once. What may change in a run under way
+    /// changes there too, unless the plan is that of another preset or of another run.
+    pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
+        self.plan_next(plan, true)
+    }
+
+    /// Gives the next run another plan, and leaves the run under way as it is.
+    pub fn set_next_plan_alone(&mut self, plan: RunPlan) -> Result<(), String> {
+        self.plan_next(plan, false)
+    }
+
+    fn plan_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
+        plan.check_founder().map_err(|error| {
+            format!("The next run begins from a champion, whom this does not suit: {error}")
+        })?;
+        let before = std::mem::replace(&mut self.engine.next, plan);
+        let next = &self.engine.next;
+        if before == *next {
+            return Ok(());
+        }
+        if !self.is_lent {
+            if is_edit && self.next_is_own && before.preset == next.preset {
+                let known = fields(&before.settings);
+                let all = fields(&next.settings).into_iter();
+                for (field, text) in all.filter(|field| !known.contains(field)).collect::<Vec<_>>()
+                {
+                    self.change_running_too(&field, &text)?;
+                }
+            } else {
+                self.next_is_own = self.next_looks_own();
+            }
+        }
+        self.take_over_if_ready()
+    }
+
+    /// Whether the next run's settings could be those of the run under way, and what is set there be meant for it, too.
+    pub(super) fn next_looks_own(&self) -> bool {
+        let next = &self.engine.next;
+        let is_same_preset = next.preset == self.source_now.preset;
+        let is_alike = next.settings.evolution == self.awaited.evolution;
+        next.settings == self.awaited || (is_same_preset && is_alike)
+    }
+
+    /// The presets that can be chosen.
+    pub fn presets(&self) -> &PresetList {
+        &self.engine.presets
+    }
+
+    /// Looks for a person's own presets anew.
+    pub fn list_presets(&mut self) {
+        self.engine.presets = Arc::new(PresetList::read(&self.engine.saves));
+    }
+
+    /// The settings of the next run's preset as they come, if it is known.
+    pub fn preset_settings(&self) -> Option<&Settings> {
+        let name = self.next_preset();
+        let first = &self.engine.first.plan;
+        // Somebody may have begun with a file of their own.
+        let of_first = (first.preset == name).then_some(&first.settings);
+        self.engine.presets.settings_of(name).or(of_first)
+    }
+
+    /// Keeps the next run's settings as a preset of a person's own, of which they are from now on.
+    pub fn store_preset(&mut self, name: &str) -> Result<(), String> {
+        let next = &self.engine.next;
+        let about = format!("Your own; it began as {}.", next.preset);
+        let preset = Preset { name: name.to_owned(), about, settings: next.settings.clone() };
+        self.engine.saves.store_own_preset(&preset).map_err(|error| error.to_string())?;
+        self.list_presets();
+        self.engine.next.preset = preset.name;
+        self.take_over_if_ready()
+    }
+
+    /// Takes a preset for the next run: a shipped one, or one of a person's own.
+    pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
+        let preset = match self.engine.presets.find(name)? {
+            Some(preset) => preset.clone(),
+            None => load_preset(name).map_err(|error| error.to_string())?,
+        };
+        let seed = self.next_seed();
+        self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
+    }
+
+    /// Gives the next run the world back that it had in a plan, and the rest if that is of another preset. Seed and
+    /// population, which are no matter of the world, stay.
+    pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
+        let mut next = self.next_plan().clone();
+        if next.preset == before.preset {
+            next.settings.trial = before.settings.trial.clone();
+        } else {
+            next.preset.clone_from(&before.preset);
+            next.settings = before.settings.clone();
+            next.founder.clone_from(&before.founder);
+        }
+        // One that was chosen meanwhile may not suit that world.
+        if next.check_founder().is_err() {
+            next.founder = None;
+        }
+        self.set_next_plan(next)
+    }
+}

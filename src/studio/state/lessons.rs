@@ -1,0 +1,433 @@
+//! Lessons: what the first stair climbers taught their makers, to be tried. A lesson borrows the stage and the settings of
+//! the next run, and gives both back; the run under way is held meanwhile, and otherwise left alone.
+
+mod catalogue;
+
+use bevy::prelude::*;
+
+use super::current_run::{CurrentRun, RunStatus};
+use super::undo::UndoHistory;
+use crate::evolve::{Champion, RunPlan, Settings, with_fields};
+use crate::run::{GenerationReport, ParallelRuns, ParallelRunsEvent};
+use crate::save::library::{SavePlace, load_entry};
+use crate::save::load_preset;
+use crate::score::{Evaluation, evaluate};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{Show, StageMode};
+use crate::studio::ui::notifications::Notices;
+
+use catalogue::{LessonScene, Side};
+
+pub(crate) use catalogue::LESSONS;
+
+/// The lesson that is going on, if one is.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Lessons {
+    current: Option<Current>,
+}
+
+/// A lesson that is going on.
+#[derive(Debug)]
+struct Current {
+    /// Which one; the first is 0.
+    index: usize,
+    /// Which of its scenes is on the stage; the first is 0.
+    scene: usize,
+    /// What became of each lane of the scene: its name, and how it ended.
+    lanes: Vec<(String, Evaluation)>,
+    /// What became of each run of the scene.
+    runs: Vec<Found>,
+    under_way: Option<ParallelRuns>,
+    has_tried: bool,
+    own: Own,
+}
+
+/// A run of a lesson.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    /// What it is called.
+    pub name: String,
+    /// Its finished generations.
+    pub reports: Vec<GenerationReport>,
+    /// Its hash, once it is finished.
+    pub run_hash: Option<u64>,
+}
+
+/// What a person had before the lesson.
+#[derive(Debug)]
+struct Own {
+    next: RunPlan,
+    champions: Vec<StagedChampion>,
+    mode: StageMode,
+    history: UndoHistory,
+    pace: Pace,
+}
+
+/// How one's own run was going on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pace {
+    Running,
+    OneGeneration,
+    Held,
+}
+
+/// A lesson as a panel sees it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LessonView<'l> {
+    /// Which one; the first is 0.
+    pub index: usize,
+    /// Which of its scenes is on the stage; the first is 0.
+    pub scene: usize,
+    /// What became of each lane: its name, and how it ended.
+    pub lanes: &'l [(String, Evaluation)],
+    /// What became of each run.
+    pub runs: &'l [Found],
+    /// Whether runs are under way.
+    pub is_busy: bool,
+    /// Whether something was tried, so that the answer may be told.
+    pub has_tried: bool,
+}
+
+impl Lessons {
+    /// The lesson that is going on.
+    pub fn view(&self) -> Option<LessonView<'_>> {
+        self.current.as_ref().map(|current| LessonView {
+            index: current.index,
+            scene: current.scene,
+            lanes: &current.lanes,
+            runs: &current.runs,
+            is_busy: current.under_way.is_some(),
+            has_tried: current.has_tried,
+        })
+    }
+
+    /// Begins a lesson; what is on the stage now comes back at its end.
+    pub fn begin(
+        &mut self,
+        index: usize,
+        evolution: &mut CurrentRun,
+        Show { champions, mode }: Show,
+        history: &mut UndoHistory,
+    ) -> Result<Option<Show>, String> {
+        if index >= LESSONS.len() {
+            return Err(format!("There are {} lessons.", LESSONS.len()));
+        }
+        let own = match self.current.take() {
+            // From one lesson to the next: one's own is still that of before the first.
+            Some(before) => {
+                // What was set in the lesson before means nothing in this one.
+                history.give_back(UndoHistory::default());
+                before.own
+            }
+            None => {
+                let pace = match evolution.status() {
+                    RunStatus::Running if evolution.is_single_generation() => Pace::OneGeneration,
+                    RunStatus::Running => Pace::Running,
+                    RunStatus::Ready | RunStatus::Paused | RunStatus::Finished => Pace::Held,
+                };
+                evolution.pause()?;
+                evolution.lend(true);
+                let (next, history) = (evolution.next_plan().clone(), history.lend());
+                Own { next, champions, mode, history, pace }
+            }
+        };
+        evolution.set_next_plan(own.next.clone())?;
+        self.current = Some(Current {
+            index,
+            scene: 0,
+            lanes: Vec::new(),
+            runs: Vec::new(),
+            under_way: None,
+            has_tried: false,
+            own,
+        });
+        self.show(0)
+    }
+
+    /// Tries one of the lesson's scenes; the first is 0.
+    pub fn try_out(&mut self, scene: usize) -> Result<Option<Show>, String> {
+        if let Some(current) = &mut self.current {
+            current.has_tried = true;
+        }
+        self.show(scene)
+    }
+
+    /// Tells the answer.
+    pub fn tell(&mut self) {
+        if let Some(current) = &mut self.current {
+            current.has_tried = true;
+        }
+    }
+
+    /// Ends the lesson: stage, settings and run are as they were before it.
+    pub fn leave(
+        &mut self,
+        evolution: &mut CurrentRun,
+        history: &mut UndoHistory,
+    ) -> Result<Option<Show>, String> {
+        let Some(Current { own, .. }) = self.current.take() else { return Ok(None) };
+        evolution.set_next_plan(own.next)?;
+        evolution.lend(false);
+        history.give_back(own.history);
+        match own.pace {
+            Pace::Running if evolution.status() == RunStatus::Paused => evolution.start()?,
+            Pace::OneGeneration if evolution.status() == RunStatus::Paused => {
+                evolution.single_generation()?;
+            }
+            Pace::Running | Pace::OneGeneration | Pace::Held => {}
+        }
+        Ok(Some(Show { champions: own.champions, mode: own.mode }))
+    }
+
+    /// Puts a scene on the stage, or begins its runs.
+    fn show(&mut self, number: usize) -> Result<Option<Show>, String> {
+        let Some(current) = &mut self.current else { return Ok(None) };
+        let Some(scene) = LESSONS[current.index].scenes.get(number) else { return Ok(None) };
+        (current.scene, current.under_way) = (number, None);
+        match scene {
+            LessonScene::Lanes { lanes, champion, .. } => {
+                let champions = champions(champion, lanes)?;
+                current.runs.clear();
+                current.lanes = champions
+                    .iter()
+                    .map(|staged| {
+                        let evaluation = evaluate(&staged.champion().genome, staged.trial());
+                        (staged.label().to_owned(), evaluation)
+                    })
+                    .collect();
+                Ok(Some(if champions.len() > 1 {
+                    Show::race(champions)
+                } else {
+                    Show { champions, mode: StageMode::Solo }
+                }))
+            }
+            LessonScene::Runs { runs, .. } => {
+                let plans = runs.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
+                current.lanes.clear();
+                current.runs = runs.iter().map(found).collect();
+                let started = ParallelRuns::start(plans);
+                current.under_way =
+                    Some(started.map_err(|error| format!("The runs cannot begin: {error}"))?);
+                Ok(None)
+            }
+        }
+    }
+
+    /// Takes in what the runs have found. Says who is to be shown once they are over: the best of each.
+    fn take_in(&mut self) -> Result<Option<Show>, String> {
+        let Some(current) = &mut self.current else { return Ok(None) };
+        while let Some(event) = current.under_way.as_ref().and_then(ParallelRuns::poll) {
+            match event {
+                ParallelRunsEvent::Generation { run, report } => {
+                    current.runs[run].reports.push(*report)
+                }
+                ParallelRunsEvent::Finished { run, run_hash } => {
+                    current.runs[run].run_hash = Some(run_hash)
+                }
+                ParallelRunsEvent::Failed(problem) => {
+                    current.under_way = None;
+                    return Err(format!("The lesson's runs broke off: {problem}"));
+                }
+            }
+        }
+        let is_over = current.runs.iter().all(|found| found.run_hash.is_some());
+        if current.under_way.is_none() || !is_over {
+            return Ok(None);
+        }
+        current.under_way = None;
+        let best = current.runs.iter().filter_map(|found| {
+            let champion = found.best()?;
+            Some(StagedChampion::from_lesson(champion).named(found.name.clone()))
+        });
+        let champions: Vec<StagedChampion> = best.collect();
+        Ok((!champions.is_empty()).then(|| Show::race(champions)))
+    }
+}
+
+impl Found {
+    /// The best of all its generations so far.
+    pub fn best(&self) -> Option<&Champion> {
+        let champions = self.reports.iter().filter_map(|report| report.champion.as_ref());
+        champions.max_by(|a, b| a.evaluation.fitness.total_cmp(&b.evaluation.fitness))
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Lessons>().add_systems(Update, take_in.in_set(FrameSet::TakeIn));
+}
+
+fn take_in(
+    mut lessons: ResMut<Lessons>,
+    mut show: MessageWriter<Show>,
+    mut notices: ResMut<Notices>,
+) {
+    if lessons.current.is_none() {
+        return;
+    }
+    match lessons.take_in() {
+        Ok(shown) => {
+            show.write_batch(shown);
+        }
+        Err(problem) => notices.problem(problem),
+    }
+}
+
+/// A champion that comes with the program in each of these worlds.
+fn champions(champion: &'static str, lanes: &[Side]) -> Result<Vec<StagedChampion>, String> {
+    let place = SavePlace::Shipped(champion);
+    let (loaded, _) = load_entry(&place).map_err(|error| error.to_string())?;
+    let original = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
+    lanes
+        .iter()
+        .map(|Side { name, changes, .. }| {
+            let settings = Settings { trial: original.trial().clone(), ..Settings::default() };
+            let settings = with_fields(&settings, changes.iter().copied())
+                .map_err(|error| error.to_string())?;
+            let same = original.clone().named("The same snake".to_owned());
+            let changed = same.in_world(&settings.trial, (*name).to_owned());
+            let staged = if changed.is_changed() { changed } else { original.clone() };
+            staged.check().map_err(|error| error.to_string())?;
+            Ok(staged)
+        })
+        .collect()
+}
+
+/// The run of one side: the quick preset with its changes.
+fn plan(side: &Side) -> Result<(RunPlan, usize), String> {
+    let preset = load_preset("quick").map_err(|error| error.to_string())?;
+    let settings = with_fields(&preset.settings, side.changes.iter().copied())
+        .map_err(|error| error.to_string())?;
+    Ok((RunPlan::new(&preset.name, side.seed, settings), side.threads))
+}
+
+fn found(side: &Side) -> Found {
+    Found { name: side.name.to_owned(), reports: Vec::new(), run_hash: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Experiment, LocalPool, RunControl};
+    use crate::studio::state::current_run::prepared_run;
+
+    /// What the runs of a scene come to.
+    fn outcome(sides: &[Side]) -> Vec<Found> {
+        sides
+            .iter()
+            .map(|side| {
+                let (plan, threads) = plan(side).expect("allowed");
+                let pool = LocalPool::new(threads).expect("threads");
+                let mut experiment = Experiment::new(plan);
+                let mut found = found(side);
+                while !experiment.is_over() {
+                    let report = experiment.run_generation(&pool, &RunControl::default());
+                    found.reports.push(report.expect("not cancelled"));
+                }
+                found.run_hash = Some(experiment.run_hash());
+                found
+            })
+            .collect()
+    }
+
+    /// How the lanes of a scene end: the place of the centre, in metres.
+    fn ends_m(champion: &'static str, lanes: &[Side]) -> Vec<f32> {
+        let champions = champions(champion, lanes).expect("they fit");
+        let evaluate =
+            |staged: &StagedChampion| evaluate(&staged.champion().genome, staged.trial());
+        champions.iter().map(|staged| evaluate(staged).centre_y_m).collect()
+    }
+
+    fn lanes(lesson: usize, scene: usize) -> &'static [Side] {
+        let LessonScene::Lanes { lanes, .. } = &LESSONS[lesson].scenes[scene] else {
+            panic!("lanes")
+        };
+        lanes
+    }
+
+    fn runs(lesson: usize, scene: usize) -> &'static [Side] {
+        let LessonScene::Runs { runs, .. } = &LESSONS[lesson].scenes[scene] else { panic!("runs") };
+        runs
+    }
+
+    #[test]
+    fn the_first_lesson_tells_the_truth_about_friction() {
+        let ends = ends_m("robust", lanes(0, 0));
+        let [little, original, much] = ends[..] else { panic!("three lanes") };
+        assert!(original > 21.0, "the original stands on the landing");
+        assert!(little < original - 10.0 && much < original - 10.0, "{ends:?}");
+        let near = ends_m("robust", lanes(0, 1));
+        assert!(near.iter().all(|end| *end > 18.0), "{near:?}");
+    }
+
+    #[test]
+    fn the_second_lesson_tells_the_truth_about_the_frame_rate() {
+        let ends = ends_m("climber", lanes(1, 0));
+        assert!(ends[1..].iter().all(|end| (end - ends[0]).abs() > 0.5), "{ends:?}");
+    }
+
+    #[test]
+    fn the_third_lesson_tells_the_truth_about_limits() {
+        let found = outcome(runs(2, 1));
+        let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
+        let [with, without] = &found[..] else { panic!("two runs") };
+        let best = |of: &Found| last(of).expect("somebody was healthy").best;
+        assert!(best(with) > best(without) + 3.0, "{} and {}", best(with), best(without));
+        let out = |of: &Found| of.reports.iter().map(|report| report.disqualified).sum::<u32>();
+        assert!(out(without) > out(with), "{} and {}", out(without), out(with));
+    }
+
+    #[test]
+    fn the_fourth_lesson_tells_the_truth_about_halving() {
+        let found = outcome(runs(3, 1));
+        let [halved, kept] = &found[..] else { panic!("two runs") };
+        let best = |of: &Found| of.best().expect("somebody").evaluation.fitness;
+        assert!(best(kept) > best(halved) + 3.0, "{} and {}", best(kept), best(halved));
+    }
+
+    #[test]
+    fn the_fifth_lesson_tells_the_truth_about_bits() {
+        let twice = outcome(runs(4, 1));
+        assert_eq!(twice[0].run_hash, twice[1].run_hash);
+        let apart = outcome(runs(4, 2));
+        assert_ne!(apart[0].run_hash, apart[1].run_hash);
+    }
+
+    #[test]
+    fn every_scene_of_every_lesson_can_be_shown() {
+        for lesson in &LESSONS {
+            for scene in lesson.scenes {
+                match scene {
+                    LessonScene::Lanes { lanes, champion, .. } => {
+                        champions(champion, lanes).expect(lesson.title);
+                    }
+                    LessonScene::Runs { runs, .. } => {
+                        runs.iter().for_each(|side| drop(plan(side).expect(lesson.title)));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn after_a_lesson_stage_and_settings_are_as_they_were() {
+        let mut evolution = prepared_run();
+        let own = champions("climber", &[lanes(0, 0)[1].clone()]).expect("it fits");
+        let next = evolution.next_plan().clone();
+        let mut lessons = Lessons::default();
+        let stage = |champions: Vec<StagedChampion>| Show { champions, mode: StageMode::Solo };
+        let mut history = UndoHistory::default();
+        let shown = lessons.begin(0, &mut evolution, stage(own.clone()), &mut history);
+        assert_eq!(shown.expect("allowed").expect("a scene").champions.len(), 3);
+        evolution.set_field("surface.friction", "0.2").expect("allowed");
+        lessons.begin(1, &mut evolution, stage(Vec::new()), &mut history).expect("allowed");
+        assert_eq!(*evolution.next_plan(), next, "the next lesson begins with one's own, too");
+        evolution.set_field("surface.friction", "0.3").expect("allowed");
+        let back =
+            lessons.leave(&mut evolution, &mut history).expect("allowed").expect("one's own");
+        assert_eq!(*evolution.next_plan(), next);
+        assert_eq!(back.mode, StageMode::Solo);
+        assert_eq!(back.champions.len(), own.len());
+        assert!(lessons.view().is_none());
+    }
+}

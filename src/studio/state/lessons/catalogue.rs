@@ -1,0 +1,244 @@
+//! Texts and scenes of the five lessons. Tests in [`super`] check that the conclusions are true.
+
+/// A guided experiment.
+#[derive(Debug)]
+pub(crate) struct Lesson {
+    /// Title.
+    pub title: &'static str,
+    /// Question that it answers.
+    pub question: &'static str,
+    /// Experience from the original experiment.
+    pub story: &'static str,
+    /// Instruction.
+    pub to_try: &'static str,
+    /// Observation to make.
+    pub look_for: &'static str,
+    /// Conclusion.
+    pub answer: &'static str,
+    /// Scenes; the first is shown at once.
+    pub scenes: &'static [LessonScene],
+}
+
+/// Scene of a lesson.
+#[derive(Debug)]
+pub(crate) enum LessonScene {
+    /// A champion in several worlds.
+    Lanes {
+        /// Label of its button.
+        label: &'static str,
+        /// Name of a built-in champion.
+        champion: &'static str,
+        /// Worlds, one per lane.
+        lanes: &'static [Side],
+    },
+    /// Small runs whose best snakes race afterwards.
+    Runs {
+        /// Label of its button.
+        label: &'static str,
+        /// Runs.
+        runs: &'static [Side],
+    },
+}
+
+impl LessonScene {
+    /// Label of its button.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Self::Lanes { label, .. } | Self::Runs { label, .. } => label,
+        }
+    }
+}
+
+/// Lane or run that is compared with others.
+#[derive(Debug, Clone)]
+pub(crate) struct Side {
+    /// Label.
+    pub name: &'static str,
+    /// Changed settings with their values.
+    pub changes: &'static [(&'static str, &'static str)],
+    /// Seed of the run.
+    pub seed: u64,
+    /// Worker threads of the run.
+    pub threads: usize,
+}
+
+const fn lane(name: &'static str, changes: &'static [(&'static str, &'static str)]) -> Side {
+    Side { name, changes, seed: 1, threads: 1 }
+}
+
+const fn run(
+    name: &'static str,
+    seed: u64,
+    threads: usize,
+    changes: &'static [(&'static str, &'static str)],
+) -> Side {
+    Side { name, changes, seed, threads }
+}
+
+/// The champion alone, without changes.
+const AS_FOUND: LessonScene = LessonScene::Lanes {
+    label: "The original champion",
+    champion: "climber",
+    lanes: &[lane("original", &[])],
+};
+
+/// All lessons.
+pub(crate) const LESSONS: [Lesson; 5] = [
+    Lesson {
+        title: "Friction: too little, and too much",
+        question: "How much grip do stairs need?",
+        story: "In the original experiment, the ground was tuned by eye, which took a long time. On ice, a snake \
+                cannot push itself off. So is more grip always better? The stage shows the same snake on ice, on \
+                its own surface and on a surface like glue.",
+        to_try: "Open the World panel and drag Friction: a copy of the snake starts beside it with the new \
+                 value. Or click one of these examples.",
+        look_for: "How far each snake gets. The torques are the same in all lanes; only the ground differs.",
+        answer: "Too little grip slips; too much makes a block catch on the step edge and hold the others back. \
+                 A snake that evolved on one surface is fit for that surface and tolerates only small changes. \
+                 Therefore every property of a surface is a number here, and you see its effect at once.",
+        scenes: &[
+            LessonScene::Lanes {
+                label: "Ice, original, glue",
+                champion: "robust",
+                lanes: &[
+                    lane("friction 0.1", &[("surface.friction", "0.1")]),
+                    lane("original", &[]),
+                    lane("friction 5", &[("surface.friction", "5")]),
+                ],
+            },
+            LessonScene::Lanes {
+                label: "A little less, a little more",
+                champion: "robust",
+                lanes: &[
+                    lane("friction 0.7", &[("surface.friction", "0.7")]),
+                    lane("original", &[]),
+                    lane("friction 1.3", &[("surface.friction", "1.3")]),
+                ],
+            },
+        ],
+    },
+    Lesson {
+        title: "Forces that follow the frame rate",
+        question: "Why did the best snake climb on one computer and fall on another?",
+        story: "In the original experiment, forces were applied once per drawn frame. Moving the window slowed the \
+                drawing, and therefore the snake. The stage shows the same genome with its own number of physics \
+                steps per second, with fewer, and with more.",
+        to_try: "Show the champion alone. Play it at a quarter of the speed and at four times the speed (the \
+                 field with × below the stage), or turn on everything in Show to slow the drawing.",
+        look_for: "The fitness at the end. No digit of it changes, at any playback speed.",
+        answer: "Here every physics step has the same length, and drawing does not affect the simulation. A slow \
+                 computer shows fewer frames of exactly the same climb.",
+        scenes: &[
+            LessonScene::Lanes {
+                label: "Original, fewer and more steps per second",
+                champion: "climber",
+                lanes: &[
+                    lane("original", &[]),
+                    lane("45 steps per second", &[("physics.steps_per_s", "45")]),
+                    lane("90 steps per second", &[("physics.steps_per_s", "90")]),
+                ],
+            },
+            AS_FOUND,
+        ],
+    },
+    Lesson {
+        title: "Limits on the joints",
+        question: "Why does it help to restrict the joints?",
+        story: "In the original experiment, snakes without joint limits shook themselves to pieces: a joint that can \
+                turn all the way round folds the snake into itself. With a maximum angle for each joint, chosen \
+                at random for each genome, evolution had fewer useless movements to try.",
+        to_try: "Run evolution twice for six generations of 120 snakes: with the original limits, and with limits of \
+                 3 radians (172°), which hardly restrict a joint.",
+        look_for: "The number of disqualified snakes, and the distance of the best one.",
+        answer: "Limits remove more useless movements than useful ones. Almost without limits, nearly all random \
+                 snakes are disqualified before they have moved, and few are left to breed from.",
+        scenes: &[
+            AS_FOUND,
+            LessonScene::Runs {
+                label: "Evolve with and almost without limits",
+                runs: &[
+                    run("with limits", 1, 1, &[("population", "120"), ("generations", "6")]),
+                    run(
+                        "almost no limits",
+                        1,
+                        1,
+                        &[
+                            ("population", "120"),
+                            ("generations", "6"),
+                            ("bend_limits_rad", "[3]"),
+                            ("twist_limits_rad", "[3]"),
+                        ],
+                    ),
+                ],
+            },
+        ],
+    },
+    Lesson {
+        title: "A range that halves",
+        question: "Why did progress stop after six generations?",
+        story: "Children differ from their parent by random changes within a mutation range. In the original \
+                experiment this range halved with each generation: 100, 50, 25 and so on. After six generations, \
+                children hardly differ from their parents.",
+        to_try: "Run evolution twice for fourteen generations: with a range that halves, and with one that shrinks \
+                 by only 5 % per generation.",
+        look_for: "The two lines. At first the halving range is often ahead, because small changes improve a good \
+                   snake. What happens after generation 6?",
+        answer: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
+                 generations can only refine. Not every seed shows this, because some runs are lucky early. You can \
+                 set the range and its decay in the Run panel; other strategies adapt their own.",
+        scenes: &[
+            AS_FOUND,
+            LessonScene::Runs {
+                label: "Evolve with both ranges",
+                runs: &[
+                    run("range halves", 3, 1, &[("population", "120"), ("generations", "14")]),
+                    run(
+                        "range stays large",
+                        3,
+                        1,
+                        &[("population", "120"), ("generations", "14"), ("mutation_decay", "0.95")],
+                    ),
+                ],
+            },
+        ],
+    },
+    Lesson {
+        title: "The same bits",
+        question: "Why must a repeated run give exactly the same result?",
+        story: "In the original experiment, the same forces gave different results from run to run and from computer \
+                to computer. Results could not be checked, work could not be shared between computers, and runs \
+                were repeated only to discard outliers.",
+        to_try: "Repeat the same run on one thread and on two threads. Then repeat it with the friction changed by \
+                 a millionth.",
+        look_for: "The hash of each run: sixteen digits that summarise every bit of every evaluation.",
+        answer: "The same seed and settings give the same hash, with any number of threads and on all common \
+                 computers. A change of a millionth gives another result, so a result can be trusted only if it can \
+                 be repeated exactly.",
+        scenes: &[
+            AS_FOUND,
+            LessonScene::Runs {
+                label: "The same run twice",
+                runs: &[
+                    run("on one thread", 1, 1, &[("population", "60"), ("generations", "6")]),
+                    run("on two threads", 1, 2, &[("population", "60"), ("generations", "6")]),
+                ],
+            },
+            LessonScene::Runs {
+                label: "Friction changed by a millionth",
+                runs: &[
+                    run("friction 1", 1, 1, &[("population", "60"), ("generations", "6")]),
+                    run(
+                        "friction 1.000001",
+                        1,
+                        1,
+                        &[
+                            ("population", "60"),
+                            ("generations", "6"),
+                            ("surface.friction", "1.000001"),
+                        ],
+                    ),
+                ],
+            },
+        ],
+    },
+];

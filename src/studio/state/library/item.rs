@@ -1,0 +1,271 @@
+//! An entry of the library as it is listed: what is known of it, in words and numbers to sort by.
+
+use std::time::Duration;
+
+use crate::genome::ControllerKind;
+use crate::save::library::{
+    ChampionDetails, EntryDetails, LibraryEntry, RunDetails, SavePlace, Thumbnail,
+};
+use crate::score::Fitness;
+
+/// An entry, and what stands in it once it is read.
+#[derive(Debug)]
+pub struct LibraryItem {
+    entry: LibraryEntry,
+    /// What its file is like by now, if it has changed since it was read.
+    awaited: Option<LibraryEntry>,
+    name: String,
+    /// What stands in it, or what is wrong with it.
+    read: Option<Result<EntryDetails, String>>,
+    /// Its name in small letters, to sort by.
+    sorted_as: String,
+    /// All that can be searched for, in small letters.
+    words: String,
+}
+
+impl LibraryItem {
+    /// An entry of which only the name is known.
+    pub fn new(entry: LibraryEntry) -> Self {
+        let name = entry.place.name();
+        let sorted_as = name.to_lowercase();
+        let (awaited, words) = (None, String::new());
+        let mut item = Self { entry, awaited, name, read: None, words, sorted_as };
+        item.describe();
+        item
+    }
+
+    /// Takes in what its file is like by now. If that has changed, what is known of it, its date too, is of before
+    /// until it is read: so its row moves once, not twice.
+    pub fn follow(&mut self, entry: LibraryEntry) {
+        if *self.awaited.as_ref().unwrap_or(&self.entry) != entry {
+            self.awaited = Some(entry);
+        }
+    }
+
+    /// Whether it is to be read, for the first time or anew.
+    pub fn is_to_be_read(&self) -> bool {
+        self.read.is_none() || self.awaited.is_some()
+    }
+
+    /// Takes in what stands in it. Returns whether anything that it is sorted or found by is different now.
+    pub fn learn(&mut self, read: Result<EntryDetails, String>) -> bool {
+        let date = self.entry.modified;
+        let before = (date, self.fitness().map(f32::to_bits), self.generation());
+        // Presets and whether it is damaged are among the words.
+        let words = std::mem::take(&mut self.words);
+        self.entry = self.awaited.take().unwrap_or_else(|| self.entry.clone());
+        self.read = Some(read);
+        self.describe();
+        let date = self.entry.modified;
+        before != (date, self.fitness().map(f32::to_bits), self.generation()) || words != self.words
+    }
+
+    fn describe(&mut self) {
+        let kind = match self.place() {
+            SavePlace::Shipped(_) => "champion comes with the program",
+            SavePlace::Champion(_) => "champion",
+            SavePlace::Run(_) => "run",
+        };
+        let mut words = vec![self.name.as_str(), kind];
+        if self.problem().is_some() {
+            words.push("damaged");
+        }
+        words.extend(self.preset());
+        words.extend(self.controller().map(ControllerKind::name));
+        let method = self.run().and_then(|run| run.strategy);
+        words.extend(method.map(|method| method.title()));
+        self.words = words.join("\n").to_lowercase();
+    }
+
+    /// The entry.
+    pub fn entry(&self) -> &LibraryEntry {
+        &self.entry
+    }
+
+    /// Where it is.
+    pub fn place(&self) -> &SavePlace {
+        &self.entry.place
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its name in small letters, to sort by.
+    pub fn sorted_as(&self) -> &str {
+        &self.sorted_as
+    }
+
+    /// Whether all of these are found in it; they are in small letters.
+    pub fn has_all(&self, sought: &[&str]) -> bool {
+        sought.iter().all(|sought| self.words.contains(sought))
+    }
+
+    /// Whether it has been read.
+    pub fn is_read(&self) -> bool {
+        self.read.is_some()
+    }
+
+    /// What is wrong with it, if something is.
+    pub fn problem(&self) -> Option<&str> {
+        self.read.as_ref()?.as_ref().err().map(String::as_str)
+    }
+
+    /// What stands in it, if it is a champion.
+    pub fn champion(&self) -> Option<&ChampionDetails> {
+        match &self.read {
+            Some(Ok(EntryDetails::Champion(champion))) => Some(champion),
+            _ => None,
+        }
+    }
+
+    /// What stands in it, if it is a run.
+    pub fn run(&self) -> Option<&RunDetails> {
+        match &self.read {
+            Some(Ok(EntryDetails::Run(run))) => Some(run),
+            _ => None,
+        }
+    }
+
+    /// What it reached; of a run its best.
+    pub fn fitness(&self) -> Option<f32> {
+        let of_run = || self.run()?.best.map(|(_, fitness)| fitness);
+        self.champion().map(|champion| champion.fitness).or_else(of_run)
+    }
+
+    /// The same with its unit, or nothing.
+    pub fn fitness_text(&self) -> String {
+        let rewarded = self.champion().map(|of| of.rewarded).or(self.run().map(|of| of.rewarded));
+        match (self.fitness(), rewarded) {
+            (Some(fitness), Some(rewarded)) => fitness_text(fitness, rewarded),
+            _ => String::new(),
+        }
+    }
+
+    /// The generation it is from; of a run how many are finished.
+    pub fn generation(&self) -> Option<u32> {
+        let of_champion = self.champion().map(|champion| champion.origin.generation);
+        of_champion.or(self.run().map(|run| run.finished))
+    }
+
+    /// The same in words: "generation 3"; of a run "3 of 100 generations".
+    pub fn generation_text(&self) -> String {
+        match (self.champion(), self.run()) {
+            (Some(champion), _) => format!("generation {}", champion.origin.generation),
+            (_, Some(RunDetails { finished, generations: Some(all), .. })) => {
+                format!("{finished} of {all} generations")
+            }
+            (_, Some(run)) => format!("{} generations", run.finished),
+            _ => String::new(),
+        }
+    }
+
+    /// Name of the preset it started from.
+    pub fn preset(&self) -> Option<&str> {
+        let of_run = || self.run().map(|run| run.preset.as_str());
+        self.champion().map(|champion| champion.origin.preset.as_str()).or_else(of_run)
+    }
+
+    /// What drives its joints.
+    pub fn controller(&self) -> Option<ControllerKind> {
+        self.champion().map(|of| of.controller).or(self.run().map(|of| of.controller))
+    }
+
+    /// What it does, from the side.
+    pub fn thumbnail(&self) -> Option<&Thumbnail> {
+        self.champion().map(|of| &of.thumbnail).or(self.run().map(|of| &of.thumbnail))
+    }
+
+    /// When it was last changed, in words.
+    pub fn date_text(&self) -> String {
+        match self.place() {
+            SavePlace::Shipped(_) => "comes with the program".to_owned(),
+            SavePlace::Champion(_) | SavePlace::Run(_) => date(self.entry.modified),
+        }
+    }
+
+    /// All there is to say of it in a line, for who does not see the row.
+    pub fn label(&self) -> String {
+        if let Some(problem) = self.problem() {
+            return format!("{}, damaged: {problem}", self.name);
+        }
+        if !self.is_read() {
+            return format!("{}, not read yet", self.name);
+        }
+        let kind = if self.place().run().is_some() { "run" } else { "" };
+        let (fitness, generation) = (self.fitness_text(), self.generation_text());
+        let date = self.date_text();
+        let parts =
+            [&self.name, kind, &fitness, self.preset().unwrap_or_default(), &generation, &date];
+        let said: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        said.join(", ")
+    }
+}
+
+/// A fitness with its unit.
+pub fn fitness_text(fitness: f32, rewarded: Fitness) -> String {
+    match rewarded {
+        Fitness::StepsClimbed => format!("{fitness:.0} steps"),
+        other => format!("{fitness:.2}{}", other.unit()),
+    }
+}
+
+/// A day, from the time since the beginning of 1970: "21 Nov 2026", in UTC.
+pub fn date(since_1970: Duration) -> String {
+    const MONTHS: [&str; 12] =
+        ["Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec", "Jan", "Feb"];
+    // Days since the first of March of the year 0: then a leap day is the last of its year.
+    let days = since_1970.as_secs() / 86_400 + 719_468;
+    let (era, day_of_era) = (days / 146_097, days % 146_097);
+    let year_of_era =
+        (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month + 2) / 5 + 1;
+    let year = era * 400 + year_of_era + u64::from(month >= 10);
+    let month = MONTHS.get(month as usize).copied().unwrap_or_default();
+    format!("{day} {month} {year}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::library::read_entry;
+
+    #[test]
+    fn days_have_their_dates() {
+        for (seconds, expected) in [
+            (0, "1 Jan 1970"),
+            (951_782_400, "29 Feb 2000"),
+            (1_709_251_199, "29 Feb 2024"),
+            (1_709_251_200, "1 Mar 2024"),
+            (1_798_761_599, "31 Dec 2026"),
+            (4_107_542_400, "1 Mar 2100"),
+        ] {
+            assert_eq!(date(Duration::from_secs(seconds)), expected);
+        }
+    }
+
+    #[test]
+    fn it_is_found_by_name_preset_and_controller_and_by_being_damaged() {
+        let item = |read: bool| {
+            let place = SavePlace::Shipped("fast");
+            let details = read_entry(&place).map_err(|error| error.to_string());
+            let entry = LibraryEntry { place, bytes: 0, modified: Duration::ZERO };
+            let mut item = LibraryItem::new(entry);
+            item.learn(if read { details } else { Err("cut off".to_owned()) });
+            item
+        };
+        let good = item(true);
+        for sought in ["fast", "climb", "gait", "program"] {
+            assert!(good.has_all(&[sought]), "{sought}");
+        }
+        assert!(good.has_all(&["gait", "fas"]) && !good.has_all(&["gait", "slow"]));
+        assert!(!good.has_all(&["damaged"]));
+        assert_eq!(good.label(), "fast, 24.05 m, climb, generation 95, comes with the program");
+        let bad = item(false);
+        assert!(bad.has_all(&["damaged"]) && !bad.has_all(&["climb"]));
+        assert_eq!(bad.label(), "fast, damaged: cut off");
+    }
+}

@@ -1,0 +1,64 @@
+//! From a save to the stage, or to a run that begins with it.
+
+use std::path::Path;
+
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::save::library::{SavePlace, load_entry};
+use crate::save::{LoadedChampion, load_generation};
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::state::current_run::CurrentRun;
+
+/// A name on the stage is cut off after so many characters.
+const LONGEST_LABEL: usize = 40;
+
+/// Begins a run of which the champion of an entry is a parent; `best` as in [`exhibit_of`].
+///
+/// # Errors
+/// The champion cannot be read, or a run cannot begin with it.
+pub fn found_run(
+    evolution: &mut CurrentRun,
+    place: &SavePlace,
+    best: Option<u32>,
+) -> Result<(), String> {
+    let (loaded, _) = load(place, best)?;
+    evolution.found_run(&loaded.champion, &place.name())
+}
+
+/// The champion of an entry and, of a run's best, its generation. Where that is known already, the run's log, which
+/// may be long, need not be read.
+fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<u32>), String> {
+    let loaded = match (place, best) {
+        (SavePlace::Run(run), Some(best)) => load_generation(run, best).map(|it| (it, Some(best))),
+        _ => load_entry(place),
+    };
+    loaded.map_err(|error| error.to_string())
+}
+
+/// The champion of an entry, to be shown; of a run its best, whose generation is `best` if that is known.
+pub fn champion_of(place: &SavePlace, best: Option<u32>) -> Result<StagedChampion, String> {
+    let (loaded, generation) = load(place, best)?;
+    let name = match generation {
+        None => place.name(),
+        Some(generation) => {
+            let origin = &loaded.champion.origin;
+            format!("{}, seed {}, generation {generation}", origin.preset, origin.seed)
+        }
+    };
+    Ok(shown(&loaded, &name, &format!("{place:?}{generation:?}")))
+}
+
+/// The champion of a run's generation, to be shown.
+pub fn generation_of(run: &Path, generation: u32) -> Result<StagedChampion, String> {
+    let loaded = load_generation(run, generation).map_err(|error| error.to_string())?;
+    let identity = format!("{:?}{:?}", SavePlace::Run(run.to_owned()), Some(generation));
+    Ok(shown(&loaded, &format!("Generation {generation}"), &identity))
+}
+
+fn shown(loaded: &LoadedChampion, name: &str, identity: &str) -> StagedChampion {
+    let mut label: String = name.chars().take(LONGEST_LABEL).collect();
+    if label.len() < name.len() {
+        label.push('…');
+    }
+    StagedChampion::from_library(loaded, xxh3_64(identity.as_bytes()), &label)
+}

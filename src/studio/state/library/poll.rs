@@ -1,0 +1,211 @@
+//! What happens to the library by itself: it is read, follows the run, and takes files that are dropped.
+
+use bevy::prelude::*;
+use bevy::window::FileDragAndDrop;
+
+use super::{Library, LibraryItem};
+use crate::run::{BackgroundTask, LibraryEvent};
+use crate::save::library::LibraryEntry;
+use crate::studio::commands::Command;
+use crate::studio::commands::library::LibraryCommand;
+use crate::studio::schedule::FrameSet;
+use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::ui::notifications::Notices;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Library>()
+        .add_systems(Update, (take_drops, follow, take_in).chain().in_set(FrameSet::TakeIn));
+}
+
+/// So many events are taken in within a frame: some tenths of a millisecond.
+const MOST_EVENTS: usize = 100;
+/// A folder that changes with every generation is looked at again after so many seconds at the earliest.
+const EARLIEST_LOOK_S: f32 = 2.0;
+
+fn take_in(
+    mut library: ResMut<Library>,
+    mut notices: ResMut<Notices>,
+    mut send: MessageWriter<Command>,
+) {
+    library.take_in(&mut notices);
+    if library.has_loaded() {
+        send.write(Command::Library(LibraryCommand::ShowLoaded));
+    }
+}
+
+/// Files that are dropped into the window are imported, all of a frame at once.
+fn take_drops(
+    mut drops: MessageReader<FileDragAndDrop>,
+    mut library: ResMut<Library>,
+    mut send: MessageWriter<Command>,
+) {
+    let mut dropped = Vec::new();
+    for drop in drops.read() {
+        library.is_drop_near = matches!(drop, FileDragAndDrop::HoveredFile { .. });
+        if let FileDragAndDrop::DroppedFile { path_buf, .. } = drop {
+            dropped.push(path_buf.clone());
+        }
+    }
+    if !dropped.is_empty() {
+        send.write(Command::Library(LibraryCommand::Import(dropped)));
+    }
+}
+
+/// Looks again when the run has another generation, and knows which run goes on.
+fn follow(
+    mut library: ResMut<Library>,
+    evolution: Res<CurrentRun>,
+    time: Res<Time<Real>>,
+    mut seen: Local<(u32, usize)>,
+    mut looked_s: Local<f32>,
+) {
+    let goes_on = matches!(evolution.status(), RunStatus::Running | RunStatus::Paused);
+    let current = goes_on.then(|| evolution.folder());
+    if library.current.as_deref() != current {
+        library.current = current.map(ToOwned::to_owned);
+        library.revision += 1;
+    }
+    let now = (evolution.number(), evolution.reports().len());
+    let now_s = time.elapsed_secs();
+    if *seen != now && library.is_open() && now_s - *looked_s > EARLIEST_LOOK_S {
+        (*seen, *looked_s) = (now, now_s);
+        library.look_again();
+    }
+}
+
+impl Library {
+    /// Takes in what was read and done meanwhile.
+    pub(super) fn take_in(&mut self, notices: &mut Notices) {
+        self.take_in_errands(notices);
+        if let Some(loaded) = self.loading.as_ref().and_then(BackgroundTask::poll) {
+            self.loading = None;
+            self.loaded = Some(loaded.flatten());
+        }
+        let Some(reader) = &self.reader else { return };
+        for event in reader.poll(MOST_EVENTS) {
+            self.learn(event);
+        }
+    }
+
+    /// Whether somebody has been read who is to take the stage: see [`LibraryCommand::ShowLoaded`].
+    pub(super) fn has_loaded(&self) -> bool {
+        self.loaded.is_some()
+    }
+
+    pub(super) fn learn(&mut self, event: LibraryEvent) {
+        match event {
+            LibraryEvent::Done(_) => self.unread = 0,
+            LibraryEvent::NotListed(problem) => {
+                self.problem = Some(problem);
+                self.is_listed = true;
+                self.items.clear();
+                self.listings += 1;
+                self.revision += 1;
+            }
+            LibraryEvent::Listed(entries) => self.list(entries),
+            LibraryEvent::Read(place, read) => {
+                let found = self.items.binary_search_by(|item| item.place().cmp(&place));
+                let Ok(index) = found else { return };
+                self.unread = self.unread.saturating_sub(1);
+                let is_sorted_anew = self.items[index].learn(read);
+                self.sortings += u64::from(is_sorted_anew);
+                self.revision += 1;
+            }
+        }
+    }
+
+    /// Takes in what there is by name; what was known of entries of before stays known until it is read anew. While a
+    /// run goes on, only its entry changes, every few seconds: then all the others are left as they are.
+    fn list(&mut self, entries: Vec<LibraryEntry>) {
+        let is_known = self.is_listed && self.problem.is_none();
+        let places = self.items.iter().map(LibraryItem::place);
+        if is_known && places.eq(entries.iter().map(|entry| &entry.place)) {
+            self.items.iter_mut().zip(entries).for_each(|(item, entry)| item.follow(entry));
+        } else {
+            let mut before = std::mem::take(&mut self.items).into_iter().peekable();
+            for entry in entries {
+                while before.next_if(|item| item.place() < &entry.place).is_some() {}
+                let item = match before.next_if(|item| item.place() == &entry.place) {
+                    Some(mut item) => {
+                        item.follow(entry);
+                        item
+                    }
+                    None => LibraryItem::new(entry),
+                };
+                self.items.push(item);
+            }
+            self.is_listed = true;
+            self.problem = None;
+            self.listings += 1;
+            self.revision += 1;
+        }
+        self.unread = self.items.iter().filter(|item| item.is_to_be_read()).count();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::save::SavesFolder;
+    use crate::save::library::SavePlace;
+    use crate::studio::state::current_run::prepared_run;
+
+    #[test]
+    fn while_a_run_goes_on_its_entry_alone_is_sorted_anew_and_only_once_it_is_read() {
+        let place = |name: &str| SavePlace::Champion(format!("saves/{name}.ron").into());
+        let entry = |name: &str, day: u64| LibraryEntry {
+            place: place(name),
+            bytes: 1,
+            modified: Duration::from_secs(day * 86_400),
+        };
+        let read = |name: &str| LibraryEvent::Read(place(name), Err("cut off".to_owned()));
+        let listed = |day| LibraryEvent::Listed(vec![entry("a", 1), entry("b", day)]);
+        let mut library = Library::of(vec![listed(2), read("a"), read("b")]);
+        let state = |library: &Library| {
+            (library.listings(), library.sortings(), library.revision(), library.unread())
+        };
+        let (listings, sortings, revision, unread) = state(&library);
+        assert_eq!(unread, 0);
+        library.learn(listed(3));
+        assert_eq!(state(&library), (listings, sortings, revision, 1), "nothing to be seen yet");
+        library.learn(read("b"));
+        assert_eq!(state(&library), (listings, sortings + 1, revision + 1, 0));
+        let date = library.item(&place("b")).expect("there").entry().modified;
+        assert_eq!(date.as_secs(), 3 * 86_400);
+        library.learn(listed(3));
+        library.learn(read("a"));
+        let now = (listings, sortings + 1, revision + 2, 0);
+        assert_eq!(state(&library), now, "read anew, it is what it was");
+        library.learn(LibraryEvent::Listed(vec![entry("b", 3)]));
+        assert_eq!(library.listings(), listings + 1);
+    }
+
+    #[test]
+    fn files_that_are_dropped_are_imported_together() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut app = App::new();
+        app.add_message::<Command>()
+            .add_message::<FileDragAndDrop>()
+            .insert_resource(prepared_run())
+            .insert_resource(Library::new(SavesFolder::find(Some(folder.path()))))
+            .add_systems(Update, take_drops);
+        let window = Entity::PLACEHOLDER;
+        let path = |name: &str| folder.path().join(name);
+        app.world_mut()
+            .write_message(FileDragAndDrop::HoveredFile { window, path_buf: path("a.ron") });
+        app.update();
+        assert!(app.world().resource::<Library>().is_drop_near());
+        for name in ["a.ron", "b.ron"] {
+            let drop = FileDragAndDrop::DroppedFile { window, path_buf: path(name) };
+            app.world_mut().write_message(drop);
+        }
+        app.update();
+        assert!(!app.world().resource::<Library>().is_drop_near());
+        let sent: Vec<Command> =
+            app.world_mut().resource_mut::<Messages<Command>>().drain().collect();
+        let both = vec![path("a.ron"), path("b.ron")];
+        assert_eq!(sent, [Command::Library(LibraryCommand::Import(both))]);
+    }
+}

@@ -1,0 +1,140 @@
+//! The individuals on the stage: single picks, races of generations, races of leaders.
+
+use super::current_run::CurrentRun;
+use crate::evolve::Champion;
+use crate::studio::commands::pick::Pick;
+use crate::studio::stage::opening::OpeningChampions;
+use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
+use crate::studio::stage::{MAX_LANES, Show};
+
+/// So many generations race if there are more than there are lanes: as many as the report shows.
+const CHOSEN_GENERATIONS: usize = 6;
+
+/// Somebody who was pointed at. None if there is nobody any more.
+pub(crate) fn champion_of(
+    pick: &Pick,
+    evolution: &CurrentRun,
+    opening: &OpeningChampions,
+) -> Option<StagedChampion> {
+    let number = evolution.number();
+    let found = |champion: &Champion| StagedChampion::from_run(champion, number);
+    match *pick {
+        Pick::Opened(index) => opening.staged(index),
+        Pick::Generation(generation) => evolution.champion_of(generation).map(found),
+        Pick::Front { generation, individual } => {
+            evolution.front_member(generation, individual).as_ref().map(found)
+        }
+        Pick::Elite(cell) => evolution.elite(cell).as_ref().map(found),
+        Pick::Individual(place) => evolution.individual(place).as_ref().map(found),
+    }
+}
+
+/// Whether two exhibits are the same individual.
+fn are_one(a: &StagedChampion, b: &StagedChampion) -> bool {
+    let is_run = |staged: &StagedChampion| matches!(staged.source(), ChampionSource::Run(_));
+    a.source() == b.source() && (!is_run(a) || a.champion().origin == b.champion().origin)
+}
+
+/// Those on the stage and one more; if it is there already, without it.
+pub(crate) fn with_one_more(
+    mut on_show: Vec<StagedChampion>,
+    staged: StagedChampion,
+) -> Result<Option<Show>, String> {
+    if let Some(place) = on_show.iter().position(|other| are_one(other, &staged)) {
+        if on_show.len() == 1 {
+            return Ok(None);
+        }
+        on_show.remove(place);
+    } else if on_show.len() >= MAX_LANES {
+        return Err(format!("At most {MAX_LANES} snakes fit on the stage."));
+    } else {
+        on_show.push(staged);
+    }
+    Ok(Some(Show::race(on_show)))
+}
+
+/// The champions of the generations of the current run; of many, some at equal distances, the first and the last
+/// among them.
+pub(crate) fn all_generations(evolution: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
+    let champions: Vec<&Champion> =
+        evolution.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
+    if champions.len() < 2 {
+        return Err("Nothing to race yet: finish two generations first.".to_owned());
+    }
+    let number = evolution.number();
+    let chosen = evenly_chosen(champions.len());
+    Ok(chosen.map(|index| StagedChampion::from_run(champions[index], number)).collect())
+}
+
+/// The indices of those of `count` that race: all, or of many some at equal distances.
+pub(crate) fn evenly_chosen(count: usize) -> impl Iterator<Item = usize> {
+    evenly(count, MAX_LANES, CHOSEN_GENERATIONS)
+}
+
+/// All of `count` indices if they are at most `most`, else `few` of them, evenly spread from the first to the last.
+pub(super) fn evenly(count: usize, most: usize, few: usize) -> impl Iterator<Item = usize> {
+    let chosen = if count <= most { count } else { few };
+    (0..chosen).map(move |index| index * (count - 1) / (chosen - 1).max(1))
+}
+
+/// The best of a generation, or of the latest one.
+pub(crate) fn leaders(
+    evolution: &CurrentRun,
+    generation: Option<u32>,
+) -> Result<Vec<StagedChampion>, String> {
+    let leaders = evolution.leaders(generation);
+    if leaders.len() < 2 {
+        return Err("Nothing to race yet: finish a generation first.".to_owned());
+    }
+    let number = evolution.number();
+    let names = (1..).map(|rank| format!("No. {rank}"));
+    let champions = leaders.iter().zip(names);
+    Ok(champions
+        .map(|(champion, name)| StagedChampion::from_run(champion, number).named(name))
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::state::current_run::{explored_run, prepared_run};
+
+    fn saved(index: usize) -> StagedChampion {
+        StagedChampion::from_file(&shipped_champion().expect("well formed"), index, "climber")
+    }
+
+    #[test]
+    fn of_many_generations_some_race_at_equal_distances() {
+        let chosen = |count| evenly(count, 10, 6).collect::<Vec<_>>();
+        assert_eq!(chosen(6), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(chosen(10).len(), 10);
+        assert_eq!(chosen(101), [0, 20, 40, 60, 80, 100]);
+    }
+
+    #[test]
+    fn joining_twice_removes_and_an_eleventh_lane_is_refused() {
+        let mut on_show = vec![saved(0)];
+        for index in 1..10 {
+            on_show =
+                with_one_more(on_show, saved(index)).expect("not full").expect("new").champions;
+        }
+        assert_eq!(on_show.len(), 10);
+        let full = with_one_more(on_show.clone(), saved(10)).expect_err("full");
+        assert!(full.contains("At most 10 snakes"), "{full}");
+        let fewer = with_one_more(on_show, saved(3)).expect("fine").expect("one less");
+        assert_eq!(fewer.champions.len(), 9);
+        assert!(with_one_more(vec![saved(0)], saved(0)).expect("fine").is_none(), "the last stays");
+    }
+
+    #[test]
+    fn the_leaders_of_a_generation_race_by_rank() {
+        let run = explored_run();
+        let leaders = leaders(&run, None).expect("some are healthy");
+        assert_eq!(leaders[0].name(), "No. 1");
+        assert!(leaders.len() > 2 && leaders.len() <= MAX_LANES);
+        let fitness: Vec<f32> = leaders.iter().map(StagedChampion::fitness).collect();
+        assert!(fitness.is_sorted_by(|a, b| a >= b), "{fitness:?}");
+        assert!(crate::studio::state::lineup::leaders(&prepared_run(), None).is_err());
+    }
+}

@@ -1,0 +1,18 @@
+//! The state of the studio that is not drawn: the current run, the library, presets, undo, lessons.
+
+pub mod chart_export;
+pub mod current_run;
+pub mod lessons;
+pub mod library;
+pub mod lineup;
+pub mod options;
+pub mod run_context;
+pub mod undo;
+pub mod what_if;
+pub mod wording;
+
+use bevy::prelude::*;
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins((undo::plugin, current_run::plugin, library::plugin, lessons::plugin));
+}

@@ -1,0 +1,212 @@
+//! The stage follows when the next run's plan goes a step back or forth.
+
+use std::collections::BTreeMap;
+
+use crate::evolve::{RunPlan, Settings, fields, with_fields};
+use crate::score::Trial;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{Show, StageMode};
+use crate::studio::state::wording::world_in_words;
+
+/// What is to be shown when the plan went from one to another: whatever is other in the new plan's world is so on
+/// the stage too. Nothing if that concerns nobody there.
+///
+/// # Errors
+/// The world does not suit what is on show.
+pub(crate) fn followed(
+    on_show: &[StagedChampion],
+    mode: &StageMode,
+    from: &RunPlan,
+    to: &RunPlan,
+) -> Result<Option<Show>, String> {
+    let Some(first) = on_show.first() else { return Ok(None) };
+    let changed = on_show.last().unwrap_or(first);
+    let (original, begins, shown) = match mode {
+        // Nobody in a race is the one whom it concerns.
+        StageMode::Race => return Ok(None),
+        StageMode::WhatIf { before } => (first.clone(), Some(&**before), changed),
+        StageMode::Solo => (first.simulated(), None, first),
+    };
+    let trial = taken_over(shown.trial(), original.trial(), begins, from, to)
+        .map_err(|reason| unsuited(&reason))?;
+    if trial == *shown.trial() {
+        return Ok(None);
+    }
+    if trial == *original.trial() {
+        return Ok(Some(Show::solo(original)));
+    }
+    let label = world_in_words(original.trial(), &trial);
+    let restored = original.in_world(&trial, label);
+    restored.check().map_err(|reason| unsuited(&reason.to_string()))?;
+    if begins.is_none() && first.is_changed() {
+        // A change that was kept stands alone on the stage, and its world is the one that is stepped in.
+        return Ok(Some(Show::solo(restored)));
+    }
+    let before = Box::new(begins.unwrap_or(from).clone());
+    let mode = StageMode::WhatIf { before };
+    Ok(Some(Show { champions: vec![original, restored], mode }))
+}
+
+fn unsuited(reason: &str) -> String {
+    format!("What is on show stays in its own world, the new one does not suit it: {reason}")
+}
+
+/// A world on the stage with what is other between two plans. What is again as it was when the what-if began is
+/// as in the world it began with.
+fn taken_over(
+    shown: &Trial,
+    original: &Trial,
+    begins: Option<&RunPlan>,
+    from: &RunPlan,
+    to: &RunPlan,
+) -> Result<Trial, String> {
+    let named = |trial: &Trial| -> BTreeMap<String, String> {
+        // Who has a ground of its own has it as a whole.
+        let trial = Trial { ground: None, ..trial.clone() };
+        fields(&Settings { trial, ..Settings::default() }).into_iter().collect()
+    };
+    let (old, new) = (named(&from.settings.trial), named(&to.settings.trial));
+    // A preset that is tried out has its whole world on the stage.
+    let is_other_preset = from.preset != to.preset && from.settings.trial != to.settings.trial;
+    let begins = begins.filter(|begins| !is_other_preset || begins.preset == to.preset);
+    let (originally, at_first) =
+        (named(original), begins.map(|begins| named(&begins.settings.trial)));
+    let other = new.iter().filter(|(field, value)| {
+        if is_other_preset { !stays_with_a_preset(field) } else { old.get(*field) != Some(value) }
+    });
+    let restored: Vec<(&str, &str)> = other
+        .map(|(field, value)| {
+            let is_as_at_first =
+                at_first.as_ref().is_some_and(|at_first| at_first.get(field) == Some(value));
+            let own = originally.get(field).filter(|_| is_as_at_first);
+            (field.as_str(), own.unwrap_or(value).as_str())
+        })
+        .collect();
+    let mut trial = shown.clone();
+    let (old_ground, new_ground) = (&from.settings.trial.ground, &to.settings.trial.ground);
+    if old_ground != new_ground || is_other_preset {
+        let is_as_at_first =
+            begins.is_some_and(|begins| begins.settings.trial.ground == *new_ground);
+        trial.ground = if is_as_at_first { original.ground.clone() } else { new_ground.clone() };
+    }
+    let settings = Settings { trial, ..to.settings.clone() };
+    with_fields(&settings, restored)
+        .map(|settings| settings.trial)
+        .map_err(|error| error.to_string())
+}
+
+/// What stays as it is on the stage when another preset is tried out, so that the two can be compared.
+fn stays_with_a_preset(field: &str) -> bool {
+    let fields = ["trial.duration_s", "trial.fitness", "trial.energy_cost_per_kj"];
+    fields.contains(&field) || field.starts_with("trial.repeats.")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::state::current_run::{CurrentRun, prepared_run};
+    use crate::studio::state::what_if::{WorldChange, dropped, what_if};
+
+    fn saved() -> StagedChampion {
+        StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
+    }
+
+    /// Changes a field, and returns the plan before and what is shown then.
+    fn change(
+        run: &mut CurrentRun,
+        on_show: &[StagedChampion],
+        mode: &StageMode,
+        field: &str,
+        text: &str,
+    ) -> (RunPlan, Show) {
+        let before = run.next_plan().clone();
+        let show = what_if(run, on_show, mode, &WorldChange::Field { field, text });
+        (before, show.expect("allowed").expect("it matters"))
+    }
+
+    #[test]
+    fn the_changed_lane_goes_back_step_by_step_until_nothing_is_changed() {
+        let mut run = prepared_run();
+        let (start, first) =
+            change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
+        let (one, second) = change(&mut run, &first.champions, &first.mode, "stairs.rise_m", "0.7");
+        let two = run.next_plan().clone();
+        let back = followed(&second.champions, &second.mode, &two, &one);
+        let back = back.expect("fits").expect("the rise is other");
+        assert_eq!(back.champions[1].trial(), first.champions[1].trial());
+        assert_eq!(back.champions[1].label(), "friction 0.3");
+        let end = followed(&back.champions, &back.mode, &one, &start);
+        let end = end.expect("fits").expect("the friction is other");
+        assert_eq!((end.champions.len(), &end.mode), (1, &StageMode::Solo));
+        assert_eq!(end.champions[0].trial(), saved().trial());
+        // And forth again.
+        let forth = followed(&end.champions, &end.mode, &start, &one);
+        let forth = forth.expect("fits").expect("the friction is other");
+        assert_eq!(forth.champions[1].trial(), first.champions[1].trial());
+        assert_eq!(forth.mode, StageMode::WhatIf { before: Box::new(start) });
+    }
+
+    #[test]
+    fn a_drop_that_is_undone_shows_the_change_again() {
+        let mut run = prepared_run();
+        let (_, tried) = change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
+        let changed = run.next_plan().clone();
+        let alone = dropped(&mut run, &tried.champions, &tried.mode).expect("allowed");
+        let alone = alone.expect("the original");
+        let again = followed(&alone.champions, &alone.mode, run.next_plan(), &changed);
+        let again = again.expect("fits").expect("the friction is other");
+        assert_eq!(again.champions[1].label(), "friction 0.3");
+    }
+
+    #[test]
+    fn a_kept_change_that_is_undone_leaves_the_snake_alone_on_the_stage() {
+        let mut run = prepared_run();
+        let (start, tried) =
+            change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
+        let kept = tried.champions[1].clone();
+        let back = followed(&[kept], &StageMode::Solo, run.next_plan(), &start);
+        let back = back.expect("fits").expect("the friction is other");
+        assert_eq!((back.champions.len(), back.mode), (1, StageMode::Solo));
+        assert_eq!(
+            back.champions[0].trial().surface.friction,
+            start.settings.trial.surface.friction
+        );
+    }
+
+    #[test]
+    fn an_own_ground_goes_as_a_whole() {
+        let mut run = prepared_run();
+        let (start, tried) =
+            change(&mut run, &[saved()], &StageMode::Solo, "ground.friction", "0.1");
+        let plan = run.next_plan().clone();
+        let back = followed(&tried.champions, &tried.mode, &plan, &start);
+        let back = back.expect("fits").expect("the ground is other");
+        assert_eq!(back.champions[0].trial().ground, saved().trial().ground);
+        assert_eq!(back.mode, StageMode::Solo);
+    }
+
+    #[test]
+    fn a_preset_that_is_undone_gives_the_world_back() {
+        let mut run = prepared_run();
+        let before = run.next_plan().clone();
+        let show = what_if(&mut run, &[saved()], &StageMode::Solo, &WorldChange::Preset("ice"));
+        let show = show.expect("allowed").expect("another world");
+        let back = followed(&show.champions, &show.mode, run.next_plan(), &before);
+        let back = back.expect("fits").expect("another world");
+        assert_eq!((back.champions.len(), back.champions[0].trial()), (1, saved().trial()));
+    }
+
+    #[test]
+    fn a_race_and_a_change_of_the_search_leave_the_stage_alone() {
+        let mut run = prepared_run();
+        let before = run.next_plan().clone();
+        run.set_population(9).expect("allowed");
+        let shown = followed(&[saved()], &StageMode::Solo, &before, run.next_plan());
+        assert!(shown.expect("fits").is_none());
+        run.set_field("surface.friction", "0.3").expect("allowed");
+        let race = [saved(), saved()];
+        let shown = followed(&race, &StageMode::Race, &before, run.next_plan());
+        assert!(shown.expect("fits").is_none());
+    }
+}

@@ -1,0 +1,180 @@
+//! Who can be put on the stage, and beside whom: from what a person points at to lanes.
+
+use bevy::prelude::*;
+
+use super::current_run::CurrentRun;
+use super::wording::world_in_words;
+use crate::evolve::{Settings, with_field, with_fields};
+use crate::score::Trial;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{Show, StageMode};
+
+/// A change of the world.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum WorldChange<'a> {
+    /// Of one setting, by its name.
+    Field {
+        /// See [`with_field`].
+        field: &'a str,
+        /// Its value as text.
+        text: &'a str,
+    },
+    /// Of several settings at once, by their names.
+    Fields(&'a [(String, String)]),
+    /// To that of a preset.
+    Preset(&'a str),
+}
+
+/// Makes a change for the next run, and says what is to be shown: the first of those on the stage as it is, and
+/// beside it with the change; nothing if the change does not concern it.
+pub(crate) fn what_if(
+    evolution: &mut CurrentRun,
+    on_show: &[StagedChampion],
+    mode: &StageMode,
+    change: &WorldChange,
+) -> Result<Option<Show>, String> {
+    let before = match mode {
+        StageMode::WhatIf { before } => before.clone(),
+        StageMode::Solo | StageMode::Race => Box::new(evolution.next_plan().clone()),
+    };
+    match change {
+        WorldChange::Field { field, text } => evolution.set_field(field, text)?,
+        WorldChange::Fields(changes) => evolution.set_fields(changes)?,
+        WorldChange::Preset(name) => evolution.set_preset(name)?,
+    }
+    // Only the change is to make a difference, not another engine too.
+    let Some(original) = on_show.first().map(StagedChampion::simulated) else { return Ok(None) };
+    let original = &original;
+    // Further changes add up.
+    let so_far = match mode {
+        StageMode::WhatIf { .. } => on_show.last().unwrap_or(original),
+        StageMode::Solo | StageMode::Race => original,
+    };
+    let next = evolution.next_settings();
+    let trial = match change {
+        // Only what was changed is to differ, not whatever else the next run's world has.
+        WorldChange::Field { field, text } => {
+            let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
+            with_field(&settings, field, text).map_err(|error| error.to_string())?.trial
+        }
+        WorldChange::Fields(changes) => {
+            let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
+            let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+            with_fields(&settings, changes).map_err(|error| error.to_string())?.trial
+        }
+        // Its world; how long it lasts and what is rewarded stay, so that the two can be compared.
+        WorldChange::Preset(_) => Trial {
+            duration_s: so_far.trial().duration_s,
+            fitness: so_far.trial().fitness,
+            energy_cost_per_kj: so_far.trial().energy_cost_per_kj,
+            repeats: so_far.trial().repeats.clone(),
+            ..next.trial.clone()
+        },
+    };
+    if trial == *so_far.trial() {
+        return Ok(None);
+    }
+    if trial == *original.trial() {
+        return Ok(Some(Show::solo(original.clone())));
+    }
+    let label = match change {
+        WorldChange::Preset(name) => (*name).to_owned(),
+        WorldChange::Field { .. } | WorldChange::Fields(_) => {
+            world_in_words(original.trial(), &trial)
+        }
+    };
+    let changed = original.in_world(&trial, label);
+    changed.check().map_err(|reason| {
+        format!("What is on show stays in its own world, the new one does not suit it: {reason}")
+    })?;
+    let champions = vec![original.clone(), changed];
+    Ok(Some(Show { champions, mode: StageMode::WhatIf { before } }))
+}
+
+/// Forgets what was changed.
+pub(crate) fn dropped(
+    evolution: &mut CurrentRun,
+    on_show: &[StagedChampion],
+    mode: &StageMode,
+) -> Result<Option<Show>, String> {
+    let StageMode::WhatIf { before } = mode else { return Ok(None) };
+    evolution.undo_world(before)?;
+    Ok(on_show.first().cloned().map(Show::solo))
+}
+
+/// Goes on with what was changed.
+pub(crate) fn kept(on_show: &[StagedChampion], mode: &StageMode) -> Option<Show> {
+    let is_what_if = matches!(mode, StageMode::WhatIf { .. });
+    on_show.last().filter(|_| is_what_if).cloned().map(Show::solo)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::state::current_run::prepared_run;
+
+    fn saved(index: usize) -> StagedChampion {
+        StagedChampion::from_file(&shipped_champion().expect("well formed"), index, "climber")
+    }
+
+    #[test]
+    fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
+        let mut run = prepared_run();
+        let plan = run.next_plan().clone();
+        let field = |field, text| WorldChange::Field { field, text };
+        let first =
+            what_if(&mut run, &[saved(0)], &StageMode::Solo, &field("surface.friction", "0.3"))
+                .expect("allowed")
+                .expect("it matters");
+        assert_eq!(first.champions[1].label(), "friction 0.3");
+        let second =
+            what_if(&mut run, &first.champions, &first.mode, &field("stairs.rise_m", "0.7"))
+                .expect("allowed")
+                .expect("it matters");
+        let [original, changed] = &second.champions[..] else { panic!("two lanes") };
+        assert!(!original.is_changed() && changed.is_changed());
+        assert_eq!(changed.label(), "rise 0.7, friction 0.3");
+        let ground = field("ground.friction", "1");
+        let third = what_if(&mut run, &second.champions, &second.mode, &ground);
+        let third = third.expect("allowed").expect("it matters");
+        assert_eq!(third.champions[1].label(), "own ground, rise 0.7 and 1 more");
+        assert_eq!(changed.trial().surface.friction, 0.3);
+        assert_eq!(changed.trial().duration_s, original.trial().duration_s, "nothing else");
+        let kept = kept(&second.champions, &second.mode).expect("kept");
+        assert_eq!(kept.champions[0].trial(), changed.trial());
+        let shown = dropped(&mut run, &second.champions, &second.mode);
+        let shown = shown.expect("allowed").expect("the original");
+        assert_eq!(shown.champions[0].trial(), original.trial());
+        assert_eq!(*run.next_plan(), plan, "as it was before the first change");
+        // What was chosen meanwhile, and is no matter of the world, stays.
+        what_if(&mut run, &[saved(0)], &StageMode::Solo, &field("surface.friction", "0.3"))
+            .expect("allowed");
+        run.set_seed(77).expect("allowed");
+        run.set_population(9).expect("allowed");
+        dropped(&mut run, &second.champions, &second.mode).expect("allowed");
+        assert_eq!((run.next_seed(), run.next_settings().evolution.population), (77, 9));
+        assert_eq!(run.next_settings().trial, plan.settings.trial);
+    }
+
+    #[test]
+    fn a_preset_that_the_genome_does_not_fit_is_refused_with_the_reason() {
+        let mut run = prepared_run();
+        let limbs = WorldChange::Field { field: "agent.limbs", text: "7" };
+        let refusal = what_if(&mut run, &[saved(0)], &StageMode::Solo, &limbs);
+        let refusal = refusal.expect_err("refused");
+        assert!(refusal.contains("joints is 4 joints") && refusal.contains("7 limbs"), "{refusal}");
+        let preset = what_if(&mut run, &[saved(0)], &StageMode::Solo, &WorldChange::Preset("ice"));
+        let preset = preset.expect("allowed").expect("another world");
+        assert_eq!(preset.champions[1].label(), "ice");
+    }
+
+    #[test]
+    fn what_is_no_matter_of_the_world_changes_nothing_on_the_stage() {
+        let mut run = prepared_run();
+        let parents = WorldChange::Field { field: "evolution.population", text: "7" };
+        let shown = what_if(&mut run, &[saved(0)], &StageMode::Solo, &parents).expect("allowed");
+        assert!(shown.is_none());
+        assert_eq!(run.next_settings().evolution.population, 7);
+    }
+}

@@ -1,0 +1,154 @@
+//! Icon buttons. The icons are drawn, because no font has all of them in one style.
+
+use bevy_egui::egui;
+use bevy_egui::egui::{Pos2, Rect, Shape, Stroke, WidgetInfo, WidgetType};
+
+use super::theme;
+
+/// An icon.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Icon {
+    ToStart,
+    StepBack,
+    Play,
+    Pause,
+    StepForward,
+    Loop,
+    /// Reset to the preset's value.
+    Reset,
+    Undo,
+    Redo,
+}
+
+/// Side length of a button, in points.
+const SIDE: f32 = 28.0;
+/// Side length of a small button, in points.
+const SMALL_SIDE: f32 = 22.0;
+
+impl Icon {
+    /// Label for screen readers.
+    fn label(self) -> &'static str {
+        match self {
+            Self::ToStart => "From the start",
+            Self::StepBack => "Step back",
+            Self::Play => "Play",
+            Self::Pause => "Pause playback",
+            Self::StepForward => "Step forward",
+            Self::Loop => "Loop",
+            Self::Reset => "Reset",
+            Self::Undo => "Undo",
+            Self::Redo => "Redo",
+        }
+    }
+
+    /// Shapes of the icon within a square.
+    fn shapes(self, square: Rect, stroke: Stroke) -> Vec<Shape> {
+        let at = |x: f32, y: f32| square.lerp_inside(egui::vec2(x, y));
+        let filled = |points: Vec<Pos2>| Shape::convex_polygon(points, stroke.color, Stroke::NONE);
+        let triangle = |from: f32, to: f32| filled(vec![at(from, 0.0), at(to, 0.5), at(from, 1.0)]);
+        let bar = |from: f32, to: f32| {
+            Shape::rect_filled(Rect::from_min_max(at(from, 0.0), at(to, 1.0)), 1.0, stroke.color)
+        };
+        match self {
+            Self::Play => vec![triangle(0.1, 0.95)],
+            Self::Pause => vec![bar(0.12, 0.38), bar(0.62, 0.88)],
+            Self::StepForward => vec![triangle(0.1, 0.7), bar(0.75, 0.92)],
+            Self::StepBack => vec![triangle(0.9, 0.3), bar(0.08, 0.25)],
+            Self::ToStart => {
+                vec![bar(0.0, 0.14), triangle(0.6, 0.16), triangle(1.05, 0.6)]
+            }
+            Self::Loop => round_arrow(square, stroke, false),
+            Self::Reset => round_arrow(square, stroke, true),
+            Self::Undo => turned_arrow(square, stroke, true),
+            Self::Redo => turned_arrow(square, stroke, false),
+        }
+    }
+}
+
+/// Three quarters of a circle with an arrow head; mirrored, it points counterclockwise.
+fn round_arrow(square: Rect, stroke: Stroke, is_mirrored: bool) -> Vec<Shape> {
+    let (centre, radius) = (square.center(), square.width() * 0.46);
+    let side = if is_mirrored { -1.0 } else { 1.0 };
+    let on_circle = |turn: f32| {
+        let (sin, cos) = libm::sincosf(turn * std::f32::consts::TAU);
+        centre + egui::vec2(side * sin, -cos) * radius
+    };
+    let line = (0..=18).map(|part| on_circle(0.13 + 0.75 * part as f32 / 18.0));
+    let end = on_circle(0.9);
+    let head_size = radius * 0.62;
+    let corner = |x: f32, y: f32| end + egui::vec2(side * x, y) * head_size;
+    let head = vec![corner(-0.5, -0.75), corner(0.85, -0.1), corner(-0.35, 0.85)];
+    let head = Shape::convex_polygon(head, stroke.color, Stroke::NONE);
+    vec![Shape::line(line.collect(), stroke), head]
+}
+
+/// An arrow that starts below and turns to the left, or else to the right.
+fn turned_arrow(square: Rect, stroke: Stroke, is_left: bool) -> Vec<Shape> {
+    let at = |x: f32, y: f32| square.lerp_inside(egui::vec2(if is_left { x } else { 1.0 - x }, y));
+    let line = (0..=12).map(|part| {
+        let (sin, cos) = libm::sincosf(std::f32::consts::PI * part as f32 / 12.0);
+        at(0.55 + 0.4 * sin, 0.6 - 0.32 * cos)
+    });
+    let line: Vec<Pos2> =
+        std::iter::once(at(0.3, 0.28)).chain(line).chain([at(0.25, 0.92)]).collect();
+    let head = vec![at(0.0, 0.28), at(0.36, 0.0), at(0.36, 0.56)];
+    vec![Shape::line(line, stroke), Shape::convex_polygon(head, stroke.color, Stroke::NONE)]
+}
+
+/// A small icon button. `label` tells screen readers its purpose.
+pub(crate) fn small_icon_button(
+    ui: &mut egui::Ui,
+    icon: Icon,
+    label: &str,
+    hint: &str,
+) -> egui::Response {
+    let palette = theme::of(ui);
+    let size = egui::Vec2::splat(SMALL_SIDE);
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    let is_on = ui.is_enabled();
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, is_on, label));
+    if ui.is_rect_visible(rect) {
+        let corner = ui.visuals().widgets.inactive.corner_radius;
+        if response.hovered() {
+            ui.painter().rect_filled(rect, corner, palette.field_hovered);
+        }
+        if response.has_focus() {
+            let stroke = Stroke::new(1.5, palette.accent);
+            ui.painter().rect_stroke(rect, corner, stroke, egui::StrokeKind::Inside);
+        }
+        let color = if is_on { palette.text } else { palette.text_weak.gamma_multiply(0.5) };
+        let square = Rect::from_center_size(rect.center(), size * 0.55);
+        ui.painter().extend(icon.shapes(square, Stroke::new(1.6, color)));
+    }
+    response.on_hover_text(hint).on_disabled_hover_text(hint)
+}
+
+/// An icon button.
+pub(crate) fn icon_button(
+    ui: &mut egui::Ui,
+    icon: Icon,
+    is_on: bool,
+    hint: &str,
+) -> egui::Response {
+    let palette = theme::of(ui);
+    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(SIDE), egui::Sense::click());
+    response.widget_info(|| {
+        WidgetInfo::selected(WidgetType::Button, ui.is_enabled(), is_on, icon.label())
+    });
+    if ui.is_rect_visible(rect) {
+        let fill = match (is_on, response.hovered()) {
+            (true, _) => palette.accent_soft,
+            (false, true) => palette.field_hovered,
+            (false, false) => palette.field,
+        };
+        let corner = ui.visuals().widgets.inactive.corner_radius;
+        ui.painter().rect_filled(rect, corner, fill);
+        if response.has_focus() {
+            let stroke = Stroke::new(1.5, palette.accent);
+            ui.painter().rect_stroke(rect, corner, stroke, egui::StrokeKind::Inside);
+        }
+        let square = Rect::from_center_size(rect.center(), egui::Vec2::splat(SIDE * 0.42));
+        ui.painter().extend(icon.shapes(square, Stroke::new(2.0, palette.text)));
+    }
+    response.on_hover_text(hint)
+}

@@ -1,0 +1,15 @@
+//! Widgets, theme and fonts that all panels share.
+
+pub mod icons;
+pub mod notifications;
+pub mod number_field;
+pub mod plot_axes;
+pub mod text_rows;
+pub mod theme;
+pub mod viewport;
+
+use bevy::prelude::*;
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins(notifications::plugin);
+}

@@ -1,0 +1,64 @@
+//! Text field for a number. It validates input and commits the value on leaving the field.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+use bevy_egui::egui;
+
+use super::theme;
+
+/// A number field and its unfinished input.
+#[derive(Debug, Default)]
+pub(crate) struct NumberField {
+    /// The text while it is edited or invalid; `None` while the field shows the value itself.
+    text: Option<String>,
+    problem: Option<String>,
+}
+
+impl NumberField {
+    /// Draws the field with its label. Returns a new value when the user leaves the field with a valid one.
+    pub fn ui<T: FromStr + Display + PartialOrd>(
+        &mut self,
+        ui: &mut egui::Ui,
+        label: &str,
+        hint: &str,
+        value: T,
+        range: RangeInclusive<T>,
+    ) -> Option<T> {
+        let name = ui.label(label);
+        let mut text = self.text.clone().unwrap_or_else(|| value.to_string());
+        let field = egui::TextEdit::singleline(&mut text)
+            .desired_width(theme::FIELD_WIDTH)
+            .margin(egui::Margin::symmetric(8, 4));
+        let response = ui.add(field).labelled_by(name.id).on_hover_text(hint);
+        select_all_on_focus(ui, &response, &text);
+        let parsed = text.trim().parse().ok().filter(|number| range.contains(number));
+        if response.changed() {
+            self.problem = parsed.is_none().then(|| {
+                let allowed = format!("allowed: {} to {}", range.start(), range.end());
+                format!("{label} is \"{text}\"; {allowed}")
+            });
+            self.text = Some(text);
+        }
+        if response.lost_focus() && self.problem.is_none() {
+            return self.text.take().and(parsed);
+        }
+        None
+    }
+
+    /// Error message for the current text, if it is invalid.
+    pub fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+}
+/// Selects the whole text when a field gets the focus, so that typing replaces it.
+pub(crate) fn select_all_on_focus(ui: &egui::Ui, field: &egui::Response, text: &str) {
+    if !field.gained_focus() {
+        return;
+    }
+    let mut state = egui::TextEdit::load_state(ui.ctx(), field.id).unwrap_or_default();
+    let [start, end] = [0, text.chars().count()].map(egui::text::CCursor::new);
+    state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
+    state.store(ui.ctx(), field.id);
+}

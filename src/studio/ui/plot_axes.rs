@@ -1,0 +1,112 @@
+//! Axes of charts, with round tick steps and readable labels.
+
+use std::ops::RangeInclusive;
+
+use bevy_egui::egui;
+use egui_plot::{AxisHints, GridInput, Plot, PlotBounds, uniform_grid_spacer};
+
+use super::theme;
+
+/// Maximum number of labels along an axis.
+const MAX_LABELS: f64 = 6.0;
+
+/// A chart without pan and zoom, `height` points high.
+pub(crate) fn fixed_plot<'a>(id: &str, height: f32) -> Plot<'a> {
+    Plot::new(id)
+        .height(height)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .allow_axis_zoom_drag(false)
+        .x_grid_spacer(uniform_grid_spacer(steps))
+        .y_grid_spacer(uniform_grid_spacer(steps))
+        .custom_x_axes(vec![AxisHints::new_x().label_spacing(LABEL_POINTS)])
+        .custom_y_axes(vec![
+            AxisHints::new_y().label_spacing(LABEL_POINTS).min_thickness(theme::AXIS_WIDTH),
+        ])
+}
+
+/// Label spacing from which egui_plot fades labels in, in points. Small, because [`step`] already spaces them.
+const LABEL_POINTS: RangeInclusive<f32> = 4.0..=8.0;
+
+/// Tick step for a range: 1, 2 or 5 times a power of ten.
+pub(crate) fn step(range: f64) -> f64 {
+    let least = (range / MAX_LABELS).max(1.0e-9);
+    let power = libm::pow(10.0, libm::floor(libm::log10(least)));
+    let steps = [1.0, 2.0, 5.0].map(|times| times * power);
+    steps.into_iter().find(|step| *step >= least).unwrap_or(10.0 * power)
+}
+
+fn steps(input: GridInput) -> [f64; 3] {
+    let step = step(input.bounds.1 - input.bounds.0);
+    [step, step * 1.0e3, step * 1.0e6]
+}
+
+/// Formats a number with three significant digits.
+pub(crate) fn number(value: f64) -> String {
+    let digits = match value.abs() {
+        size if size >= 99.95 => 0,
+        size if size >= 9.995 => 1,
+        size if size >= 0.0995 || size == 0.0 => 2,
+        _ => 3,
+    };
+    let text = format!("{value:.digits$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// The range of the values, with a margin; `None` without finite values.
+pub(crate) fn padded_range(
+    values: impl Iterator<Item = f64>,
+    least_width: f64,
+) -> Option<RangeInclusive<f64>> {
+    let (least, most) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(value), most.max(value)));
+    if least > most {
+        return None;
+    }
+    let missing = (least_width - (most - least)).max(0.0) / 2.0;
+    let margin = missing + ((most - least) * 0.07).max(least_width * 0.07);
+    Some(least - margin..=most + margin)
+}
+
+/// Bounds of a chart.
+pub(crate) fn bounds(x: &RangeInclusive<f64>, y: &RangeInclusive<f64>) -> PlotBounds {
+    PlotBounds::from_min_max([*x.start(), *y.start()], [*x.end(), *y.end()])
+}
+
+/// Label of an axis, in small weak text.
+pub(crate) fn axis_name(ui: &egui::Ui, text: &str) -> egui::RichText {
+    egui::RichText::new(text).color(theme::of(ui).text_weak).small()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tick_steps_are_round_and_few() {
+        for (range, expected) in [(5.0, 1.0), (6.0, 1.0), (18.0, 5.0), (119.0, 20.0), (0.3, 0.05)] {
+            assert!((step(range) - expected).abs() < 1.0e-9, "{range}: {}", step(range));
+        }
+    }
+
+    #[test]
+    fn numbers_have_three_significant_digits() {
+        let texts = [0.3, 10_000.0, 12.34, 2.0, 0.0, 0.0123].map(number);
+        assert_eq!(texts, ["0.3", "10000", "12.3", "2", "0", "0.012"]);
+    }
+
+    #[test]
+    fn a_padded_range_is_never_empty() {
+        assert_eq!(padded_range(std::iter::empty(), 1.0), None);
+        let range = padded_range([2.0].into_iter(), 1.0).expect("a value");
+        assert!(*range.start() <= 1.5 && *range.end() >= 2.5, "{range:?}");
+    }
+}

@@ -1,0 +1,247 @@
+//! Theme of the studio: palette and spacing. No other module names a colour.
+
+mod fonts;
+pub mod palette;
+
+use std::str::FromStr;
+
+use bevy::color::ColorToPacked;
+use bevy::prelude::{Color, Resource};
+use bevy_egui::egui;
+use bevy_egui::egui::Color32;
+
+use crate::check::Invalid;
+
+use palette::CORNER;
+
+pub use fonts::GlyphWarmUp;
+pub use palette::Palette;
+
+/// The palette that panels and scene use.
+#[derive(Resource, Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Theme {
+    /// Light colours, best for a projector in a lit room.
+    #[default]
+    Light,
+    /// Dark colours.
+    Dark,
+}
+
+impl Theme {
+    /// The palette of the theme.
+    pub fn palette(self) -> &'static Palette {
+        match self {
+            Self::Light => &palette::LIGHT,
+            Self::Dark => &palette::DARK,
+        }
+    }
+
+    /// Name in files and flags.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Dark => "dark",
+        }
+    }
+
+    /// The other theme.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Light => Self::Dark,
+            Self::Dark => Self::Light,
+        }
+    }
+}
+
+impl FromStr for Theme {
+    type Err = Invalid;
+
+    fn from_str(text: &str) -> Result<Self, Invalid> {
+        match text {
+            "light" => Ok(Self::Light),
+            "dark" => Ok(Self::Dark),
+            _ => Err(Invalid::new("theme", format!("{text:?}"), "light or dark")),
+        }
+    }
+}
+
+impl From<Theme> for egui::Theme {
+    fn from(theme: Theme) -> Self {
+        match theme {
+            Theme::Light => Self::Light,
+            Theme::Dark => Self::Dark,
+        }
+    }
+}
+
+impl From<egui::Theme> for Theme {
+    fn from(theme: egui::Theme) -> Self {
+        match theme {
+            egui::Theme::Light => Self::Light,
+            egui::Theme::Dark => Self::Dark,
+        }
+    }
+}
+
+/// The palette of the active theme.
+pub fn of(ui: &egui::Ui) -> &'static Palette {
+    Theme::from(egui::Theme::from_dark_mode(ui.visuals().dark_mode)).palette()
+}
+
+/// The palette of the active theme of a context.
+pub fn of_context(context: &egui::Context) -> &'static Palette {
+    Theme::from(context.theme()).palette()
+}
+
+/// Base unit of spacing, in points.
+pub const GAP: f32 = 8.0;
+/// Size of the program's name, in points.
+pub const HEADING_SIZE: f32 = 22.0;
+/// Size of a section's title, in points.
+pub const TITLE_SIZE: f32 = 15.0;
+/// Width of a field for a number, in points.
+pub const FIELD_WIDTH: f32 = 64.0;
+/// Width of a combo box, in points.
+pub const COMBO_WIDTH: f32 = 190.0;
+/// Minimum width that panel layouts support, in points.
+#[cfg(test)]
+pub const PANEL_WIDTH: f32 = 320.0;
+/// Height of a tab bar, in points.
+pub const TAB_BAR_HEIGHT: f32 = 28.0;
+/// Minimum width of a menu, in points.
+pub const MENU_WIDTH: f32 = 230.0;
+/// Width of the command palette, in points.
+pub const PALETTE_WIDTH: f32 = 480.0;
+/// Width of a card of the tour, in points.
+pub const TOUR_WIDTH: f32 = 380.0;
+/// Width of a column in the list of shortcuts, in points.
+pub const KEY_COLUMN_WIDTH: f32 = 320.0;
+/// Distance of messages from the top of the window, in points: below the bar over the stage, which reaches under them
+/// in a narrow window.
+pub const NOTICES_TOP: f32 = 84.0;
+/// Width of a message over the stage, in points.
+pub const NOTICE_WIDTH: f32 = 340.0;
+/// Height of the torque strip under the stage, in points.
+pub const TORQUE_STRIP_HEIGHT: f32 = 72.0;
+/// Width of the card with a limb's numbers, in points.
+pub const LIMB_CARD_WIDTH: f32 = 284.0;
+/// Font size of a name tag, in points.
+pub const TAG_SIZE: f32 = 13.0;
+/// Height of a chart, in points.
+pub const CHART_HEIGHT: f32 = 170.0;
+/// Minimum height of a chart, in points.
+pub const MIN_CHART_HEIGHT: f32 = 80.0;
+/// Height of the charts of the Pareto front and of learning curves, in points.
+pub const PLOT_HEIGHT: f32 = 150.0;
+/// Height of the controls above and below a chart in its panel, in points.
+pub const CHART_CONTROLS_HEIGHT: f32 = 120.0;
+/// Maximum ratio of a chart's height to its width.
+pub const MAX_CHART_ASPECT: f32 = 1.4;
+/// Minimum width of one of several charts side by side, in points.
+pub const MULTIPLE_WIDTH: f32 = 230.0;
+/// Minimum height of one of several stacked charts, in points.
+pub const MULTIPLE_HEIGHT: f32 = 120.0;
+/// Width of a sample in a legend, in points.
+pub const SAMPLE_WIDTH: f32 = 20.0;
+/// Height of the archive map, in points.
+#[cfg(test)]
+pub const MAP_HEIGHT: f32 = 190.0;
+/// Minimum width of the labels at the left of a chart, in points.
+pub const AXIS_WIDTH: f32 = 24.0;
+/// Font size in charts, in points.
+pub const SMALL_SIZE: f32 = 11.0;
+/// Height of a row in the library, in points.
+pub const LIBRARY_ROW_HEIGHT: f32 = 44.0;
+/// Size of a thumbnail in a row of the library, in points.
+pub const THUMBNAIL_SIZE: egui::Vec2 = egui::vec2(76.0, 36.0);
+/// Height of the picture of the selected save, in points.
+pub const PICTURE_HEIGHT: f32 = 64.0;
+/// Stage width below which cards are compact, in points.
+pub const NARROW_STAGE: f32 = 560.0;
+/// Library width from which it shows columns, in points.
+pub const COLUMNS_WIDTH: f32 = 560.0;
+/// Widths of the library's columns after the name: fitness, preset, generation, date, in points.
+pub const COLUMN_WIDTHS: [f32; 4] = [84.0, 84.0, 150.0, 136.0];
+/// Default and minimum height of the library's list, in points.
+pub const LIST_HEIGHTS: [f32; 2] = [360.0, 140.0];
+/// Height of the list of a run's champions, in points.
+pub const CHAMPIONS_HEIGHT: f32 = 130.0;
+
+/// Converts a colour of the scene for egui.
+pub fn flat(color: Color) -> Color32 {
+    let [red, green, blue, alpha] = color.to_srgba().to_u8_array();
+    Color32::from_rgba_unmultiplied(red, green, blue, alpha)
+}
+
+/// Configures both egui themes. [`show`] selects the active one.
+pub fn apply(context: &egui::Context) {
+    context.all_styles_mut(|style| {
+        style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(SMALL_SIZE));
+        style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
+        style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
+        style.spacing.interact_size.y = GAP * 3.0;
+        // Keep a faint scroll bar visible, beside the content, so that users notice hidden content.
+        style.spacing.scroll = egui::style::ScrollStyle {
+            floating_width: GAP / 2.0,
+            floating_allocated_width: GAP,
+            dormant_handle_opacity: 0.3,
+            // egui's fade would draw grey edges here, because colours blend in linear light.
+            fade: egui::style::ScrollFadeStyle { strength: 0.0, ..Default::default() },
+            ..egui::style::ScrollStyle::floating()
+        };
+        for widget in [
+            &mut style.visuals.widgets.noninteractive,
+            &mut style.visuals.widgets.inactive,
+            &mut style.visuals.widgets.hovered,
+            &mut style.visuals.widgets.active,
+            &mut style.visuals.widgets.open,
+        ] {
+            widget.corner_radius = CORNER;
+        }
+    });
+    for theme in [Theme::Light, Theme::Dark] {
+        context.style_mut_of(theme.into(), |style| theme.palette().dress(&mut style.visuals));
+    }
+}
+
+/// Activates a theme.
+pub fn show(context: &egui::Context, theme: Theme) {
+    context.set_theme(egui::Theme::from(theme));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::palette::ramp;
+    use super::*;
+
+    #[test]
+    fn themes_parse_by_name() {
+        assert_eq!("light".parse(), Ok(Theme::Light));
+        assert_eq!("dark".parse(), Ok(Theme::Dark));
+        let refused = "Dim".parse::<Theme>().expect_err("no such theme");
+        assert_eq!(refused.to_string(), "theme is \"Dim\"; allowed: light or dark");
+    }
+
+    #[test]
+    fn drawing_uses_the_active_theme() {
+        let context = egui::Context::default();
+        // egui loads its fonts in the first pass.
+        context.begin_pass(egui::RawInput::default());
+        apply(&context);
+        for theme in [Theme::Dark, Theme::Light] {
+            show(&context, theme);
+            assert_eq!(of_context(&context).panel, theme.palette().panel);
+            assert_eq!(context.global_style().visuals.panel_fill, theme.palette().panel);
+        }
+    }
+
+    #[test]
+    fn the_colour_ramp_brightens_monotonically() {
+        let brightness = |color: Color32| {
+            let [r, g, b, _] = color.to_array().map(f32::from);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        let shades: Vec<f32> = (0..=100).map(|i| brightness(ramp(i as f32 / 100.0))).collect();
+        assert!(shades.is_sorted(), "{shades:?}");
+    }
+}

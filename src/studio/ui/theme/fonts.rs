@@ -1,0 +1,81 @@
+//! Loads glyphs onto the graphics card before they are needed.
+
+use std::sync::Arc;
+
+use bevy_egui::egui;
+use bevy_egui::egui::Color32;
+use bevy_egui::egui::epaint::text::{LayoutJob, TextOptions, layout};
+
+use super::{HEADING_SIZE, SMALL_SIZE, TAG_SIZE, TITLE_SIZE};
+
+/// Keeps every character in egui's font texture at the size that is drawn. A new character would be missing for a
+/// frame, because the texture reaches the graphics card one frame after the text.
+#[derive(Debug, Default)]
+pub struct GlyphWarmUp {
+    /// Text options and pixels per point of the loaded glyphs.
+    drawn: Option<(TextOptions, f32)>,
+}
+
+impl GlyphWarmUp {
+    /// Rasterizes every character at the scale of the next frame, unless it is loaded. Call it after [`super::apply`]
+    /// has taken effect and after every change of the scale.
+    pub fn warm_up(&mut self, context: &egui::Context, scale: f32) {
+        let pixels_per_point = scale * context.native_pixels_per_point().unwrap_or(1.0);
+        let options = context.fonts(|fonts| *fonts.options());
+        let now = Some((options, pixels_per_point));
+        if self.drawn != now {
+            self.drawn = now;
+            draw_letters(context, pixels_per_point);
+        }
+    }
+}
+
+fn draw_letters(context: &egui::Context, pixels_per_point: f32) {
+    let letters: String = (' '..='~').chain(['·', '²', '³', '±', '×', '°', '−', '…']).collect();
+    let style = context.global_style();
+    let sizes = [TITLE_SIZE, HEADING_SIZE, TAG_SIZE, SMALL_SIZE - 1.0];
+    let others = [
+        egui::TextStyle::Body,
+        egui::TextStyle::Monospace,
+        egui::TextStyle::Small,
+        egui::TextStyle::Button,
+    ];
+    let others = others.map(|of| of.resolve(&style));
+    context.fonts_mut(|view| {
+        for font in sizes.map(egui::FontId::proportional).into_iter().chain(others) {
+            let job = LayoutJob::simple_singleline(letters.clone(), font, Color32::WHITE);
+            layout(view.fonts, pixels_per_point, Arc::new(job));
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::ui::theme::apply;
+
+    #[test]
+    fn glyphs_are_loaded_before_they_are_drawn() {
+        let context = egui::Context::default();
+        let mut letters = GlyphWarmUp::default();
+        // Number of glyph uploads in a frame.
+        let mut frame = |text: &str, scale: f32| {
+            context.begin_pass(egui::RawInput::default());
+            if letters.drawn.is_none() {
+                apply(&context);
+            }
+            letters.warm_up(&context, scale);
+            context.set_zoom_factor(scale);
+            let font = egui::TextStyle::Body.resolve(&context.global_style());
+            context.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, Color32::WHITE));
+            context.end_pass().textures_delta.set.len()
+        };
+        let text = "/tmp/Ahoi ~ 0123456789: N·m";
+        // The style takes effect in the second frame.
+        assert!(frame("", 1.0) > 0 && frame("", 1.0) > 0);
+        assert_eq!(frame(text, 1.0), 0);
+        assert!(frame("é", 1.0) > 0, "one that is not among them");
+        assert!(frame("", 1.5) > 0, "for the next frame");
+        assert_eq!(frame(text, 1.5), 0);
+    }
+}

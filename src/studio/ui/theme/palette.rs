@@ -1,0 +1,318 @@
+//! Colours of the light and the dark theme, for panels and scene.
+//!
+//! All text has the contrast that WCAG requires, 4.5 to 1, on every background that it is drawn on. The tests check it.
+
+use bevy::prelude::Color;
+use bevy_egui::egui;
+use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Stroke};
+
+use crate::evolve::StrategyKind;
+use crate::plot;
+use crate::plot::{Role, role_color};
+
+/// Colours and light intensities of a theme.
+#[derive(Debug)]
+pub struct Palette {
+    /// Panel background.
+    pub panel: Color32,
+    /// Background of a card or field.
+    pub field: Color32,
+    /// Background of a hovered field.
+    pub field_hovered: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Explanatory text.
+    pub text_weak: Color32,
+    /// Accent: buttons, news, the best.
+    pub accent: Color32,
+    /// Text on the accent.
+    pub on_accent: Color32,
+    /// Soft accent for selection and progress. Text stays readable on it.
+    pub accent_soft: Color32,
+    /// Second series in charts, such as the mean.
+    pub second: Color32,
+    /// Problems.
+    pub problem: Color32,
+    /// Empty cell of the archive map.
+    pub empty_cell: Color32,
+    /// The report's red, for the first, third and fifth limb.
+    pub red_limb: Color,
+    /// The report's blue, for the second and fourth limb.
+    pub blue_limb: Color,
+    /// Contact forces.
+    pub force: Color,
+    /// Bend torques.
+    pub bend: Color32,
+    /// Twist torques.
+    pub twist: Color32,
+    /// Trail.
+    pub trail: Color,
+    /// Spring of a mouse pull.
+    pub pull: Color,
+    /// Sky at the horizon, and the fog.
+    pub horizon: Color,
+    /// Sky at the zenith.
+    pub zenith: Color,
+    /// The ground.
+    pub ground: Color,
+    /// The lines on the ground.
+    pub grid: Color,
+    /// Odd steps.
+    pub stair: Color,
+    /// Even steps.
+    pub stair_other: Color,
+    /// Step edge.
+    pub nosing: Color,
+    /// Step edge while the step is climbed: the accent's hue, but too bright to be mistaken for a limb.
+    pub nosing_lit: Color,
+    /// Veil for numbers on ground and risers.
+    pub paint: Color,
+    /// Stripes along limbs, and eyes.
+    pub white: Color,
+    /// Joints, pupils and flag post.
+    pub metal: Color,
+    /// Flag at the best distance.
+    pub flag: Color,
+    /// Text on the flag.
+    pub flag_text: Color,
+    /// Sunlight.
+    pub sun: Color,
+    /// Sunlight intensity, in lux.
+    pub sun_lux: f32,
+    /// Ambient light.
+    pub ambient: Color,
+    /// Ambient intensity, in cd/m². Bright enough to show shadowed sides.
+    pub ambient_cd_m2: f32,
+}
+
+/// Light theme.
+pub const LIGHT: Palette = Palette {
+    panel: Color32::from_rgb(0xf6, 0xf7, 0xfa),
+    field: Color32::from_rgb(0xe5, 0xe9, 0xf0),
+    field_hovered: Color32::from_rgb(0xd3, 0xda, 0xe6),
+    text: Color32::from_rgb(0x1b, 0x22, 0x30),
+    text_weak: Color32::from_rgb(0x52, 0x5c, 0x6e),
+    accent: Color32::from_rgb(0x1a, 0x66, 0xd9),
+    on_accent: Color32::from_rgb(0xff, 0xff, 0xff),
+    accent_soft: Color32::from_rgb(0xb8, 0xd3, 0xfa),
+    second: Color32::from_rgb(0x96, 0x58, 0x00),
+    problem: Color32::from_rgb(0xbd, 0x26, 0x1d),
+    empty_cell: Color32::from_rgb(0xda, 0xdf, 0xe8),
+    red_limb: Color::srgb(0.86, 0.13, 0.12),
+    blue_limb: Color::srgb(0.10, 0.27, 0.84),
+    force: Color::srgb(0.02, 0.45, 0.30),
+    bend: Color32::from_rgb(0x1a, 0x66, 0xd9),
+    twist: Color32::from_rgb(0xb3, 0x5c, 0x00),
+    trail: Color::srgb(0.55, 0.20, 0.65),
+    pull: Color::srgb(0.80, 0.30, 0.05),
+    horizon: Color::srgb(0.89, 0.93, 0.96),
+    zenith: Color::srgb(0.45, 0.67, 0.91),
+    ground: Color::srgb(0.73, 0.78, 0.78),
+    grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
+    stair: Color::srgb(0.84, 0.81, 0.76),
+    stair_other: Color::srgb(0.76, 0.73, 0.68),
+    nosing: Color::srgb(0.60, 0.57, 0.52),
+    nosing_lit: Color::srgb(0.05, 0.72, 1.0),
+    paint: Color::srgba(0.06, 0.12, 0.18, 0.62),
+    white: Color::srgb(0.97, 0.96, 0.93),
+    metal: Color::srgb(0.16, 0.17, 0.20),
+    flag: Color::srgb(1.0, 0.79, 0.28),
+    flag_text: Color::srgb(0.16, 0.13, 0.08),
+    sun: Color::srgb(1.0, 0.97, 0.92),
+    sun_lux: 3_600.0,
+    ambient: Color::srgb(0.90, 0.95, 1.0),
+    ambient_cd_m2: 320.0,
+};
+
+/// Dark theme.
+pub const DARK: Palette = Palette {
+    panel: Color32::from_rgb(0x1d, 0x21, 0x2b),
+    field: Color32::from_rgb(0x28, 0x2e, 0x3b),
+    field_hovered: Color32::from_rgb(0x36, 0x3e, 0x4f),
+    text: Color32::from_rgb(0xec, 0xef, 0xf4),
+    text_weak: Color32::from_rgb(0xa3, 0xac, 0xbd),
+    accent: Color32::from_rgb(0x4f, 0x9d, 0xf7),
+    on_accent: Color32::from_rgb(0x0d, 0x13, 0x1e),
+    accent_soft: Color32::from_rgb(0x31, 0x5d, 0x94),
+    second: Color32::from_rgb(0xf2, 0xb1, 0x4b),
+    problem: Color32::from_rgb(0xf0, 0x6a, 0x5f),
+    empty_cell: Color32::from_rgb(0x12, 0x15, 0x1c),
+    red_limb: Color::srgb(0.88, 0.14, 0.14),
+    blue_limb: Color::srgb(0.14, 0.32, 0.95),
+    force: Color::srgb(0.45, 0.95, 0.70),
+    bend: Color32::from_rgb(0x6c, 0xb0, 0xff),
+    twist: Color32::from_rgb(0xff, 0xb8, 0x5c),
+    trail: Color::srgb(0.88, 0.62, 0.98),
+    pull: Color::srgb(1.0, 0.72, 0.35),
+    horizon: Color::srgb(0.20, 0.25, 0.34),
+    zenith: Color::srgb(0.05, 0.08, 0.15),
+    ground: Color::srgb(0.22, 0.26, 0.31),
+    grid: Color::srgba(0.75, 0.85, 1.0, 0.08),
+    stair: Color::srgb(0.47, 0.50, 0.56),
+    stair_other: Color::srgb(0.40, 0.43, 0.49),
+    nosing: Color::srgb(0.30, 0.33, 0.38),
+    nosing_lit: Color::srgb(0.40, 0.80, 1.0),
+    paint: Color::srgba(0.85, 0.92, 1.0, 0.60),
+    white: Color::srgb(0.93, 0.94, 0.96),
+    metal: Color::srgb(0.10, 0.11, 0.13),
+    flag: Color::srgb(1.0, 0.75, 0.28),
+    flag_text: Color::srgb(0.13, 0.11, 0.07),
+    sun: Color::srgb(1.0, 0.96, 0.90),
+    sun_lux: 2_900.0,
+    ambient: Color::srgb(0.72, 0.82, 1.0),
+    ambient_cd_m2: 260.0,
+};
+
+/// Minimum contrast of text (WCAG 2, level AA).
+const READABLE: f32 = 4.5;
+
+impl Palette {
+    /// Colour of a strategy in all curves, shifted towards the text colour until it is readable on the panel.
+    pub fn strategy(&self, kind: StrategyKind) -> Color32 {
+        self.readable(kind.info().color)
+    }
+
+    /// Colour of a chart series by its role.
+    pub fn role(&self, role: Role) -> Color32 {
+        match role {
+            Role::First => self.accent,
+            Role::Second => self.second,
+            Role::Third => self.readable(role_color(role)),
+            Role::Others => self.text_weak,
+            Role::Bend => self.bend,
+            Role::Twist => self.twist,
+            Role::Strategy(kind) => self.strategy(kind),
+            Role::Share(share) => ramp(share),
+        }
+    }
+
+    /// A colour, shifted towards the text colour until it is readable on the panel.
+    fn readable(&self, [red, green, blue]: [u8; 3]) -> Color32 {
+        let own = Color32::from_rgb(red, green, blue);
+        let mixed = (0..=20).map(|step| own.lerp_to_gamma(self.text, step as f32 / 20.0));
+        let mut readable = mixed.filter(|color| contrast(*color, self.panel) >= READABLE);
+        readable.next().unwrap_or(self.text)
+    }
+
+    /// A card with a coloured edge.
+    pub fn card(&self, edge: Color32) -> Frame {
+        Frame::new()
+            .fill(self.panel.gamma_multiply(0.94))
+            .stroke(Stroke::new(1.0, edge))
+            .corner_radius(CORNER)
+            .inner_margin(Margin::symmetric(12, 8))
+    }
+
+    /// A dialog card that covers the content below it.
+    pub fn dialog(&self) -> Frame {
+        self.card(self.accent).fill(self.panel).inner_margin(Margin::symmetric(16, 12))
+    }
+
+    /// Sets the colours of egui's style.
+    pub(super) fn dress(&self, visuals: &mut egui::Visuals) {
+        // Both themes use the same text options. Otherwise a theme change would rasterize all glyphs again, and text
+        // would be missing for a frame.
+        visuals.text_options = egui::Visuals::dark().text_options;
+        // Subpixel positioning would need four glyph images per character, and no warm-up list could cover all of them.
+        visuals.text_options.subpixel_binning = false;
+        visuals.panel_fill = self.panel;
+        visuals.window_fill = self.panel;
+        visuals.window_stroke = Stroke::new(1.0, self.field_hovered);
+        visuals.extreme_bg_color = self.field;
+        visuals.override_text_color = Some(self.text);
+        visuals.weak_text_color = Some(self.text_weak);
+        visuals.selection.bg_fill = self.accent_soft;
+        visuals.selection.stroke = Stroke::new(1.0, self.text);
+        visuals.widgets.inactive.weak_bg_fill = self.field;
+        visuals.widgets.inactive.bg_fill = self.field;
+        // Keeps empty check boxes visible.
+        visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, self.field_hovered);
+        visuals.widgets.hovered.weak_bg_fill = self.field_hovered;
+        visuals.widgets.active.weak_bg_fill = self.accent_soft;
+        visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, self.field_hovered);
+    }
+}
+
+/// WCAG contrast ratio of two colours, from 1 (equal) to 21 (black and white).
+fn contrast(one: Color32, other: Color32) -> f32 {
+    let luminance = |color: Color32| {
+        let linear = egui::Rgba::from(color);
+        0.2126 * linear.r() + 0.7152 * linear.g() + 0.0722 * linear.b() + 0.05
+    };
+    let (one, other) = (luminance(one), luminance(other));
+    one.max(other) / one.min(other)
+}
+
+/// Corner radius of cards and buttons, in points.
+pub(super) const CORNER: CornerRadius = CornerRadius::same(6);
+
+/// Colour of a value between the minimum, 0, and the maximum, 1: see [`plot::ramp`].
+pub fn ramp(share: f32) -> Color32 {
+    let [red, green, blue] = plot::ramp(share);
+    Color32::from_rgb(red, green, blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contrast_follows_the_wcag_formula() {
+        assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 0.01);
+        assert!((contrast(Color32::from_gray(0x77), Color32::WHITE) - 4.48).abs() < 0.01);
+        assert_eq!(contrast(Color32::RED, Color32::RED), 1.0);
+    }
+
+    #[test]
+    fn text_is_readable_in_both_themes() {
+        for (theme, of) in [("light", &LIGHT), ("dark", &DARK)] {
+            for (what, text, ground) in [
+                ("text on the panel", of.text, of.panel),
+                ("text in a field", of.text, of.field),
+                ("text in a field under the pointer", of.text, of.field_hovered),
+                ("text on what is chosen", of.text, of.accent_soft),
+                ("text on the accent", of.on_accent, of.accent),
+                ("weak text on the panel", of.text_weak, of.panel),
+                ("weak text in a field", of.text_weak, of.field),
+                ("the accent as text", of.accent, of.panel),
+                ("the second colour as text", of.second, of.panel),
+                ("a problem", of.problem, of.panel),
+            ] {
+                let found = contrast(text, ground);
+                assert!(found >= READABLE, "{theme}: {what} has {found:.2}");
+            }
+            for kind in StrategyKind::ALL {
+                let found = contrast(of.strategy(kind), of.panel);
+                assert!(found >= READABLE, "{theme}: {kind:?} has {found:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn charts_in_the_light_theme_match_their_exported_pictures() {
+        for role in [Role::First, Role::Second, Role::Third, Role::Others, Role::Bend, Role::Twist]
+        {
+            let [red, green, blue] = role_color(role);
+            assert_eq!(LIGHT.role(role), Color32::from_rgb(red, green, blue), "{role:?}");
+            for of in [&LIGHT, &DARK] {
+                let found = contrast(of.role(role), of.panel);
+                // WCAG's minimum for graphics.
+                assert!(found >= 3.0, "{role:?} has {found:.2}");
+            }
+        }
+    }
+
+    #[test]
+    fn strategies_have_distinct_colours_in_both_themes() {
+        for of in [&LIGHT, &DARK] {
+            for (index, one) in StrategyKind::ALL.into_iter().enumerate() {
+                for other in StrategyKind::ALL.into_iter().take(index) {
+                    let pairs =
+                        of.strategy(one).to_array().into_iter().zip(of.strategy(other).to_array());
+                    let apart: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(b))).sum();
+                    assert!(apart > 60, "{one:?} and {other:?} are {apart} apart");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! Layout of the panels: docked, stacked, collapsed or floating.
+
+use bevy_egui::egui;
+use egui_dock::{DockState, Node, NodeIndex, Style, SurfaceIndex, TabPath};
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::studio::commands::panel::PanelKind;
+use crate::studio::ui::theme;
+
+/// Layout of the panels.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    state: DockState<PanelKind>,
+    /// Whether to build the default layout as soon as the window's size is known.
+    is_to_be_laid_out: bool,
+    /// The panel to focus after that.
+    first: Option<PanelKind>,
+}
+
+/// Minimum window width for panels on both sides of the stage, in points.
+const WIDE: f32 = 1500.0;
+/// Minimum window height for the champions below the other panels, in points.
+const HIGH: f32 = 800.0;
+/// Width of the left panels, in points. All tab names fit.
+const LEFT: f32 = 384.0;
+/// Minimum fraction of the width for the stage beside a panel.
+const MIN_STAGE_SHARE: f32 = 0.4;
+/// Width of the right panels in a wide window, in points.
+const RIGHT: f32 = 420.0;
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self { state: DockState::new(vec![PanelKind::Stage]), is_to_be_laid_out: true, first: None }
+    }
+}
+
+impl Layout {
+    /// The default layout for a window of this size, in points.
+    fn default_for(size: egui::Vec2) -> DockState<PanelKind> {
+        let mut state = DockState::new(vec![PanelKind::Stage]);
+        let surface = state.main_surface_mut();
+        let (is_wide, is_high) = (size.x >= WIDE, size.y >= HIGH);
+        let mut left = PanelKind::ALL.to_vec();
+        let mut stage = NodeIndex::root();
+        if is_wide {
+            left.retain(|kind| ![PanelKind::Charts, PanelKind::Library].contains(kind));
+            let right = vec![PanelKind::Charts, PanelKind::Library];
+            [stage, _] = surface.split_right(stage, 1.0 - RIGHT / size.x, right);
+        }
+        let room = if is_wide { size.x - RIGHT } else { size.x };
+        let share = (LEFT / room.max(1.0)).min(1.0 - MIN_STAGE_SHARE);
+        left.retain(|kind| !is_high || *kind != PanelKind::Champions);
+        let [_, node] = surface.split_left(stage, share, left);
+        if is_high {
+            let _ = surface.split_below(node, 0.68, vec![PanelKind::Champions]);
+        }
+        state
+    }
+
+    /// Returns to the default layout.
+    pub fn reset(&mut self) {
+        self.is_to_be_laid_out = true;
+    }
+
+    /// The dock state to draw in a window of this size, in points.
+    ///
+    /// Skips measuring while the UI scale is changing (`is_settled == false`).
+    pub fn state_in(&mut self, size: egui::Vec2, is_settled: bool) -> &mut DockState<PanelKind> {
+        if self.is_to_be_laid_out {
+            self.state = Self::default_for(size);
+            self.is_to_be_laid_out = false;
+            self.first.take().into_iter().for_each(|kind| self.open(kind));
+        }
+        if is_settled {
+            self.keep_widths(size.x);
+        }
+        // Hide the tab bar while the stage is the only tab.
+        for (_, leaf) in self.state.iter_leaves_mut() {
+            leaf.tab_bar_hidden = leaf.tabs == [PanelKind::Stage];
+        }
+        &mut self.state
+    }
+
+    /// After a change of the window's width, keeps the panels beside the stage at their width in points.
+    fn keep_widths(&mut self, width: f32) {
+        let Some((stage, _)) = self.state.find_main_surface_tab(&PanelKind::Stage) else { return };
+        let tree = self.state.main_surface_mut();
+        let before = tree.root_node().and_then(Node::rect).map_or(0.0, |rect| rect.width());
+        if !before.is_finite() || before <= 0.0 || (before - width).abs() < 1.0 {
+            return;
+        }
+        // Path from the root to the stage.
+        let up = std::iter::successors(Some(stage), |node| node.parent());
+        let mut way: Vec<NodeIndex> = up.collect();
+        way.reverse();
+        let (mut before, mut now) = (before, width);
+        for pair in way.windows(2) {
+            let is_first = pair[1].is_left();
+            if let Node::Horizontal(split) = &mut tree[pair[0]] {
+                let of_stage = |fraction: f32| if is_first { fraction } else { 1.0 - fraction };
+                let share = of_stage(split.fraction);
+                let beside = before * (1.0 - share);
+                let next = (1.0 - beside / now.max(1.0)).clamp(MIN_STAGE_SHARE, 0.97);
+                split.fraction = of_stage(next);
+                (before, now) = (before * share, now * next);
+            }
+        }
+    }
+
+    /// Whether the layout contains a panel, visible or as a tab.
+    pub fn has(&self, kind: PanelKind) -> bool {
+        self.state.find_tab(&kind).is_some()
+    }
+
+    /// Focuses a panel, and restores it if it was closed.
+    pub fn open(&mut self, kind: PanelKind) {
+        if self.is_to_be_laid_out {
+            self.first = Some(kind);
+            return;
+        }
+        if !self.has(kind) {
+            let home = self.home_of(kind);
+            match home {
+                Some(path) => {
+                    if let Ok(leaf) = self.state.leaf_mut(path.node_path()) {
+                        leaf.tabs.push(kind);
+                    }
+                }
+                None => {
+                    let root = NodeIndex::root();
+                    let _ = self.state.main_surface_mut().split_left(root, 0.27, vec![kind]);
+                }
+            }
+        }
+        if let Some(path) = self.state.find_tab(&kind) {
+            let _ = self.state.set_active_tab(path);
+            self.state.set_focused_node_and_surface(path.node_path());
+            if let Ok(leaf) = self.state.leaf_mut(path.node_path()) {
+                leaf.collapsed = false;
+            }
+        }
+    }
+
+    /// The place for a restored panel: beside a related panel, or else beside any.
+    fn home_of(&self, kind: PanelKind) -> Option<TabPath> {
+        let usual: &[PanelKind] = match kind {
+            PanelKind::Charts | PanelKind::Library => &[PanelKind::Charts, PanelKind::Library],
+            _ => &[PanelKind::Run, PanelKind::World, PanelKind::Lessons],
+        };
+        let found = |kinds: &[PanelKind]| kinds.iter().find_map(|kind| self.state.find_tab(kind));
+        found(usual).or_else(|| found(&PanelKind::ALL))
+    }
+
+    /// Closes the panel that was used last.
+    pub fn close_front(&mut self) {
+        let front = self.state.focused_leaf().and_then(|path| self.state.leaf(path).ok());
+        if let Some(kind) = front.and_then(|leaf| leaf.tabs.get(leaf.active.0).copied()) {
+            self.close(kind);
+        }
+    }
+
+    /// Closes a panel. The stage stays.
+    fn close(&mut self, kind: PanelKind) {
+        if kind != PanelKind::Stage
+            && let Some(path) = self.state.find_tab(&kind)
+        {
+            self.state.remove_tab(path);
+        }
+    }
+
+    /// The layout as text.
+    pub fn to_text(&self) -> String {
+        if self.is_to_be_laid_out {
+            return String::new();
+        }
+        let text = ron::to_string(&self.state).unwrap_or_default();
+        format!("{} {text}", seal(&text))
+    }
+
+    /// The layout from its text, or the default layout if the text is invalid.
+    pub fn from_text(text: &str) -> Self {
+        // Text from another version or edited by hand could describe a layout that cannot be drawn.
+        let own = text.split_once(' ').filter(|(sum, text)| *sum == seal(text));
+        let read = own.and_then(|(_, text)| ron::from_str(text).ok()).filter(is_sound);
+        read.map_or_else(Self::default, |state| Self {
+            state,
+            is_to_be_laid_out: false,
+            first: None,
+        })
+    }
+}
+
+/// Checksum of a layout's text and the program version.
+fn seal(text: &str) -> String {
+    format!("{:016x}", xxh3_64(format!("{} {text}", env!("CARGO_PKG_VERSION")).as_bytes()))
+}
+
+/// Whether the main window has exactly one stage and no panel occurs twice.
+fn is_sound(state: &DockState<PanelKind>) -> bool {
+    let kinds: Vec<PanelKind> = state.iter_all_tabs().map(|(_, kind)| *kind).collect();
+    let count = |kind: &PanelKind| kinds.iter().filter(|other| *other == kind).count();
+    let stage = state.find_tab(&PanelKind::Stage);
+    stage.is_some_and(|path| path.surface == SurfaceIndex::main())
+        && kinds.iter().all(|kind| count(kind) == 1)
+}
+
+/// Style of the dock area.
+pub(crate) fn style(ui: &egui::Ui) -> Style {
+    let palette = theme::of(ui);
+    let mut style = Style::from_egui(ui.style());
+    style.dock_area_padding = None;
+    style.main_surface_border_stroke = egui::Stroke::NONE;
+    style.separator.width = 1.0;
+    style.separator.extra_interact_width = theme::GAP;
+    style.separator.extra = 120.0;
+    style.separator.color_idle = palette.field_hovered;
+    style.separator.color_hovered = palette.accent;
+    style.separator.color_dragged = palette.accent;
+    style.tab_bar.bg_fill = palette.field;
+    style.tab_bar.height = theme::TAB_BAR_HEIGHT;
+    style.tab_bar.hline_color = palette.field_hovered;
+    style.tab_bar.corner_radius = egui::CornerRadius::ZERO;
+    style.tab.hline_below_active_tab_name = false;
+    style.tab.spacing = 0.0;
+    style.tab.tab_body.bg_fill = palette.panel;
+    style.tab.tab_body.stroke = egui::Stroke::NONE;
+    style.tab.tab_body.corner_radius = egui::CornerRadius::ZERO;
+    style.tab.tab_body.inner_margin = egui::Margin::same(theme::GAP as i8 + 2);
+    // Reserve no space for the hidden tab bar of the stage.
+    style.tab.tab_body.hidden_tab_bar_drag_height = Some(0.0);
+    style.buttons.show_tab_bar_size = 0.0;
+    style.buttons.show_tab_bar_hover_expand = 0.0;
+    for (tab, fill, text) in [
+        (&mut style.tab.active, palette.panel, palette.text),
+        (&mut style.tab.focused, palette.panel, palette.text),
+        (&mut style.tab.inactive, palette.field, palette.text_weak),
+        (&mut style.tab.hovered, palette.field_hovered, palette.text),
+        (&mut style.tab.active_with_kb_focus, palette.panel, palette.accent),
+        (&mut style.tab.focused_with_kb_focus, palette.panel, palette.accent),
+        (&mut style.tab.inactive_with_kb_focus, palette.field, palette.accent),
+    ] {
+        tab.bg_fill = fill;
+        tab.text_color = text;
+        tab.outline_color = egui::Color32::TRANSPARENT;
+        tab.corner_radius = egui::CornerRadius::ZERO;
+    }
+    style
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laid_out(width: f32) -> Layout {
+        let mut layout = Layout::default();
+        layout.state_in(egui::vec2(width, width * 9.0 / 16.0), true);
+        layout
+    }
+
+    #[test]
+    fn the_default_layout_has_every_panel_once_at_any_width() {
+        for width in [640.0, 1280.0, 2560.0] {
+            let layout = laid_out(width);
+            assert!(PanelKind::ALL.iter().all(|kind| layout.has(*kind)), "{width}");
+            assert!(is_sound(&layout.state), "{width}");
+        }
+    }
+
+    #[test]
+    fn closed_panels_can_be_restored_and_the_stage_cannot_be_closed() {
+        let mut layout = laid_out(1280.0);
+        for kind in PanelKind::ALL {
+            layout.close(kind);
+            assert!(!layout.has(kind));
+        }
+        layout.close(PanelKind::Stage);
+        assert!(layout.has(PanelKind::Stage));
+        for kind in PanelKind::ALL {
+            layout.open(kind);
+            assert!(layout.has(kind));
+        }
+        assert!(is_sound(&layout.state));
+    }
+
+    #[test]
+    fn a_wider_window_widens_the_stage_but_not_the_panels() {
+        let left = |layout: &Layout| {
+            let path = layout.state.find_tab(&PanelKind::Run).expect("there");
+            let root = layout.state.main_surface().root_node().expect("a root");
+            let Node::Horizontal(split) = root else { panic!("split") };
+            assert_eq!(path.node, NodeIndex(1));
+            split.fraction
+        };
+        let mut layout = laid_out(1280.0);
+        assert!((left(&layout) * 1280.0 - LEFT).abs() < 1.0);
+        // Drawing would set this rectangle.
+        let drawn = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 700.0));
+        layout.state.main_surface_mut().root_node_mut().expect("a root").set_rect(drawn);
+        layout.state_in(egui::vec2(1920.0, 1080.0), true);
+        assert!((left(&layout) * 1920.0 - LEFT).abs() < 1.0);
+    }
+
+    #[test]
+    fn a_panel_opened_before_the_window_has_a_size_gets_the_focus() {
+        let mut layout = Layout::default();
+        layout.open(PanelKind::Charts);
+        layout.state_in(egui::vec2(1280.0, 720.0), true);
+        let path = layout.state.find_tab(&PanelKind::Charts).expect("there");
+        let leaf = layout.state.leaf(path.node_path()).expect("a leaf");
+        assert_eq!(leaf.active, path.tab);
+    }
+
+    #[test]
+    fn a_layout_survives_as_text_and_invalid_text_is_rejected() {
+        let mut layout = laid_out(1280.0);
+        layout.close(PanelKind::Lessons);
+        let again = Layout::from_text(&layout.to_text());
+        assert!(!again.is_to_be_laid_out && !again.has(PanelKind::Lessons));
+        assert!(again.has(PanelKind::Charts));
+        for text in ["", "(", "()", "(surfaces:[],focused_surface:None)"] {
+            assert!(Layout::from_text(text).is_to_be_laid_out, "{text}");
+        }
+        let by_hand = layout.to_text().replace("fraction:0.3", "fraction:0.4");
+        assert!(Layout::from_text(&by_hand).is_to_be_laid_out);
+        let twice = layout.to_text().replace("Stage", "Lessons");
+        let text = twice.split_once(' ').expect("sealed").1;
+        assert!(Layout::from_text(&format!("{} {text}", seal(text))).is_to_be_laid_out);
+    }
+}

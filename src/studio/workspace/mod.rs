@@ -1,0 +1,138 @@
+//! State of the window: panel layout, UI scale, modal view.
+
+pub mod layout;
+pub mod situation;
+
+use bevy::prelude::*;
+
+use super::commands::modal::Modal;
+use super::commands::panel::PanelKind;
+use super::schedule::FrameSet;
+use super::state::options::OpenedComparison;
+use crate::save::UI_SCALES;
+
+use layout::Layout;
+
+/// State of the window.
+#[derive(Resource, Debug)]
+pub(super) struct Workspace {
+    /// Layout of the panels.
+    pub layout: Layout,
+    /// UI scale; 1 is the default.
+    pub scale: f32,
+    /// Whether the panels are hidden.
+    pub is_bare: bool,
+    /// Whether the tour was finished or skipped, in this or an earlier session.
+    pub tour_is_over: bool,
+    /// Label of the setting to scroll to, until the settings panel has handled it.
+    pub sought: Option<&'static str>,
+    modal: Option<Modal>,
+}
+
+impl Default for Workspace {
+    fn default() -> Self {
+        Self {
+            layout: Layout::default(),
+            scale: 1.0,
+            is_bare: false,
+            tour_is_over: true,
+            sought: None,
+            modal: None,
+        }
+    }
+}
+
+impl Workspace {
+    /// The initial state, with or without the tour.
+    pub fn new(tour_is_over: bool) -> Self {
+        Self { tour_is_over, ..Self::default() }
+    }
+
+    /// The open modal view.
+    pub fn modal(&self) -> Option<Modal> {
+        self.modal
+    }
+
+    /// Opens a modal view in place of any other, or closes it if it is open.
+    pub fn toggle_modal(&mut self, modal: Modal) {
+        self.leave_tour();
+        self.modal = (self.modal != Some(modal)).then_some(modal);
+    }
+
+    /// Closes the modal view.
+    pub fn close_modal(&mut self) {
+        self.leave_tour();
+        self.modal = None;
+    }
+
+    fn leave_tour(&mut self) {
+        if matches!(self.modal, Some(Modal::Tour(_))) {
+            self.tour_is_over = true;
+        }
+    }
+
+    /// Selects the next larger or smaller UI scale.
+    pub fn change_scale(&mut self, larger: bool) {
+        let is_next =
+            |scale: &&f32| if larger { **scale > self.scale } else { **scale < self.scale };
+        let next = if larger {
+            UI_SCALES.iter().find(is_next)
+        } else {
+            UI_SCALES.iter().rev().find(is_next)
+        };
+        self.scale = next.copied().unwrap_or(self.scale);
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Workspace>().add_systems(Update, open_first.in_set(FrameSet::TakeIn));
+}
+
+/// Opens the charts if the studio was opened with a comparison, or else the tour if it was not finished yet.
+fn open_first(
+    mut workspace: ResMut<Workspace>,
+    opened: Res<OpenedComparison>,
+    mut is_done: Local<bool>,
+) {
+    if std::mem::replace(&mut *is_done, true) {
+        return;
+    }
+    if opened.0.is_some() {
+        workspace.layout.open(PanelKind::Charts);
+    } else if !workspace.tour_is_over {
+        workspace.modal = Some(Modal::Tour(0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ui_scale_changes_in_steps_within_its_limits() {
+        let mut workspace = Workspace::default();
+        workspace.change_scale(true);
+        assert_eq!(workspace.scale, 1.1);
+        workspace.change_scale(false);
+        assert_eq!(workspace.scale, 1.0);
+        (0..20).for_each(|_| workspace.change_scale(true));
+        assert_eq!(workspace.scale, UI_SCALES[UI_SCALES.len() - 1]);
+        (0..20).for_each(|_| workspace.change_scale(false));
+        assert_eq!(workspace.scale, UI_SCALES[0]);
+    }
+
+    #[test]
+    fn a_second_toggle_closes_a_modal_and_a_closed_tour_is_finished() {
+        let mut workspace = Workspace { tour_is_over: false, ..Workspace::default() };
+        workspace.toggle_modal(Modal::Keys);
+        assert_eq!(workspace.modal(), Some(Modal::Keys));
+        workspace.toggle_modal(Modal::Keys);
+        assert_eq!(workspace.modal(), None);
+        assert!(!workspace.tour_is_over);
+        workspace.toggle_modal(Modal::Tour(0));
+        workspace.toggle_modal(Modal::Tour(1));
+        assert_eq!(workspace.modal(), Some(Modal::Tour(1)));
+        workspace.close_modal();
+        assert!(workspace.modal().is_none() && workspace.tour_is_over);
+    }
+}

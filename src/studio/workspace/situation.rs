@@ -1,0 +1,46 @@
+//! The current situation, which decides what an action does.
+
+use bevy::ecs::system::SystemParam;
+use bevy::prelude::*;
+
+use super::Workspace;
+use crate::studio::commands::actions::Situation;
+use crate::studio::stage::StageMode;
+use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::state::undo::{UndoDirection, UndoHistory};
+
+/// Resources that make up the current situation.
+#[derive(SystemParam)]
+pub(crate) struct CurrentSituation<'w> {
+    mode: Res<'w, StageMode>,
+    evolution: Res<'w, CurrentRun>,
+    workspace: Res<'w, Workspace>,
+    history: Res<'w, UndoHistory>,
+}
+
+impl CurrentSituation<'_> {
+    /// The current situation.
+    pub fn situation(&self) -> Situation {
+        Situation::of(&self.evolution, &self.mode, &self.workspace, &self.history)
+    }
+}
+
+impl Situation {
+    /// The situation of this state.
+    pub fn of(
+        evolution: &CurrentRun,
+        mode: &StageMode,
+        workspace: &Workspace,
+        history: &UndoHistory,
+    ) -> Self {
+        Self {
+            is_running: evolution.status() == RunStatus::Running,
+            is_what_if: matches!(mode, StageMode::WhatIf { .. }),
+            is_race: *mode == StageMode::Race,
+            is_covered: workspace.modal().is_some() || workspace.is_bare,
+            can_undo: history.next(UndoDirection::Back).is_some(),
+            can_redo: history.next(UndoDirection::Forth).is_some(),
+            digit: None,
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Pages of `docs/` that the program writes.
+
+use std::fs;
+use std::path::Path;
+
+use super::program::{folder, stdout_of};
+
+#[test]
+fn the_page_of_settings_is_what_the_program_writes() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/settings.md");
+    let page = fs::read_to_string(path).expect("docs/settings.md");
+    let written = stdout_of(folder().path(), "settings --markdown");
+    let differs = written.lines().zip(page.lines()).find(|(written, page)| written != page);
+    let regenerate = "run `snakes settings --markdown > docs/settings.md`";
+    assert_eq!(differs, None, "{regenerate}");
+    assert_eq!(written.len(), page.len(), "{regenerate}");
+}
