@@ -1,38 +1,34 @@
-//! Executes all commands.
+//! Passes each command to the part of the studio that executes its group.
 
 pub mod stage;
 
 use bevy::prelude::*;
 
-use crate::studio::commands::Command;
-use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::{Command, LessonCommand, PlanCommand, RunCommand, WindowCommand};
 use crate::studio::panels::help::tour::highlighted_panel;
+use crate::studio::scene::view_commands::ViewParams;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::lessons::Lessons;
-use crate::studio::state::library::{Library, found_run};
-use crate::studio::state::lineup::champion_of;
+use crate::studio::state::library::Library;
+use crate::studio::state::plan_commands::apply_to_plan;
 use crate::studio::state::undo::{UndoDirection, UndoHistory, UndoStep};
-use crate::studio::state::what_if::WorldChange;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
-use stage::{StageParams, on_stage};
+use stage::StageParams;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_message::<Command>().add_systems(Update, apply.in_set(FrameSet::Apply));
 }
 
-/// Shown when the user leaves a what-if without discarding the change.
-const CHANGE_STAYS: &str = "The next run keeps the change: see the World tab.";
-
 /// Executes the commands in the order in which they were sent.
 fn apply(
     mut commands: MessageReader<Command>,
-    mut evolution: ResMut<CurrentRun>,
+    mut run: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,
     mut history: ResMut<UndoHistory>,
     mut exit: MessageWriter<AppExit>,
@@ -41,160 +37,97 @@ fn apply(
     mut lessons: ResMut<Lessons>,
     mut library: ResMut<Library>,
     mut stage: StageParams,
+    mut view: ViewParams,
 ) {
+    let notices = &mut *notices;
     for command in commands.read() {
-        let before = evolution.next_plan().clone();
+        let before = run.next_plan().clone();
         let done = match command {
             command if lessons.view().is_some() && changes_own_run(command) => {
                 Err(LESSON.to_owned())
             }
-            Command::Start => {
-                if evolution.status() == RunStatus::Finished {
+            Command::Run(command) => {
+                if replaces_run(command, &run) {
                     stage.settle();
                 }
-                evolution.start()
+                run.apply(command, notices)
             }
-            Command::Pause => evolution.pause(),
-            Command::SingleGeneration => evolution.single_generation(),
-            Command::Reset => {
-                stage.settle();
-                evolution.reset()
+            Command::Plan(command) => {
+                let (on_show, mode) = (stage.champions_to_change(), stage.mode.clone());
+                let (saves, on_show) = ((&*library, &*opening), (&*on_show, &mode));
+                apply_to_plan(command, &mut run, saves, on_show, notices)
+                    .map(|show| stage.present(show))
             }
-            Command::SetSeed(seed) => evolution.set_seed(*seed),
-            Command::SetPopulation(population) => evolution.set_population(*population),
-            Command::Continue(folder) => {
-                stage.settle();
-                evolution.go_on_with(folder)
-            }
-            Command::ListRuns => evolution.list_runs(),
-            Command::Compare(folder) => evolution.compare_with(folder),
-            Command::ExportChart(chart) => evolution.export(chart).map(|path| {
-                notices.info(format!("Chart saved to {}", path.display()));
-            }),
-            Command::SetField { field, text } => {
-                stage.try_out(&mut evolution, &WorldChange::Field { field, text })
-            }
-            Command::SetThreads(threads) => evolution.set_threads(*threads),
-            Command::StartFrom(pick) => match champion_of(pick, &evolution, &opening) {
-                Some(founder) => {
-                    let found = evolution.found_run(founder.champion(), founder.name());
-                    if found.is_ok() {
-                        notices.info(format!("The next run starts from {}.", founder.name()));
-                    }
-                    found
-                }
-                None => Ok(()),
-            },
-            Command::ForgetFounder => evolution.forget_founder(),
-            Command::SetFields(changes) => {
-                stage.try_out(&mut evolution, &WorldChange::Fields(changes))
-            }
-            Command::SetPreset(name) => stage.try_out(&mut evolution, &WorldChange::Preset(name)),
-            Command::StorePreset(name) => evolution.store_preset(name),
-            Command::ListPresets => {
-                evolution.list_presets();
+            Command::Stage(command) => stage.apply(command, &run, &opening, notices),
+            Command::Player(command) => {
+                stage.apply_to_player(command);
                 Ok(())
             }
-            // A running batch operation is not on the undo stack yet, and an earlier step would be the wrong one.
+            Command::View(command) => {
+                view.apply(command);
+                Ok(())
+            }
+            Command::Window(command) => {
+                if let WindowCommand::ToggleModal(Modal::Tour(step)) = command {
+                    highlighted_panel(*step).into_iter().for_each(|kind| workspace.open(kind));
+                    workspace.is_bare = false;
+                }
+                workspace.apply(command);
+                Ok(())
+            }
+            Command::Library(command) => library
+                .apply(command, &mut history, notices)
+                .map(|show| stage.present_others(show, notices)),
+            Command::Lesson(command) => {
+                if matches!(command, LessonCommand::Begin(_)) {
+                    workspace.open(PanelKind::Lessons);
+                }
+                lessons
+                    .apply(command, &mut run, stage.on_show(), &mut history)
+                    .map(|show| stage.present(show))
+            }
+            // A running batch operation is not in the history yet, and an earlier step would be the wrong one.
             Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),
             Command::Undo | Command::Redo => {
-                let way = if *command == Command::Undo {
-                    UndoDirection::Back
-                } else {
-                    UndoDirection::Forth
+                let way = match command {
+                    Command::Undo => UndoDirection::Back,
+                    _ => UndoDirection::Forth,
                 };
-                if history.next_is_of_library(way) {
-                    let done = undo_in(&mut library, way, &mut notices);
-                    if done.is_ok() {
-                        history.take(way);
+                match history.take(way) {
+                    Some(UndoStep::Plan(step)) => {
+                        notices.info(way.taken(&step.label));
+                        history.complete(way, Some(UndoStep::Plan(step.clone())), None);
+                        stage.step(&mut run, &step, way)
                     }
-                    done
-                } else {
-                    let step = history.take(way);
-                    let said =
-                        step.as_ref().map_or(way.nothing().to_owned(), |step| way.taken(step));
-                    notices.info(said);
-                    step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
+                    Some(UndoStep::Files { label, steps }) => {
+                        library.step(way, label, steps, &mut history, notices)
+                    }
+                    None => {
+                        notices.info(way.nothing().to_owned());
+                        Ok(())
+                    }
                 }
-            }
-            Command::Library(request @ (LibraryCommand::Undo | LibraryCommand::Redo)) => {
-                let way = if *request == LibraryCommand::Undo {
-                    UndoDirection::Back
-                } else {
-                    UndoDirection::Forth
-                };
-                let done = undo_in(&mut library, way, &mut notices);
-                if done.is_ok() {
-                    history.take_of_library(way);
-                }
-                done
-            }
-            Command::Library(LibraryCommand::StartFrom(place)) => {
-                stage.settle();
-                found_run(&mut evolution, place, library.best_of(place))
-                    .and_then(|()| evolution.begin_next())
-                    .map(|()| notices.info(format!("A run started from {}.", place.name())))
-            }
-            Command::Library(request) => library.apply(request, &mut notices).map(|show| {
-                if show.is_some() && stage.leaves_change(command) {
-                    notices.info(CHANGE_STAYS.to_owned());
-                }
-                stage.present(show);
-            }),
-            Command::DropChange => stage.drop_change(&mut evolution),
-            Command::BeginLesson(index) => {
-                workspace.is_bare = false;
-                workspace.layout.open(PanelKind::Lessons);
-                let on_show = stage.on_show();
-                let shown = lessons.begin(*index, &mut evolution, on_show, &mut history);
-                shown.map(|show| stage.present(show))
-            }
-            Command::ShowLessonScene(scene) => {
-                lessons.try_out(*scene).map(|show| stage.present(show))
             }
             Command::Notify(text) => {
                 notices.info(text.clone());
                 Ok(())
             }
-            Command::ShowLessonAnswer => {
-                lessons.tell();
-                Ok(())
-            }
-            Command::LeaveLesson => {
-                let shown = lessons.leave(&mut evolution, &mut history);
-                shown.map(|show| stage.present(show))
-            }
             Command::Quit => {
                 exit.write(AppExit::Success);
                 Ok(())
             }
-            command if apply_to_workspace(command, &mut workspace) => Ok(()),
-            command => {
-                let shown = on_stage(command, &mut stage, &evolution, &opening);
-                if shown == Ok(true) && stage.leaves_change(command) {
-                    notices.info(CHANGE_STAYS.to_owned());
-                }
-                shown.map(drop)
-            }
         };
-        history.note(command, before, evolution.next_plan());
+        history.note(command, before, run.next_plan());
         notices.problems(done.err());
     }
-    // An import or an export is done some time after it was asked for.
-    for label in library.take_done() {
-        history.push(UndoStep::Library { label });
-    }
-    for (way, label) in library.take_left() {
-        history.put_back(way, UndoStep::Library { label });
-    }
-    if library.busy().is_some() {
-        // A running undo is on neither stack.
-        return;
-    }
-    let (undoable, redoable) = library.counts();
-    if history.agree_with_library(undoable, redoable) > 0 {
-        // Something else was done since: it cannot be done again in its place.
-        library.forget_undone();
+}
+
+/// Whether a command puts another run in the place of the current one.
+fn replaces_run(command: &RunCommand, run: &CurrentRun) -> bool {
+    match command {
+        RunCommand::Start => run.status() == RunStatus::Finished,
+        RunCommand::Reset | RunCommand::Continue(_) => true,
+        _ => false,
     }
 }
 
@@ -206,53 +139,18 @@ const LESSON: &str =
 fn changes_own_run(command: &Command) -> bool {
     matches!(
         command,
-        Command::Start
-            | Command::SingleGeneration
-            | Command::Reset
-            | Command::Continue(_)
-            | Command::StartFrom(_)
-            | Command::ForgetFounder
-            | Command::SetSeed(_)
-            | Command::Library(LibraryCommand::StartFrom(_))
+        Command::Run(
+            RunCommand::Start
+                | RunCommand::SingleGeneration
+                | RunCommand::Reset
+                | RunCommand::Continue(_)
+        ) | Command::Plan(
+            PlanCommand::StartFrom(_)
+                | PlanCommand::StartFromSave(_)
+                | PlanCommand::ForgetFounder
+                | PlanCommand::SetSeed(_)
+        )
     )
-}
-
-/// Takes back what was done with saves, or does it again.
-fn undo_in(library: &mut Library, way: UndoDirection, notices: &mut Notices) -> Result<(), String> {
-    let said = library.step(way)?;
-    notices.info(said.unwrap_or(way.nothing().to_owned()));
-    Ok(())
-}
-
-/// Executes commands about the layout of the window. Returns whether the command was one.
-fn apply_to_workspace(command: &Command, workspace: &mut Workspace) -> bool {
-    match command {
-        Command::OpenPanel(kind) => {
-            workspace.is_bare = false;
-            workspace.layout.open(*kind);
-        }
-        Command::FindSetting(label) => {
-            workspace.is_bare = false;
-            workspace.layout.open(PanelKind::World);
-            workspace.sought = Some(label);
-        }
-        Command::ClosePanel => workspace.layout.close_front(),
-        Command::ResetLayout => workspace.layout.reset(),
-        Command::TogglePanels => workspace.is_bare = !workspace.is_bare,
-        Command::ChangeScale { larger } => workspace.change_scale(*larger),
-        Command::ResetScale => workspace.scale = 1.0,
-        Command::ToggleModal(modal) => {
-            if let Modal::Tour(step) = modal {
-                workspace.is_bare = false;
-                highlighted_panel(*step).into_iter().for_each(|kind| workspace.layout.open(kind));
-            }
-            workspace.toggle_modal(*modal);
-        }
-        Command::CloseModal if workspace.modal().is_none() => workspace.is_bare = false,
-        Command::CloseModal => workspace.close_modal(),
-        _ => return false,
-    }
-    true
 }
 
 #[cfg(test)]
@@ -260,8 +158,10 @@ mod tests {
     use super::*;
     use crate::save::library::SavePlace;
     use crate::save::shipped_champion;
+    use crate::studio::commands::library::LibraryCommand;
     use crate::studio::commands::pick::Pick;
     use crate::studio::commands::screenshot_area::ScreenshotArea;
+    use crate::studio::commands::{PlayerCommand, StageCommand};
     use crate::studio::scene::camera::CameraRig;
     use crate::studio::scene::overlays::Overlays;
     use crate::studio::stage::opening::NamedChampion;
@@ -311,9 +211,11 @@ mod tests {
     #[test]
     fn settings_are_undone_and_redone_drag_by_drag() {
         let mut app = app();
-        let set = |text: &str| Command::SetField {
-            field: "trial.surface.friction".to_owned(),
-            text: text.to_owned(),
+        let set = |text: &str| {
+            Command::Plan(PlanCommand::SetField {
+                field: "trial.surface.friction".to_owned(),
+                text: text.to_owned(),
+            })
         };
         let first = friction_after(&mut app, &[]);
         // A drag that pauses twice.
@@ -335,10 +237,10 @@ mod tests {
         let back = back.map(|(field, text)| (field.to_owned(), text.to_owned()));
         let mut plans = vec![plan(&app)];
         for command in [
-            Command::SetPreset("ice".to_owned()),
-            Command::SetSeed(77),
-            Command::SetPopulation(9),
-            Command::SetFields(back.to_vec()),
+            Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
+            Command::Plan(PlanCommand::SetSeed(77)),
+            Command::Plan(PlanCommand::SetPopulation(9)),
+            Command::Plan(PlanCommand::SetFields(back.to_vec())),
         ] {
             friction_after(&mut app, &[command]);
             plans.push(plan(&app));
@@ -352,9 +254,11 @@ mod tests {
     #[test]
     fn a_rejected_command_is_no_undo_step() {
         let mut app = app();
-        let wrong =
-            Command::SetField { field: "trial.surface.friction".to_owned(), text: "-1".to_owned() };
-        friction_after(&mut app, &[wrong, Command::SetThreads(0)]);
+        let wrong = Command::Plan(PlanCommand::SetField {
+            field: "trial.surface.friction".to_owned(),
+            text: "-1".to_owned(),
+        });
+        friction_after(&mut app, &[wrong, Command::Run(RunCommand::SetThreads(0))]);
         assert_eq!(app.world().resource::<UndoHistory>().next(UndoDirection::Back), None);
         assert_eq!(app.world().resource::<Notices>().len(), 2);
     }
@@ -365,17 +269,26 @@ mod tests {
         let friction = friction_after(&mut app, &[]);
         let plan = |app: &App| app.world().resource::<CurrentRun>().next_plan().clone();
         let number = |app: &App| app.world().resource::<CurrentRun>().number();
-        let set = |text: &str| Command::SetField {
-            field: "trial.surface.friction".to_owned(),
-            text: text.to_owned(),
+        let set = |text: &str| {
+            Command::Plan(PlanCommand::SetField {
+                field: "trial.surface.friction".to_owned(),
+                text: text.to_owned(),
+            })
         };
         friction_after(&mut app, &[set("0.5")]);
         let (own, run) = (plan(&app), number(&app));
-        friction_after(&mut app, &[Command::BeginLesson(0), Command::Reset, Command::Start]);
+        friction_after(
+            &mut app,
+            &[
+                Command::Lesson(LessonCommand::Begin(0)),
+                Command::Run(RunCommand::Reset),
+                Command::Run(RunCommand::Start),
+            ],
+        );
         assert_eq!(number(&app), run, "refused, in a sentence");
         assert!(app.world().resource::<Notices>().len() > 0);
         friction_after(&mut app, &[set("0.2"), Command::Undo, Command::Undo, set("0.3")]);
-        friction_after(&mut app, &[Command::LeaveLesson]);
+        friction_after(&mut app, &[Command::Lesson(LessonCommand::Leave)]);
         assert_eq!(plan(&app), own);
         assert_eq!(friction_after(&mut app, &[Command::Undo]), friction, "one's own step");
     }
@@ -383,7 +296,10 @@ mod tests {
     #[test]
     fn pausing_in_the_frame_of_a_new_show_pauses_that_show() {
         let mut app = app();
-        let commands = [Command::Show(Pick::Opened(0)), Command::TogglePlayback];
+        let commands = [
+            Command::Stage(StageCommand::Show(Pick::Opened(0))),
+            Command::Player(PlayerCommand::Toggle),
+        ];
         app.world_mut().write_message_batch(commands);
         app.update();
         assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "one show request");

@@ -105,6 +105,9 @@ mod tests {
     use super::*;
     use crate::studio::commands::actions::ACTIONS;
     use crate::studio::commands::pick::Pick;
+    use crate::studio::commands::{
+        PlanCommand, PlayerCommand, RunCommand, StageCommand, WindowCommand,
+    };
 
     const NONE: Held = Held { control: false, shift: false };
     const CONTROL: Held = Held { control: true, shift: false };
@@ -150,15 +153,27 @@ mod tests {
         let calm = Situation::default();
         assert_eq!(command(&Key::Escape, NONE, calm), None, "nothing to leave");
         let is_race = Situation { is_race: true, ..calm };
-        assert_eq!(command(&Key::Escape, NONE, is_race), Some(Command::Single));
+        assert_eq!(
+            command(&Key::Escape, NONE, is_race),
+            Some(Command::Stage(StageCommand::Single))
+        );
         let is_what_if = Situation { is_what_if: true, ..calm };
-        assert_eq!(command(&Key::Escape, NONE, is_what_if), Some(Command::DropChange));
+        assert_eq!(
+            command(&Key::Escape, NONE, is_what_if),
+            Some(Command::Plan(PlanCommand::DropChange))
+        );
         let is_covered = Situation { is_covered: true, ..is_what_if };
-        assert_eq!(command(&Key::Escape, NONE, is_covered), Some(Command::CloseModal));
+        assert_eq!(
+            command(&Key::Escape, NONE, is_covered),
+            Some(Command::Window(WindowCommand::CloseModal))
+        );
         let is_running = Situation { is_running: true, ..calm };
-        assert_eq!(command(&character("e"), NONE, is_running), Some(Command::Pause));
-        assert_eq!(command(&character("e"), NONE, calm), Some(Command::Start));
-        let third = Command::Show(Pick::Generation(3));
+        assert_eq!(
+            command(&character("e"), NONE, is_running),
+            Some(Command::Run(RunCommand::Pause))
+        );
+        assert_eq!(command(&character("e"), NONE, calm), Some(Command::Run(RunCommand::Start)));
+        let third = Command::Stage(StageCommand::Show(Pick::Generation(3)));
         assert_eq!(command(&character("3"), NONE, calm), Some(third));
     }
 
@@ -170,7 +185,10 @@ mod tests {
         }
         assert_eq!(command(&character("r"), CONTROL, calm), None, "control and R");
         assert_eq!(command(&character("Q"), CONTROL, calm), Some(Command::Quit), "large letters");
-        assert_eq!(command(&character("R"), SHIFT, calm), Some(Command::Restart));
+        assert_eq!(
+            command(&character("R"), SHIFT, calm),
+            Some(Command::Player(PlayerCommand::Restart))
+        );
     }
 
     #[test]

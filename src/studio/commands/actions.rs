@@ -1,13 +1,15 @@
 //! The list of all named actions. Menus, keys, the command palette and the list of shortcuts all read this one list, so
 //! they cannot disagree.
 
-use super::Command;
 use super::camera_mode::CameraMode;
 use super::modal::Modal;
 use super::overlay::Overlay;
 use super::panel::PanelKind;
 use super::pick::Pick;
 use super::screenshot_area::ScreenshotArea;
+use super::{
+    Command, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand, WindowCommand,
+};
 
 /// A menu, and a group in the list of shortcuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,20 +106,33 @@ pub(crate) fn of_keys(keys: &str) -> Option<&'static Action> {
 /// All actions, grouped by menu.
 pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::Run, "Start or pause evolution", &["E"], |now| {
-        Some(if now.is_running { Command::Pause } else { Command::Start })
+        Some(if now.is_running {
+            Command::Run(RunCommand::Pause)
+        } else {
+            Command::Run(RunCommand::Start)
+        })
     }),
-    action(Menu::Run, "Evolve one generation", &["G"], |_| Some(Command::SingleGeneration)),
-    action(Menu::Run, "Reset the run", &[], |_| Some(Command::Reset)),
+    action(Menu::Run, "Evolve one generation", &["G"], |_| {
+        Some(Command::Run(RunCommand::SingleGeneration))
+    }),
+    action(Menu::Run, "Reset the run", &[], |_| Some(Command::Run(RunCommand::Reset))),
     action(
         Menu::Run,
         "Show a generation's champion",
         &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
-        |now| now.digit.map(|generation| Command::Show(Pick::Generation(generation))),
+        |now| {
+            now.digit
+                .map(|generation| Command::Stage(StageCommand::Show(Pick::Generation(generation))))
+        },
     ),
-    action(Menu::Run, "Show the saved champion", &["0"], |_| Some(Command::Show(Pick::Opened(0)))),
-    action(Menu::Run, "Race generations", &["N"], |_| Some(Command::RaceGenerations)),
+    action(Menu::Run, "Show the saved champion", &["0"], |_| {
+        Some(Command::Stage(StageCommand::Show(Pick::Opened(0))))
+    }),
+    action(Menu::Run, "Race generations", &["N"], |_| {
+        Some(Command::Stage(StageCommand::RaceGenerations))
+    }),
     action(Menu::Run, "Race best 10 of the latest generation", &["M"], |_| {
-        Some(Command::RaceLeaders(None))
+        Some(Command::Stage(StageCommand::RaceLeaders(None)))
     }),
     action(Menu::Run, "Quit", &["Ctrl Q"], |_| Some(Command::Quit)),
     action(Menu::Edit, "Undo", &["Ctrl Z"], |now| now.can_undo.then_some(Command::Undo)),
@@ -125,73 +140,115 @@ pub(crate) const ACTIONS: &[Action] = &[
         now.can_redo.then_some(Command::Redo)
     }),
     action(Menu::Edit, "Keep this change", &[], |now| {
-        now.is_what_if.then_some(Command::KeepChange)
+        now.is_what_if.then_some(Command::Stage(StageCommand::KeepChange))
     }),
     action(Menu::Edit, "Leave race / Discard change", &["Esc"], |now| match now {
-        Situation { is_covered: true, .. } => Some(Command::CloseModal),
-        Situation { is_what_if: true, .. } => Some(Command::DropChange),
-        Situation { is_race: true, .. } => Some(Command::Single),
+        Situation { is_covered: true, .. } => Some(Command::Window(WindowCommand::CloseModal)),
+        Situation { is_what_if: true, .. } => Some(Command::Plan(PlanCommand::DropChange)),
+        Situation { is_race: true, .. } => Some(Command::Stage(StageCommand::Single)),
         _ => None,
     }),
-    action(Menu::Stage, "Pause / Play", &["Space"], |_| Some(Command::TogglePlayback)),
+    action(Menu::Stage, "Pause / Play", &["Space"], |_| {
+        Some(Command::Player(PlayerCommand::Toggle))
+    }),
     action(Menu::Stage, "Previous physics step", &["Left"], |_| {
-        Some(Command::Step { forward: false })
+        Some(Command::Player(PlayerCommand::Step { forward: false }))
     }),
-    action(Menu::Stage, "Next physics step", &["Right"], |_| Some(Command::Step { forward: true })),
-    action(Menu::Stage, "Go to start", &["R"], |_| Some(Command::Restart)),
-    action(Menu::Stage, "Go to end", &["End"], |_| Some(Command::SeekEnd)),
-    action(Menu::Stage, "Faster", &["+", "="], |_| Some(Command::ChangeSpeed { faster: true })),
-    action(Menu::Stage, "Slower", &["-"], |_| Some(Command::ChangeSpeed { faster: false })),
-    action(Menu::Stage, "Loop", &["O"], |_| Some(Command::ToggleLoop)),
-    action(Menu::View, "Follow snake", &["F"], |_| Some(Command::ToggleFollow)),
-    action(Menu::View, "Next camera", &["C"], |_| Some(Command::NextCameraMode)),
-    action(Menu::View, "View from the side", &[], |_| Some(Command::SetCamera(CameraMode::Side))),
-    action(Menu::View, "View from above", &[], |_| Some(Command::SetCamera(CameraMode::Top))),
-    action(Menu::View, "Reset camera", &["Home"], |_| Some(Command::ResetCamera)),
+    action(Menu::Stage, "Next physics step", &["Right"], |_| {
+        Some(Command::Player(PlayerCommand::Step { forward: true }))
+    }),
+    action(Menu::Stage, "Go to start", &["R"], |_| Some(Command::Player(PlayerCommand::Restart))),
+    action(Menu::Stage, "Go to end", &["End"], |_| Some(Command::Player(PlayerCommand::SeekEnd))),
+    action(Menu::Stage, "Faster", &["+", "="], |_| {
+        Some(Command::Player(PlayerCommand::ChangeSpeed { faster: true }))
+    }),
+    action(Menu::Stage, "Slower", &["-"], |_| {
+        Some(Command::Player(PlayerCommand::ChangeSpeed { faster: false }))
+    }),
+    action(Menu::Stage, "Loop", &["O"], |_| Some(Command::Player(PlayerCommand::ToggleLoop))),
+    action(Menu::View, "Follow snake", &["F"], |_| Some(Command::View(ViewCommand::ToggleFollow))),
+    action(Menu::View, "Next camera", &["C"], |_| Some(Command::View(ViewCommand::NextCameraMode))),
+    action(Menu::View, "View from the side", &[], |_| {
+        Some(Command::View(ViewCommand::SetCamera(CameraMode::Side)))
+    }),
+    action(Menu::View, "View from above", &[], |_| {
+        Some(Command::View(ViewCommand::SetCamera(CameraMode::Top)))
+    }),
+    action(Menu::View, "Reset camera", &["Home"], |_| {
+        Some(Command::View(ViewCommand::ResetCamera))
+    }),
     action(Menu::View, "Contacts and forces", &["V"], |_| {
-        Some(Command::ToggleOverlay(Overlay::Contacts))
+        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Contacts)))
     }),
-    action(Menu::View, "Joint torques", &["J"], |_| Some(Command::ToggleOverlay(Overlay::Torques))),
-    action(Menu::View, "Trail", &["B"], |_| Some(Command::ToggleOverlay(Overlay::Trail))),
+    action(Menu::View, "Joint torques", &["J"], |_| {
+        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Torques)))
+    }),
+    action(Menu::View, "Trail", &["B"], |_| {
+        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Trail)))
+    }),
     action(Menu::View, "Fitness line", &["L"], |_| {
-        Some(Command::ToggleOverlay(Overlay::FitnessLine))
+        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::FitnessLine)))
     }),
     action(Menu::View, "Collision shapes", &["D"], |_| {
-        Some(Command::ToggleOverlay(Overlay::Wireframe))
+        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Wireframe)))
     }),
-    action(Menu::View, "Anti-aliasing", &["A"], |_| Some(Command::ToggleSmoothEdges)),
-    action(Menu::View, "Light / dark theme", &["T"], |_| Some(Command::ToggleTheme)),
+    action(Menu::View, "Anti-aliasing", &["A"], |_| {
+        Some(Command::View(ViewCommand::ToggleSmoothEdges))
+    }),
+    action(Menu::View, "Light / dark theme", &["T"], |_| {
+        Some(Command::View(ViewCommand::ToggleTheme))
+    }),
     action(Menu::View, "Larger panels", &["Ctrl +", "Ctrl ="], |_| {
-        Some(Command::ChangeScale { larger: true })
+        Some(Command::Window(WindowCommand::ChangeScale { larger: true }))
     }),
     action(Menu::View, "Smaller panels", &["Ctrl -"], |_| {
-        Some(Command::ChangeScale { larger: false })
+        Some(Command::Window(WindowCommand::ChangeScale { larger: false }))
     }),
-    action(Menu::View, "Reset panel size", &["Ctrl 0"], |_| Some(Command::ResetScale)),
-    action(Menu::View, "Show only the stage", &["H"], |_| Some(Command::TogglePanels)),
+    action(Menu::View, "Reset panel size", &["Ctrl 0"], |_| {
+        Some(Command::Window(WindowCommand::ResetScale))
+    }),
+    action(Menu::View, "Show only the stage", &["H"], |_| {
+        Some(Command::Window(WindowCommand::TogglePanels))
+    }),
     action(Menu::View, "Save picture of the stage", &["P"], |_| {
-        Some(Command::TakePicture(ScreenshotArea::Stage))
+        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)))
     }),
     action(Menu::View, "Save picture of the window", &["Shift P"], |_| {
-        Some(Command::TakePicture(ScreenshotArea::Window))
+        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Window)))
     }),
-    action(Menu::Panels, "Run", &["Ctrl 1"], |_| Some(Command::OpenPanel(PanelKind::Run))),
-    action(Menu::Panels, "World", &["Ctrl 2"], |_| Some(Command::OpenPanel(PanelKind::World))),
-    action(Menu::Panels, "Charts", &["Ctrl 3"], |_| Some(Command::OpenPanel(PanelKind::Charts))),
+    action(Menu::Panels, "Run", &["Ctrl 1"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Run)))
+    }),
+    action(Menu::Panels, "World", &["Ctrl 2"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::World)))
+    }),
+    action(Menu::Panels, "Charts", &["Ctrl 3"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Charts)))
+    }),
     action(Menu::Panels, "Champions", &["Ctrl 4"], |_| {
-        Some(Command::OpenPanel(PanelKind::Champions))
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Champions)))
     }),
-    action(Menu::Panels, "Library", &["Ctrl 5"], |_| Some(Command::OpenPanel(PanelKind::Library))),
-    action(Menu::Panels, "Lessons", &["Ctrl 6"], |_| Some(Command::OpenPanel(PanelKind::Lessons))),
-    action(Menu::Panels, "Close panel", &["Ctrl W"], |_| Some(Command::ClosePanel)),
-    action(Menu::Panels, "Reset layout", &[], |_| Some(Command::ResetLayout)),
+    action(Menu::Panels, "Library", &["Ctrl 5"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Library)))
+    }),
+    action(Menu::Panels, "Lessons", &["Ctrl 6"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Lessons)))
+    }),
+    action(Menu::Panels, "Close panel", &["Ctrl W"], |_| {
+        Some(Command::Window(WindowCommand::ClosePanel))
+    }),
+    action(Menu::Panels, "Reset layout", &[], |_| {
+        Some(Command::Window(WindowCommand::ResetLayout))
+    }),
     action(Menu::Help, "Keyboard shortcuts", &["?", "F1"], |_| {
-        Some(Command::ToggleModal(Modal::Keys))
+        Some(Command::Window(WindowCommand::ToggleModal(Modal::Keys)))
     }),
     action(Menu::Help, "Find a command", &["Ctrl K", "Ctrl P"], |_| {
-        Some(Command::ToggleModal(Modal::CommandPalette))
+        Some(Command::Window(WindowCommand::ToggleModal(Modal::CommandPalette)))
     }),
-    action(Menu::Help, "Take the tour", &[], |_| Some(Command::ToggleModal(Modal::Tour(0)))),
+    action(Menu::Help, "Take the tour", &[], |_| {
+        Some(Command::Window(WindowCommand::ToggleModal(Modal::Tour(0))))
+    }),
 ];
 
 #[cfg(test)]

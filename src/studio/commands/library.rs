@@ -29,8 +29,6 @@ pub(crate) enum LibraryCommand {
         /// The generations that have a champion.
         generations: Vec<u32>,
     },
-    /// Start a run with the champion of an entry as a parent.
-    StartFrom(SavePlace),
     /// Rename a champion.
     Rename {
         /// The champion.
@@ -51,10 +49,6 @@ pub(crate) enum LibraryCommand {
     },
     /// Copy champions or runs into the folder of saves.
     Import(Vec<PathBuf>),
-    /// Undo the latest file operation.
-    Undo,
-    /// Redo the latest undone file operation.
-    Redo,
     /// Stop a batch operation after the current file.
     Cancel,
     /// Show the champions that were loaded in the background.

@@ -1,4 +1,5 @@
-//! Commands that the user can give, as plain data. `app::apply` is the only place that executes them.
+//! Commands that the user can give, as plain data, in groups. `app::apply` passes each to the part of the studio that
+//! executes its group.
 
 pub mod actions;
 pub mod camera_mode;
@@ -14,6 +15,8 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 
+use crate::save::library::SavePlace;
+
 use camera_mode::CameraMode;
 use chart_export::ChartExport;
 use library::LibraryCommand;
@@ -26,6 +29,35 @@ use screenshot_area::ScreenshotArea;
 /// A command from a panel, a menu or a key.
 #[derive(Message, Debug, Clone, PartialEq)]
 pub(super) enum Command {
+    /// To the current run.
+    Run(RunCommand),
+    /// To the plan of the next run.
+    Plan(PlanCommand),
+    /// To the lanes of the stage.
+    Stage(StageCommand),
+    /// To the clock of the stage.
+    Player(PlayerCommand),
+    /// To the view of the stage.
+    View(ViewCommand),
+    /// To the layout of the window.
+    Window(WindowCommand),
+    /// To the library of saves.
+    Library(LibraryCommand),
+    /// To the lessons.
+    Lesson(LessonCommand),
+    /// Undo the latest change of the next run's plan or of the saves.
+    Undo,
+    /// Redo the latest undone change.
+    Redo,
+    /// Show a message.
+    Notify(String),
+    /// Close the window.
+    Quit,
+}
+
+/// A command to the current run.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum RunCommand {
     /// Evolve until paused or finished. After the end of a run, start the next one.
     Start,
     /// Pause evolution.
@@ -34,68 +66,79 @@ pub(super) enum Command {
     SingleGeneration,
     /// Discard the current run and prepare a fresh one.
     Reset,
-    /// Set the seed of the next run.
-    SetSeed(u64),
-    /// Set the population size of the next run.
-    SetPopulation(u32),
-    /// Change one setting of the next run and show its effect on the stage.
-    SetField {
-        /// Name of the setting: see [`crate::evolve::with_field`].
-        field: String,
-        /// New value, as text.
-        text: String,
-    },
-    /// Set the number of worker threads, from the next generation on.
-    SetThreads(usize),
-    /// Start the next run from this individual, in its world.
-    StartFrom(Pick),
-    /// Start the next run from random genomes again.
-    ForgetFounder,
-    /// Change several settings of the next run at once and show their effect on the stage.
-    SetFields(Vec<(String, String)>),
-    /// Use this preset for the next run and show its effect on the stage.
-    SetPreset(String),
-    /// Store the settings of the next run as a preset with this name.
-    StorePreset(String),
-    /// Reread the list of presets.
-    ListPresets,
-    /// Undo the latest change of the next run's plan.
-    Undo,
-    /// Redo the latest undone change.
-    Redo,
-    /// Accept the change of a what-if: only the changed lane stays on the stage.
-    KeepChange,
-    /// Discard the change of a what-if.
-    DropChange,
-    /// Show the snake on the stage in the world in which it was found.
-    ShowAsFound,
-    /// Simulate the snake on the stage with this engine instead of playing another engine's recording.
-    Simulate,
     /// Continue the run in this folder.
     Continue(PathBuf),
+    /// Set the number of worker threads, from the next generation on.
+    SetThreads(usize),
     /// List all runs in the folder of saves.
     ListRuns,
     /// Add the run in this folder to the comparison chart, or remove it.
     Compare(PathBuf),
     /// Write a chart to a file.
     ExportChart(ChartExport),
-    /// Do something with the saves.
-    Library(LibraryCommand),
-    /// Show this individual alone on the stage.
+}
+
+/// A command to the plan of the next run. The stage shows the effect of a changed setting.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum PlanCommand {
+    /// Set the seed.
+    SetSeed(u64),
+    /// Set the population size.
+    SetPopulation(u32),
+    /// Change one setting.
+    SetField {
+        /// Name of the setting: see [`crate::evolve::with_field`].
+        field: String,
+        /// New value, as text.
+        text: String,
+    },
+    /// Change several settings at once.
+    SetFields(Vec<(String, String)>),
+    /// Use this preset.
+    SetPreset(String),
+    /// Store the settings as a preset with this name.
+    StorePreset(String),
+    /// Reread the list of presets.
+    ListPresets,
+    /// Start from this individual, in its world.
+    StartFrom(Pick),
+    /// Start from the champion of this entry of the library, now.
+    StartFromSave(SavePlace),
+    /// Start from random genomes again.
+    ForgetFounder,
+    /// Discard the change of a what-if.
+    DropChange,
+}
+
+/// A command to the lanes of the stage.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum StageCommand {
+    /// Show this individual alone.
     Show(Pick),
-    /// Add a lane with this individual to the stage, or remove its lane.
+    /// Add a lane with this individual, or remove its lane.
     Join(Pick),
     /// Race the champions of the run's generations.
     RaceGenerations,
     /// Race the best of this generation, or of the latest one; the first generation is 1.
     RaceLeaders(Option<u32>),
-    /// Select the lane whose numbers and signals are shown; the first is 0.
-    Focus(usize),
+    /// Accept the change of a what-if: only the changed lane stays.
+    KeepChange,
     /// Keep only the selected lane.
     Single,
-    /// Pause or play the stage.
-    TogglePlayback,
-    /// Play the stage from its start.
+    /// Show the snake in the world in which it was found.
+    ShowAsFound,
+    /// Simulate the snake with this engine instead of playing another engine's recording.
+    Simulate,
+    /// Select the lane whose numbers and signals are shown; the first is 0.
+    Focus(usize),
+}
+
+/// A command to the clock of the stage.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum PlayerCommand {
+    /// Pause or play.
+    Toggle,
+    /// Play from the start.
     Restart,
     /// Go to this moment, in simulated seconds.
     Seek(f64),
@@ -115,6 +158,11 @@ pub(super) enum Command {
     },
     /// Repeat from the start after the end, or stop there.
     ToggleLoop,
+}
+
+/// A command to the view of the stage.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum ViewCommand {
     /// Select this camera mode.
     SetCamera(CameraMode),
     /// Select the next camera mode.
@@ -131,8 +179,11 @@ pub(super) enum Command {
     ToggleTheme,
     /// Save a picture of the stage or of the window.
     TakePicture(ScreenshotArea),
-    /// Show a message.
-    Notify(String),
+}
+
+/// A command to the layout of the window.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum WindowCommand {
     /// Bring a panel to the front.
     OpenPanel(PanelKind),
     /// Bring the section of the settings with this label to the front.
@@ -154,14 +205,17 @@ pub(super) enum Command {
     ToggleModal(Modal),
     /// Close the modal view.
     CloseModal,
+}
+
+/// A command to the lessons.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum LessonCommand {
     /// Begin a lesson; the first is 0.
-    BeginLesson(usize),
+    Begin(usize),
     /// Show one of the lesson's scenes; the first is 0.
-    ShowLessonScene(usize),
+    ShowScene(usize),
     /// Show the lesson's answer.
-    ShowLessonAnswer,
+    ShowAnswer,
     /// End the lesson and restore the state from before it.
-    LeaveLesson,
-    /// Close the window.
-    Quit,
+    Leave,
 }

@@ -5,8 +5,8 @@ use bevy_egui::egui;
 use super::shown::ShownChampion;
 use crate::evolve::Champion;
 use crate::run::GenerationReport;
-use crate::studio::commands::Command;
 use crate::studio::commands::pick::Pick;
+use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
 use crate::studio::ui::text_rows::{explain, row};
 
@@ -54,13 +54,13 @@ impl ChampionsPanel {
                     "Race generations",
                     "Replay champions of several generations side by side (N)",
                     champions > 1,
-                    Command::RaceGenerations,
+                    Command::Stage(StageCommand::RaceGenerations),
                 ),
                 (
                     "Race best 10",
                     "Replay the ten best snakes of the latest generation side by side (M)",
                     leaders(None) > 1,
-                    Command::RaceLeaders(None),
+                    Command::Stage(StageCommand::RaceLeaders(None)),
                 ),
             ] {
                 let button = egui::Button::new(name);
@@ -140,19 +140,23 @@ fn entry(
     });
     if response.clicked() {
         let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-        commands.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
+        commands.push(if joins {
+            Command::Stage(StageCommand::Join(pick))
+        } else {
+            Command::Stage(StageCommand::Show(pick))
+        });
     }
     response.context_menu(|ui| {
         let found = ui.button("Start the next run from this snake");
         let hint = "The first generation descends from it, in the world where it was found";
         if found.on_hover_text(hint).clicked() {
-            commands.push(Command::StartFrom(pick));
+            commands.push(Command::Plan(PlanCommand::StartFrom(pick)));
             ui.close();
         }
         if let Some(generation) = race
             && ui.button("Race best 10 of this generation").clicked()
         {
-            commands.push(Command::RaceLeaders(Some(generation)));
+            commands.push(Command::Stage(StageCommand::RaceLeaders(Some(generation))));
             ui.close();
         }
     });
@@ -208,13 +212,16 @@ mod tests {
         );
         harness.get_by_label_contains("Generation 2").click();
         harness.run();
-        assert_eq!(*harness.state(), [Command::Show(Pick::Generation(2))]);
+        assert_eq!(*harness.state(), [Command::Stage(StageCommand::Show(Pick::Generation(2)))]);
         harness.state_mut().clear();
         harness.get_by_label_contains("Generation 1").click_modifiers(egui::Modifiers::SHIFT);
         harness.run();
         harness.get_by_label("Race generations").click();
         harness.run();
-        let commands = [Command::Join(Pick::Generation(1)), Command::RaceGenerations];
+        let commands = [
+            Command::Stage(StageCommand::Join(Pick::Generation(1))),
+            Command::Stage(StageCommand::RaceGenerations),
+        ];
         assert_eq!(*harness.state(), commands);
     }
 }

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use egui_plot::{Line, PlotPoints};
 
 use crate::score::Evaluation;
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{Found, LESSONS, LessonView};
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range};
 use crate::studio::ui::text_rows::explain;
@@ -33,7 +33,7 @@ fn list(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
             ui.label(lesson.question);
             let name = format!("Begin lesson {}", index + 1);
             if ui.button(&name).clicked() {
-                commands.push(Command::BeginLesson(index));
+                commands.push(Command::Lesson(LessonCommand::Begin(index)));
             }
         });
     }
@@ -47,10 +47,10 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         let back = egui::Button::new(accent("Back to my own run")).fill(palette.accent);
         let hint = "End the lesson and restore your run, its settings and the stage";
         if ui.add(back).on_hover_text(hint).clicked() {
-            commands.push(Command::LeaveLesson);
+            commands.push(Command::Lesson(LessonCommand::Leave));
         }
         if view.index + 1 < LESSONS.len() && ui.button("Next lesson").clicked() {
-            commands.push(Command::BeginLesson(view.index + 1));
+            commands.push(Command::Lesson(LessonCommand::Begin(view.index + 1)));
         }
     });
     let title = format!("{}. {}", view.index + 1, lesson.title);
@@ -64,7 +64,7 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         let button = egui::Button::new(scene.label()).selected(is_shown);
         let size = egui::vec2(ui.available_width(), 0.0);
         if ui.add_enabled(!view.is_busy, button.min_size(size)).clicked() {
-            commands.push(Command::ShowLessonScene(index));
+            commands.push(Command::Lesson(LessonCommand::ShowScene(index)));
         }
     }
     heading(ui, "What to look for");
@@ -82,7 +82,7 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         ui.horizontal(|ui| {
             explain(ui, "Try the experiment first.");
             if ui.small_button("Show conclusion").clicked() {
-                commands.push(Command::ShowLessonAnswer);
+                commands.push(Command::Lesson(LessonCommand::ShowAnswer));
             }
         });
     }
@@ -198,7 +198,10 @@ mod tests {
     fn each_lesson_can_be_started_from_the_list() {
         for index in 0..LESSONS.len() {
             let label = format!("Begin lesson {}", index + 1);
-            assert_eq!(sent(&Lessons::default(), &label), [Command::BeginLesson(index)]);
+            assert_eq!(
+                sent(&Lessons::default(), &label),
+                [Command::Lesson(LessonCommand::Begin(index))]
+            );
         }
     }
 
@@ -207,13 +210,17 @@ mod tests {
         let mut evolution = prepared_run();
         let mut of = Lessons::default();
         let on_show = Show { champions: Vec::new(), mode: StageMode::Solo };
-        of.begin(0, &mut evolution, on_show, &mut UndoHistory::default()).expect("allowed");
+        let mut apply = |of: &mut Lessons, command| {
+            let (show, history) = (on_show.clone(), &mut UndoHistory::default());
+            of.apply(&command, &mut evolution, show, history).expect("allowed");
+        };
+        apply(&mut of, LessonCommand::Begin(0));
         let second = LESSONS[0].scenes[1].label();
-        assert_eq!(sent(&of, second), [Command::ShowLessonScene(1)]);
-        assert_eq!(sent(&of, "Show conclusion"), [Command::ShowLessonAnswer]);
-        assert_eq!(sent(&of, "Next lesson"), [Command::BeginLesson(1)]);
-        assert_eq!(sent(&of, "Back to my own run"), [Command::LeaveLesson]);
-        of.try_out(1).expect("shown");
+        assert_eq!(sent(&of, second), [Command::Lesson(LessonCommand::ShowScene(1))]);
+        assert_eq!(sent(&of, "Show conclusion"), [Command::Lesson(LessonCommand::ShowAnswer)]);
+        assert_eq!(sent(&of, "Next lesson"), [Command::Lesson(LessonCommand::Begin(1))]);
+        assert_eq!(sent(&of, "Back to my own run"), [Command::Lesson(LessonCommand::Leave)]);
+        apply(&mut of, LessonCommand::ShowScene(1));
         // The conclusion is visible after an experiment.
         let size = egui::vec2(theme::PANEL_WIDTH, 1600.0);
         let mut commands = Vec::new();

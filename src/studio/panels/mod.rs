@@ -13,6 +13,7 @@ mod player;
 mod run;
 mod settings;
 mod shown;
+mod undo_buttons;
 mod world;
 
 use bevy::ecs::system::SystemParam;
@@ -97,6 +98,16 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(EguiPrimaryContextPass, draw);
 }
 
+/// Makes clicks independent of the frame rate: egui sees a press and its release only at the next frame.
+fn set_click_limits(context: &egui::Context) {
+    let frame_s = context.input(|input| input.unstable_dt);
+    context.options_mut(|options| {
+        options.input_options.max_double_click_delay = f64::from(DOUBLE_CLICK_S + frame_s);
+        // A press without movement is a click however long it lasts, as in native toolkits.
+        options.input_options.max_click_duration = f64::INFINITY;
+    });
+}
+
 /// State that the panels read.
 #[derive(SystemParam)]
 struct PanelData<'w, 's> {
@@ -124,12 +135,7 @@ fn draw(
     }
     theme::show(&context, *data.theme);
     panels.letters.warm_up(&context, workspace.scale);
-    // egui sees a press only at the next frame, so on slow frames the time limit of a double click grows by the length
-    // of a frame.
-    let frame_s = context.input(|input| input.unstable_dt);
-    context.options_mut(|options| {
-        options.input_options.max_double_click_delay = f64::from(DOUBLE_CLICK_S + frame_s);
-    });
+    set_click_limits(&context);
     // A new scale takes effect in the next frame.
     let is_settled = context.zoom_factor() == workspace.scale;
     context.set_zoom_factor(workspace.scale);
@@ -289,7 +295,10 @@ impl Viewer<'_, '_, '_> {
                 panels.champions.ui(ui, &opening.0, reports, &shown, leaders, commands);
             }
             PanelKind::Lessons => lessons(ui, self.data.lessons.view(), commands),
-            PanelKind::Library => panels.saves.ui(ui, &self.data.saves, commands),
+            PanelKind::Library => {
+                let history = &self.data.on_stage.history;
+                panels.saves.ui(ui, &self.data.saves, history, commands);
+            }
         }
     }
 }
@@ -346,5 +355,37 @@ impl TabViewer for Viewer<'_, '_, '_> {
             style.tab_body.inner_margin = egui::Margin::ZERO;
             style
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_click_that_spans_a_slow_frame_still_counts() {
+        let context = egui::Context::default();
+        let button = |is_down| egui::Event::PointerButton {
+            pos: egui::pos2(20.0, 20.0),
+            button: egui::PointerButton::Primary,
+            pressed: is_down,
+            modifiers: egui::Modifiers::default(),
+        };
+        let moved = egui::Event::PointerMoved(egui::pos2(20.0, 20.0));
+        let frames = [vec![], vec![moved], vec![button(true)], vec![button(false)]];
+        let clicks = frames.into_iter().enumerate().filter(|(second, events)| {
+            let input = egui::RawInput {
+                time: Some(*second as f64 * 3.0),
+                events: events.clone(),
+                ..egui::RawInput::default()
+            };
+            let mut is_clicked = false;
+            let _ = context.run_ui(input, |ui| {
+                set_click_limits(ui.ctx());
+                is_clicked = ui.button("A button of some size").clicked();
+            });
+            is_clicked
+        });
+        assert_eq!(clicks.count(), 1);
     }
 }

@@ -15,6 +15,7 @@ pub mod snake;
 pub mod step_edges;
 pub mod step_labels;
 pub mod text;
+pub mod view_commands;
 pub mod wireframe;
 
 use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder, DirectionalLightShadowMap};

@@ -6,6 +6,8 @@ use std::ops::RangeInclusive;
 
 use bevy::prelude::*;
 
+use crate::studio::commands::PlayerCommand;
+
 /// The clock of the stage.
 #[derive(Resource, Debug, Clone, PartialEq)]
 pub(crate) struct Playback {
@@ -62,6 +64,20 @@ impl Playback {
     /// Playback speed, in simulated seconds per second.
     pub fn speed(&self) -> f32 {
         self.speed
+    }
+
+    /// Executes a command, given the length of a physics step and of the show, in simulated seconds.
+    pub fn apply(&mut self, command: &PlayerCommand, step_s: f64, end_s: f64) {
+        match command {
+            PlayerCommand::Toggle => self.toggle(end_s),
+            PlayerCommand::Restart => self.restart(),
+            PlayerCommand::Seek(time_s) => self.seek(*time_s, end_s),
+            PlayerCommand::SeekEnd => self.hold_at(end_s),
+            PlayerCommand::Step { forward } => self.step(*forward, step_s, end_s),
+            PlayerCommand::SetSpeed(speed) => self.set_speed(*speed),
+            PlayerCommand::ChangeSpeed { faster } => self.change_speed(*faster),
+            PlayerCommand::ToggleLoop => self.toggle_loop(),
+        }
     }
 
     /// Plays from the start at the current speed.

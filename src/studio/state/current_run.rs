@@ -17,7 +17,8 @@ use super::run_context::RunContext;
 use crate::evolve::{Champion, RunPlan, Settings};
 use crate::run::{BackgroundRun, Exploration, GenerationReport, RunSource};
 use crate::save::{ExistingRun, RunSummary};
-use crate::studio::commands::chart_export::ChartExport;
+use crate::studio::commands::RunCommand;
+use crate::studio::ui::notifications::Notices;
 
 use individuals::Ancestors;
 
@@ -225,6 +226,28 @@ impl CurrentRun {
         self.reports.get(index)?.champion.as_ref()
     }
 
+    /// Executes a command.
+    ///
+    /// # Errors
+    /// The run, its folder or the system does not allow it, with the reason.
+    pub fn apply(&mut self, command: &RunCommand, notices: &mut Notices) -> Result<(), String> {
+        match command {
+            RunCommand::Start => self.start(),
+            RunCommand::Pause => self.pause(),
+            RunCommand::SingleGeneration => self.single_generation(),
+            RunCommand::Reset => self.reset(),
+            RunCommand::Continue(folder) => self.go_on_with(folder),
+            RunCommand::SetThreads(threads) => self.set_threads(*threads),
+            RunCommand::ListRuns => self.list_runs(),
+            RunCommand::Compare(folder) => self.others.toggle(folder),
+            RunCommand::ExportChart(chart) => {
+                let path = chart_export::export(&self.engine.saves, chart)?;
+                notices.info(format!("Chart saved to {}", path.display()));
+                Ok(())
+            }
+        }
+    }
+
     /// Evolves until held or finished. After the end of a run it begins the next one.
     pub fn start(&mut self) -> Result<(), String> {
         self.begin_next_if_over();
@@ -309,16 +332,6 @@ impl CurrentRun {
     /// Looks for all runs in the folder of saves.
     pub fn list_runs(&mut self) -> Result<(), String> {
         self.others.list(self.engine.saves.clone())
-    }
-
-    /// Lays another run over the current one, or takes it away again.
-    pub fn compare_with(&mut self, folder: &Path) -> Result<(), String> {
-        self.others.toggle(folder)
-    }
-
-    /// Writes a chart into a file beside the runs. Returns the file's path.
-    pub fn export(&self, chart: &ChartExport) -> Result<PathBuf, String> {
-        chart_export::export(&self.engine.saves, chart)
     }
 
     /// Goes on with a run that was stopped; the current one can be gone on with later.

@@ -12,6 +12,7 @@ use crate::run::{GenerationReport, ParallelRuns, ParallelRunsEvent};
 use crate::save::library::{SavePlace, load_entry};
 use crate::save::load_preset;
 use crate::score::{Evaluation, evaluate};
+use crate::studio::commands::LessonCommand;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
@@ -102,6 +103,31 @@ impl Lessons {
         })
     }
 
+    /// Executes a command; returns what the stage shows then. `on_show` is on it now, and returns after the lesson.
+    ///
+    /// # Errors
+    /// There is no such lesson, or its champions or runs cannot be prepared.
+    pub fn apply(
+        &mut self,
+        command: &LessonCommand,
+        evolution: &mut CurrentRun,
+        on_show: Show,
+        history: &mut UndoHistory,
+    ) -> Result<Option<Show>, String> {
+        match command {
+            LessonCommand::Begin(index) => self.begin(*index, evolution, on_show, history),
+            LessonCommand::ShowScene(scene) => {
+                self.allow_answer();
+                self.show(*scene)
+            }
+            LessonCommand::ShowAnswer => {
+                self.allow_answer();
+                Ok(None)
+            }
+            LessonCommand::Leave => self.leave(evolution, history),
+        }
+    }
+
     /// Begins a lesson; what is on the stage now comes back at its end.
     pub fn begin(
         &mut self,
@@ -145,16 +171,8 @@ impl Lessons {
         self.show(0)
     }
 
-    /// Tries one of the lesson's scenes; the first is 0.
-    pub fn try_out(&mut self, scene: usize) -> Result<Option<Show>, String> {
-        if let Some(current) = &mut self.current {
-            current.has_tried = true;
-        }
-        self.show(scene)
-    }
-
-    /// Tells the answer.
-    pub fn tell(&mut self) {
+    /// Shows the answer from now on.
+    fn allow_answer(&mut self) {
         if let Some(current) = &mut self.current {
             current.has_tried = true;
         }

@@ -1,31 +1,28 @@
-//! The library in the window: what is in the folder of saves, read beside the window, and what is done with it.
+//! The library: the entries of the folder of saves, read in the background, and operations on them.
 //!
-//! Whatever changes files can be undone. Several things that were done at once are undone at once.
+//! Every file operation can be undone. Operations of one command are one step.
 
 mod apply;
 mod batch_jobs;
-mod file_changes;
 mod item;
 mod load;
 mod poll;
-mod words;
 
 use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 
 use super::run_context::RunContext;
-use super::undo::UndoDirection;
+use super::undo::{UndoHistory, UndoStep};
 use crate::run::{BackgroundTask, LibraryReader};
 use crate::save::SavesFolder;
 use crate::save::library::{FileStep, SavePlace};
 use crate::studio::stage::Show;
 
-use batch_jobs::{BatchJobs, MOST_AT_ONCE};
-use file_changes::{FileHistory, LibraryChange};
+use batch_jobs::BatchJobs;
 
 pub(crate) use item::{LibraryItem, fitness_text};
-pub(crate) use load::found_run;
+pub(crate) use load::founder_of;
 pub(crate) use poll::plugin;
 
 /// What is in the folder of saves, as far as it is read, and what was done with it.
@@ -47,11 +44,6 @@ pub(crate) struct Library {
     listings: u64,
     /// Counts the changes of what entries are sorted and found by.
     sortings: u64,
-    history: FileHistory,
-    /// What was done lately: see [`Self::take_done`].
-    done: Vec<String>,
-    /// What was left of taking back or doing again: see [`Self::take_left`].
-    left: Vec<(UndoDirection, String)>,
     errands: Vec<BatchJobs>,
     /// Who is being read to take the stage.
     loading: Option<BackgroundTask<Result<Show, String>>>,
@@ -84,9 +76,6 @@ impl Library {
             revision: 0,
             listings: 0,
             sortings: 0,
-            history: FileHistory::default(),
-            done: Vec::new(),
-            left: Vec::new(),
             errands: Vec::new(),
             loading: None,
             loaded: None,
@@ -170,91 +159,19 @@ impl Library {
         self.saves.path()
     }
 
-    /// How many changes can be undone, and how many done again.
-    pub fn counts(&self) -> (usize, usize) {
-        self.history.counts()
-    }
-
-    /// Forgets what could be done again.
-    pub fn forget_undone(&mut self) {
-        self.history.forget_undone();
-    }
-
-    /// What undoing would undo, in a few words: "deleted climber".
-    pub fn undoable(&self) -> Option<&str> {
-        self.history.undoable()
-    }
-
-    /// What doing again would do, in a few words.
-    pub fn redoable(&self) -> Option<&str> {
-        self.history.redoable()
-    }
-
-    /// Undoes what was done last, or does again what was undone last. Returns what to say of it; nothing, if there is
-    /// nothing.
-    ///
-    /// # Errors
-    /// A file cannot be moved, or something else is being done.
-    pub fn step(&mut self, way: UndoDirection) -> Result<Option<String>, String> {
-        self.refuse_while_busy()?;
-        if self.history.steps(way) > MOST_AT_ONCE {
-            return self.send_out_undo(way);
-        }
-        let stepped = self.history.step(way, &self.saves);
-        self.after_undoing(stepped, way)
-    }
-
-    fn after_undoing(
-        &mut self,
-        result: Result<Option<LibraryChange>, String>,
-        way: UndoDirection,
-    ) -> Result<Option<String>, String> {
-        self.look_again();
-        let verb = if way == UndoDirection::Back { "Undone" } else { "Done again" };
-        let Some(change) = result? else { return Ok(None) };
-        let elsewhere = change.steps.iter().filter_map(|step| match step {
-            FileStep::Restored { wanted, to } if wanted != to => {
-                let [wanted, to] = [wanted, to].map(|path| name_of(path));
-                Some(format!(" The name {wanted} is taken by now: it is called {to}."))
-            }
-            _ => None,
-        });
-        let mut elsewhere: Vec<String> = elsewhere.collect();
-        if elsewhere.len() > MOST_AT_ONCE {
-            let count = elsewhere.len();
-            elsewhere =
-                vec![format!(" {count} names are taken by now: those have a number added.")];
-        }
-        let elsewhere = elsewhere.concat();
-        self.point_out(change.steps.iter().find_map(FileStep::place));
-        Ok(Some(format!("{verb}: {}.{elsewhere}", change.words)))
-    }
-
     fn look_again(&self) {
         if let Some(reader) = &self.reader {
             reader.list_again();
         }
     }
 
-    /// Keeps what was done, to be undone.
-    fn keep(&mut self, change: LibraryChange) {
+    /// Records completed file operations as a step that can be undone.
+    fn keep(&mut self, label: String, steps: Vec<FileStep>, history: &mut UndoHistory) {
         self.look_again();
-        self.point_out(change.steps.iter().find_map(FileStep::place));
-        if !change.steps.is_empty() {
-            self.done.push(change.words.clone());
+        self.point_out(steps.iter().find_map(FileStep::place));
+        if !steps.is_empty() {
+            history.push(UndoStep::Files { label, steps });
         }
-        self.history.keep(change);
-    }
-
-    /// What was done since this was asked last, in a few words each, to be undone in its order with everything else.
-    pub fn take_done(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.done)
-    }
-
-    /// What could not be taken back, or not be done again, as a whole since this was asked last, in a few words each:
-    /// the rest of it can be tried again.
-    pub fn take_left(&mut self) -> Vec<(UndoDirection, String)> {
-        std::mem::take(&mut self.left)
     }
 
     fn point_out(&mut self, place: Option<SavePlace>) {
@@ -289,100 +206,135 @@ mod tests {
     use super::*;
     use crate::save::{shipped_champion, store_champion};
     use crate::studio::commands::library::LibraryCommand;
+    use crate::studio::state::undo::UndoDirection;
     use crate::studio::ui::notifications::Notices;
     use tempfile::TempDir;
 
-    pub fn library(names: &[&str]) -> (TempDir, Library) {
-        let folder = tempfile::tempdir().expect("a folder");
-        let loaded = shipped_champion().expect("well formed");
-        for name in names {
-            let path = folder.path().join(format!("{name}.ron"));
-            store_champion(&path, &loaded.champion, None).expect("written");
+    /// A library with its undo history and messages.
+    pub struct Tried {
+        pub folder: TempDir,
+        pub library: Library,
+        pub history: UndoHistory,
+        pub notices: Notices,
+    }
+
+    impl Tried {
+        /// A library of champions with these names.
+        pub fn new(names: &[&str]) -> Self {
+            let folder = tempfile::tempdir().expect("a folder");
+            let loaded = shipped_champion().expect("well formed");
+            for name in names {
+                let path = folder.path().join(format!("{name}.ron"));
+                store_champion(&path, &loaded.champion, None).expect("written");
+            }
+            let mut library = Library::new(SavesFolder::find(Some(folder.path())));
+            library.read_all();
+            Self { folder, library, history: UndoHistory::default(), notices: Notices::default() }
         }
-        let mut library = Library::new(SavesFolder::find(Some(folder.path())));
-        library.read_all();
-        (folder, library)
-    }
 
-    /// The names of what is in the folder.
-    pub fn own(library: &mut Library) -> Vec<String> {
-        library.read_all();
-        let own = library.items().iter().filter(|item| item.place().path().is_some());
-        own.map(|item| item.name().to_owned()).collect()
-    }
+        /// Names of the entries in the folder.
+        pub fn own(&mut self) -> Vec<String> {
+            self.library.read_all();
+            let own = self.library.items().iter().filter(|item| item.place().path().is_some());
+            own.map(|item| item.name().to_owned()).collect()
+        }
 
-    pub fn place(library: &Library, name: &str) -> SavePlace {
-        let item = library.items().iter().find(|item| item.name() == name);
-        item.expect("listed").place().clone()
+        pub fn place(&self, name: &str) -> SavePlace {
+            let item = self.library.items().iter().find(|item| item.name() == name);
+            item.expect("listed").place().clone()
+        }
+
+        pub fn apply(&mut self, request: &LibraryCommand) -> Result<Option<Show>, String> {
+            self.library.apply(request, &mut self.history, &mut self.notices)
+        }
+
+        /// Undoes or redoes the next step, and waits for it.
+        pub fn step(&mut self, way: UndoDirection) {
+            let Some(UndoStep::Files { label, steps }) = self.history.take(way) else {
+                panic!("no step")
+            };
+            self.library
+                .step(way, label, steps, &mut self.history, &mut self.notices)
+                .expect("begun");
+        }
+
+        pub fn take_in(&mut self) {
+            self.library.take_in(&mut self.history, &mut self.notices);
+        }
+
+        /// Waits until no batch operation is running.
+        pub fn wait(&mut self) {
+            while !self.library.errands.is_empty() {
+                self.take_in();
+            }
+        }
+
+        /// The labels of the next steps to undo and redo.
+        pub fn next(&self) -> (Option<&str>, Option<&str>) {
+            (self.history.next(UndoDirection::Back), self.history.next(UndoDirection::Forth))
+        }
     }
 
     #[test]
-    fn what_is_deleted_at_once_comes_back_at_once_and_goes_again() {
-        let (_folder, mut library) = library(&["a", "b", "c"]);
-        let places = vec![place(&library, "a"), place(&library, "c")];
-        let mut notices = Notices::default();
-        library.apply(&LibraryCommand::Delete(places), &mut notices).expect("deleted");
-        assert_eq!(notices.len(), 1);
-        assert_eq!(own(&mut library), ["b"]);
-        assert_eq!(library.undoable(), Some("deleted 2 saves"));
-        let said = library.step(UndoDirection::Back).expect("undone").expect("something");
-        assert_eq!(said, "Undone: deleted 2 saves.");
-        assert_eq!(own(&mut library), ["a", "b", "c"]);
-        assert_eq!((library.undoable(), library.redoable()), (None, Some("deleted 2 saves")));
-        library.step(UndoDirection::Forth).expect("redone");
-        assert_eq!(own(&mut library), ["b"]);
-        assert_eq!(library.step(UndoDirection::Forth), Ok(None));
+    fn saves_that_were_deleted_together_are_restored_and_deleted_again_together() {
+        let mut tried = Tried::new(&["a", "b", "c"]);
+        let places = vec![tried.place("a"), tried.place("c")];
+        tried.apply(&LibraryCommand::Delete(places)).expect("deleted");
+        assert_eq!(tried.notices.len(), 1);
+        assert_eq!(tried.own(), ["b"]);
+        assert_eq!(tried.next(), (Some("deleted 2 saves"), None));
+        tried.step(UndoDirection::Back);
+        assert_eq!(tried.notices.last(), Some("Undone: deleted 2 saves."));
+        assert_eq!(tried.own(), ["a", "b", "c"]);
+        assert_eq!(tried.next(), (None, Some("deleted 2 saves")));
+        tried.step(UndoDirection::Forth);
+        assert_eq!(tried.own(), ["b"]);
+        assert_eq!(tried.next(), (Some("deleted 2 saves"), None));
     }
 
     #[test]
-    fn who_comes_back_under_another_name_says_so() {
-        let (folder, mut library) = library(&["a"]);
-        let a = place(&library, "a");
-        library.apply(&LibraryCommand::Delete(vec![a]), &mut Notices::default()).expect("deleted");
-        std::fs::write(folder.path().join("a.ron"), "another").expect("written");
-        let said = library.step(UndoDirection::Back).expect("undone").expect("something");
-        assert_eq!(said, "Undone: deleted a. The name a is taken by now: it is called a 2.");
-        let (count, newest) = library.newest();
+    fn a_save_that_is_restored_under_another_name_is_reported() {
+        let mut tried = Tried::new(&["a"]);
+        let a = tried.place("a");
+        tried.apply(&LibraryCommand::Delete(vec![a])).expect("deleted");
+        std::fs::write(tried.folder.path().join("a.ron"), "another").expect("written");
+        tried.step(UndoDirection::Back);
+        let said = "Undone: deleted a. The name a is taken, so it is now called a 2.";
+        assert_eq!(tried.notices.last(), Some(said));
+        let (count, newest) = tried.library.newest();
         assert_eq!((count, newest.map(SavePlace::name)), (1, Some("a 2".to_owned())));
     }
 
     #[test]
-    fn a_refused_name_changes_nothing_and_the_next_change_forgets_what_was_undone() {
-        let (_folder, mut library) = library(&["a", "b"]);
-        let mut notices = Notices::default();
-        let mut named = |library: &mut Library, from: &str, to: &str| {
-            let request =
-                LibraryCommand::Rename { place: place(library, from), name: to.to_owned() };
-            library.apply(&request, &mut notices).map(|_| ())
+    fn a_refused_name_changes_nothing_and_the_next_change_ends_redo() {
+        let mut tried = Tried::new(&["a", "b"]);
+        let rename = |tried: &mut Tried, from: &str, to: &str| {
+            let request = LibraryCommand::Rename { place: tried.place(from), name: to.to_owned() };
+            tried.apply(&request).map(|_| ())
         };
-        let refusal = named(&mut library, "a", "b").expect_err("taken");
+        let refusal = rename(&mut tried, "a", "b").expect_err("taken");
         assert!(refusal.contains("not taken yet"), "{refusal}");
-        assert_eq!(library.undoable(), None);
-        named(&mut library, "a", "c").expect("free");
-        assert_eq!(own(&mut library), ["b", "c"]);
-        library.step(UndoDirection::Back).expect("undone");
-        own(&mut library);
-        named(&mut library, "b", "d").expect("free");
-        assert_eq!(library.redoable(), None);
+        assert_eq!(tried.next(), (None, None));
+        rename(&mut tried, "a", "c").expect("free");
+        assert_eq!(tried.own(), ["b", "c"]);
+        tried.step(UndoDirection::Back);
+        tried.own();
+        rename(&mut tried, "b", "d").expect("free");
+        assert_eq!(tried.next(), (Some("renamed b"), None));
     }
 
     #[test]
-    fn a_copy_that_takes_its_time_is_taken_in_when_it_is_done() {
-        let (folder, mut library) = library(&["a"]);
-        let mut notices = Notices::default();
-        let export = LibraryCommand::Export { places: vec![place(&library, "a")], to: None };
-        library.apply(&export, &mut notices).expect("begun");
-        while !library.errands.is_empty() {
-            library.take_in(&mut notices);
-        }
-        let copy = folder.path().join("exports/a.ron");
+    fn copies_are_taken_in_when_they_are_complete() {
+        let mut tried = Tried::new(&["a"]);
+        let export = LibraryCommand::Export { places: vec![tried.place("a")], to: None };
+        tried.apply(&export).expect("begun");
+        tried.wait();
+        let copy = tried.folder.path().join("exports/a.ron");
         assert!(copy.exists());
-        library.apply(&LibraryCommand::Import(vec![copy]), &mut notices).expect("begun");
-        while !library.errands.is_empty() {
-            library.take_in(&mut notices);
-        }
-        assert_eq!(own(&mut library), ["a 2", "a"]);
-        assert_eq!(library.undoable(), Some("imported a 2"));
-        assert_eq!(notices.len(), 2);
+        tried.apply(&LibraryCommand::Import(vec![copy])).expect("begun");
+        tried.wait();
+        assert_eq!(tried.own(), ["a 2", "a"]);
+        assert_eq!(tried.next(), (Some("imported a 2"), None));
+        assert_eq!(tried.notices.len(), 2);
     }
 }

@@ -6,6 +6,7 @@ pub mod lessons;
 pub mod library;
 pub mod lineup;
 pub mod options;
+pub mod plan_commands;
 pub mod run_context;
 pub mod undo;
 pub mod what_if;

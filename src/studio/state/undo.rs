@@ -1,7 +1,7 @@
-//! Undo and redo of what was changed in the next run's plan.
+//! The one stack of steps to undo and redo: changes of the next run's plan and file operations of the library.
 //!
-//! Every command that changes the plan leaves a [`UndoStep`]. Whoever drags a slider and rests on the way changes it
-//! several times: between two presses of a mouse's button or a key all changes of one setting are one step.
+//! Every command that changes the plan leaves an [`UndoStep`]. A slider that rests during a drag changes the plan several
+//! times; all changes of one setting between two presses of a mouse button or a key are one step.
 
 mod follow;
 
@@ -11,60 +11,66 @@ use bevy::prelude::*;
 
 use super::wording::changes_in_words;
 use crate::evolve::RunPlan;
-use crate::studio::commands::Command;
-use crate::studio::commands::library::LibraryCommand;
+use crate::save::library::FileStep;
+use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::schedule::FrameSet;
 
 pub(crate) use follow::followed;
 
-/// So many steps can be undone.
-const MOST_STEPS: usize = 200;
+/// Maximum number of steps that can be undone.
+const MAX_STEPS: usize = 200;
 
-/// The subject of a step to the plan of a run that is gone on with.
+/// Subject of the step that continues another run.
 const CONTINUE: &str = "continue";
 
-/// Something that can be undone. Whatever else is to be undone in the same order, such as a file that was deleted,
-/// is a kind of its own here, with its way back and forth where commands are applied.
+/// A step that can be undone or redone.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum UndoStep {
     /// The next run's plan was changed.
-    Plan {
-        /// The plan before.
-        before: Box<RunPlan>,
-        /// The plan after.
-        after: Box<RunPlan>,
-        /// What was changed, in a few words: "friction 0.5".
+    Plan(PlanStep),
+    /// Files of the library were changed.
+    Files {
+        /// The change in a few words: "deleted climber".
         label: String,
-        /// What was changed, by its name: further changes of it within one drag belong to this step.
-        subject: String,
-    },
-    /// Something was done with saves; the library knows what.
-    Library {
-        /// What it was, in a few words: "deleted climber".
-        label: String,
+        /// The file operations, in the order in which they were carried out.
+        steps: Vec<FileStep>,
     },
 }
 
 impl UndoStep {
-    /// Whether it is about saves.
-    fn is_of_library(&self) -> bool {
-        matches!(self, Self::Library { .. })
+    fn is_of_files(&self) -> bool {
+        matches!(self, Self::Files { .. })
     }
 
-    /// Whether it was that another run is gone on with: its settings are no edit of the run under way.
-    pub fn is_of_another_run(&self) -> bool {
-        matches!(self, Self::Plan { subject, .. } if subject == CONTINUE)
-    }
-
-    /// What was changed, in a few words.
+    /// The change in a few words.
     pub fn label(&self) -> &str {
         match self {
-            Self::Plan { label, .. } | Self::Library { label } => label,
+            Self::Plan(PlanStep { label, .. }) | Self::Files { label, .. } => label,
         }
     }
 }
 
-/// Which way through the steps.
+/// A change of the next run's plan.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PlanStep {
+    /// The plan before.
+    pub before: Box<RunPlan>,
+    /// The plan after.
+    pub after: Box<RunPlan>,
+    /// The change in a few words: "friction 0.5".
+    pub label: String,
+    /// The name of the changed setting: its further changes within one drag join this step.
+    subject: String,
+}
+
+impl PlanStep {
+    /// Whether the step continued another run: its settings are no edit of the run in progress.
+    pub fn is_of_another_run(&self) -> bool {
+        self.subject == CONTINUE
+    }
+}
+
+/// Undo or redo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum UndoDirection {
     /// Undo.
@@ -74,160 +80,102 @@ pub(crate) enum UndoDirection {
 }
 
 impl UndoDirection {
-    /// What to say when a step was taken.
-    pub fn taken(self, step: &UndoStep) -> String {
+    /// Message after a step with this label was undone or redone.
+    pub fn taken(self, label: &str) -> String {
         let done = if self == Self::Back { "Undone" } else { "Redone" };
-        format!("{done}: {}", step.label())
+        format!("{done}: {label}")
     }
 
-    /// What to say when there is no step.
+    /// Message if there is no step.
     pub fn nothing(self) -> &'static str {
         if self == Self::Back { "There is nothing to undo." } else { "There is nothing to redo." }
     }
 }
 
-/// The steps that were done, and those that were undone.
+/// The steps that can be undone, and those that can be redone.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct UndoHistory {
-    /// The latest last.
+    /// The latest is the last.
     done: VecDeque<UndoStep>,
-    /// The one to redo first last.
+    /// The next to redo is the last.
     undone: Vec<UndoStep>,
-    /// Whether the latest step is complete: further changes are steps of their own.
+    /// Whether the latest step is complete, so that a further change is a step of its own.
     is_settled: bool,
+    /// Whether a step was added since one was taken: that one can no longer be redone.
+    is_overtaken: bool,
 }
 
 impl UndoHistory {
-    /// Notes what a command has done to the next run's plan.
+    /// Records the effect of a command on the next run's plan.
     pub fn note(&mut self, command: &Command, before: RunPlan, after: &RunPlan) {
         if before == *after {
             return;
         }
         let Some((subject, label)) = words_of(command, &before, after) else { return };
-        self.push(UndoStep::Plan {
-            before: Box::new(before),
-            after: Box::new(after.clone()),
-            label,
-            subject,
-        });
+        let (before, after) = (Box::new(before), Box::new(after.clone()));
+        self.push(UndoStep::Plan(PlanStep { before, after, label, subject }));
     }
 
-    /// Adds a step. What was undone before cannot be redone any more.
+    /// Adds a step. Steps that were undone before can no longer be redone.
     pub fn push(&mut self, step: UndoStep) {
         self.undone.clear();
+        self.is_overtaken = true;
         let is_open = !std::mem::take(&mut self.is_settled);
-        let joined = match (self.done.back(), &step) {
-            (
-                Some(UndoStep::Plan { before, subject: earlier, .. }),
-                UndoStep::Plan { after, label, subject, .. },
-            ) if is_open && earlier == subject => Some(UndoStep::Plan {
-                before: before.clone(),
-                after: after.clone(),
-                label: label.clone(),
-                subject: subject.clone(),
-            }),
-            _ => None,
-        };
-        if let Some(joined) = joined {
-            self.done.pop_back();
-            // There and back again within a drag is no step at all.
-            let is_none =
-                matches!(&joined, UndoStep::Plan { before, after, .. } if before == after);
-            self.done.extend((!is_none).then_some(joined));
-        } else {
-            self.done.push_back(step);
+        match (self.done.back_mut(), step) {
+            (Some(UndoStep::Plan(last)), UndoStep::Plan(step))
+                if is_open && last.subject == step.subject =>
+            {
+                (last.after, last.label) = (step.after, step.label);
+                // A drag that returns to its start is no step.
+                if last.before == last.after {
+                    self.done.pop_back();
+                }
+            }
+            (_, step) => self.done.push_back(step),
         }
-        if self.done.len() > MOST_STEPS {
+        if self.done.len() > MAX_STEPS {
             self.done.pop_front();
         }
     }
 
-    /// From now on a change is a step of its own.
+    /// Makes the next change a step of its own.
     pub fn settle(&mut self) {
         self.is_settled = true;
     }
 
-    /// Takes the next step one way, to be carried out. None if there is none.
+    /// Removes the next step in a direction; the caller carries it out and reports the result to [`Self::complete`].
     pub fn take(&mut self, way: UndoDirection) -> Option<UndoStep> {
-        self.is_settled = true;
-        let step = match way {
-            UndoDirection::Back => self.done.pop_back()?,
-            UndoDirection::Forth => self.undone.pop()?,
-        };
+        (self.is_settled, self.is_overtaken) = (true, false);
         match way {
-            UndoDirection::Back => self.undone.push(step.clone()),
-            UndoDirection::Forth => self.done.push_back(step.clone()),
-        }
-        Some(step)
-    }
-
-    /// Puts a step back to where it was taken from: not all of it could be taken.
-    pub fn put_back(&mut self, way: UndoDirection, step: UndoStep) {
-        match way {
-            UndoDirection::Back => self.done.push_back(step),
-            UndoDirection::Forth => self.undone.push(step),
+            UndoDirection::Back => self.done.pop_back(),
+            UndoDirection::Forth => self.undone.pop(),
         }
     }
 
-    /// Takes the next step one way that is about saves, whatever else was done after it. Says whether there was one.
-    pub fn take_of_library(&mut self, way: UndoDirection) -> bool {
-        match way {
-            UndoDirection::Back => {
-                let place = self.done.iter().rposition(UndoStep::is_of_library);
-                let step = place.and_then(|place| self.done.remove(place));
-                self.undone.extend(step);
-                place.is_some()
-            }
-            UndoDirection::Forth => {
-                let place = self.undone.iter().rposition(UndoStep::is_of_library);
-                let step = place.map(|place| self.undone.remove(place));
-                self.done.extend(step);
-                place.is_some()
-            }
-        }
-    }
-
-    /// Whether the next step one way is about saves.
-    pub fn next_is_of_library(&self, way: UndoDirection) -> bool {
-        let next = match way {
-            UndoDirection::Back => self.done.back(),
-            UndoDirection::Forth => self.undone.last(),
+    /// Adds the result of a step that was taken: `done` can be reversed, `left` can be tried again.
+    pub fn complete(&mut self, way: UndoDirection, done: Option<UndoStep>, left: Option<UndoStep>) {
+        let (undoable, redoable) = match way {
+            UndoDirection::Back => (left, done),
+            UndoDirection::Forth => (done, left),
         };
-        next.is_some_and(UndoStep::is_of_library)
+        self.done.extend(undoable);
+        self.undone.extend(redoable.filter(|_| !self.is_overtaken));
     }
 
-    /// Forgets steps about saves that the library knows nothing of any more: it can undo so many, and redo so many.
-    /// Says how many it can redo that are no steps here.
-    pub fn agree_with_library(&mut self, undoable: usize, redoable: usize) -> usize {
-        let count = |steps: &mut dyn Iterator<Item = &UndoStep>| {
-            steps.filter(|step| step.is_of_library()).count()
-        };
-        while count(&mut self.done.iter()) > undoable {
-            let place = self.done.iter().rposition(UndoStep::is_of_library);
-            place.and_then(|place| self.done.remove(place));
-        }
-        while count(&mut self.undone.iter()) > redoable {
-            let place = self.undone.iter().position(UndoStep::is_of_library);
-            place.map(|place| self.undone.remove(place));
-        }
-        redoable - count(&mut self.undone.iter())
-    }
-
-    /// Takes all steps away while a lesson goes on, which has steps of its own.
+    /// Empties the history for a lesson, and returns it.
     pub fn lend(&mut self) -> Self {
         std::mem::take(self)
     }
 
-    /// Gives back the steps of before a lesson; of the lesson's own those stay that are about saves.
+    /// Restores the history from before a lesson and adds the lesson's file operations.
     pub fn give_back(&mut self, own: Self) {
         let lesson = std::mem::replace(self, own);
-        let of_library = lesson.done.into_iter().filter(UndoStep::is_of_library);
-        self.done.extend(of_library);
-        self.undone.extend(lesson.undone.into_iter().filter(UndoStep::is_of_library));
+        self.done.extend(lesson.done.into_iter().filter(UndoStep::is_of_files));
+        self.undone.extend(lesson.undone.into_iter().filter(UndoStep::is_of_files));
         self.is_settled = true;
     }
 
-    /// What the next step one way would undo or redo, in a few words.
+    /// The label of the next step in a direction.
     pub fn next(&self, way: UndoDirection) -> Option<&str> {
         match way {
             UndoDirection::Back => self.done.back(),
@@ -237,34 +185,39 @@ impl UndoHistory {
     }
 }
 
-/// What a command has changed, by its name and in a few words; none of a command that is no edit.
+/// Subject and label of the change that a command made; none if the command is no edit.
 fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(String, String)> {
     let changes = || changes_in_words(&before.settings, &after.settings);
-    Some(match command {
-        Command::SetField { field, .. } => (field.clone(), changes()),
-        Command::SetFields(_) => ("several".to_owned(), changes()),
-        Command::SetPopulation(_) => ("evolution.population".to_owned(), changes()),
-        Command::SetSeed(seed) => ("seed".to_owned(), format!("seed {seed}")),
-        Command::SetPreset(name) => ("preset".to_owned(), format!("preset {name}")),
-        Command::StorePreset(name) => ("preset".to_owned(), format!("preset {name}")),
-        Command::DropChange => ("drop".to_owned(), "discarded changes".to_owned()),
-        Command::StartFrom(_) | Command::Library(LibraryCommand::StartFrom(_)) => {
-            let name = after.founder.as_ref().map_or("a champion", |founder| founder.name());
-            ("founder".to_owned(), format!("start of the next run from {name}"))
-        }
-        Command::ForgetFounder => {
-            ("founder".to_owned(), "start of the next run from scratch".to_owned())
-        }
-        Command::Continue(_) => {
+    let (subject, label) = match command {
+        Command::Plan(command) => match command {
+            PlanCommand::SetField { field, .. } => return Some((field.clone(), changes())),
+            PlanCommand::SetFields(_) => ("several", changes()),
+            PlanCommand::SetPopulation(_) => ("evolution.population", changes()),
+            PlanCommand::SetSeed(seed) => ("seed", format!("seed {seed}")),
+            PlanCommand::SetPreset(name) | PlanCommand::StorePreset(name) => {
+                ("preset", format!("preset {name}"))
+            }
+            PlanCommand::DropChange => ("drop", "discarded changes".to_owned()),
+            PlanCommand::StartFrom(_) | PlanCommand::StartFromSave(_) => {
+                let name = after.founder.as_ref().map_or("a champion", |founder| founder.name());
+                ("founder", format!("start of the next run from {name}"))
+            }
+            PlanCommand::ForgetFounder => {
+                ("founder", "start of the next run from scratch".to_owned())
+            }
+            PlanCommand::ListPresets => return None,
+        },
+        Command::Run(RunCommand::Continue(_)) => {
             let RunPlan { preset, seed, .. } = after;
-            (CONTINUE.to_owned(), format!("the settings of {preset}, seed {seed}"))
+            (CONTINUE, format!("the settings of {preset}, seed {seed}"))
         }
         _ => return None,
-    })
+    };
+    Some((subject.to_owned(), label))
 }
 
-/// The plan after a step from one plan to another is taken, beginning at what the plan is by now. A new run has
-/// its own seed, which a step that was about something else leaves alone.
+/// The present plan after a step from one plan to another. The seed stays unless the step changed it, because each new
+/// run gets a seed of its own.
 pub(crate) fn stepped(now: &RunPlan, from: &RunPlan, to: &RunPlan) -> RunPlan {
     let seed = if from.seed == to.seed { now.seed } else { to.seed };
     RunPlan { seed, ..to.clone() }
@@ -275,7 +228,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, settle_on_press.in_set(FrameSet::TakeIn));
 }
 
-/// Whoever presses something anew begins a new step.
+/// Begins a new step with each press.
 fn settle_on_press(
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
@@ -291,36 +244,29 @@ mod tests {
     use super::*;
     use crate::evolve::{Settings, with_field};
 
-    fn of_library(label: &str) -> UndoStep {
-        UndoStep::Library { label: label.to_owned() }
+    fn of_files(label: &str) -> UndoStep {
+        UndoStep::Files { label: label.to_owned(), steps: Vec::new() }
+    }
+
+    /// Takes the next step and completes it.
+    fn step(history: &mut UndoHistory, way: UndoDirection) -> Option<UndoStep> {
+        let step = history.take(way)?;
+        history.complete(way, Some(step.clone()), None);
+        Some(step)
     }
 
     #[test]
-    fn steps_about_saves_that_the_library_has_forgotten_are_forgotten() {
-        let mut history = UndoHistory::default();
-        history.push(of_library("deleted a"));
-        history.push(of_library("deleted b"));
-        assert_eq!(history.agree_with_library(1, 0), 0);
-        assert_eq!(history.next(UndoDirection::Back), Some("deleted a"));
-        assert!(history.take_of_library(UndoDirection::Back));
-        assert!(!history.take_of_library(UndoDirection::Back));
-        assert_eq!(history.agree_with_library(0, 1), 0);
-        history.push(of_library("deleted c"));
-        assert_eq!(history.agree_with_library(1, 1), 1, "to be forgotten there");
-    }
-
-    #[test]
-    fn after_a_lesson_its_steps_about_saves_stay_and_its_others_do_not() {
+    fn after_a_lesson_its_file_operations_stay_and_its_plan_steps_do_not() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
         let own = history.lend();
         assert_eq!(history.next(UndoDirection::Back), None);
         history.note(&set("0.3"), plan("0.5"), &plan("0.3"));
-        history.push(of_library("deleted a"));
+        history.push(of_files("deleted a"));
         history.give_back(own);
-        assert_eq!(history.take(UndoDirection::Back), Some(of_library("deleted a")));
-        assert!(matches!(history.take(UndoDirection::Back), Some(UndoStep::Plan { .. })));
-        assert_eq!(history.take(UndoDirection::Back), None);
+        assert_eq!(step(&mut history, UndoDirection::Back), Some(of_files("deleted a")));
+        assert!(matches!(step(&mut history, UndoDirection::Back), Some(UndoStep::Plan(_))));
+        assert_eq!(step(&mut history, UndoDirection::Back), None);
     }
 
     /// A plan with this friction.
@@ -330,12 +276,15 @@ mod tests {
     }
 
     fn set(text: &str) -> Command {
-        Command::SetField { field: "trial.surface.friction".to_owned(), text: text.to_owned() }
+        Command::Plan(PlanCommand::SetField {
+            field: "trial.surface.friction".to_owned(),
+            text: text.to_owned(),
+        })
     }
 
     /// The plans of a step.
     fn plans(step: Option<UndoStep>) -> (RunPlan, RunPlan) {
-        let Some(UndoStep::Plan { before, after, .. }) = step else { panic!("a step") };
+        let Some(UndoStep::Plan(PlanStep { before, after, .. })) = step else { panic!("a step") };
         (*before, *after)
     }
 
@@ -346,15 +295,10 @@ mod tests {
         history.settle();
         history.note(&set("0.2"), plan("0.5"), &plan("0.2"));
         assert_eq!(history.next(UndoDirection::Back), Some("friction 0.2"));
-        let step = history.take(UndoDirection::Back);
-        assert_eq!(
-            UndoDirection::Back.taken(step.as_ref().expect("a step")),
-            "Undone: friction 0.2"
-        );
-        assert_eq!(plans(step), (plan("0.5"), plan("0.2")));
-        assert_eq!(plans(history.take(UndoDirection::Back)), (plan("1"), plan("0.5")));
-        assert_eq!(history.take(UndoDirection::Back), None);
-        assert_eq!(plans(history.take(UndoDirection::Forth)), (plan("1"), plan("0.5")));
+        assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("0.5"), plan("0.2")));
+        assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("1"), plan("0.5")));
+        assert_eq!(step(&mut history, UndoDirection::Back), None);
+        assert_eq!(plans(step(&mut history, UndoDirection::Forth)), (plan("1"), plan("0.5")));
         assert_eq!(history.next(UndoDirection::Forth), Some("friction 0.2"));
     }
 
@@ -364,8 +308,8 @@ mod tests {
         for (before, after) in [("1", "0.8"), ("0.8", "0.5"), ("0.5", "0.3")] {
             history.note(&set(after), plan(before), &plan(after));
         }
-        assert_eq!(plans(history.take(UndoDirection::Back)), (plan("1"), plan("0.3")));
-        assert_eq!(history.take(UndoDirection::Back), None);
+        assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("1"), plan("0.3")));
+        assert_eq!(step(&mut history, UndoDirection::Back), None);
         // Back to where it began it is none.
         history.note(&set("0.8"), plan("1"), &plan("0.8"));
         history.note(&set("1"), plan("0.8"), &plan("1"));
@@ -376,7 +320,7 @@ mod tests {
     fn a_new_change_ends_what_could_be_redone_and_what_changes_nothing_is_no_step() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
-        history.take(UndoDirection::Back);
+        step(&mut history, UndoDirection::Back);
         history.note(&set("1"), plan("1"), &plan("1"));
         assert!(history.next(UndoDirection::Forth).is_some(), "nothing was changed");
         history.note(&set("0.7"), plan("1"), &plan("0.7"));
@@ -386,13 +330,13 @@ mod tests {
     #[test]
     fn only_so_many_steps_are_kept() {
         let mut history = UndoHistory::default();
-        for number in 0..MOST_STEPS + 50 {
+        for number in 0..MAX_STEPS + 50 {
             let after = plan(&format!("{}", number + 2));
             history.note(&set(""), plan(&format!("{}", number + 1)), &after);
             history.settle();
         }
-        let steps = std::iter::from_fn(|| history.take(UndoDirection::Back)).count();
-        assert_eq!(steps, MOST_STEPS);
+        let steps = std::iter::from_fn(|| step(&mut history, UndoDirection::Back)).count();
+        assert_eq!(steps, MAX_STEPS);
     }
 
     #[test]
@@ -404,17 +348,25 @@ mod tests {
     }
 
     #[test]
-    fn what_could_not_be_undone_as_a_whole_is_still_the_next_to_undo() {
+    fn an_incomplete_undo_can_be_continued_and_redone() {
         let mut history = UndoHistory::default();
-        history.push(of_library("renamed a"));
-        history.push(of_library("deleted 300 saves"));
-        let step = history.take(UndoDirection::Back).expect("a step");
-        // Some of them are back, and can be deleted again; the rest can be brought back, too.
-        history.put_back(UndoDirection::Back, step);
-        assert_eq!(history.agree_with_library(2, 1), 0);
+        history.push(of_files("renamed a"));
+        history.push(of_files("deleted 300 saves"));
+        let step = history.take(UndoDirection::Back);
+        assert_eq!(history.next(UndoDirection::Back), Some("renamed a"));
+        history.complete(UndoDirection::Back, step.clone(), step);
         assert_eq!(history.next(UndoDirection::Back), Some("deleted 300 saves"));
         assert_eq!(history.next(UndoDirection::Forth), Some("deleted 300 saves"));
-        history.take(UndoDirection::Back);
-        assert_eq!(history.next(UndoDirection::Back), Some("renamed a"));
+    }
+
+    #[test]
+    fn an_undo_that_completes_after_another_change_cannot_be_redone() {
+        let mut history = UndoHistory::default();
+        history.push(of_files("deleted 300 saves"));
+        let step = history.take(UndoDirection::Back);
+        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        history.complete(UndoDirection::Back, step, None);
+        assert_eq!(history.next(UndoDirection::Forth), None);
+        assert_eq!(history.next(UndoDirection::Back), Some("friction 0.5"));
     }
 }

@@ -4,24 +4,17 @@ use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
 use super::wording::world_in_words;
-use crate::evolve::{Settings, with_field, with_fields};
+use crate::evolve::{Settings, with_fields};
 use crate::score::Trial;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 
 /// A change of the world.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) enum WorldChange<'a> {
-    /// Of one setting, by its name.
-    Field {
-        /// See [`with_field`].
-        field: &'a str,
-        /// Its value as text.
-        text: &'a str,
-    },
-    /// Of several settings at once, by their names.
-    Fields(&'a [(String, String)]),
-    /// To that of a preset.
+    /// New values of settings, by their names: see [`with_fields`].
+    Fields(Vec<(&'a str, &'a str)>),
+    /// The world of a preset.
     Preset(&'a str),
 }
 
@@ -38,7 +31,6 @@ pub(crate) fn what_if(
         StageMode::Solo | StageMode::Race => Box::new(evolution.next_plan().clone()),
     };
     match change {
-        WorldChange::Field { field, text } => evolution.set_field(field, text)?,
         WorldChange::Fields(changes) => evolution.set_fields(changes)?,
         WorldChange::Preset(name) => evolution.set_preset(name)?,
     }
@@ -52,15 +44,11 @@ pub(crate) fn what_if(
     };
     let next = evolution.next_settings();
     let trial = match change {
-        // Only what was changed is to differ, not whatever else the next run's world has.
-        WorldChange::Field { field, text } => {
-            let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
-            with_field(&settings, field, text).map_err(|error| error.to_string())?.trial
-        }
+        // Other differences of the next run's world are left out.
         WorldChange::Fields(changes) => {
             let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
-            let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
-            with_fields(&settings, changes).map_err(|error| error.to_string())?.trial
+            let changed = with_fields(&settings, changes.iter().copied());
+            changed.map_err(|error| error.to_string())?.trial
         }
         // Its world; how long it lasts and what is rewarded stay, so that the two can be compared.
         WorldChange::Preset(_) => Trial {
@@ -79,9 +67,7 @@ pub(crate) fn what_if(
     }
     let label = match change {
         WorldChange::Preset(name) => (*name).to_owned(),
-        WorldChange::Field { .. } | WorldChange::Fields(_) => {
-            world_in_words(original.trial(), &trial)
-        }
+        WorldChange::Fields(_) => world_in_words(original.trial(), &trial),
     };
     let changed = original.in_world(&trial, label);
     changed.check().map_err(|reason| {
@@ -122,7 +108,7 @@ mod tests {
     fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
         let mut run = prepared_run();
         let plan = run.next_plan().clone();
-        let field = |field, text| WorldChange::Field { field, text };
+        let field = |field, text| WorldChange::Fields(vec![(field, text)]);
         let first =
             what_if(&mut run, &[saved(0)], &StageMode::Solo, &field("surface.friction", "0.3"))
                 .expect("allowed")
@@ -160,7 +146,7 @@ mod tests {
     #[test]
     fn a_preset_that_the_genome_does_not_fit_is_refused_with_the_reason() {
         let mut run = prepared_run();
-        let limbs = WorldChange::Field { field: "agent.limbs", text: "7" };
+        let limbs = WorldChange::Fields(vec![("agent.limbs", "7")]);
         let refusal = what_if(&mut run, &[saved(0)], &StageMode::Solo, &limbs);
         let refusal = refusal.expect_err("refused");
         assert!(refusal.contains("joints is 4 joints") && refusal.contains("7 limbs"), "{refusal}");
@@ -172,7 +158,7 @@ mod tests {
     #[test]
     fn what_is_no_matter_of_the_world_changes_nothing_on_the_stage() {
         let mut run = prepared_run();
-        let parents = WorldChange::Field { field: "evolution.population", text: "7" };
+        let parents = WorldChange::Fields(vec![("evolution.population", "7")]);
         let shown = what_if(&mut run, &[saved(0)], &StageMode::Solo, &parents).expect("allowed");
         assert!(shown.is_none());
         assert_eq!(run.next_settings().evolution.population, 7);

@@ -55,6 +55,12 @@ impl Notices {
         self.0.len()
     }
 
+    /// The latest message.
+    #[cfg(test)]
+    pub fn last(&self) -> Option<&str> {
+        self.0.last().map(|notice| notice.text.as_str())
+    }
+
     fn push(&mut self, text: String, is_problem: bool) {
         // A repeated message replaces the earlier one and restarts its display time.
         self.0.retain(|notice| notice.text != text);

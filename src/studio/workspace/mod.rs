@@ -5,6 +5,7 @@ pub mod situation;
 
 use bevy::prelude::*;
 
+use super::commands::WindowCommand;
 use super::commands::modal::Modal;
 use super::commands::panel::PanelKind;
 use super::schedule::FrameSet;
@@ -51,6 +52,31 @@ impl Workspace {
     /// The open modal view.
     pub fn modal(&self) -> Option<Modal> {
         self.modal
+    }
+
+    /// Executes a command.
+    pub fn apply(&mut self, command: &WindowCommand) {
+        match command {
+            WindowCommand::OpenPanel(kind) => self.open(*kind),
+            WindowCommand::FindSetting(label) => {
+                self.open(PanelKind::World);
+                self.sought = Some(label);
+            }
+            WindowCommand::ClosePanel => self.layout.close_front(),
+            WindowCommand::ResetLayout => self.layout.reset(),
+            WindowCommand::TogglePanels => self.is_bare = !self.is_bare,
+            WindowCommand::ChangeScale { larger } => self.change_scale(*larger),
+            WindowCommand::ResetScale => self.scale = 1.0,
+            WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
+            WindowCommand::CloseModal if self.modal.is_none() => self.is_bare = false,
+            WindowCommand::CloseModal => self.close_modal(),
+        }
+    }
+
+    /// Brings a panel to the front, and shows the panels if they are hidden.
+    pub fn open(&mut self, kind: PanelKind) {
+        self.is_bare = false;
+        self.layout.open(kind);
     }
 
     /// Opens a modal view in place of any other, or closes it if it is open.

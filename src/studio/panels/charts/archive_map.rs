@@ -3,8 +3,8 @@
 use bevy_egui::egui;
 
 use crate::evolve::{Archive, Descriptor};
-use crate::studio::commands::Command;
 use crate::studio::commands::pick::Pick;
+use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownChampion;
 use crate::studio::ui::plot_axes::{axis_name, number};
 use crate::studio::ui::text_rows::explain;
@@ -77,7 +77,9 @@ pub(crate) fn archive_map(
 
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "Map"));
     if response.clicked() {
-        commands.extend(hovered_elite.map(|cell| Command::Show(Pick::Elite(cell))));
+        commands.extend(
+            hovered_elite.map(|cell| Command::Stage(StageCommand::Show(Pick::Elite(cell)))),
+        );
     }
     if let Some(cell) = hovered {
         response.on_hover_text_at_pointer(hover_text(archive, cell, unit));
@@ -188,7 +190,10 @@ mod tests {
         let exploration = run.exploration().expect("explored");
         let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
         let (cell, _) = archive.elites().next().expect("an elite");
-        assert_eq!(clicked(archive, cell), (vec![Command::Show(Pick::Elite(cell))], false));
+        assert_eq!(
+            clicked(archive, cell),
+            (vec![Command::Stage(StageCommand::Show(Pick::Elite(cell)))], false)
+        );
         let cells = archive.cells * archive.cells;
         let empty = (0..cells).find(|cell| archive.elite(*cell).is_none()).expect("an empty cell");
         assert_eq!(clicked(archive, empty), (vec![], true));

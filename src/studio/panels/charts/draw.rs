@@ -11,7 +11,7 @@ use super::downsample::DrawnSeries;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::evolve::IndividualId;
 use crate::plot::{Chart, Figure, Role, Series, Shape};
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, StageCommand};
 use crate::studio::ui::plot_axes::{axis_name, bounds, fixed_plot};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
@@ -131,7 +131,11 @@ impl ChartPart<'_> {
             && let Some(pick) = hit.pick
         {
             let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-            commands.push(if joins { Command::Join(pick) } else { Command::Show(pick) });
+            commands.push(if joins {
+                Command::Stage(StageCommand::Join(pick))
+            } else {
+                Command::Stage(StageCommand::Show(pick))
+            });
         }
         let replay = if hit.pick.is_some() {
             "\nClick to replay. Shift-click to add it to the stage"

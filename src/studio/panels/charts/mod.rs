@@ -23,8 +23,8 @@ use super::shown::ShownChampion;
 use crate::evolve::IndividualId;
 use crate::plot::Figure;
 use crate::save::Comparison;
-use crate::studio::commands::Command;
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
+use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
@@ -189,7 +189,7 @@ impl ChartsPanel {
     ) {
         if kind == ChartKind::Runs && !self.has_listed_runs {
             self.has_listed_runs = true;
-            commands.push(Command::ListRuns);
+            commands.push(Command::Run(RunCommand::ListRuns));
         }
         let version = run.version();
         if !matches!(&self.known, Some((of, at, _)) if (*of, *at) == (kind, version)) {
@@ -367,7 +367,11 @@ fn header(
             let not_yet = "The chart is still empty";
             if button.on_hover_text(hint).on_disabled_hover_text(not_yet).clicked() {
                 let figure = Arc::clone(figure);
-                commands.push(Command::ExportChart(ChartExport { figure, name, format }));
+                commands.push(Command::Run(RunCommand::ExportChart(ChartExport {
+                    figure,
+                    name,
+                    format,
+                })));
             }
         }
     });

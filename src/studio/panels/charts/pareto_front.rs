@@ -6,8 +6,8 @@ use bevy_egui::egui;
 use egui_plot::{HoverPosition, Line, PlotPoint, PlotPoints, Points};
 
 use crate::evolve::{Front, FrontMember};
-use crate::studio::commands::Command;
 use crate::studio::commands::pick::Pick;
+use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownChampion;
 use crate::studio::ui::plot_axes::{axis_name, bounds, fixed_plot, number, padded_range};
 use crate::studio::ui::theme;
@@ -57,7 +57,7 @@ pub(crate) fn front_plot(
         && distance <= CLICK_DISTANCE
     {
         let FrontMember { generation, individual, .. } = **member;
-        commands.push(Command::Show(Pick::Front { generation, individual }));
+        commands.push(Command::Stage(StageCommand::Show(Pick::Front { generation, individual })));
     }
 }
 
@@ -129,7 +129,7 @@ mod tests {
         let off = egui::vec2(3.0, 3.0);
         assert_eq!(
             sent(front, place(best), off),
-            [Command::Show(Pick::Front { generation, individual })]
+            [Command::Stage(StageCommand::Show(Pick::Front { generation, individual }))]
         );
         // Far below the point there is no member.
         assert_eq!(sent(front, place(best), egui::vec2(0.0, 60.0)), []);

@@ -10,7 +10,7 @@ use crate::evolve::RunPlan;
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::Statistics;
 use crate::save::StatisticsRecord;
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
 use crate::studio::ui::plot_axes::padded_range;
 use crate::studio::ui::text_rows::explain;
@@ -121,7 +121,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             None => ui.label("There are no other runs yet."),
         };
         if ui.small_button("Refresh").on_hover_text("Read the list of runs again").clicked() {
-            commands.push(Command::ListRuns);
+            commands.push(Command::Run(RunCommand::ListRuns));
         }
     });
     egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
@@ -133,7 +133,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
             let hint = format!("Add this run to the chart: {}", other.folder.display());
             if response.on_hover_text(hint).clicked() {
-                commands.push(Command::Compare(other.folder.clone()));
+                commands.push(Command::Run(RunCommand::Compare(other.folder.clone())));
             }
         }
     });

@@ -6,6 +6,7 @@ use egui_kittest::kittest::Queryable;
 use super::*;
 use crate::evolve::Settings;
 use crate::studio::commands::pick::Pick;
+use crate::studio::commands::{RunCommand, StageCommand};
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use crate::studio::state::current_run::{compared_run, explored_run, prepared_run};
 
@@ -42,7 +43,7 @@ fn a_chart_is_selected_by_its_name() {
             assert!(harness.query_all_by_label(title).next().is_some(), "{title}");
         }
     });
-    assert_eq!(sent, [Command::ListRuns], "other runs are looked for once");
+    assert_eq!(sent, [Command::Run(RunCommand::ListRuns)], "other runs are looked for once");
 }
 
 fn click(harness: &mut Harness<'_, Vec<Command>>, at: egui::Pos2) {
@@ -83,7 +84,9 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
                 harness.get_by_label("CSV").click();
                 harness.run();
             });
-            let [Command::ExportChart(ChartExport { figure, name, format })] = &sent[..] else {
+            let [Command::Run(RunCommand::ExportChart(ChartExport { figure, name, format }))] =
+                &sent[..]
+            else {
                 panic!("{kind:?}: {sent:?}")
             };
             assert_eq!((*name, *format), (kind.file_name(), ChartFormat::Csv));
@@ -112,7 +115,11 @@ fn a_click_replays_a_generation_a_bar_an_ancestor_or_a_parent() {
             let first = hit.words().lines().next().expect("words").to_owned();
             harness.query_all_by_label_contains(&first).next().is_some()
         });
-        assert_eq!(sent, [Command::Show(hit.pick.expect("a snake"))], "{kind:?}");
+        assert_eq!(
+            sent,
+            [Command::Stage(StageCommand::Show(hit.pick.expect("a snake")))],
+            "{kind:?}"
+        );
         assert!(words, "{kind:?} is read out: {}", hit.words());
     }
 }

@@ -3,8 +3,8 @@
 use bevy_egui::egui;
 
 use crate::save::shipped_presets;
-use crate::studio::commands::Command;
 use crate::studio::commands::actions::{ACTIONS, Situation};
+use crate::studio::commands::{Command, LessonCommand, PlanCommand, WindowCommand};
 use crate::studio::panels::settings::every_setting;
 use crate::studio::ui::theme;
 
@@ -95,9 +95,9 @@ impl CommandPalette {
             }
         });
         if let Some(entry) = taken {
-            commands.extend([Command::CloseModal, entry.command]);
+            commands.extend([Command::Window(WindowCommand::CloseModal), entry.command]);
         } else if shown.backdrop_response.clicked() {
-            commands.push(Command::CloseModal);
+            commands.push(Command::Window(WindowCommand::CloseModal));
         }
     }
 
@@ -115,20 +115,20 @@ impl CommandPalette {
         };
         let presets = self.presets.iter().map(|(name, about)| {
             let name_and_words = format!("{name} - {}", first_sentence(about));
-            let command = Command::SetPreset(name.clone());
+            let command = Command::Plan(PlanCommand::SetPreset(name.clone()));
             PaletteEntry { group: "Preset".to_owned(), name: name_and_words, key: "", command }
         });
         let lessons = lessons.iter().enumerate().map(|(index, name)| PaletteEntry {
             group: "Lesson".to_owned(),
             name: (*name).to_owned(),
             key: "",
-            command: Command::BeginLesson(index),
+            command: Command::Lesson(LessonCommand::Begin(index)),
         });
         let settings = every_setting().into_iter().map(|listed| PaletteEntry {
             group: "Setting".to_owned(),
             name: format!("{} ({})", listed.setting.label, listed.section.title.to_lowercase()),
             key: "",
-            command: Command::FindSetting(listed.setting.label),
+            command: Command::Window(WindowCommand::FindSetting(listed.setting.label)),
         });
         let actions = ACTIONS.iter().filter_map(of_action);
         actions.chain(presets).chain(lessons).chain(settings).collect()
@@ -173,6 +173,7 @@ fn matching(entries: &[PaletteEntry], typed: &str) -> Vec<PaletteEntry> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::commands::{PlayerCommand, ViewCommand};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -201,12 +202,21 @@ mod tests {
     #[test]
     fn enter_runs_the_first_match() {
         let press = |harness: &mut Harness<'_, Vec<Command>>| harness.key_press(egui::Key::Enter);
-        assert_eq!(sent("dark", press), [Command::CloseModal, Command::ToggleTheme]);
-        let ice = Command::SetPreset("ice".to_owned());
-        assert_eq!(sent("preset ice", press), [Command::CloseModal, ice]);
-        assert_eq!(sent("grip", press), [Command::CloseModal, Command::BeginLesson(0)]);
-        let setting = Command::FindSetting("Slip");
-        assert_eq!(sent("setting slip", press), [Command::CloseModal, setting]);
+        assert_eq!(
+            sent("dark", press),
+            [Command::Window(WindowCommand::CloseModal), Command::View(ViewCommand::ToggleTheme)]
+        );
+        let ice = Command::Plan(PlanCommand::SetPreset("ice".to_owned()));
+        assert_eq!(sent("preset ice", press), [Command::Window(WindowCommand::CloseModal), ice]);
+        assert_eq!(
+            sent("grip", press),
+            [Command::Window(WindowCommand::CloseModal), Command::Lesson(LessonCommand::Begin(0))]
+        );
+        let setting = Command::Window(WindowCommand::FindSetting("Slip"));
+        assert_eq!(
+            sent("setting slip", press),
+            [Command::Window(WindowCommand::CloseModal), setting]
+        );
         assert_eq!(sent("no such thing", press), []);
     }
 
@@ -218,7 +228,13 @@ mod tests {
             harness.key_press(egui::Key::Enter);
         });
         let window = crate::studio::commands::screenshot_area::ScreenshotArea::Window;
-        assert_eq!(sent, [Command::CloseModal, Command::TakePicture(window)]);
+        assert_eq!(
+            sent,
+            [
+                Command::Window(WindowCommand::CloseModal),
+                Command::View(ViewCommand::TakePicture(window))
+            ]
+        );
     }
 
     #[test]
@@ -226,6 +242,12 @@ mod tests {
         let sent = sent("loop", |harness| {
             harness.get_by_label_contains("Stage: Loop").click();
         });
-        assert_eq!(sent, [Command::CloseModal, Command::ToggleLoop]);
+        assert_eq!(
+            sent,
+            [
+                Command::Window(WindowCommand::CloseModal),
+                Command::Player(PlayerCommand::ToggleLoop)
+            ]
+        );
     }
 }

@@ -2,8 +2,8 @@
 
 use bevy_egui::egui;
 
-use crate::studio::commands::Command;
 use crate::studio::commands::actions::{ACTIONS, Menu};
+use crate::studio::commands::{Command, WindowCommand};
 use crate::studio::ui::theme;
 
 /// Mouse actions on the stage.
@@ -29,7 +29,7 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
             ui.label(egui::RichText::new("Keyboard and mouse").size(theme::HEADING_SIZE).strong());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("Close").on_hover_text("Esc or ?").clicked() {
-                    commands.push(Command::CloseModal);
+                    commands.push(Command::Window(WindowCommand::CloseModal));
                 }
             });
         });
@@ -52,7 +52,7 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
         });
     });
     if shown.backdrop_response.clicked() {
-        commands.push(Command::CloseModal);
+        commands.push(Command::Window(WindowCommand::CloseModal));
     }
 }
 

@@ -49,6 +49,7 @@ fn entry(ui: &mut egui::Ui, action: &Action, situation: Situation, commands: &mu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::commands::RunCommand;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -62,7 +63,7 @@ mod tests {
         harness.run();
         harness.get_by_label_contains("Evolve one generation").click();
         harness.run();
-        assert_eq!(*harness.state(), [Command::SingleGeneration]);
+        assert_eq!(*harness.state(), [Command::Run(RunCommand::SingleGeneration)]);
         harness.get_by_label("Edit").click();
         harness.run();
         harness.get_by_label_contains("Undo").click();

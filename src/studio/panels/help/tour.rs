@@ -2,9 +2,9 @@
 
 use bevy_egui::egui;
 
-use crate::studio::commands::Command;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::{Command, WindowCommand};
 use crate::studio::ui::theme;
 
 /// Step of the tour: the panel to highlight, and its text.
@@ -90,10 +90,13 @@ pub(crate) fn tour(
 
 fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     let palette = theme::of(ui);
-    let go_to = |step| Command::ToggleModal(Modal::Tour(step));
+    let go_to = |step| Command::Window(WindowCommand::ToggleModal(Modal::Tour(step)));
     let is_last = index + 1 == STEPS.len();
-    let (label, next) =
-        if is_last { ("Done", Command::CloseModal) } else { ("Next", go_to(index + 1)) };
+    let (label, next) = if is_last {
+        ("Done", Command::Window(WindowCommand::CloseModal))
+    } else {
+        ("Next", go_to(index + 1))
+    };
     let text = egui::RichText::new(label).strong().color(palette.on_accent);
     let forward = ui.add(egui::Button::new(text).fill(palette.accent));
     if ui.memory(|memory| memory.focused().is_none()) {
@@ -107,7 +110,7 @@ fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
         commands.push(go_to(index - 1));
     }
     if !is_last && ui.button("Skip the tour").on_hover_text("Esc").clicked() {
-        commands.push(Command::CloseModal);
+        commands.push(Command::Window(WindowCommand::CloseModal));
     }
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let count = format!("{} of {}", index + 1, STEPS.len());
@@ -150,10 +153,13 @@ mod tests {
                 harness.state().clone()
             };
             if index + 1 < STEPS.len() {
-                assert_eq!(click("Next"), [Command::ToggleModal(Modal::Tour(index + 1))]);
-                assert_eq!(click("Skip the tour"), [Command::CloseModal]);
+                assert_eq!(
+                    click("Next"),
+                    [Command::Window(WindowCommand::ToggleModal(Modal::Tour(index + 1)))]
+                );
+                assert_eq!(click("Skip the tour"), [Command::Window(WindowCommand::CloseModal)]);
             } else {
-                assert_eq!(click("Done"), [Command::CloseModal]);
+                assert_eq!(click("Done"), [Command::Window(WindowCommand::CloseModal)]);
             }
         }
     }
@@ -166,6 +172,6 @@ mod tests {
         harness.run();
         harness.key_press(egui::Key::Enter);
         harness.run();
-        assert_eq!(*harness.state(), [Command::ToggleModal(Modal::Tour(1))]);
+        assert_eq!(*harness.state(), [Command::Window(WindowCommand::ToggleModal(Modal::Tour(1)))]);
     }
 }

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::save::library::SavePlace;
-use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
+use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::stage::MAX_LANES;
 use crate::studio::state::library::{Library, LibraryItem};
 
@@ -73,7 +73,9 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
         name: "New run from this",
         hint: "Start a run whose first generation descends from this snake",
         refusal: single.or(replay_refusal),
-        act: library_command(LibraryCommand::StartFrom(first.place().clone())),
+        act: LibraryActionKind::Send(Command::Plan(PlanCommand::StartFromSave(
+            first.place().clone(),
+        ))),
     });
     if let (Some(folder), 1) = (first.place().run(), chosen.len()) {
         actions.extend(of_run(library, first, folder));
@@ -131,7 +133,7 @@ fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryActio
             name: "Resume",
             hint: "Resume this run where it stopped; the current run stays saved",
             refusal,
-            act: LibraryActionKind::Send(Command::Continue(folder.to_owned())),
+            act: LibraryActionKind::Send(Command::Run(RunCommand::Continue(folder.to_owned()))),
         },
         LibraryAction {
             name: "Champions",

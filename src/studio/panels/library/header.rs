@@ -10,7 +10,9 @@ use super::order::{SortKey, SortOrder};
 use super::row::column;
 use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
+use crate::studio::panels::undo_buttons::undo_buttons;
 use crate::studio::state::library::Library;
+use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::text_rows::title_and;
 use crate::studio::ui::theme;
 
@@ -20,6 +22,7 @@ impl LibraryPanel {
         &mut self,
         ui: &mut egui::Ui,
         library: &Library,
+        history: &UndoHistory,
         commands: &mut Vec<Command>,
     ) {
         title_and(ui, "Library", |ui| {
@@ -33,17 +36,7 @@ impl LibraryPanel {
             if ui.add(import).on_hover_text(hint).clicked() {
                 self.toggle_path_field(PathPurpose::Import, String::new());
             }
-            for (name, keys, last, request) in [
-                ("Redo", "Ctrl Shift Z", library.redoable(), LibraryCommand::Redo),
-                ("Undo", "Ctrl Z", library.undoable(), LibraryCommand::Undo),
-            ] {
-                let Some(last) = last else { continue };
-                let button = egui::Button::new(name).small();
-                let hint = format!("{name}: {last} ({keys})");
-                if ui.add(button).on_hover_text(hint).clicked() {
-                    send(commands, request);
-                }
-            }
+            undo_buttons(ui, history, commands);
         });
         batch_progress(ui, library, commands);
         let field = egui::TextEdit::singleline(&mut self.search)

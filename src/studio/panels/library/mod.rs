@@ -23,6 +23,7 @@ use crate::save::library::{EXPORTS, SavePlace, check_entry_name};
 use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::{Library, LibraryItem};
+use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use actions::send;
@@ -67,7 +68,13 @@ pub(super) struct LibraryPanel {
 
 impl LibraryPanel {
     /// Draws the panel and collects the user's commands.
-    pub fn ui(&mut self, ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        library: &Library,
+        history: &UndoHistory,
+        commands: &mut Vec<Command>,
+    ) {
         if !library.is_open() {
             send(commands, LibraryCommand::Refresh);
         }
@@ -82,18 +89,22 @@ impl LibraryPanel {
             available - self.surrounding_heights[0] - self.surrounding_heights[1]
         };
         let area = egui::ScrollArea::vertical().id_salt("library").auto_shrink(false);
-        area.show(ui, |ui| self.parts(ui, library, rest.floor().max(least), commands));
+        area.show(ui, |ui| {
+            self.parts(ui, library, history, rest.floor().max(least), commands);
+        });
     }
 
     fn parts(
         &mut self,
         ui: &mut egui::Ui,
         library: &Library,
+        history: &UndoHistory,
         list_height: f32,
         commands: &mut Vec<Command>,
     ) {
         let gaps = ui.spacing().item_spacing.y * 2.0;
-        let header = ui.scope(|ui| self.header(ui, library, commands)).response.rect.height();
+        let header =
+            ui.scope(|ui| self.header(ui, library, history, commands)).response.rect.height();
         self.follow(library);
         let now_s = ui.input(|input| input.time);
         self.order.update(library, &self.search, self.sort, now_s);

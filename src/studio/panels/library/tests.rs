@@ -10,6 +10,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use super::*;
 use crate::run::LibraryEvent;
 use crate::save::library::{EntryDetails, LibraryEntry, RunDetails, read_entry};
+use crate::studio::commands::{PlanCommand, RunCommand};
+use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 
 fn entry(place: SavePlace, day: u64) -> LibraryEntry {
@@ -75,7 +77,9 @@ fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
     // Two clicks count as a double click only if the frames are short.
     let builder = Harness::builder().with_size(egui::Vec2::from(size)).with_step_dt(1.0 / 60.0);
     let mut harness = builder.build_ui_state(
-        move |ui, commands: &mut Vec<Command>| panel.ui(ui, library, commands),
+        move |ui, commands: &mut Vec<Command>| {
+            panel.ui(ui, library, &UndoHistory::default(), commands)
+        },
         Vec::new(),
     );
     harness.run();
@@ -123,7 +127,6 @@ fn each_button_sends_its_command_for_the_selected_save() {
     let library = library();
     for (row, button, request) in [
         ("alpha", "Replay", LibraryCommand::Replay(file("alpha"))),
-        ("alpha", "New run from this", LibraryCommand::StartFrom(file("alpha"))),
         ("beta", "Duplicate", LibraryCommand::Duplicate(vec![file("beta")])),
         ("broken", "Delete", LibraryCommand::Delete(vec![file("broken")])),
         ("climb-seed8-0123abcd", "Replay", LibraryCommand::Replay(SavePlace::Run(run_folder()))),
@@ -135,6 +138,11 @@ fn each_button_sends_its_command_for_the_selected_save() {
         });
         assert_eq!(found, [request], "{button} of {row}");
     }
+    let mut harness = harness(&library, [420.0, 900.0]);
+    select(&mut harness, "alpha");
+    click(&mut harness, "New run from this");
+    let expected = Command::Plan(PlanCommand::StartFromSave(file("alpha")));
+    assert_eq!(*harness.state(), [expected]);
 }
 
 #[test]
@@ -162,7 +170,7 @@ fn a_stopped_run_is_resumed_and_lists_its_champions() {
     let mut harness = harness(&library, [420.0, 900.0]);
     select(&mut harness, "climb-seed8-0123abcd");
     click(&mut harness, "Resume");
-    assert_eq!(*harness.state(), [Command::Continue(run_folder())]);
+    assert_eq!(*harness.state(), [Command::Run(RunCommand::Continue(run_folder()))]);
     harness.state_mut().clear();
     click(&mut harness, "Champions");
     harness.get_by_label_contains("Generation 1").click();
@@ -380,7 +388,11 @@ fn long_operations_can_be_cancelled_and_short_ones_show_no_progress() {
         let mut library = library();
         let gone = (0..count).map(|number| file(&format!("gone {number}"))).collect();
         // The files do not exist, so nothing changes on disk.
-        let _ = library.apply(&LibraryCommand::Delete(gone), &mut Notices::default());
+        let _ = library.apply(
+            &LibraryCommand::Delete(gone),
+            &mut UndoHistory::default(),
+            &mut Notices::default(),
+        );
         let found = sent(&library, |harness| {
             assert_eq!(harness.query_by_label("Cancel").is_some(), shown);
             if shown {

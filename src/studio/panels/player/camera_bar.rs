@@ -3,10 +3,10 @@
 use bevy_egui::egui;
 use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
 
-use crate::studio::commands::Command;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::commands::{Command, ViewCommand};
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::ui::theme::Theme;
 
@@ -35,7 +35,7 @@ pub(crate) fn view_bar(
                 .on_hover_text(hint)
                 .clicked()
             {
-                commands.push(Command::SetCamera(choice));
+                commands.push(Command::View(ViewCommand::SetCamera(choice)));
             }
         }
         ui.separator();
@@ -45,14 +45,14 @@ pub(crate) fn view_bar(
                 let (name, hint) = overlay.words();
                 let mut is_shown = overlays.shows(overlay);
                 if ui.checkbox(&mut is_shown, name).on_hover_text(hint).changed() {
-                    commands.push(Command::ToggleOverlay(overlay));
+                    commands.push(Command::View(ViewCommand::ToggleOverlay(overlay)));
                 }
             }
             ui.separator();
             let mut is_smooth = has_smooth_edges;
             let hint = "Smooth edges with four samples per pixel; slow without a graphics card (A)";
             if ui.checkbox(&mut is_smooth, "Anti-aliasing").on_hover_text(hint).changed() {
-                commands.push(Command::ToggleSmoothEdges);
+                commands.push(Command::View(ViewCommand::ToggleSmoothEdges));
             }
         });
         let (name, hint) = match theme {
@@ -60,11 +60,11 @@ pub(crate) fn view_bar(
             Theme::Dark => ("Light", "Switch to the light theme (T)"),
         };
         if ui.button(name).on_hover_text(hint).clicked() {
-            commands.push(Command::ToggleTheme);
+            commands.push(Command::View(ViewCommand::ToggleTheme));
         }
         let hint = "Save a picture of the stage (P) or of the whole window (Shift P)";
         if ui.button("Picture").on_hover_text(hint).clicked() {
-            commands.push(Command::TakePicture(ScreenshotArea::Stage));
+            commands.push(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)));
         }
     });
 }
@@ -78,9 +78,9 @@ mod tests {
     #[test]
     fn each_button_sends_its_command() {
         for (label, command) in [
-            ("Side", Command::SetCamera(CameraMode::Side)),
-            ("Dark", Command::ToggleTheme),
-            ("Picture", Command::TakePicture(ScreenshotArea::Stage)),
+            ("Side", Command::View(ViewCommand::SetCamera(CameraMode::Side))),
+            ("Dark", Command::View(ViewCommand::ToggleTheme)),
+            ("Picture", Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage))),
         ] {
             let overlays = Overlays::default();
             let mut harness = Harness::new_ui_state(

@@ -6,8 +6,8 @@ use bevy_egui::egui;
 use super::camera_bar::view_bar;
 use super::leaderboard::leaderboard;
 use super::limb_card::limb_card;
-use crate::studio::commands::Command;
 use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::{Command, LessonCommand, WindowCommand};
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -26,10 +26,10 @@ pub(crate) fn lesson_card(
             ui.horizontal(|ui| {
                 ui.label(format!("Lesson {} is in progress.", lesson + 1));
                 if ui.button("Show lesson").clicked() {
-                    commands.push(Command::OpenPanel(PanelKind::Lessons));
+                    commands.push(Command::Window(WindowCommand::OpenPanel(PanelKind::Lessons)));
                 }
                 if ui.button("Back to my own run").clicked() {
-                    commands.push(Command::LeaveLesson);
+                    commands.push(Command::Lesson(LessonCommand::Leave));
                 }
             });
         });

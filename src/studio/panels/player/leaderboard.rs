@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
@@ -80,7 +80,7 @@ pub(crate) fn leaderboard(
                 let hint = "Show the numbers and torques of this snake below";
                 let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
                 if name.on_hover_text(hint).clicked() {
-                    commands.push(Command::Focus(ranked.lane));
+                    commands.push(Command::Stage(StageCommand::Focus(ranked.lane)));
                 }
                 // A fixed width keeps the layout still while the values change.
                 let text = match (ranked.is_disqualified, ranked.landed_s) {
@@ -107,16 +107,22 @@ pub(crate) fn leaderboard(
     ui.horizontal(|ui| {
         let buttons: &[(&str, &str, Command)] = match mode {
             StageMode::WhatIf { .. } => &[
-                ("Keep", "Keep this change, also for the next run", Command::KeepChange),
+                (
+                    "Keep",
+                    "Keep this change, also for the next run",
+                    Command::Stage(StageCommand::KeepChange),
+                ),
                 (
                     "Discard",
                     "Discard this change, also for the next run (Esc)",
-                    Command::DropChange,
+                    Command::Plan(PlanCommand::DropChange),
                 ),
             ],
-            StageMode::Solo | StageMode::Race => {
-                &[("Leave race", "Show only the selected snake (Esc)", Command::Single)]
-            }
+            StageMode::Solo | StageMode::Race => &[(
+                "Leave race",
+                "Show only the selected snake (Esc)",
+                Command::Stage(StageCommand::Single),
+            )],
         };
         for (name, hint, command) in buttons {
             if ui.button(*name).on_hover_text(*hint).clicked() {
@@ -170,10 +176,14 @@ mod tests {
         let lanes = [lane(0), lane(1)];
         let before = Box::new(RunPlan::new("climb", 1, Settings::default()));
         for (mode, label, command) in [
-            (StageMode::Race, "snake 1", Command::Focus(1)),
-            (StageMode::Race, "Leave race", Command::Single),
-            (StageMode::WhatIf { before: before.clone() }, "Keep", Command::KeepChange),
-            (StageMode::WhatIf { before }, "Discard", Command::DropChange),
+            (StageMode::Race, "snake 1", Command::Stage(StageCommand::Focus(1))),
+            (StageMode::Race, "Leave race", Command::Stage(StageCommand::Single)),
+            (
+                StageMode::WhatIf { before: before.clone() },
+                "Keep",
+                Command::Stage(StageCommand::KeepChange),
+            ),
+            (StageMode::WhatIf { before }, "Discard", Command::Plan(PlanCommand::DropChange)),
         ] {
             let lanes: Vec<&Lane> = lanes.iter().collect();
             let mut harness = Harness::new_ui_state(

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 
 use super::torque_strip::TorqueStrip;
 use crate::score::Fitness;
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlayerCommand, StageCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::{Playback, SPEED_RANGE};
 use crate::studio::stage::staged_champion::ChampionSource;
@@ -42,7 +42,7 @@ impl TimelinePanel {
         });
         let height = theme::TORQUE_STRIP_HEIGHT;
         let moment = self.torque_strip.ui(ui, lane, playback.time_s(), end_s, height);
-        commands.extend(moment.map(Command::Seek));
+        commands.extend(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))));
     }
 
     /// Caption of the replay, with buttons for recordings.
@@ -52,13 +52,13 @@ impl TimelinePanel {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if staged.other_engine().is_some() && staged.could_be_as_found() {
                     if ui.button("As recorded").on_hover_text("Play the recording").clicked() {
-                        commands.push(Command::ShowAsFound);
+                        commands.push(Command::Stage(StageCommand::ShowAsFound));
                     }
                 } else if staged.recording().is_some() {
                     let hint = "Simulate it with this version of the engine. The motion may differ from \
                                 the recording";
                     if ui.button("Simulate here").on_hover_text(hint).clicked() {
-                        commands.push(Command::Simulate);
+                        commands.push(Command::Stage(StageCommand::Simulate));
                     }
                 }
                 if lane.is_disturbed() {
@@ -86,11 +86,26 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
         (Icon::Play, "Play (Space)")
     };
     for (icon, is_on, hint, command) in [
-        (Icon::ToStart, false, "Play from the start (R)", Command::Restart),
-        (Icon::StepBack, false, "Previous physics step (Left)", Command::Step { forward: false }),
-        (play, false, play_hint, Command::TogglePlayback),
-        (Icon::StepForward, false, "Next physics step (Right)", Command::Step { forward: true }),
-        (Icon::Loop, playback.loops(), "Loop: start again at the end (O)", Command::ToggleLoop),
+        (Icon::ToStart, false, "Play from the start (R)", Command::Player(PlayerCommand::Restart)),
+        (
+            Icon::StepBack,
+            false,
+            "Previous physics step (Left)",
+            Command::Player(PlayerCommand::Step { forward: false }),
+        ),
+        (play, false, play_hint, Command::Player(PlayerCommand::Toggle)),
+        (
+            Icon::StepForward,
+            false,
+            "Next physics step (Right)",
+            Command::Player(PlayerCommand::Step { forward: true }),
+        ),
+        (
+            Icon::Loop,
+            playback.loops(),
+            "Loop: start again at the end (O)",
+            Command::Player(PlayerCommand::ToggleLoop),
+        ),
     ] {
         if icon_button(ui, icon, is_on, hint).clicked() {
             commands.push(command);
@@ -105,7 +120,7 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
         .prefix("× ");
     let hint = "Speed in simulated seconds per second: drag, click to type, or press + and −";
     if ui.add(field).on_hover_text(hint).changed() {
-        commands.push(Command::SetSpeed(speed));
+        commands.push(Command::Player(PlayerCommand::SetSpeed(speed)));
     }
     ui.add_space(theme::GAP / 2.0);
     let width = format!("{end_s:.2}").len();
@@ -200,11 +215,11 @@ mod tests {
     #[test]
     fn each_button_of_the_player_sends_its_command() {
         for (label, command) in [
-            ("From the start", Command::Restart),
-            ("Step back", Command::Step { forward: false }),
-            ("Pause playback", Command::TogglePlayback),
-            ("Step forward", Command::Step { forward: true }),
-            ("Loop", Command::ToggleLoop),
+            ("From the start", Command::Player(PlayerCommand::Restart)),
+            ("Step back", Command::Player(PlayerCommand::Step { forward: false })),
+            ("Pause playback", Command::Player(PlayerCommand::Toggle)),
+            ("Step forward", Command::Player(PlayerCommand::Step { forward: true })),
+            ("Loop", Command::Player(PlayerCommand::ToggleLoop)),
         ] {
             assert_eq!(sent(900.0, |harness| harness.get_by_label(label).click()), [command]);
         }

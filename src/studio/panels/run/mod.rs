@@ -9,7 +9,7 @@ use crate::evolve::{EvolutionSettings, RunPlan};
 use crate::genome::GenomeSpace;
 use crate::run::THREADS_RANGE;
 use crate::schema::Section;
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, RunStatus, news_of};
 use crate::studio::ui::number_field::NumberField;
 use crate::studio::ui::text_rows::{explain, row, title_and};
@@ -44,10 +44,10 @@ impl EvolutionPanel {
         let status = run.status();
         let is_finished = status == RunStatus::Finished;
         let (label, start) = match status {
-            RunStatus::Running => ("Pause", Command::Pause),
-            RunStatus::Finished => ("New run", Command::Start),
-            RunStatus::Ready => ("Start", Command::Start),
-            RunStatus::Paused => ("Resume", Command::Start),
+            RunStatus::Running => ("Pause", Command::Run(RunCommand::Pause)),
+            RunStatus::Finished => ("New run", Command::Run(RunCommand::Start)),
+            RunStatus::Ready => ("Start", Command::Run(RunCommand::Start)),
+            RunStatus::Paused => ("Resume", Command::Run(RunCommand::Start)),
         };
         let palette = theme::of(ui);
         let can_start = !(is_finished && is_wrong);
@@ -80,9 +80,9 @@ impl EvolutionPanel {
                     !is_finished,
                     egui::Button::new("One generation"),
                     single,
-                    Command::SingleGeneration,
+                    Command::Run(RunCommand::SingleGeneration),
                 ),
-                (!is_wrong, egui::Button::new("Reset"), reset, Command::Reset),
+                (!is_wrong, egui::Button::new("Reset"), reset, Command::Run(RunCommand::Reset)),
             ] {
                 let response = ui.add_enabled(is_on, button);
                 if response.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
@@ -96,11 +96,11 @@ impl EvolutionPanel {
         ui.horizontal(|ui| {
             let hint = "The same seed and settings always give the same run, bit for bit";
             let seed = self.seed.ui(ui, "Seed", hint, run.next_seed(), 0..=u64::MAX);
-            commands.extend(seed.map(Command::SetSeed));
+            commands.extend(seed.map(|seed| Command::Plan(PlanCommand::SetSeed(seed))));
             let hint = "Number of snakes evaluated at the same time. More threads than processor cores are no \
                         faster. The result does not depend on it";
             let threads = self.threads.ui(ui, "Threads", hint, run.threads(), THREADS_RANGE);
-            commands.extend(threads.map(Command::SetThreads));
+            commands.extend(threads.map(|threads| Command::Run(RunCommand::SetThreads(threads))));
         });
         for problem in [self.seed.problem(), self.threads.problem()].into_iter().flatten() {
             ui.colored_label(theme::of(ui).problem, problem);
@@ -192,7 +192,7 @@ fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         ui.label(format!("Starts from \"{name}\""));
         let button = ui.small_button("Start from scratch");
         if button.on_hover_text("Create the first generation of the next run at random").clicked() {
-            commands.push(Command::ForgetFounder);
+            commands.push(Command::Plan(PlanCommand::ForgetFounder));
         }
     });
 }
@@ -227,7 +227,7 @@ fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
         )
     };
     if ui.small_button(label).on_hover_text(hint).clicked() {
-        commands.push(Command::SetPreset(preset.to_owned()));
+        commands.push(Command::Plan(PlanCommand::SetPreset(preset.to_owned())));
     }
 }
 
@@ -256,12 +256,12 @@ fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Comma
                 summary.folder.display()
             );
             if row(ui, false, &name, &behind).on_hover_text(hint).clicked() {
-                commands.push(Command::Continue(summary.folder.clone()));
+                commands.push(Command::Run(RunCommand::Continue(summary.folder.clone())));
             }
         }
     });
     if opened.header_response.clicked() {
-        commands.push(Command::ListRuns);
+        commands.push(Command::Run(RunCommand::ListRuns));
     }
 }
 
@@ -289,9 +289,9 @@ mod tests {
     fn each_button_sends_its_command() {
         let run = run();
         for (label, command) in [
-            ("Start", Command::Start),
-            ("One generation", Command::SingleGeneration),
-            ("Reset", Command::Reset),
+            ("Start", Command::Run(RunCommand::Start)),
+            ("One generation", Command::Run(RunCommand::SingleGeneration)),
+            ("Reset", Command::Run(RunCommand::Reset)),
         ] {
             assert_eq!(sent(&run, |harness| harness.get_by_label(label).click()), [command]);
         }
@@ -301,19 +301,22 @@ mod tests {
     fn the_first_button_pauses_a_running_run() {
         let mut run = run();
         run.start().expect("a thread");
-        assert_eq!(sent(&run, |harness| harness.get_by_label("Pause").click()), [Command::Pause]);
+        assert_eq!(
+            sent(&run, |harness| harness.get_by_label("Pause").click()),
+            [Command::Run(RunCommand::Pause)]
+        );
     }
 
     #[test]
     fn the_founder_of_the_next_run_can_be_removed() {
         let mut run = run();
         let champion = crate::save::shipped_champion().expect("well formed").champion;
-        run.found_run(&champion, "climber").expect("it fits");
+        run.start_next_from(&champion, "climber").expect("it fits");
         let commands = sent(&run, |harness| {
             assert!(harness.query_by_label("Starts from \"climber\"").is_some());
             harness.get_by_label("Start from scratch").click();
         });
-        assert_eq!(commands, [Command::ForgetFounder]);
+        assert_eq!(commands, [Command::Plan(PlanCommand::ForgetFounder)]);
     }
 
     #[test]
@@ -329,7 +332,11 @@ mod tests {
                 harness.run();
             })
         };
-        assert_eq!(type_seed("23"), [Command::SetSeed(23)], "in place of the 1 that was there");
+        assert_eq!(
+            type_seed("23"),
+            [Command::Plan(PlanCommand::SetSeed(23))],
+            "in place of the 1 that was there"
+        );
         assert_eq!(type_seed("x"), []);
     }
 
@@ -361,7 +368,7 @@ mod tests {
             harness.get_by_label("Start").click();
             harness.run();
         });
-        assert_eq!(sent, [Command::SetSeed(9), Command::Start]);
+        assert_eq!(sent, [Command::Plan(PlanCommand::SetSeed(9)), Command::Run(RunCommand::Start)]);
     }
 
     /// Commands sent after clicks on these labels.
@@ -381,7 +388,7 @@ mod tests {
     }
 
     fn set(field: &str, text: &str) -> Command {
-        Command::SetField { field: field.to_owned(), text: text.to_owned() }
+        Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
     }
 
     #[test]
@@ -423,9 +430,9 @@ mod tests {
     fn typed_population_and_threads_are_sent() {
         let run = run();
         for (label, commands) in [
-            ("Population", Command::SetPopulation(40)),
+            ("Population", Command::Plan(PlanCommand::SetPopulation(40))),
             ("Generations", set("evolution.generations", "40")),
-            ("Threads", Command::SetThreads(40)),
+            ("Threads", Command::Run(RunCommand::SetThreads(40))),
         ] {
             let sent = sent(&run, |harness| {
                 harness.get_by_label(label).focus();
@@ -444,11 +451,14 @@ mod tests {
     #[test]
     fn a_button_switches_between_the_original_experiment_and_the_climb() {
         let mut run = run();
-        assert_eq!(clicked(&run, &["Standard climb"]), [Command::SetPreset("climb".to_owned())]);
+        assert_eq!(
+            clicked(&run, &["Standard climb"]),
+            [Command::Plan(PlanCommand::SetPreset("climb".to_owned()))]
+        );
         run.set_preset("climb").expect("shipped");
         assert_eq!(
             clicked(&run, &["Original experiment"]),
-            [Command::SetPreset("report".to_owned())]
+            [Command::Plan(PlanCommand::SetPreset("report".to_owned()))]
         );
     }
 

@@ -14,7 +14,7 @@ use super::sections_of;
 use super::validation::Check;
 use super::values::Values;
 use crate::schema::{ListedSetting, Section, Setting, SettingKind};
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::icons::{Icon, small_icon_button};
 use crate::studio::ui::theme;
@@ -134,7 +134,7 @@ impl Sheet {
         let name = self.values.preset_name();
         let hint = format!("All of \"{}\" back to what the preset {name} has", section.title);
         if ui.small_button("Reset section").on_hover_text(hint).clicked() {
-            commands.push(Command::SetFields(back));
+            commands.push(Command::Plan(PlanCommand::SetFields(back)));
         }
     }
 
@@ -262,8 +262,12 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
 /// What asks for a new value.
 fn set(field: &str, text: &str) -> Command {
     match text.parse() {
-        Ok(population) if field == "evolution.population" => Command::SetPopulation(population),
-        _ => Command::SetField { field: field.to_owned(), text: text.to_owned() },
+        Ok(population) if field == "evolution.population" => {
+            Command::Plan(PlanCommand::SetPopulation(population))
+        }
+        _ => {
+            Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use super::values::list_of;
 use super::*;
 use crate::evolve::{Settings, fields, with_field};
 use crate::schema::{NumberRange, Parts, SettingKind};
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
 
 /// That nothing one reads or uses lies beside a panel of this width, in points.
@@ -40,7 +40,6 @@ fn run_with_all_given() -> CurrentRun {
         ("genome.wave.frequency_min_hz", "0.01"),
         ("genome.wave.stiffness_min_nm_per_rad", "0"),
     ];
-    let given = given.map(|(field, text)| (field.to_owned(), text.to_owned()));
     run.set_fields(&given).expect("allowed");
     run
 }
@@ -147,8 +146,8 @@ fn every_setting_can_be_changed_by_hand_and_is_changed_to_what_was_asked() {
         };
         panel.run();
         let sent = match &panel.state()[..] {
-            [Command::SetField { field, text }] => (field.clone(), text.clone()),
-            [Command::SetPopulation(size)] => (full.clone(), size.to_string()),
+            [Command::Plan(PlanCommand::SetField { field, text })] => (field.clone(), text.clone()),
+            [Command::Plan(PlanCommand::SetPopulation(size))] => (full.clone(), size.to_string()),
             other => panic!("{full}: {other:?}"),
         };
         assert_eq!(sent, (full.clone(), expected.clone()));
@@ -225,9 +224,8 @@ fn what_is_typed_wrong_stays_with_its_reason_and_nothing_is_sent() {
     let field = panel.get_by_role(egui::accesskit::Role::TextInput);
     assert_eq!(field.value().as_deref(), Some("9"), "to be corrected");
     type_into(&mut panel, "4");
-    let set = |field: &str, text: &str| Command::SetField {
-        field: field.to_owned(),
-        text: text.to_owned(),
+    let set = |field: &str, text: &str| {
+        Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
     };
     assert_eq!(*panel.state(), [set("trial.stairs.rise_m", "4")], "beyond the slider's end");
 }
@@ -242,7 +240,7 @@ fn clicked(run: &CurrentRun, field: &str, label: &str) -> Vec<Command> {
 }
 
 fn set(field: &str, text: &str) -> Command {
-    Command::SetField { field: field.to_owned(), text: text.to_owned() }
+    Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
 }
 
 #[test]
@@ -273,7 +271,9 @@ fn one_limb_is_changed_and_the_others_stay() {
     panel.run();
     panel.drop_at(rail.center());
     panel.run();
-    let [Command::SetField { field, text }] = &panel.state()[..] else { panic!("one command") };
+    let [Command::Plan(PlanCommand::SetField { field, text })] = &panel.state()[..] else {
+        panic!("one command")
+    };
     assert_eq!(field, "trial.agent.limb_width_m");
     let numbers = values::numbers(text).expect("a list");
     assert_eq!((numbers.len(), numbers[0], numbers[1]), (5, 1.5, 1.0));

@@ -5,12 +5,12 @@ pub mod presets;
 use bevy_egui::egui;
 
 use super::settings::Sheet;
+use super::undo_buttons::undo_buttons;
 use crate::schema::{ListedSetting, Section, SettingKind};
 use crate::score::Trial;
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::state::current_run::CurrentRun;
-use crate::studio::state::undo::{UndoDirection, UndoHistory};
-use crate::studio::ui::icons::{Icon, small_icon_button};
+use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::text_rows::{explain, title_and};
 use crate::studio::ui::theme;
 
@@ -129,7 +129,7 @@ fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
         } else {
             ("trial.ground", "none".to_owned())
         };
-        commands.push(Command::SetField { field: field.to_owned(), text });
+        commands.push(Command::Plan(PlanCommand::SetField { field: field.to_owned(), text }));
     }
 }
 
@@ -147,25 +147,7 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     };
     ui.label(egui::RichText::new(text).color(color));
     if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
-        commands.extend([Command::Reset, Command::Start]);
-    }
-}
-
-/// Draws the undo and redo buttons and collects the user's commands.
-pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &UndoHistory, commands: &mut Vec<Command>) {
-    for (way, icon, name, command) in [
-        (UndoDirection::Forth, Icon::Redo, "Redo", Command::Redo),
-        (UndoDirection::Back, Icon::Undo, "Undo", Command::Undo),
-    ] {
-        let hint = match history.next(way) {
-            Some(step) => format!("{name} {step}"),
-            None => way.nothing().to_owned(),
-        };
-        let is_on = history.next(way).is_some();
-        let button = |ui: &mut egui::Ui| small_icon_button(ui, icon, name, &hint);
-        if ui.add_enabled_ui(is_on, button).inner.clicked() {
-            commands.push(command);
-        }
+        commands.extend([Command::Run(RunCommand::Reset), Command::Run(RunCommand::Start)]);
     }
 }
 
@@ -174,6 +156,7 @@ mod tests {
     use super::*;
     use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
     use crate::studio::state::current_run::prepared_run;
+    use crate::studio::state::undo::UndoDirection;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -207,7 +190,7 @@ mod tests {
     }
 
     fn set(field: &str, text: &str) -> Command {
-        Command::SetField { field: field.to_owned(), text: text.to_owned() }
+        Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
     }
 
     #[test]
@@ -227,7 +210,9 @@ mod tests {
             })
         };
         for commands in [drag(0, true), drag(30, false)] {
-            let [Command::SetField { field, text }] = &commands[..] else { panic!("one command") };
+            let [Command::Plan(PlanCommand::SetField { field, text })] = &commands[..] else {
+                panic!("one command")
+            };
             assert_eq!(field, "trial.surface.bounce");
             let value: f32 = text.parse().expect("a number");
             assert!((0.3..0.7).contains(&value), "half way along the rail: {value}");
@@ -250,7 +235,7 @@ mod tests {
         run.single_generation().expect("started");
         run.set_field("surface.friction", "0.5").expect("allowed");
         let commands = sent(&run, |harness| harness.get_by_label("New run in this world").click());
-        assert_eq!(commands, [Command::Reset, Command::Start]);
+        assert_eq!(commands, [Command::Run(RunCommand::Reset), Command::Run(RunCommand::Start)]);
     }
 
     #[test]
@@ -270,7 +255,7 @@ mod tests {
         let commands = sent(&run, |harness| harness.get_by_label("Reset section").click());
         let back = [("friction", friction), ("bounce", bounce)]
             .map(|(field, text)| (format!("trial.surface.{field}"), text));
-        assert_eq!(commands, [Command::SetFields(back.to_vec())]);
+        assert_eq!(commands, [Command::Plan(PlanCommand::SetFields(back.to_vec()))]);
     }
 
     #[test]
@@ -305,7 +290,8 @@ mod tests {
         history.note(&set("trial.surface.friction", "0.5"), before, run.next_plan());
         let on = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Undo").click());
         assert_eq!(on, [Command::Undo]);
-        history.take(UndoDirection::Back);
+        let step = history.take(UndoDirection::Back);
+        history.complete(UndoDirection::Back, step, None);
         let on = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Redo").click());
         assert_eq!(on, [Command::Redo]);
     }

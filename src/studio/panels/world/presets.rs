@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 
 use crate::save::{PresetList, check_own_name};
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -30,7 +30,7 @@ impl PresetChoice {
             });
             if list.response.clicked() {
                 // The folder may have new files.
-                commands.push(Command::ListPresets);
+                commands.push(Command::Plan(PlanCommand::ListPresets));
             }
             list.response.on_hover_text("Replaces all settings of the next run");
             let hint = "Save the settings of the next run under a name, to use them again later";
@@ -50,7 +50,7 @@ impl PresetChoice {
 fn presets(ui: &mut egui::Ui, presets: &PresetList, chosen: &str, commands: &mut Vec<Command>) {
     let mut choice = |ui: &mut egui::Ui, name: &str, about: &str| {
         if ui.selectable_label(name == chosen, name).on_hover_text(about).clicked() {
-            commands.push(Command::SetPreset(name.to_owned()));
+            commands.push(Command::Plan(PlanCommand::SetPreset(name.to_owned())));
         }
     };
     for preset in presets.shipped() {
@@ -100,7 +100,7 @@ fn name_field(
         ui.add(egui::Label::new(text).wrap());
     }
     if is_saved {
-        commands.push(Command::StorePreset(name.clone()));
+        commands.push(Command::Plan(PlanCommand::StorePreset(name.clone())));
     }
     is_saved
 }
@@ -152,7 +152,10 @@ mod tests {
         panel.run();
         panel.get_by_label("ice").click();
         panel.run();
-        let commands = [Command::ListPresets, Command::SetPreset("ice".to_owned())];
+        let commands = [
+            Command::Plan(PlanCommand::ListPresets),
+            Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
+        ];
         assert_eq!(*panel.state(), commands);
     }
 
@@ -163,7 +166,10 @@ mod tests {
         type_name(&mut panel, "my-slope-2");
         panel.get_by_label("Save").click();
         panel.run();
-        assert_eq!(*panel.state(), [Command::StorePreset("my-slope-2".to_owned())]);
+        assert_eq!(
+            *panel.state(),
+            [Command::Plan(PlanCommand::StorePreset("my-slope-2".to_owned()))]
+        );
         assert!(panel.query_by_label("Name").is_none(), "done");
     }
 

@@ -55,7 +55,7 @@ pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
         store_csv(&folder.join("log.jsonl"), &nonsense).expect("written");
     }
     let mut run = explored_run();
-    run.compare_with(&folder).expect("a thread");
+    run.others.toggle(&folder).expect("a thread");
     while run.others.compared().iter().any(|compared| compared.read.is_none()) {
         run.others.take_in();
     }
@@ -69,11 +69,11 @@ fn another_run_is_laid_over_this_one_once_and_taken_away_again() {
     let version = run.version();
     let folder = run.others.compared()[0].folder.clone();
     for name in ["a", "b"] {
-        run.compare_with(&saves.path().join(name)).expect("a thread");
+        run.others.toggle(&saves.path().join(name)).expect("a thread");
     }
-    let refusal = run.compare_with(&saves.path().join("c")).expect_err("full");
+    let refusal = run.others.toggle(&saves.path().join("c")).expect_err("full");
     assert!(refusal.contains("room for 3"), "{refusal}");
-    run.compare_with(&folder).expect("taken away");
+    run.others.toggle(&folder).expect("taken away");
     assert_eq!(run.others.compared().len(), 2);
     assert_ne!(run.version(), version);
 }

@@ -115,7 +115,7 @@ impl CurrentRun {
 
     /// Prepares the next run so that it descends from a champion, in the champion's own world. Genomes may be what
     /// they could be, and what the champion is. A run that has not begun is replaced by it at once.
-    pub fn found_run(&mut self, champion: &Champion, name: &str) -> Result<(), String> {
+    pub fn start_next_from(&mut self, champion: &Champion, name: &str) -> Result<(), String> {
         let next = &self.engine.next;
         let settings = Settings {
             trial: champion.trial.clone(),
@@ -197,7 +197,7 @@ mod tests {
     fn a_champion_founds_the_next_run_in_its_own_world() {
         let mut run = prepared_run();
         let champion = shipped_champion().expect("well formed").champion;
-        run.found_run(&champion, "climber").expect("it fits");
+        run.start_next_from(&champion, "climber").expect("it fits");
         assert_eq!((run.founder(), run.next_founder()), (Some("climber"), Some("climber")));
         assert_eq!(run.settings().trial, champion.trial);
         assert_eq!(run.settings().genome.controller, champion.genome.controller.kind());
@@ -207,7 +207,7 @@ mod tests {
         run.forget_founder().expect("allowed");
         assert_eq!((run.founder(), run.next_founder()), (None, None));
         run.set_field("agent.limbs", "7").expect("allowed again");
-        run.found_run(&champion, "climber").expect("it fits");
+        run.start_next_from(&champion, "climber").expect("it fits");
         run.set_preset("report").expect("shipped");
         assert_eq!(run.next_founder(), None, "a preset begins from nothing");
     }

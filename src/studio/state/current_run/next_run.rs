@@ -50,15 +50,14 @@ impl CurrentRun {
     /// Sets one setting of the next run, by its name; a run that has not begun takes it at once, and one that is under
     /// way from its next generation on, if it may.
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
-        self.set_fields(&[(field.to_owned(), text.to_owned())])
+        self.set_fields(&[(field, text)])
     }
 
     /// Sets several settings of the next run at once, as [`Self::set_field`] does.
-    pub fn set_fields(&mut self, changes: &[(String, String)]) -> Result<(), String> {
-        let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+    pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
         let next = &self.engine.next;
-        let settings =
-            with_fields(&next.settings, changes).map_err(|error: Invalid| error.to_string())?;
+        let settings = with_fields(&next.settings, changes.iter().copied())
+            .map_err(|error: Invalid| error.to_string())?;
         self.set_next_plan(RunPlan { settings, ..next.clone() })
     }
 

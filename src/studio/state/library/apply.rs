@@ -1,30 +1,27 @@
-//! What a person can ask of the library, and how it is done.
+//! Executes the commands of the library.
 
 use std::path::PathBuf;
 
 use super::Library;
-use super::batch_jobs::{
-    BatchOutcome, BatchTask, DELETED, DUPLICATED, EXPORTED, IMPORTED, MOST_AT_ONCE, Verb,
-};
-use super::file_changes::LibraryChange;
+use super::batch_jobs::{BatchTask, DELETED, DUPLICATED, EXPORTED, IMPORTED};
 use super::load::{champion_of, generation_of};
-use super::words::{capital, listed};
 use crate::run::{BackgroundTask, LibraryReader};
-use crate::save::library::{FileStep, SavePlace, delete, duplicate, export, import, rename};
-use crate::save::{SaveError, SavesFolder};
+use crate::save::library::{SavePlace, delete, duplicate, export, import, rename};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::stage::{MAX_LANES, Show};
 use crate::studio::state::lineup::evenly_chosen;
+use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 
 impl Library {
-    /// Does what a person asks for, and says who is to take the stage.
+    /// Executes a command, and returns the champions to show on the stage.
     ///
     /// # Errors
-    /// What cannot be done, and why.
+    /// The command cannot be executed, with the reason.
     pub fn apply(
         &mut self,
         request: &LibraryCommand,
+        history: &mut UndoHistory,
         notices: &mut Notices,
     ) -> Result<Option<Show>, String> {
         match request {
@@ -60,43 +57,32 @@ impl Library {
                 let champions = chosen.map(|generation| generation_of(run, generation));
                 return Ok(Some(Show::race(champions.collect::<Result<_, _>>()?)));
             }
-            // It needs the evolution: see [`super::found_run`].
-            LibraryCommand::StartFrom(_) => {}
-            // The settings' steps lie between: see [`Self::step`].
-            LibraryCommand::Undo | LibraryCommand::Redo => {}
             LibraryCommand::Rename { place, name } => {
                 self.refuse_while_busy()?;
                 let step = rename(place, name.trim()).map_err(|error| error.to_string())?;
-                self.keep(LibraryChange {
-                    words: format!("renamed {}", place.name()),
-                    steps: vec![step],
-                });
+                self.keep(format!("renamed {}", place.name()), vec![step], history);
             }
             LibraryCommand::Duplicate(places) => {
-                self.each(DUPLICATED, places, duplicate)?;
+                let (saves, task) = (self.saves.clone(), BatchTask::Act(DUPLICATED));
+                let act = move |place| duplicate(&saves, &place).into();
+                self.carry_out(task, places.clone(), act, history, notices)?;
             }
             LibraryCommand::Delete(places) => {
-                if let Some(words) = self.each(DELETED, places, delete)? {
-                    notices.info(format!("{}. Ctrl Z brings it back", capital(&words)));
-                }
+                let (saves, task) = (self.saves.clone(), BatchTask::Act(DELETED));
+                let act = move |place| delete(&saves, &place).into();
+                self.carry_out(task, places.clone(), act, history, notices)?;
             }
             LibraryCommand::Export { places, to } => {
-                self.refuse_while_busy()?;
                 let (saves, to) = (self.saves.clone(), to.clone());
-                let act = move |place: SavePlace| export(&saves, &place, to.as_deref()).into();
-                self.send_out(BatchTask::Act(EXPORTED), places.clone(), act, |_| {
-                    BatchOutcome::Left(None)
-                })?;
+                let act = move |place| export(&saves, &place, to.as_deref()).into();
+                self.send_out(BatchTask::Act(EXPORTED), places.clone(), act)?;
             }
             LibraryCommand::Import(paths) => {
-                // What is dropped into a window nobody has looked into is to be seen too.
+                // Files can be dropped before the library was ever opened; the copies are listed all the same.
                 self.look()?;
-                self.refuse_while_busy()?;
                 let saves = self.saves.clone();
                 let act = move |path: PathBuf| import(&saves, &path).into();
-                self.send_out(BatchTask::Act(IMPORTED), paths.clone(), act, |_| {
-                    BatchOutcome::Left(None)
-                })?;
+                self.send_out(BatchTask::Act(IMPORTED), paths.clone(), act)?;
             }
             LibraryCommand::Cancel => self.cancel(),
         }
@@ -116,13 +102,13 @@ impl Library {
         Ok(())
     }
 
-    /// Reads who is to take the stage: now, if that is quick, and else beside the window; see [`LibraryCommand::ShowLoaded`].
+    /// Loads champions for the stage: now, if that is quick, or else in the background; see [`LibraryCommand::ShowLoaded`].
     fn load(
         &mut self,
         is_quick: bool,
         load: impl FnOnce() -> Result<Show, String> + Send + 'static,
     ) -> Result<Option<Show>, String> {
-        // Whoever was asked for before would come too late.
+        // An earlier request is obsolete.
         (self.loading, self.loaded) = (None, None);
         if is_quick {
             return load().map(Some);
@@ -131,78 +117,33 @@ impl Library {
         self.loading = Some(task.map_err(|error| format!("Nothing was read: {error}"))?);
         Ok(None)
     }
-
-    /// Does something with each of several entries, with many of them beside the window: then nothing is returned.
-    /// What was done before one fails is kept, and can be undone.
-    fn each(
-        &mut self,
-        verb: Verb,
-        places: &[SavePlace],
-        act: impl Fn(&SavesFolder, &SavePlace) -> Result<FileStep, SaveError> + Send + 'static,
-    ) -> Result<Option<String>, String> {
-        self.refuse_while_busy()?;
-        if places.len() > MOST_AT_ONCE {
-            let saves = self.saves.clone();
-            let act = move |place: SavePlace| act(&saves, &place).into();
-            self.send_out(BatchTask::Act(verb), places.to_vec(), act, |_| {
-                BatchOutcome::Left(None)
-            })?;
-            return Ok(None);
-        }
-        let mut steps = Vec::new();
-        let mut done = Vec::new();
-        let mut problem = None;
-        for place in places {
-            match act(&self.saves, place) {
-                Ok(step) => {
-                    steps.push(step);
-                    done.push(place.name());
-                }
-                Err(error) => {
-                    problem = Some(error.to_string());
-                    break;
-                }
-            }
-        }
-        let words = format!("{} {}", verb.done, listed(&done));
-        self.keep(LibraryChange { words: words.clone(), steps });
-        problem.map_or(Ok(Some(words)), Err)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::studio::stage::staged_champion::StagedChampion;
-    use crate::studio::state::library::tests::{library, place};
+    use crate::studio::state::library::tests::Tried;
 
     #[test]
-    fn a_run_that_is_not_read_yet_takes_the_stage_once_it_is() {
-        let (folder, mut library) = library(&["mine"]);
-        let gone = SavePlace::Run(folder.path().join("gone"));
-        let mut notices = Notices::default();
-        let request = LibraryCommand::Replay(gone);
-        assert!(library.apply(&request, &mut notices).expect("begun").is_none());
-        while library.loading.is_some() {
-            library.take_in(&mut notices);
+    fn a_run_that_is_not_read_yet_is_loaded_in_the_background() {
+        let mut tried = Tried::new(&["mine"]);
+        let gone = SavePlace::Run(tried.folder.path().join("gone"));
+        assert!(tried.apply(&LibraryCommand::Replay(gone)).expect("begun").is_none());
+        while tried.library.loading.is_some() {
+            tried.take_in();
         }
-        assert!(library.has_loaded());
-        assert!(
-            library
-                .apply(&LibraryCommand::ShowLoaded, &mut notices)
-                .expect_err("gone")
-                .contains("gone")
-        );
-        assert!(
-            library.apply(&LibraryCommand::ShowLoaded, &mut notices).expect("nothing").is_none()
-        );
+        assert!(tried.library.has_loaded());
+        let problem = tried.apply(&LibraryCommand::ShowLoaded).expect_err("gone");
+        assert!(problem.contains("gone"), "{problem}");
+        assert!(tried.apply(&LibraryCommand::ShowLoaded).expect("nothing").is_none());
     }
 
     #[test]
-    fn those_who_are_chosen_take_the_stage_under_their_names() {
-        let (_folder, mut library) = library(&["mine"]);
-        let race = LibraryCommand::Race(vec![place(&library, "mine"), SavePlace::Shipped("fast")]);
-        let show = library.apply(&race, &mut Notices::default()).expect("read").expect("shown");
+    fn a_race_of_saves_shows_them_under_their_names() {
+        let mut tried = Tried::new(&["mine"]);
+        let race = LibraryCommand::Race(vec![tried.place("mine"), SavePlace::Shipped("fast")]);
+        let show = tried.apply(&race).expect("read").expect("shown");
         let names: Vec<&str> = show.champions.iter().map(StagedChampion::name).collect();
         assert_eq!(names, ["mine", "fast"]);
         assert_ne!(show.champions[0].source(), show.champions[1].source());

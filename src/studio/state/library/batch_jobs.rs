@@ -1,24 +1,22 @@
-//! What is done with saves beside the window, since it may take its time: copies, and whatever concerns many at once.
+//! Operations on the files of saves: a few at once within a frame, many or slow ones in the background.
 
-use super::file_changes::LibraryChange;
-use super::words::capital;
 use super::{Library, name_of};
 use crate::run::BackgroundTask;
 use crate::save::SaveError;
 use crate::save::library::FileStep;
-use crate::studio::state::undo::UndoDirection;
+use crate::studio::state::undo::{UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
 
-/// Up to so many saves are deleted, copied or brought back within a frame: each is flushed to the disk, which takes
-/// some milliseconds.
-pub(super) const MOST_AT_ONCE: usize = 8;
-/// Of so many problems each is said by itself.
-const MOST_PROBLEMS: usize = 3;
+/// Maximum number of files that are deleted, copied or restored within a frame: each takes some milliseconds, because
+/// it is flushed to the disk.
+const MAX_AT_ONCE: usize = 8;
+/// Maximum number of problems that get a message each.
+const MAX_PROBLEMS: usize = 3;
 
-/// What is done with saves, in the words for when it is done and for while it is.
+/// An operation, in the words for when it is finished and while it is running.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Verb {
-    pub done: &'static str,
+    done: &'static str,
     doing: &'static str,
 }
 
@@ -27,12 +25,12 @@ pub(super) const DUPLICATED: Verb = Verb { done: "duplicated", doing: "Duplicati
 pub(super) const EXPORTED: Verb = Verb { done: "exported", doing: "Exporting" };
 pub(super) const IMPORTED: Verb = Verb { done: "imported", doing: "Importing" };
 
-/// Something that is being done.
+/// The purpose of a batch.
 #[derive(Debug)]
 pub(super) enum BatchTask {
-    /// Something new.
+    /// A new operation.
     Act(Verb),
-    /// What is described in these words is undone, or done again.
+    /// Undo or redo of the step with this label.
     Undo(UndoDirection, String),
 }
 
@@ -41,20 +39,20 @@ impl BatchTask {
         match self {
             Self::Act(verb) => verb.doing,
             Self::Undo(UndoDirection::Back, _) => "Undoing",
-            Self::Undo(UndoDirection::Forth, _) => "Doing again",
+            Self::Undo(UndoDirection::Forth, _) => "Redoing",
         }
     }
 }
 
-/// What came of one save.
+/// The outcome for one file.
 #[derive(Debug)]
 pub(super) enum BatchOutcome {
     /// It is done.
     Done(FileStep),
-    /// It failed. A step that may be undone at another time is still there.
+    /// It failed. The step is kept if a later undo may succeed.
     Failed(SaveError, Option<FileStep>),
-    /// It was cancelled before.
-    Left(Option<FileStep>),
+    /// It was cancelled before its turn. The step is kept if it was to be undone.
+    Cancelled(Option<FileStep>),
 }
 
 impl From<Result<FileStep, SaveError>> for BatchOutcome {
@@ -66,7 +64,7 @@ impl From<Result<FileStep, SaveError>> for BatchOutcome {
     }
 }
 
-/// A task and how far it is.
+/// A batch that is running in the background.
 #[derive(Debug)]
 pub(super) struct BatchJobs {
     task: BatchTask,
@@ -74,9 +72,9 @@ pub(super) struct BatchJobs {
 }
 
 impl BatchJobs {
-    /// Whether it is about so many that there is something to be seen of it.
+    /// Whether the batch is long enough to show its progress.
     fn is_long(&self) -> bool {
-        self.batch.total() > MOST_AT_ONCE
+        self.batch.total() > MAX_AT_ONCE
     }
 
     fn words(&self) -> String {
@@ -85,7 +83,7 @@ impl BatchJobs {
 }
 
 impl Library {
-    /// What is done with many saves now: in words, "Deleting 1200 of 10000", and how much of it is done, 0 to 1.
+    /// Long batches that are running: in words, "Deleting 1200 of 10000", and their finished share, 0 to 1.
     pub fn under_way(&self) -> impl Iterator<Item = (String, f32)> {
         let share = |batch: &BackgroundTask<Vec<BatchOutcome>>| {
             batch.done() as f32 / batch.total().max(1) as f32
@@ -94,76 +92,121 @@ impl Library {
         long.map(move |errand| (errand.words(), share(&errand.batch)))
     }
 
-    /// Why nothing else can be done with saves now, if so: many are being worked on, and what is undone has its order.
+    /// The reason why files cannot be changed now: a long batch is running, and steps are undone in order.
     pub fn busy(&self) -> Option<String> {
         let words = self.under_way().next()?.0;
-        Some(format!("{words} saves goes on: wait until that is done, or cancel it first"))
+        Some(format!("{words} saves: wait until this is finished, or cancel it first"))
     }
 
     pub(super) fn refuse_while_busy(&self) -> Result<(), String> {
         self.busy().map_or(Ok(()), Err)
     }
 
-    /// Ends what is under way after the file that it is about. What is done by then can be undone.
+    /// Stops all batches after their current file. Finished files can be undone.
     pub(super) fn cancel(&self) {
         self.errands.iter().for_each(|errand| errand.batch.cancel());
     }
 
-    /// Begins something with each of several things.
+    /// Carries out an operation on several saves: now, or in the background if they are many.
+    pub(super) fn carry_out<I: Send + 'static>(
+        &mut self,
+        task: BatchTask,
+        things: Vec<I>,
+        act: impl Fn(I) -> BatchOutcome + Send + 'static,
+        history: &mut UndoHistory,
+        notices: &mut Notices,
+    ) -> Result<(), String> {
+        if things.len() > MAX_AT_ONCE {
+            return self.send_out(task, things, act);
+        }
+        self.refuse_while_busy()?;
+        self.finish(task, things.into_iter().map(act).collect(), history, notices);
+        Ok(())
+    }
+
+    /// Carries out an operation on several saves in the background.
     pub(super) fn send_out<I: Send + 'static>(
+        &mut self,
+        task: BatchTask,
+        things: Vec<I>,
+        act: impl Fn(I) -> BatchOutcome + Send + 'static,
+    ) -> Result<(), String> {
+        self.start_batch(task, things, act, |_| BatchOutcome::Cancelled(None))
+    }
+
+    fn start_batch<I: Send + 'static>(
         &mut self,
         task: BatchTask,
         things: Vec<I>,
         act: impl Fn(I) -> BatchOutcome + Send + 'static,
         leave: impl Fn(I) -> BatchOutcome + Send + 'static,
     ) -> Result<(), String> {
+        self.refuse_while_busy()?;
         let batch = BackgroundTask::for_each(things, act, leave)
             .map_err(|error| format!("{} saves could not begin: {error}", task.doing()))?;
         self.errands.push(BatchJobs { task, batch });
         Ok(())
     }
 
-    /// Undoes or does again what was done last with many saves; one after the other, beginning with the last.
-    pub(super) fn send_out_undo(&mut self, way: UndoDirection) -> Result<Option<String>, String> {
-        let Some(LibraryChange { words, mut steps }) = self.history.take(way) else {
-            return Ok(None);
-        };
+    /// Undoes or redoes file operations that were taken from the history, the last one first.
+    ///
+    /// # Errors
+    /// A long batch is running, or no thread can be started. Then the step is back in the history.
+    pub fn step(
+        &mut self,
+        way: UndoDirection,
+        label: String,
+        mut steps: Vec<FileStep>,
+        history: &mut UndoHistory,
+        notices: &mut Notices,
+    ) -> Result<(), String> {
+        let whole = UndoStep::Files { label: label.clone(), steps: steps.clone() };
         steps.reverse();
-        let said = format!(
-            "{} of {}: {words}",
-            if way == UndoDirection::Back { "Undoing" } else { "Doing again" },
-            steps.len()
-        );
         let saves = self.saves.clone();
         let undo = move |step: FileStep| match step.undo(&saves) {
             Ok(inverse) => BatchOutcome::Done(inverse),
-            // What cannot be found will not be found the next time either.
+            // A missing file will be missing the next time too.
             Err(error @ SaveError::Unreadable { .. }) => BatchOutcome::Failed(error, None),
             Err(error) => BatchOutcome::Failed(error, Some(step)),
         };
-        self.send_out(BatchTask::Undo(way, words), steps, undo, |step| {
-            BatchOutcome::Left(Some(step))
-        })?;
-        Ok(Some(said))
+        let count = steps.len();
+        let task = BatchTask::Undo(way, label.clone());
+        if count <= MAX_AT_ONCE && self.busy().is_none() {
+            self.finish(task, steps.into_iter().map(undo).collect(), history, notices);
+            return Ok(());
+        }
+        let said = format!("{} of {count}: {label}", task.doing());
+        let begun = self.start_batch(task, steps, undo, |step| BatchOutcome::Cancelled(Some(step)));
+        match begun {
+            Ok(()) => notices.info(said),
+            Err(_) => history.complete(way, None, Some(whole)),
+        }
+        begun
     }
 
-    /// Takes in what is done by now.
-    pub(super) fn take_in_errands(&mut self, notices: &mut Notices) {
-        let errands = std::mem::take(&mut self.errands);
-        for BatchJobs { task, batch } in errands {
+    /// Takes in the batches that are finished.
+    pub(super) fn take_in_batches(&mut self, history: &mut UndoHistory, notices: &mut Notices) {
+        for BatchJobs { task, batch } in std::mem::take(&mut self.errands) {
             match batch.poll() {
                 None => self.errands.push(BatchJobs { task, batch }),
-                Some(Ok(outcomes)) => self.take_back(task, outcomes, notices),
+                Some(Ok(outcomes)) => self.finish(task, outcomes, history, notices),
                 Some(Err(problem)) => {
                     let doing = task.doing();
-                    notices.problem(format!("{doing} saves ended by an error: {problem}"));
+                    notices.problem(format!("{doing} saves ended with an error: {problem}"));
                     self.look_again();
                 }
             }
         }
     }
 
-    fn take_back(&mut self, task: BatchTask, outcomes: Vec<BatchOutcome>, notices: &mut Notices) {
+    /// Reports the outcomes of a batch, and records them in the history.
+    fn finish(
+        &mut self,
+        task: BatchTask,
+        outcomes: Vec<BatchOutcome>,
+        history: &mut UndoHistory,
+        notices: &mut Notices,
+    ) {
         let total = outcomes.len();
         let (mut steps, mut left, mut problems) = (Vec::new(), Vec::new(), Vec::new());
         let mut cancelled = 0;
@@ -174,51 +217,72 @@ impl Library {
                     problems.push(error.to_string());
                     left.extend(step);
                 }
-                BatchOutcome::Left(step) => {
+                BatchOutcome::Cancelled(step) => {
                     cancelled += 1;
                     left.extend(step);
                 }
             }
         }
-        let more = problems.len().saturating_sub(MOST_PROBLEMS);
-        problems.into_iter().take(MOST_PROBLEMS).for_each(|problem| notices.problem(problem));
+        let more = problems.len().saturating_sub(MAX_PROBLEMS);
+        problems.into_iter().take(MAX_PROBLEMS).for_each(|problem| notices.problem(problem));
         if more > 0 {
-            notices.problem(format!("{more} more could not be dealt with."));
+            notices.problem(format!("{more} more failed."));
         }
-        let cancelled = match cancelled {
-            0 => String::new(),
-            number => format!(" Cancelled: {number} of {total} were left."),
-        };
-        match task {
-            BatchTask::Undo(way, words) => {
-                if !left.is_empty() {
-                    self.left.push((way, words.clone()));
-                }
-                // The last of them was to be undone first.
-                left.reverse();
-                let change = self.history.settle(way, words, steps, left);
-                let said = self.after_undoing(Ok(Some(change)), way);
-                if let Ok(Some(said)) = said {
-                    notices.info(said + &cancelled);
-                }
+        let mut said = match (&task, steps.first()) {
+            (_, None) => String::new(),
+            (BatchTask::Undo(way, label), _) => {
+                format!("{}.{}", way.taken(label), renamed_on_return(&steps))
             }
-            BatchTask::Act(verb) => {
-                let words = listed_steps(verb, &steps);
-                match steps.first() {
-                    None if cancelled.is_empty() => {}
-                    None => notices.info(cancelled.trim().to_owned()),
-                    Some(first) => {
-                        let said = format!("{}{}", capital(&words), ending(verb, first));
-                        notices.info(said + &cancelled);
-                    }
-                }
-                self.keep(LibraryChange { words, steps });
+            (BatchTask::Act(verb), Some(first)) => {
+                format!("{}{}", capital(&listed_steps(*verb, &steps)), ending(*verb, first))
+            }
+        };
+        if cancelled > 0 {
+            said.push_str(&format!(" Cancelled: {cancelled} of {total} were left."));
+        }
+        if !said.is_empty() {
+            notices.info(said.trim().to_owned());
+        }
+        match task {
+            BatchTask::Act(verb) => self.keep(listed_steps(verb, &steps), steps, history),
+            BatchTask::Undo(way, label) => {
+                self.look_again();
+                self.point_out(steps.iter().find_map(FileStep::place));
+                // A step lists its operations in the order in which they were carried out.
+                left.reverse();
+                let step = |steps: Vec<FileStep>| {
+                    let label = label.clone();
+                    (!steps.is_empty()).then_some(UndoStep::Files { label, steps })
+                };
+                history.complete(way, step(steps), step(left));
             }
         }
     }
 }
 
-/// What was done, in a few words: of one save with its name, several are counted.
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(char::to_uppercase);
+    first.into_iter().flatten().chain(letters).collect()
+}
+
+/// Names that entries got on their return because their own were taken meanwhile.
+fn renamed_on_return(steps: &[FileStep]) -> String {
+    let renamed = steps.iter().filter_map(|step| match step {
+        FileStep::Restored { wanted, to } if wanted != to => {
+            let [wanted, to] = [wanted, to].map(|path| name_of(path));
+            Some(format!(" The name {wanted} is taken, so it is now called {to}."))
+        }
+        _ => None,
+    });
+    let renamed: Vec<String> = renamed.collect();
+    if renamed.len() > MAX_AT_ONCE {
+        return format!(" {} names are taken; those saves got a number.", renamed.len());
+    }
+    renamed.concat()
+}
+
+/// The operation in a few words: with the name of a single save, or the number of saves.
 fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
     match steps {
         [FileStep::Deleted { from, .. }] => format!("{} {}", verb.done, name_of(from)),
@@ -230,10 +294,10 @@ fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
     }
 }
 
-/// How to say where something is now.
+/// The end of the message: how to restore the saves, or where they are.
 fn ending(verb: Verb, first: &FileStep) -> String {
     if verb == DELETED {
-        return ". Ctrl Z brings it back.".to_owned();
+        return ". Ctrl Z restores it.".to_owned();
     }
     let place = first.place();
     let folder = place.as_ref().and_then(|place| place.path()?.parent());
@@ -245,120 +309,106 @@ mod tests {
     use super::*;
     use crate::save::library::SavePlace;
     use crate::studio::commands::library::LibraryCommand;
-    use crate::studio::state::library::tests::{library, own, place};
+    use crate::studio::state::library::tests::Tried;
 
-    /// A library of so many saves, and their places.
-    fn of_many(count: usize) -> (tempfile::TempDir, Library, Vec<SavePlace>) {
-        let (folder, mut library) = library(&["a"]);
+    /// A library of this many saves, and their places.
+    fn of_many(count: usize) -> (Tried, Vec<SavePlace>) {
+        let mut tried = Tried::new(&["a"]);
+        let folder = tried.folder.path();
         for number in 1..count {
-            let copy = folder.path().join(format!("b {number:05}.ron"));
-            std::fs::copy(folder.path().join("a.ron"), copy).expect("copied");
+            let copy = folder.join(format!("b {number:05}.ron"));
+            std::fs::copy(folder.join("a.ron"), copy).expect("copied");
         }
-        assert_eq!(own(&mut library).len(), count);
-        let places = library.items().iter().map(|item| item.place().clone());
+        assert_eq!(tried.own().len(), count);
+        let places = tried.library.items().iter().map(|item| item.place().clone());
         let places = places.filter(|place| place.path().is_some()).collect();
-        (folder, library, places)
-    }
-
-    fn wait(library: &mut Library, notices: &mut Notices) {
-        while !library.errands.is_empty() {
-            library.take_in(notices);
-        }
+        (tried, places)
     }
 
     #[test]
-    fn many_are_deleted_beside_the_window_and_all_come_back_at_once() {
-        let (_folder, mut library, places) = of_many(300);
-        let mut notices = Notices::default();
-        library.apply(&LibraryCommand::Delete(places), &mut notices).expect("begun");
-        assert!(library.under_way().next().expect("it goes on").0.starts_with("Deleting "));
-        let refusal = library.step(UndoDirection::Back).expect_err("it goes on");
-        assert!(refusal.contains("of 300 saves goes on"), "{refusal}");
-        wait(&mut library, &mut notices);
-        assert!(own(&mut library).is_empty());
-        assert_eq!(library.undoable(), Some("deleted 300 saves"));
-        library.step(UndoDirection::Back).expect("begun");
-        assert!(library.under_way().next().is_some());
-        wait(&mut library, &mut notices);
-        assert_eq!(own(&mut library).len(), 300);
-        assert_eq!((library.undoable(), library.redoable()), (None, Some("deleted 300 saves")));
-        library.step(UndoDirection::Forth).expect("begun");
-        wait(&mut library, &mut notices);
-        assert!(own(&mut library).is_empty());
+    fn many_saves_are_deleted_in_the_background_and_restored_together() {
+        let (mut tried, places) = of_many(300);
+        tried.apply(&LibraryCommand::Delete(places.clone())).expect("begun");
+        let running = tried.library.under_way().next().expect("running");
+        assert!(running.0.starts_with("Deleting "), "{}", running.0);
+        let refusal = tried.apply(&LibraryCommand::Delete(places)).expect_err("running");
+        assert!(refusal.contains("of 300 saves: wait"), "{refusal}");
+        tried.wait();
+        assert!(tried.own().is_empty());
+        assert_eq!(tried.next(), (Some("deleted 300 saves"), None));
+        tried.step(UndoDirection::Back);
+        assert!(tried.library.under_way().next().is_some());
+        tried.wait();
+        assert_eq!(tried.own().len(), 300);
+        assert_eq!(tried.next(), (None, Some("deleted 300 saves")));
+        tried.step(UndoDirection::Forth);
+        tried.wait();
+        assert!(tried.own().is_empty());
     }
 
-    /// Begins something and cancels it at once, until it was not faster. Returns what is done by then.
+    /// Begins a batch and cancels it at once; repeats this until the batch was not faster. Returns the number of saves
+    /// that `count` finds then.
     fn cancelled(
-        library: &mut Library,
-        begin: impl Fn(&mut Library, &mut Notices),
+        tried: &mut Tried,
+        begin: impl Fn(&mut Tried),
         all: usize,
-        back: impl Fn(&mut Library),
-        count: impl Fn(&mut Library) -> usize,
+        back: UndoDirection,
+        count: impl Fn(&mut Tried) -> usize,
     ) -> usize {
-        let mut notices = Notices::default();
         for _ in 0..50 {
-            begin(library, &mut notices);
-            library.apply(&LibraryCommand::Cancel, &mut notices).expect("cancelled");
-            wait(library, &mut notices);
-            let done = count(library);
+            begin(tried);
+            tried.apply(&LibraryCommand::Cancel).expect("cancelled");
+            tried.wait();
+            let done = count(tried);
             if done < all {
                 return done;
             }
-            back(library);
-            wait(library, &mut notices);
+            tried.step(back);
+            tried.wait();
         }
-        panic!("it was always done before it was cancelled");
+        panic!("each batch was finished before it was cancelled");
     }
 
     #[test]
-    fn what_is_cancelled_stops_and_what_was_done_by_then_can_be_undone() {
-        let (_folder, mut library, places) = of_many(200);
-        let undo = |library: &mut Library| {
-            library.step(UndoDirection::Back).expect("begun");
+    fn a_cancelled_batch_stops_and_its_finished_part_can_be_undone() {
+        let (mut tried, places) = of_many(200);
+        let duplicate = |tried: &mut Tried| {
+            tried.apply(&LibraryCommand::Duplicate(places.clone())).expect("begun");
         };
-        let duplicate = |library: &mut Library, notices: &mut Notices| {
-            library.apply(&LibraryCommand::Duplicate(places.clone()), notices).expect("begun");
-        };
-        let copies = |library: &mut Library| own(library).len() - 200;
-        if cancelled(&mut library, duplicate, 200, undo, copies) > 0 {
-            undo(&mut library);
-            wait(&mut library, &mut Notices::default());
+        let copies = |tried: &mut Tried| tried.own().len() - 200;
+        if cancelled(&mut tried, duplicate, 200, UndoDirection::Back, copies) > 0 {
+            tried.step(UndoDirection::Back);
+            tried.wait();
         }
-        assert_eq!(own(&mut library).len(), 200);
-        assert_eq!(library.undoable(), None);
+        assert_eq!(tried.own().len(), 200);
+        assert_eq!(tried.next().0, None);
     }
 
     #[test]
-    fn what_is_left_of_a_cancelled_undo_is_told_and_can_be_undone() {
-        let (_folder, mut library, places) = of_many(200);
-        let mut notices = Notices::default();
-        library.apply(&LibraryCommand::Delete(places), &mut notices).expect("begun");
-        wait(&mut library, &mut notices);
-        assert!(library.take_left().is_empty());
-        let undo = |library: &mut Library, _: &mut Notices| {
-            library.step(UndoDirection::Back).expect("begun");
-        };
-        let redo = |library: &mut Library| {
-            library.step(UndoDirection::Forth).expect("begun");
-        };
-        cancelled(&mut library, undo, 200, redo, |library| own(library).len());
-        assert_eq!(library.take_left(), [(UndoDirection::Back, "deleted 200 saves".to_owned())]);
-        undo(&mut library, &mut notices);
-        wait(&mut library, &mut notices);
-        assert_eq!(own(&mut library).len(), 200);
+    fn the_rest_of_a_cancelled_undo_can_be_undone() {
+        let (mut tried, places) = of_many(200);
+        tried.apply(&LibraryCommand::Delete(places)).expect("begun");
+        tried.wait();
+        let undo = |tried: &mut Tried| tried.step(UndoDirection::Back);
+        cancelled(&mut tried, undo, 200, UndoDirection::Forth, |tried| tried.own().len());
+        assert_eq!(tried.next().0, Some("deleted 200 saves"));
+        tried.step(UndoDirection::Back);
+        tried.wait();
+        assert_eq!(tried.own().len(), 200);
     }
 
     #[test]
-    fn one_that_fails_stops_none_of_the_others() {
-        let (folder, mut library, places) = of_many(20);
-        std::fs::remove_file(folder.path().join("b 00007.ron")).expect("there");
-        let mut notices = Notices::default();
-        library.apply(&LibraryCommand::Delete(places), &mut notices).expect("begun");
-        wait(&mut library, &mut notices);
-        assert_eq!(library.undoable(), Some("deleted 19 saves"));
-        assert_eq!(notices.len(), 2, "what failed, and what did not");
-        assert!(own(&mut library).is_empty());
-        assert!(library.item(&SavePlace::Shipped("fast")).is_some());
-        assert_eq!(place(&library, "fast"), SavePlace::Shipped("fast"));
+    fn a_failing_operation_does_not_stop_the_others() {
+        for count in [5, 20] {
+            let (mut tried, places) = of_many(count);
+            std::fs::remove_file(tried.folder.path().join("b 00003.ron")).expect("there");
+            tried.apply(&LibraryCommand::Delete(places)).expect("begun");
+            tried.wait();
+            let label = format!("deleted {} saves", count - 1);
+            assert_eq!(tried.next().0, Some(label.as_str()));
+            assert_eq!(tried.notices.len(), 2, "the failure and the success");
+            assert!(tried.own().is_empty());
+            assert!(tried.library.item(&SavePlace::Shipped("fast")).is_some());
+        }
     }
 }

@@ -1,28 +1,23 @@
-//! From a save to the stage, or to a run that begins with it.
+//! Loads champions from saves, for the stage or as the founder of a run.
 
 use std::path::Path;
 
 use xxhash_rust::xxh3::xxh3_64;
 
+use crate::evolve::Champion;
 use crate::save::library::{SavePlace, load_entry};
 use crate::save::{LoadedChampion, load_generation};
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::state::current_run::CurrentRun;
 
-/// A name on the stage is cut off after so many characters.
-const LONGEST_LABEL: usize = 40;
+/// Maximum length of a name on the stage, in characters.
+const MAX_LABEL: usize = 40;
 
-/// Begins a run of which the champion of an entry is a parent; `best` as in [`exhibit_of`].
+/// The champion of an entry, to start a run from; of a run its best, whose generation is `best` if that is known.
 ///
 /// # Errors
-/// The champion cannot be read, or a run cannot begin with it.
-pub fn found_run(
-    evolution: &mut CurrentRun,
-    place: &SavePlace,
-    best: Option<u32>,
-) -> Result<(), String> {
-    let (loaded, _) = load(place, best)?;
-    evolution.found_run(&loaded.champion, &place.name())
+/// The champion cannot be read.
+pub fn founder_of(place: &SavePlace, best: Option<u32>) -> Result<Champion, String> {
+    load(place, best).map(|(loaded, _)| loaded.champion)
 }
 
 /// The champion of an entry and, of a run's best, its generation. Where that is known already, the run's log, which
@@ -56,7 +51,7 @@ pub fn generation_of(run: &Path, generation: u32) -> Result<StagedChampion, Stri
 }
 
 fn shown(loaded: &LoadedChampion, name: &str, identity: &str) -> StagedChampion {
-    let mut label: String = name.chars().take(LONGEST_LABEL).collect();
+    let mut label: String = name.chars().take(MAX_LABEL).collect();
     if label.len() < name.len() {
         label.push('…');
     }

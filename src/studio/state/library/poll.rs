@@ -10,6 +10,7 @@ use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::schedule::FrameSet;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -24,10 +25,11 @@ const EARLIEST_LOOK_S: f32 = 2.0;
 
 fn take_in(
     mut library: ResMut<Library>,
+    mut history: ResMut<UndoHistory>,
     mut notices: ResMut<Notices>,
     mut send: MessageWriter<Command>,
 ) {
-    library.take_in(&mut notices);
+    library.take_in(&mut history, &mut notices);
     if library.has_loaded() {
         send.write(Command::Library(LibraryCommand::ShowLoaded));
     }
@@ -75,8 +77,8 @@ fn follow(
 
 impl Library {
     /// Takes in what was read and done meanwhile.
-    pub(super) fn take_in(&mut self, notices: &mut Notices) {
-        self.take_in_errands(notices);
+    pub(super) fn take_in(&mut self, history: &mut UndoHistory, notices: &mut Notices) {
+        self.take_in_batches(history, notices);
         if let Some(loaded) = self.loading.as_ref().and_then(BackgroundTask::poll) {
             self.loading = None;
             self.loaded = Some(loaded.flatten());

@@ -121,7 +121,7 @@ mod tests {
         text: &str,
     ) -> (RunPlan, Show) {
         let before = run.next_plan().clone();
-        let show = what_if(run, on_show, mode, &WorldChange::Field { field, text });
+        let show = what_if(run, on_show, mode, &WorldChange::Fields(vec![(field, text)]));
         (before, show.expect("allowed").expect("it matters"))
     }
 

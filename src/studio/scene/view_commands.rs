@@ -1,0 +1,49 @@
+//! Executes the commands to the view of the stage.
+
+use bevy::ecs::system::SystemParam;
+use bevy::prelude::*;
+
+use super::camera::{CameraRig, StageCamera};
+use super::overlays::Overlays;
+use crate::studio::commands::ViewCommand;
+use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::ui::theme::Theme;
+
+/// State of the view.
+#[derive(SystemParam)]
+pub(crate) struct ViewParams<'w, 's> {
+    rig: ResMut<'w, CameraRig>,
+    overlays: ResMut<'w, Overlays>,
+    theme: ResMut<'w, Theme>,
+    screenshots: MessageWriter<'w, ScreenshotArea>,
+    smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
+}
+
+impl ViewParams<'_, '_> {
+    /// Executes a command.
+    pub fn apply(&mut self, command: &ViewCommand) {
+        match command {
+            ViewCommand::SetCamera(camera_mode) => self.rig.take(*camera_mode),
+            ViewCommand::NextCameraMode => {
+                let next = self.rig.camera_mode().next();
+                self.rig.take(next);
+            }
+            ViewCommand::ToggleFollow => {
+                let is_free = self.rig.camera_mode() == CameraMode::Free;
+                self.rig.take(if is_free { CameraMode::Follow } else { CameraMode::Free });
+            }
+            ViewCommand::ResetCamera => self.rig.take(CameraMode::Follow),
+            ViewCommand::ToggleOverlay(overlay) => self.overlays.toggle(*overlay),
+            ViewCommand::ToggleSmoothEdges => {
+                for mut msaa in &mut self.smoothing {
+                    *msaa = if *msaa == Msaa::Off { Msaa::Sample4 } else { Msaa::Off };
+                }
+            }
+            ViewCommand::ToggleTheme => *self.theme = self.theme.other(),
+            ViewCommand::TakePicture(area) => {
+                self.screenshots.write(*area);
+            }
+        }
+    }
+}

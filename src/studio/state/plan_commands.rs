@@ -1,0 +1,58 @@
+//! Executes the commands to the plan of the next run.
+
+use super::current_run::CurrentRun;
+use super::library::{Library, founder_of};
+use super::lineup::champion_of;
+use super::what_if::{WorldChange, dropped, kept, what_if};
+use crate::studio::commands::PlanCommand;
+use crate::studio::stage::opening::OpeningChampions;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{Show, StageMode};
+use crate::studio::ui::notifications::Notices;
+
+/// Executes a command; returns what the stage shows then, if that changes.
+///
+/// # Errors
+/// The command does not suit the plan, the stage or the saves, with the reason.
+pub(crate) fn apply_to_plan(
+    command: &PlanCommand,
+    run: &mut CurrentRun,
+    (library, opening): (&Library, &OpeningChampions),
+    (on_show, mode): (&[StagedChampion], &StageMode),
+    notices: &mut Notices,
+) -> Result<Option<Show>, String> {
+    match command {
+        PlanCommand::SetSeed(seed) => run.set_seed(*seed)?,
+        PlanCommand::SetPopulation(population) => run.set_population(*population)?,
+        PlanCommand::SetField { field, text } => {
+            let change = WorldChange::Fields(vec![(field, text)]);
+            return what_if(run, on_show, mode, &change);
+        }
+        PlanCommand::SetFields(changes) => {
+            let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+            return what_if(run, on_show, mode, &WorldChange::Fields(changes.collect()));
+        }
+        PlanCommand::SetPreset(name) => {
+            return what_if(run, on_show, mode, &WorldChange::Preset(name));
+        }
+        PlanCommand::StorePreset(name) => run.store_preset(name)?,
+        PlanCommand::ListPresets => run.list_presets(),
+        PlanCommand::StartFrom(pick) => {
+            if let Some(founder) = champion_of(pick, run, opening) {
+                run.start_next_from(founder.champion(), founder.name())?;
+                notices.info(format!("The next run starts from {}.", founder.name()));
+            }
+        }
+        PlanCommand::StartFromSave(place) => {
+            let founder = founder_of(place, library.best_of(place))?;
+            run.start_next_from(&founder, &place.name())?;
+            run.begin_next()?;
+            notices.info(format!("A run started from {}.", place.name()));
+            // The new run uses the change of a what-if.
+            return Ok(kept(on_show, mode));
+        }
+        PlanCommand::ForgetFounder => run.forget_founder()?,
+        PlanCommand::DropChange => return dropped(run, on_show, mode),
+    }
+    Ok(None)
+}
