@@ -1,6 +1,6 @@
-//! The library in the window: what is in the folder of saves, read beside the window, and what is done with it.
+//! The studio's view of the saves folder: its entries, read in a background thread, and the operations on them.
 //!
-//! Whatever changes files can be undone. Several things that were done at once are undone at once.
+//! Every change of files can be undone; a batch is undone as a whole.
 
 mod apply;
 mod batch_jobs;
@@ -28,40 +28,40 @@ pub(crate) use item::{LibraryItem, fitness_text};
 pub(crate) use load::found_run;
 pub(crate) use poll::plugin;
 
-/// What is in the folder of saves, as far as it is read, and what was done with it.
+/// Entries of the saves folder, and the operations that are under way or can be undone.
 #[derive(Resource, Debug)]
 pub(crate) struct Library {
     saves: SavesFolder,
-    /// Nobody reads before somebody has looked.
+    /// `None` until the library is first opened.
     reader: Option<LibraryReader>,
-    /// In the order of their places.
+    /// Sorted by place.
     items: Vec<LibraryItem>,
     is_listed: bool,
-    /// How many entries are not read yet.
+    /// Number of entries not read yet.
     unread: usize,
-    /// Why the folder cannot be read.
+    /// Reason why the folder cannot be read.
     problem: Option<String>,
-    /// Counts the changes of what there is to be seen.
+    /// Incremented with every visible change.
     revision: u64,
-    /// Counts the changes of what there is.
+    /// Incremented when entries are added or removed.
     listings: u64,
-    /// Counts the changes of what entries are sorted and found by.
+    /// Incremented when a sort or search key changes.
     sortings: u64,
     history: FileHistory,
-    /// What was done lately: see [`Self::take_done`].
+    /// Labels for [`Self::take_done`].
     done: Vec<String>,
-    /// What was left of taking back or doing again: see [`Self::take_left`].
+    /// Labels for [`Self::take_left`].
     left: Vec<(UndoDirection, String)>,
     errands: Vec<BatchJobs>,
-    /// Who is being read to take the stage.
+    /// Champions being read for the stage.
     loading: Option<BackgroundTask<Result<Show, String>>>,
-    /// Who is to take the stage, once read.
+    /// Result of `loading`, until it is shown.
     loaded: Option<Result<Show, String>>,
-    /// What there is new, to be pointed out, and how often there was.
+    /// Entry to highlight, and a counter of such entries.
     newest: (u64, Option<SavePlace>),
-    /// The folder of the run that goes on now.
+    /// Folder of the run in progress.
     current: Option<PathBuf>,
-    /// Whether files are held over the window.
+    /// Whether files are being dragged over the window.
     is_drop_near: bool,
 }
 
@@ -72,7 +72,7 @@ impl FromWorld for Library {
 }
 
 impl Library {
-    /// That of a folder, which nobody has looked into yet.
+    /// The library of a folder; nothing is read yet.
     pub fn new(saves: SavesFolder) -> Self {
         Self {
             saves,
@@ -96,17 +96,17 @@ impl Library {
         }
     }
 
-    /// Whether somebody has looked: from then on it is read.
+    /// Whether the library was opened; from then on it is read.
     pub fn is_open(&self) -> bool {
         self.reader.is_some() || self.is_listed
     }
 
-    /// Whether it is known what there is.
+    /// Whether the entries are listed.
     pub fn is_listed(&self) -> bool {
         self.is_listed
     }
 
-    /// What there is, in the order of places.
+    /// The entries, sorted by place.
     pub fn items(&self) -> &[LibraryItem] {
         &self.items
     }
@@ -117,7 +117,7 @@ impl Library {
         found.ok().map(|index| &self.items[index])
     }
 
-    /// How many entries are not read yet.
+    /// Number of entries not read yet.
     pub fn unread(&self) -> usize {
         self.unread
     }
@@ -127,22 +127,22 @@ impl Library {
         self.problem.as_deref()
     }
 
-    /// Changes whenever there is something else to be seen.
+    /// Changes with every visible change.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Changes whenever there are other entries: an index of before means another one then.
+    /// Changes when entries are added or removed, which invalidates indices.
     pub fn listings(&self) -> u64 {
         self.listings
     }
 
-    /// Changes whenever something that entries are sorted or found by has changed.
+    /// Changes when a sort or search key of an entry changes.
     pub fn sortings(&self) -> u64 {
         self.sortings
     }
 
-    /// The generation of a run's best, as far as that has been read.
+    /// The generation of a run's best champion, if it has been read.
     pub fn best_of(&self, place: &SavePlace) -> Option<u32> {
         let run = self.item(place)?.run()?;
         let best = run.best.map(|(generation, _)| generation);
@@ -150,51 +150,51 @@ impl Library {
         there.or(run.champions.last().copied())
     }
 
-    /// What was made, renamed or brought back last, and how often that has happened.
+    /// The entry created, renamed or restored last, and a counter of such changes.
     pub fn newest(&self) -> (u64, Option<&SavePlace>) {
         (self.newest.0, self.newest.1.as_ref())
     }
 
-    /// Whether it is the folder of the run that goes on now.
+    /// Whether it is the folder of the run in progress.
     pub fn is_current(&self, place: &SavePlace) -> bool {
         self.current.is_some() && place.run() == self.current.as_deref()
     }
 
-    /// Whether files are held over the window, to be dropped.
+    /// Whether files are being dragged over the window.
     pub fn is_drop_near(&self) -> bool {
         self.is_drop_near
     }
 
-    /// The folder.
+    /// The saves folder.
     pub fn folder(&self) -> &Path {
         self.saves.path()
     }
 
-    /// How many changes can be undone, and how many done again.
+    /// Numbers of changes that can be undone and redone.
     pub fn counts(&self) -> (usize, usize) {
         self.history.counts()
     }
 
-    /// Forgets what could be done again.
+    /// Clears the redo stack.
     pub fn forget_undone(&mut self) {
         self.history.forget_undone();
     }
 
-    /// What undoing would undo, in a few words: "deleted climber".
+    /// Label of the next change to undo: "deleted climber".
     pub fn undoable(&self) -> Option<&str> {
         self.history.undoable()
     }
 
-    /// What doing again would do, in a few words.
+    /// Label of the next change to redo.
     pub fn redoable(&self) -> Option<&str> {
         self.history.redoable()
     }
 
-    /// Undoes what was done last, or does again what was undone last. Returns what to say of it; nothing, if there is
-    /// nothing.
+    /// Undoes the last change or redoes the last undone one. Returns the message to show; `None` if there is no such
+    /// change.
     ///
     /// # Errors
-    /// A file cannot be moved, or something else is being done.
+    /// A file cannot be moved, or another operation is in progress.
     pub fn step(&mut self, way: UndoDirection) -> Result<Option<String>, String> {
         self.refuse_while_busy()?;
         if self.history.steps(way) > MOST_AT_ONCE {
@@ -236,7 +236,7 @@ impl Library {
         }
     }
 
-    /// Keeps what was done, to be undone.
+    /// Records a change for undo.
     fn keep(&mut self, change: LibraryChange) {
         self.look_again();
         self.point_out(change.steps.iter().find_map(FileStep::place));
@@ -246,13 +246,13 @@ impl Library {
         self.history.keep(change);
     }
 
-    /// What was done since this was asked last, in a few words each, to be undone in its order with everything else.
+    /// Labels of the changes since the last call, for the common undo history.
     pub fn take_done(&mut self) -> Vec<String> {
         std::mem::take(&mut self.done)
     }
 
-    /// What could not be taken back, or not be done again, as a whole since this was asked last, in a few words each:
-    /// the rest of it can be tried again.
+    /// Labels of the undo or redo steps since the last call that were only partly carried out. The rest can be tried
+    /// again.
     pub fn take_left(&mut self) -> Vec<(UndoDirection, String)> {
         std::mem::take(&mut self.left)
     }
@@ -263,7 +263,7 @@ impl Library {
         }
     }
 
-    /// That of entries that were read without a folder, for tests.
+    /// A library of these entries without a folder, for tests.
     #[cfg(test)]
     pub fn of(events: Vec<crate::run::LibraryEvent>) -> Self {
         let mut library = Self::new(SavesFolder::find(Some(Path::new("saves"))));
@@ -304,7 +304,7 @@ mod tests {
         (folder, library)
     }
 
-    /// The names of what is in the folder.
+    /// Names of the entries in the folder.
     pub fn own(library: &mut Library) -> Vec<String> {
         library.read_all();
         let own = library.items().iter().filter(|item| item.place().path().is_some());
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_deleted_at_once_comes_back_at_once_and_goes_again() {
+    fn a_batch_that_is_deleted_is_restored_and_deleted_again_as_a_whole() {
         let (_folder, mut library) = library(&["a", "b", "c"]);
         let places = vec![place(&library, "a"), place(&library, "c")];
         let mut notices = Notices::default();
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_back_under_another_name_says_so() {
+    fn a_restore_under_another_name_is_reported() {
         let (folder, mut library) = library(&["a"]);
         let a = place(&library, "a");
         library.apply(&LibraryCommand::Delete(vec![a]), &mut Notices::default()).expect("deleted");
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_that_takes_its_time_is_taken_in_when_it_is_done() {
+    fn a_copy_appears_when_it_is_finished() {
         let (folder, mut library) = library(&["a"]);
         let mut notices = Notices::default();
         let export = LibraryCommand::Export { places: vec![place(&library, "a")], to: None };

@@ -7,10 +7,10 @@ use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::stage::{MAX_LANES, Show};
 
-/// So many generations race if there are more than there are lanes: as many as the report shows.
+/// Number of generations that race if there are more than lanes: as many as the report shows.
 const CHOSEN_GENERATIONS: usize = 6;
 
-/// Somebody who was pointed at. None if there is nobody any more.
+/// The champion that was picked; `None` if it is no longer kept.
 pub(crate) fn champion_of(
     pick: &Pick,
     evolution: &CurrentRun,
@@ -29,13 +29,13 @@ pub(crate) fn champion_of(
     }
 }
 
-/// Whether two exhibits are the same individual.
+/// Whether two lanes show the same individual.
 fn are_one(a: &StagedChampion, b: &StagedChampion) -> bool {
     let is_run = |staged: &StagedChampion| matches!(staged.source(), ChampionSource::Run(_));
     a.source() == b.source() && (!is_run(a) || a.champion().origin == b.champion().origin)
 }
 
-/// Those on the stage and one more; if it is there already, without it.
+/// The stage with one champion added, or removed if it is there already.
 pub(crate) fn with_one_more(
     mut on_show: Vec<StagedChampion>,
     staged: StagedChampion,

@@ -1,7 +1,7 @@
-//! Undo and redo of what was changed in the next run's plan.
+//! Undo and redo of changes of the next run's plan and of saves.
 //!
-//! Every command that changes the plan leaves a [`UndoStep`]. Whoever drags a slider and rests on the way changes it
-//! several times: between two presses of a mouse's button or a key all changes of one setting are one step.
+//! Every command that changes the plan adds an [`UndoStep`]. A slider that rests during a drag changes the plan several
+//! times: until the next key or mouse button press, all changes of one setting are one step.
 
 mod follow;
 
@@ -17,14 +17,14 @@ use crate::studio::schedule::FrameSet;
 
 pub(crate) use follow::followed;
 
-/// So many steps can be undone.
+/// Maximum number of steps that can be undone.
 const MOST_STEPS: usize = 200;
 
-/// The subject of a step to the plan of a run that is gone on with.
+/// Subject of the step that resumes another run.
 const CONTINUE: &str = "continue";
 
-/// Something that can be undone. Whatever else is to be undone in the same order, such as a file that was deleted,
-/// is a kind of its own here, with its way back and forth where commands are applied.
+/// A change that can be undone. Other kinds of changes, such as deleted files, are variants of their own, carried out
+/// where commands are applied.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum UndoStep {
     /// The next run's plan was changed.
@@ -33,30 +33,30 @@ pub(crate) enum UndoStep {
         before: Box<RunPlan>,
         /// The plan after.
         after: Box<RunPlan>,
-        /// What was changed, in a few words: "friction 0.5".
+        /// Label: "friction 0.5".
         label: String,
-        /// What was changed, by its name: further changes of it within one drag belong to this step.
+        /// Name of the changed setting: further changes of it within one drag join this step.
         subject: String,
     },
-    /// Something was done with saves; the library knows what.
+    /// A change of saves; the library has the details.
     Library {
-        /// What it was, in a few words: "deleted climber".
+        /// Label: "deleted climber".
         label: String,
     },
 }
 
 impl UndoStep {
-    /// Whether it is about saves.
+    /// Whether it is a change of saves.
     fn is_of_library(&self) -> bool {
         matches!(self, Self::Library { .. })
     }
 
-    /// Whether it was that another run is gone on with: its settings are no edit of the run under way.
+    /// Whether it resumed another run: its settings are no edit of the current run.
     pub fn is_of_another_run(&self) -> bool {
         matches!(self, Self::Plan { subject, .. } if subject == CONTINUE)
     }
 
-    /// What was changed, in a few words.
+    /// Label of the change.
     pub fn label(&self) -> &str {
         match self {
             Self::Plan { label, .. } | Self::Library { label } => label,
@@ -64,7 +64,7 @@ impl UndoStep {
     }
 }
 
-/// Which way through the steps.
+/// Direction through the steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum UndoDirection {
     /// Undo.
@@ -74,31 +74,31 @@ pub(crate) enum UndoDirection {
 }
 
 impl UndoDirection {
-    /// What to say when a step was taken.
+    /// Message after a step.
     pub fn taken(self, step: &UndoStep) -> String {
         let done = if self == Self::Back { "Undone" } else { "Redone" };
         format!("{done}: {}", step.label())
     }
 
-    /// What to say when there is no step.
+    /// Message if there is no step.
     pub fn nothing(self) -> &'static str {
         if self == Self::Back { "There is nothing to undo." } else { "There is nothing to redo." }
     }
 }
 
-/// The steps that were done, and those that were undone.
+/// Undo and redo stacks.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct UndoHistory {
-    /// The latest last.
+    /// Undo stack; the latest step is last.
     done: VecDeque<UndoStep>,
-    /// The one to redo first last.
+    /// Redo stack; the next step to redo is last.
     undone: Vec<UndoStep>,
-    /// Whether the latest step is complete: further changes are steps of their own.
+    /// Whether the latest step is complete: a further change is a new step.
     is_settled: bool,
 }
 
 impl UndoHistory {
-    /// Notes what a command has done to the next run's plan.
+    /// Records a command's change of the next run's plan.
     pub fn note(&mut self, command: &Command, before: RunPlan, after: &RunPlan) {
         if before == *after {
             return;
@@ -112,7 +112,7 @@ impl UndoHistory {
         });
     }
 
-    /// Adds a step. What was undone before cannot be redone any more.
+    /// Adds a step and clears the redo stack.
     pub fn push(&mut self, step: UndoStep) {
         self.undone.clear();
         let is_open = !std::mem::take(&mut self.is_settled);
@@ -130,7 +130,7 @@ impl UndoHistory {
         };
         if let Some(joined) = joined {
             self.done.pop_back();
-            // There and back again within a drag is no step at all.
+            // A drag that returns to its start is not a step.
             let is_none =
                 matches!(&joined, UndoStep::Plan { before, after, .. } if before == after);
             self.done.extend((!is_none).then_some(joined));
@@ -142,12 +142,12 @@ impl UndoHistory {
         }
     }
 
-    /// From now on a change is a step of its own.
+    /// Completes the latest step: the next change is a new step.
     pub fn settle(&mut self) {
         self.is_settled = true;
     }
 
-    /// Takes the next step one way, to be carried out. None if there is none.
+    /// Takes the next step in a direction, to be carried out; `None` if there is none.
     pub fn take(&mut self, way: UndoDirection) -> Option<UndoStep> {
         self.is_settled = true;
         let step = match way {
@@ -161,7 +161,7 @@ impl UndoHistory {
         Some(step)
     }
 
-    /// Puts a step back to where it was taken from: not all of it could be taken.
+    /// Puts a step back that was only partly carried out.
     pub fn put_back(&mut self, way: UndoDirection, step: UndoStep) {
         match way {
             UndoDirection::Back => self.done.push_back(step),
@@ -169,7 +169,7 @@ impl UndoHistory {
         }
     }
 
-    /// Takes the next step one way that is about saves, whatever else was done after it. Says whether there was one.
+    /// Takes the next change of saves in a direction, skipping other steps. Returns whether there was one.
     pub fn take_of_library(&mut self, way: UndoDirection) -> bool {
         match way {
             UndoDirection::Back => {
@@ -187,7 +187,7 @@ impl UndoHistory {
         }
     }
 
-    /// Whether the next step one way is about saves.
+    /// Whether the next step in a direction is a change of saves.
     pub fn next_is_of_library(&self, way: UndoDirection) -> bool {
         let next = match way {
             UndoDirection::Back => self.done.back(),
@@ -196,8 +196,8 @@ impl UndoHistory {
         next.is_some_and(UndoStep::is_of_library)
     }
 
-    /// Forgets steps about saves that the library knows nothing of any more: it can undo so many, and redo so many.
-    /// Says how many it can redo that are no steps here.
+    /// Removes changes of saves that exceed the library's own numbers of undoable and redoable changes. Returns how
+    /// many changes the library can redo that are no steps here.
     pub fn agree_with_library(&mut self, undoable: usize, redoable: usize) -> usize {
         let count = |steps: &mut dyn Iterator<Item = &UndoStep>| {
             steps.filter(|step| step.is_of_library()).count()
@@ -213,12 +213,12 @@ impl UndoHistory {
         redoable - count(&mut self.undone.iter())
     }
 
-    /// Takes all steps away while a lesson goes on, which has steps of its own.
+    /// Takes all steps away during a lesson, which has its own.
     pub fn lend(&mut self) -> Self {
         std::mem::take(self)
     }
 
-    /// Gives back the steps of before a lesson; of the lesson's own those stay that are about saves.
+    /// Restores the steps from before a lesson; the lesson's changes of saves are kept.
     pub fn give_back(&mut self, own: Self) {
         let lesson = std::mem::replace(self, own);
         let of_library = lesson.done.into_iter().filter(UndoStep::is_of_library);
@@ -227,7 +227,7 @@ impl UndoHistory {
         self.is_settled = true;
     }
 
-    /// What the next step one way would undo or redo, in a few words.
+    /// Label of the next step in a direction.
     pub fn next(&self, way: UndoDirection) -> Option<&str> {
         match way {
             UndoDirection::Back => self.done.back(),
@@ -237,7 +237,7 @@ impl UndoHistory {
     }
 }
 
-/// What a command has changed, by its name and in a few words; none of a command that is no edit.
+/// Subject and label of a command's change; `None` if the command is no edit.
 fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(String, String)> {
     let changes = || changes_in_words(&before.settings, &after.settings);
     Some(match command {
@@ -263,8 +263,8 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
     })
 }
 
-/// The plan after a step from one plan to another is taken, beginning at what the plan is by now. A new run has
-/// its own seed, which a step that was about something else leaves alone.
+/// The plan after a step from `from` to `to`, starting at `now`. The seed stays unless the step changed it, since a new
+/// run has a new seed.
 pub(crate) fn stepped(now: &RunPlan, from: &RunPlan, to: &RunPlan) -> RunPlan {
     let seed = if from.seed == to.seed { now.seed } else { to.seed };
     RunPlan { seed, ..to.clone() }
@@ -275,7 +275,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, settle_on_press.in_set(FrameSet::TakeIn));
 }
 
-/// Whoever presses something anew begins a new step.
+/// A new key or mouse button press completes the latest step.
 fn settle_on_press(
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_about_saves_that_the_library_has_forgotten_are_forgotten() {
+    fn changes_of_saves_that_the_library_has_dropped_are_removed() {
         let mut history = UndoHistory::default();
         history.push(of_library("deleted a"));
         history.push(of_library("deleted b"));
@@ -306,11 +306,11 @@ mod tests {
         assert!(!history.take_of_library(UndoDirection::Back));
         assert_eq!(history.agree_with_library(0, 1), 0);
         history.push(of_library("deleted c"));
-        assert_eq!(history.agree_with_library(1, 1), 1, "to be forgotten there");
+        assert_eq!(history.agree_with_library(1, 1), 1, "to be removed there");
     }
 
     #[test]
-    fn after_a_lesson_its_steps_about_saves_stay_and_its_others_do_not() {
+    fn after_a_lesson_only_its_changes_of_saves_are_kept() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
         let own = history.lend();
@@ -333,14 +333,14 @@ mod tests {
         Command::SetField { field: "trial.surface.friction".to_owned(), text: text.to_owned() }
     }
 
-    /// The plans of a step.
+    /// Plans before and after a step.
     fn plans(step: Option<UndoStep>) -> (RunPlan, RunPlan) {
         let Some(UndoStep::Plan { before, after, .. }) = step else { panic!("a step") };
         (*before, *after)
     }
 
     #[test]
-    fn steps_go_back_and_forth_with_their_names() {
+    fn steps_are_undone_and_redone_with_their_labels() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
         history.settle();
@@ -359,21 +359,21 @@ mod tests {
     }
 
     #[test]
-    fn one_drag_is_one_step_however_often_it_rests() {
+    fn one_drag_is_one_step_even_if_it_rests() {
         let mut history = UndoHistory::default();
         for (before, after) in [("1", "0.8"), ("0.8", "0.5"), ("0.5", "0.3")] {
             history.note(&set(after), plan(before), &plan(after));
         }
         assert_eq!(plans(history.take(UndoDirection::Back)), (plan("1"), plan("0.3")));
         assert_eq!(history.take(UndoDirection::Back), None);
-        // Back to where it began it is none.
+        // A drag that returns to its start is not a step.
         history.note(&set("0.8"), plan("1"), &plan("0.8"));
         history.note(&set("1"), plan("0.8"), &plan("1"));
         assert_eq!(history.next(UndoDirection::Back), None);
     }
 
     #[test]
-    fn a_new_change_ends_what_could_be_redone_and_what_changes_nothing_is_no_step() {
+    fn a_new_change_clears_the_redo_stack_and_a_change_without_effect_is_no_step() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
         history.take(UndoDirection::Back);
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn only_so_many_steps_are_kept() {
+    fn the_number_of_steps_is_limited() {
         let mut history = UndoHistory::default();
         for number in 0..MOST_STEPS + 50 {
             let after = plan(&format!("{}", number + 2));
@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_of_a_new_run_is_left_alone_by_a_step_that_is_not_about_it() {
+    fn a_step_that_did_not_change_the_seed_keeps_the_current_one() {
         let now = RunPlan { seed: 2, ..plan("0.5") };
         assert_eq!(stepped(&now, &plan("0.5"), &plan("1")).seed, 2);
         let other_seed = RunPlan { seed: 9, ..plan("1") };
@@ -404,12 +404,12 @@ mod tests {
     }
 
     #[test]
-    fn what_could_not_be_undone_as_a_whole_is_still_the_next_to_undo() {
+    fn a_partly_undone_step_is_still_the_next_to_undo() {
         let mut history = UndoHistory::default();
         history.push(of_library("renamed a"));
         history.push(of_library("deleted 300 saves"));
         let step = history.take(UndoDirection::Back).expect("a step");
-        // Some of them are back, and can be deleted again; the rest can be brought back, too.
+        // Some are restored and can be deleted again; the rest can still be restored.
         history.put_back(UndoDirection::Back, step);
         assert_eq!(history.agree_with_library(2, 1), 0);
         assert_eq!(history.next(UndoDirection::Back), Some("deleted 300 saves"));

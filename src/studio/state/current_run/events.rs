@@ -1,4 +1,4 @@
-//! Takes in what the background found, and shows what is better than all before.
+//! Handles events of the background run and shows new best champions.
 
 use bevy::prelude::*;
 
@@ -18,15 +18,15 @@ pub(super) fn plugin(app: &mut App) {
     app.add_systems(Startup, start_at_once).add_systems(Update, take_in.in_set(FrameSet::TakeIn));
 }
 
-/// A fresh run evolves from the first moment.
+/// Evolution starts with the program.
 fn start_at_once(mut evolution: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     if let Err(problem) = evolution.start() {
         notices.problem(problem);
     }
 }
 
-/// Takes in what the background found. A champion that beats the one on show and all before it takes the stage,
-/// unless that is held: then somebody is looking at something.
+/// Handles events of the background run. A champion that beats all earlier ones and the one on the stage replaces it,
+/// unless the user is looking at something.
 fn take_in(
     mut evolution: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,
@@ -37,18 +37,18 @@ fn take_in(
     evolution.others.take_in();
     let Some(background) = &evolution.background else { return };
     let events: Vec<RunEvent> = std::iter::from_fn(|| background.poll()).collect();
-    // In most frames nothing has come: what is to be beaten need not be looked for among all reports.
+    // Most frames have no event; skip the search through all reports.
     if events.is_empty() {
         return;
     }
-    // Only what was found in the world of this run can be compared with what it finds.
+    // Fitness can only be compared within the same world.
     let world = &evolution.settings().trial;
     let rivals = lanes.iter().map(Lane::staged);
     let rivals = rivals.filter(|staged| staged.champion().trial == *world);
     let champions = evolution.reports.iter().filter_map(|report| report.champion.as_ref());
     let known = champions.map(|champion| champion.evaluation.fitness);
     let mut to_beat = rivals.map(StagedChampion::fitness).chain(known).fold(f32::MIN, f32::max);
-    // Who holds the stage, has several on it, or tries out another world than the run's, is looking at something.
+    // Pausing, several lanes, or another world mean that the user is looking at something.
     let is_tried = |lane: &Lane| lane.staged().is_changed() && lane.trial() != world;
     let is_looked_at =
         evolution.is_lent || *mode != StageMode::Solo || lanes.iter().any(Lane::is_disturbed);
@@ -73,7 +73,7 @@ fn take_in(
             RunEvent::Opened(opened) => {
                 let OpenedRun { plan_now, reports: behind, .. } = *opened;
                 evolution.take_in_opened_plan(plan_now);
-                // Whatever happens from now on, it is not thrown away once more.
+                // A later restart must not discard the run again.
                 evolution.source.earlier = ExistingRun::Keep;
                 evolution.discarded = None;
                 let generations = evolution.settings().evolution.generations;
@@ -108,7 +108,7 @@ fn take_in(
             }
             RunEvent::Finished { run_hash } => {
                 evolution.run_hash = Some(run_hash);
-                // What was asked for too late concerns the next run alone.
+                // Changes requested too late apply to the next run only.
                 evolution.await_no_change();
                 evolution.engine.set_run_folder(None);
                 notices.info("The run is finished; \"New run\" starts another.".to_owned());
@@ -141,7 +141,7 @@ mod tests {
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 
-    /// A studio without a window, whose run is saved in a folder.
+    /// A studio without a window whose run is saved in this folder.
     fn studio(saves: &SavesFolder) -> App {
         let mut settings = Settings::default();
         settings.evolution.population = 6;
@@ -160,9 +160,9 @@ mod tests {
         app
     }
 
-    /// Lets frames pass until something is so.
+    /// Updates the app until a condition holds.
     fn wait_until(app: &mut App, is_so: impl Fn(&CurrentRun) -> bool) {
-        // Nobody ever sends: whoever listens rests.
+        // A channel without messages serves as a sleep.
         let (_never, rest) = std::sync::mpsc::channel::<()>();
         let began = Instant::now();
         while began.elapsed() < Duration::from_secs(60) {
@@ -172,16 +172,16 @@ mod tests {
             }
             let _ = rest.recv_timeout(Duration::from_millis(2));
         }
-        panic!("it never came");
+        panic!("the condition never held");
     }
 
-    /// Does something with the run.
+    /// Calls a fallible method of the run.
     fn act<T>(app: &mut App, act: impl FnOnce(&mut CurrentRun) -> Result<T, String>) -> T {
         act(&mut app.world_mut().resource_mut::<CurrentRun>()).expect("allowed")
     }
 
-    /// A studio whose run is held after its first generation.
-    fn held_studio() -> (TempDir, App) {
+    /// A studio whose run is paused after its first generation.
+    fn paused_studio() -> (TempDir, App) {
         let folder = tempfile::tempdir().expect("a folder");
         let mut app = studio(&SavesFolder::find(Some(folder.path())));
         act(&mut app, |run| run.single_generation());
@@ -191,20 +191,20 @@ mod tests {
 
     #[test]
     fn settings_of_another_preset_or_run_do_not_change_the_run_under_way() {
-        let (_folder, mut app) = held_studio();
+        let (_folder, mut app) = paused_studio();
         let before = act(&mut app, |run| {
             let before = run.next_plan().clone();
             run.set_preset("report")?;
             run.set_population(9)?;
             assert!(run.may_change("evolution.population").is_err());
             assert_eq!(run.awaited.evolution.population, 6);
-            // As undoing does that.
+            // As undo does.
             run.set_next_plan(before.clone())?;
             assert_eq!(run.may_change("evolution.population"), Ok(()));
             Ok(before)
         });
         act(&mut app, |run| {
-            // As undoing does that somebody went on with this run, before which another was set.
+            // As undoing the resumption of this run does, before which another plan was set.
             let mut other = before;
             other.settings.evolution.population = 5;
             run.set_next_plan_alone(other)?;
@@ -217,8 +217,8 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_was_reset_begins_anew_even_after_a_look_at_other_settings() {
-        let (_folder, mut app) = held_studio();
+    fn a_reset_run_starts_again_even_after_other_settings_were_set() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
             run.reset()?;
             run.set_population(5)?;
@@ -228,7 +228,7 @@ mod tests {
         wait_until(&mut app, |run| !run.reports().is_empty());
         let reports = app.world().resource::<CurrentRun>().reports();
         assert_eq!(reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
-        // What was evolved since is not thrown away again.
+        // Later progress is not discarded again.
         act(&mut app, |run| {
             run.set_seed(2)?;
             run.begin_next()?;
@@ -242,18 +242,18 @@ mod tests {
     }
 
     #[test]
-    fn what_a_run_may_cost_counts_the_generations_before_a_change_as_they_were() {
-        let (_folder, mut app) = held_studio();
+    fn the_budget_counts_generations_before_a_change_at_their_size() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.set_population(4));
         wait_until(&mut app, |run| run.changes().len() == 1);
         assert_eq!(app.world().resource::<CurrentRun>().budget(), 6 + 4 + 4);
     }
 
     #[test]
-    fn a_refused_change_takes_no_other_along() {
-        let (_folder, mut app) = held_studio();
+    fn a_refused_change_does_not_affect_others() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
-            // A strategy cannot change on the way: the run refuses that, and takes what is before and after it.
+            // The strategy cannot change during a run: this change is refused, those before and after it are made.
             run.change_running("evolution.population", "5")?;
             run.background()?.request_changes([("evolution.strategy".to_owned(), "ga".to_owned())]);
             run.change_running("evolution.halving.parents", "2")
@@ -264,16 +264,16 @@ mod tests {
     }
 
     #[test]
-    fn a_champion_that_founds_a_run_twice_founds_two() {
-        let (_folder, mut app) = held_studio();
+    fn a_second_run_without_changes_has_the_next_seed() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.begin_next());
         let evolution = app.world().resource::<CurrentRun>();
         assert_eq!((evolution.number(), evolution.seed()), (1, 2));
     }
 
     #[test]
-    fn a_run_that_broke_off_can_be_gone_on_with() {
-        let (_folder, mut app) = held_studio();
+    fn a_run_that_failed_can_be_resumed() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.change_running("evolution.halving.parents", "2"));
         wait_until(&mut app, |run| run.changes().len() == 1);
         act(&mut app, |run| {
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_change_changes_in_the_run_and_the_next_and_what_may_not_in_the_next_alone() {
+    fn live_settings_change_in_both_runs_and_others_only_in_the_next() {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         let mut app = studio(&saves);
@@ -315,7 +315,7 @@ mod tests {
         let evolution = app.world().resource::<CurrentRun>();
         let sizes: Vec<u32> = evolution.reports().iter().map(|report| report.evaluations).collect();
         assert_eq!(sizes, [6, 4, 4, 4]);
-        // Gone on with by another session, it is what it was.
+        // Resumed by another session, it has the same hash and changes.
         let (hash, folder) = (evolution.run_hash(), evolution.source.folder.clone());
         drop(app);
         let mut app = studio(&saves);

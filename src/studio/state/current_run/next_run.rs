@@ -1,4 +1,4 @@
-//! The plan of the next run: what is set, taken from a preset, undone.
+//! The plan of the next run: edits, presets, undo.
 
 use std::sync::Arc;
 
@@ -28,27 +28,28 @@ impl CurrentRun {
         &self.engine.next.preset
     }
 
-    /// Whether the next run has another seed, founder or settings than the current one has by now, or soon.
+    /// Whether the next run's seed, preset, founder or settings differ from those of the current run with its pending
+    /// changes.
     pub fn next_run_differs(&self) -> bool {
         let (now, next) = (&self.source_now, &self.engine.next);
         let of = |plan: &RunPlan| (plan.seed, plan.preset.clone());
         of(now) != of(next) || now.founder != next.founder || self.awaited != next.settings
     }
 
-    /// Sets the seed of the next run; a run that has not begun takes it at once.
+    /// Sets the seed of the next run. A run that has not started takes it at once.
     pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
         self.engine.next.seed = seed;
         self.take_over_if_ready()
     }
 
-    /// Sets the population of the next run; a run that has not begun takes it at once, and one that is under way from
-    /// its next generation on, if its method allows it.
+    /// Sets the population of the next run. A run that has not started takes it at once; a run in progress takes it
+    /// with its next generation if its strategy allows this.
     pub fn set_population(&mut self, population: u32) -> Result<(), String> {
         self.set_field("evolution.population", &population.to_string())
     }
 
-    /// Sets one setting of the next run, by its name; a run that has not begun takes it at once, and one that is under
-    /// way from its next generation on, if it may.
+    /// Sets one setting of the next run, by its name. A run that has not started takes it at once; a run in progress
+    /// takes it with its next generation if this setting may change.
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
         self.set_fields(&[(field.to_owned(), text.to_owned())])
     }
@@ -62,13 +63,13 @@ impl CurrentRun {
         self.set_next_plan(RunPlan { settings, ..next.clone() })
     }
 
-    /// Gives the next run another plan; a run that has not begun takes it at once. What may change in a run under way
-    /// changes there too, unless the plan is that of another preset or of another run.
+    /// Replaces the next run's plan. A run that has not started takes it at once. Settings that may change during a run
+    /// also change in the current one, unless the plan is that of another preset or run.
     pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
         self.plan_next(plan, true)
     }
 
-    /// Gives the next run another plan, and leaves the run under way as it is.
+    /// Replaces the next run's plan without changing the current run.
     pub fn set_next_plan_alone(&mut self, plan: RunPlan) -> Result<(), String> {
         self.plan_next(plan, false)
     }
@@ -97,7 +98,7 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
-    /// Whether the next run's settings could be those of the run under way, and what is set there be meant for it, too.
+    /// Whether the next run's settings match the current run closely enough that edits should apply to both.
     pub(super) fn next_looks_own(&self) -> bool {
         let next = &self.engine.next;
         let is_same_preset = next.preset == self.source_now.preset;
@@ -105,26 +106,26 @@ impl CurrentRun {
         next.settings == self.awaited || (is_same_preset && is_alike)
     }
 
-    /// The presets that can be chosen.
+    /// Presets to choose from.
     pub fn presets(&self) -> &PresetList {
         &self.engine.presets
     }
 
-    /// Looks for a person's own presets anew.
+    /// Reads the user's presets again.
     pub fn list_presets(&mut self) {
         self.engine.presets = Arc::new(PresetList::read(&self.engine.saves));
     }
 
-    /// The settings of the next run's preset as they come, if it is known.
+    /// Unchanged settings of the next run's preset, if known.
     pub fn preset_settings(&self) -> Option<&Settings> {
         let name = self.next_preset();
         let first = &self.engine.first.plan;
-        // Somebody may have begun with a file of their own.
+        // The program may have been started with a preset file.
         let of_first = (first.preset == name).then_some(&first.settings);
         self.engine.presets.settings_of(name).or(of_first)
     }
 
-    /// Keeps the next run's settings as a preset of a person's own, of which they are from now on.
+    /// Stores the next run's settings as a user preset, which becomes the next run's preset.
     pub fn store_preset(&mut self, name: &str) -> Result<(), String> {
         let next = &self.engine.next;
         let about = format!("Your own; it began as {}.", next.preset);
@@ -135,7 +136,7 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
-    /// Takes a preset for the next run: a shipped one, or one of a person's own.
+    /// Sets the preset of the next run: a built-in one or one of the user's own.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
         let preset = match self.engine.presets.find(name)? {
             Some(preset) => preset.clone(),
@@ -145,8 +146,8 @@ impl CurrentRun {
         self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
     }
 
-    /// Gives the next run the world back that it had in a plan, and the rest if that is of another preset. Seed and
-    /// population, which are no matter of the world, stay.
+    /// Restores the next run's world from an earlier plan, or all its settings if that plan has another preset. The
+    /// seed stays.
     pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
         let mut next = self.next_plan().clone();
         if next.preset == before.preset {
@@ -156,7 +157,7 @@ impl CurrentRun {
             next.settings = before.settings.clone();
             next.founder.clone_from(&before.founder);
         }
-        // One that was chosen meanwhile may not suit that world.
+        // A founder chosen meanwhile may not fit that world.
         if next.check_founder().is_err() {
             next.founder = None;
         }

@@ -1,4 +1,4 @@
-//! What a person can ask of the library, and how it is done.
+//! Carries out [`LibraryCommand`]s.
 
 use std::path::PathBuf;
 
@@ -18,10 +18,10 @@ use crate::studio::state::lineup::evenly_chosen;
 use crate::studio::ui::notifications::Notices;
 
 impl Library {
-    /// Does what a person asks for, and says who is to take the stage.
+    /// Carries out a command. Returns the champions to show, if any.
     ///
     /// # Errors
-    /// What cannot be done, and why.
+    /// The operation that failed, and why.
     pub fn apply(
         &mut self,
         request: &LibraryCommand,
@@ -60,9 +60,9 @@ impl Library {
                 let champions = chosen.map(|generation| generation_of(run, generation));
                 return Ok(Some(Show::race(champions.collect::<Result<_, _>>()?)));
             }
-            // It needs the evolution: see [`super::found_run`].
+            // Needs the current run: see [`super::found_run`].
             LibraryCommand::StartFrom(_) => {}
-            // The settings' steps lie between: see [`Self::step`].
+            // Handled together with the undo steps of settings: see [`Self::step`].
             LibraryCommand::Undo | LibraryCommand::Redo => {}
             LibraryCommand::Rename { place, name } => {
                 self.refuse_while_busy()?;
@@ -89,7 +89,7 @@ impl Library {
                 })?;
             }
             LibraryCommand::Import(paths) => {
-                // What is dropped into a window nobody has looked into is to be seen too.
+                // Imported files must appear even if the library was never opened.
                 self.look()?;
                 self.refuse_while_busy()?;
                 let saves = self.saves.clone();
@@ -116,13 +116,14 @@ impl Library {
         Ok(())
     }
 
-    /// Reads who is to take the stage: now, if that is quick, and else beside the window; see [`LibraryCommand::ShowLoaded`].
+    /// Reads champions for the stage: immediately if `is_quick`, otherwise in the background; see
+    /// [`LibraryCommand::ShowLoaded`].
     fn load(
         &mut self,
         is_quick: bool,
         load: impl FnOnce() -> Result<Show, String> + Send + 'static,
     ) -> Result<Option<Show>, String> {
-        // Whoever was asked for before would come too late.
+        // A newer request replaces an older one.
         (self.loading, self.loaded) = (None, None);
         if is_quick {
             return load().map(Some);
@@ -132,8 +133,8 @@ impl Library {
         Ok(None)
     }
 
-    /// Does something with each of several entries, with many of them beside the window: then nothing is returned.
-    /// What was done before one fails is kept, and can be undone.
+    /// Applies an operation to each entry. Large batches run in the background, and `None` is returned. After a
+    /// failure, the finished steps are kept and can be undone.
     fn each(
         &mut self,
         verb: Verb,
@@ -177,7 +178,7 @@ mod tests {
     use crate::studio::state::library::tests::{library, place};
 
     #[test]
-    fn a_run_that_is_not_read_yet_takes_the_stage_once_it_is() {
+    fn a_run_that_is_not_read_yet_is_shown_once_it_is_read() {
         let (folder, mut library) = library(&["mine"]);
         let gone = SavePlace::Run(folder.path().join("gone"));
         let mut notices = Notices::default();
@@ -199,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn those_who_are_chosen_take_the_stage_under_their_names() {
+    fn chosen_saves_race_under_their_names() {
         let (_folder, mut library) = library(&["mine"]);
         let race = LibraryCommand::Race(vec![place(&library, "mine"), SavePlace::Shipped("fast")]);
         let show = library.apply(&race, &mut Notices::default()).expect("read").expect("shown");

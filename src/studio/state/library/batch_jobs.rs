@@ -1,4 +1,4 @@
-//! What is done with saves beside the window, since it may take its time: copies, and whatever concerns many at once.
+//! Slow operations on saves in background threads: copies, and batches.
 
 use super::file_changes::LibraryChange;
 use super::words::capital;
@@ -9,13 +9,13 @@ use crate::save::library::FileStep;
 use crate::studio::state::undo::UndoDirection;
 use crate::studio::ui::notifications::Notices;
 
-/// Up to so many saves are deleted, copied or brought back within a frame: each is flushed to the disk, which takes
+/// Maximum number of saves that are deleted, copied or restored within a frame: each is flushed to disk, which takes
 /// some milliseconds.
 pub(super) const MOST_AT_ONCE: usize = 8;
-/// Of so many problems each is said by itself.
+/// Maximum number of problems that are reported one by one.
 const MOST_PROBLEMS: usize = 3;
 
-/// What is done with saves, in the words for when it is done and for while it is.
+/// Operation on saves, as past and present participle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Verb {
     pub done: &'static str,
@@ -27,12 +27,12 @@ pub(super) const DUPLICATED: Verb = Verb { done: "duplicated", doing: "Duplicati
 pub(super) const EXPORTED: Verb = Verb { done: "exported", doing: "Exporting" };
 pub(super) const IMPORTED: Verb = Verb { done: "imported", doing: "Importing" };
 
-/// Something that is being done.
+/// Kind of a background operation.
 #[derive(Debug)]
 pub(super) enum BatchTask {
-    /// Something new.
+    /// A new change.
     Act(Verb),
-    /// What is described in these words is undone, or done again.
+    /// Undo or redo of the change with this label.
     Undo(UndoDirection, String),
 }
 
@@ -46,14 +46,14 @@ impl BatchTask {
     }
 }
 
-/// What came of one save.
+/// Outcome for one save.
 #[derive(Debug)]
 pub(super) enum BatchOutcome {
-    /// It is done.
+    /// Done.
     Done(FileStep),
-    /// It failed. A step that may be undone at another time is still there.
+    /// Failed. The step is kept if it can be undone later.
     Failed(SaveError, Option<FileStep>),
-    /// It was cancelled before.
+    /// Cancelled before it began.
     Left(Option<FileStep>),
 }
 
@@ -66,7 +66,7 @@ impl From<Result<FileStep, SaveError>> for BatchOutcome {
     }
 }
 
-/// A task and how far it is.
+/// A background operation and its progress.
 #[derive(Debug)]
 pub(super) struct BatchJobs {
     task: BatchTask,
@@ -74,7 +74,7 @@ pub(super) struct BatchJobs {
 }
 
 impl BatchJobs {
-    /// Whether it is about so many that there is something to be seen of it.
+    /// Whether it is long enough to show its progress.
     fn is_long(&self) -> bool {
         self.batch.total() > MOST_AT_ONCE
     }
@@ -85,7 +85,7 @@ impl BatchJobs {
 }
 
 impl Library {
-    /// What is done with many saves now: in words, "Deleting 1200 of 10000", and how much of it is done, 0 to 1.
+    /// Background operations: label, such as "Deleting 1200 of 10000", and progress from 0 to 1.
     pub fn under_way(&self) -> impl Iterator<Item = (String, f32)> {
         let share = |batch: &BackgroundTask<Vec<BatchOutcome>>| {
             batch.done() as f32 / batch.total().max(1) as f32
@@ -94,7 +94,7 @@ impl Library {
         long.map(move |errand| (errand.words(), share(&errand.batch)))
     }
 
-    /// Why nothing else can be done with saves now, if so: many are being worked on, and what is undone has its order.
+    /// Reason why no other operation can begin now, if any: undo steps must keep their order.
     pub fn busy(&self) -> Option<String> {
         let words = self.under_way().next()?.0;
         Some(format!("{words} saves goes on: wait until that is done, or cancel it first"))
@@ -104,12 +104,12 @@ impl Library {
         self.busy().map_or(Ok(()), Err)
     }
 
-    /// Ends what is under way after the file that it is about. What is done by then can be undone.
+    /// Cancels all operations after the current file. Finished steps can be undone.
     pub(super) fn cancel(&self) {
         self.errands.iter().for_each(|errand| errand.batch.cancel());
     }
 
-    /// Begins something with each of several things.
+    /// Starts an operation on each item in the background.
     pub(super) fn send_out<I: Send + 'static>(
         &mut self,
         task: BatchTask,
@@ -123,7 +123,7 @@ impl Library {
         Ok(())
     }
 
-    /// Undoes or does again what was done last with many saves; one after the other, beginning with the last.
+    /// Starts to undo or redo the last large batch, in reverse order.
     pub(super) fn send_out_undo(&mut self, way: UndoDirection) -> Result<Option<String>, String> {
         let Some(LibraryChange { words, mut steps }) = self.history.take(way) else {
             return Ok(None);
@@ -137,7 +137,7 @@ impl Library {
         let saves = self.saves.clone();
         let undo = move |step: FileStep| match step.undo(&saves) {
             Ok(inverse) => BatchOutcome::Done(inverse),
-            // What cannot be found will not be found the next time either.
+            // A missing file will still be missing at the next try.
             Err(error @ SaveError::Unreadable { .. }) => BatchOutcome::Failed(error, None),
             Err(error) => BatchOutcome::Failed(error, Some(step)),
         };
@@ -147,7 +147,7 @@ impl Library {
         Ok(Some(said))
     }
 
-    /// Takes in what is done by now.
+    /// Receives the results of finished operations.
     pub(super) fn take_in_errands(&mut self, notices: &mut Notices) {
         let errands = std::mem::take(&mut self.errands);
         for BatchJobs { task, batch } in errands {
@@ -194,7 +194,7 @@ impl Library {
                 if !left.is_empty() {
                     self.left.push((way, words.clone()));
                 }
-                // The last of them was to be undone first.
+                // The steps were undone in reverse order.
                 left.reverse();
                 let change = self.history.settle(way, words, steps, left);
                 let said = self.after_undoing(Ok(Some(change)), way);
@@ -218,7 +218,7 @@ impl Library {
     }
 }
 
-/// What was done, in a few words: of one save with its name, several are counted.
+/// Label of a change: one save is named, several are counted.
 fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
     match steps {
         [FileStep::Deleted { from, .. }] => format!("{} {}", verb.done, name_of(from)),
@@ -230,7 +230,7 @@ fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
     }
 }
 
-/// How to say where something is now.
+/// End of the sentence that says where the saves are now.
 fn ending(verb: Verb, first: &FileStep) -> String {
     if verb == DELETED {
         return ". Ctrl Z brings it back.".to_owned();
@@ -247,7 +247,7 @@ mod tests {
     use crate::studio::commands::library::LibraryCommand;
     use crate::studio::state::library::tests::{library, own, place};
 
-    /// A library of so many saves, and their places.
+    /// A library of `count` saves, and their places.
     fn of_many(count: usize) -> (tempfile::TempDir, Library, Vec<SavePlace>) {
         let (folder, mut library) = library(&["a"]);
         for number in 1..count {
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn many_are_deleted_beside_the_window_and_all_come_back_at_once() {
+    fn a_large_batch_is_deleted_in_the_background_and_restored_as_a_whole() {
         let (_folder, mut library, places) = of_many(300);
         let mut notices = Notices::default();
         library.apply(&LibraryCommand::Delete(places), &mut notices).expect("begun");
@@ -287,7 +287,8 @@ mod tests {
         assert!(own(&mut library).is_empty());
     }
 
-    /// Begins something and cancels it at once, until it was not faster. Returns what is done by then.
+    /// Starts an operation and cancels it at once, repeatedly until it is cancelled before it finishes. Returns the
+    /// number of finished saves.
     fn cancelled(
         library: &mut Library,
         begin: impl Fn(&mut Library, &mut Notices),
@@ -311,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cancelled_stops_and_what_was_done_by_then_can_be_undone() {
+    fn a_cancelled_batch_stops_and_its_finished_part_can_be_undone() {
         let (_folder, mut library, places) = of_many(200);
         let undo = |library: &mut Library| {
             library.step(UndoDirection::Back).expect("begun");
@@ -329,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_a_cancelled_undo_is_told_and_can_be_undone() {
+    fn the_rest_of_a_cancelled_undo_is_reported_and_can_be_undone() {
         let (_folder, mut library, places) = of_many(200);
         let mut notices = Notices::default();
         library.apply(&LibraryCommand::Delete(places), &mut notices).expect("begun");
@@ -349,14 +350,14 @@ mod tests {
     }
 
     #[test]
-    fn one_that_fails_stops_none_of_the_others() {
+    fn a_failure_does_not_stop_the_rest_of_the_batch() {
         let (folder, mut library, places) = of_many(20);
         std::fs::remove_file(folder.path().join("b 00007.ron")).expect("there");
         let mut notices = Notices::default();
         library.apply(&LibraryCommand::Delete(places), &mut notices).expect("begun");
         wait(&mut library, &mut notices);
         assert_eq!(library.undoable(), Some("deleted 19 saves"));
-        assert_eq!(notices.len(), 2, "what failed, and what did not");
+        assert_eq!(notices.len(), 2, "the failure, and the success");
         assert!(own(&mut library).is_empty());
         assert!(library.item(&SavePlace::Shipped("fast")).is_some());
         assert_eq!(place(&library, "fast"), SavePlace::Shipped("fast"));

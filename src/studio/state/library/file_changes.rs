@@ -1,30 +1,30 @@
-//! What was done with saves, to be undone and done again.
+//! Undo and redo of file operations on saves.
 
 use crate::save::library::FileStep;
 use crate::save::{SaveError, SavesFolder};
 use crate::studio::state::undo::UndoDirection;
 
-/// Something a person did at once.
+/// One user action on one or several saves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LibraryChange {
-    /// What it was, in a few words: "deleted climber".
+    /// Label: "deleted climber".
     pub words: String,
     /// Its steps, in the order in which they were taken.
     pub steps: Vec<FileStep>,
 }
 
-/// What was done, and what was undone of it; the last is the last.
+/// Undo and redo stacks; the latest change is last.
 #[derive(Debug, Default)]
 pub struct FileHistory {
     done: Vec<LibraryChange>,
     undone: Vec<LibraryChange>,
 }
 
-/// Of so many changes it is remembered how to undo them.
+/// Maximum number of changes that can be undone.
 const MOST_CHANGES: usize = 200;
 
 impl FileHistory {
-    /// Keeps what was done. What was undone before cannot be done again then.
+    /// Records a change and clears the redo stack.
     pub fn keep(&mut self, change: LibraryChange) {
         if change.steps.is_empty() {
             return;
@@ -36,27 +36,27 @@ impl FileHistory {
         }
     }
 
-    /// How many changes can be undone, and how many done again.
+    /// Numbers of changes that can be undone and redone.
     pub fn counts(&self) -> (usize, usize) {
         (self.done.len(), self.undone.len())
     }
 
-    /// Forgets what could be done again.
+    /// Clears the redo stack.
     pub fn forget_undone(&mut self) {
         self.undone.clear();
     }
 
-    /// What undoing would undo.
+    /// Label of the next change to undo.
     pub fn undoable(&self) -> Option<&str> {
         self.done.last().map(|change| change.words.as_str())
     }
 
-    /// What doing again would do.
+    /// Label of the next change to redo.
     pub fn redoable(&self) -> Option<&str> {
         self.undone.last().map(|change| change.words.as_str())
     }
 
-    /// Undoes what was done last, or does again what was undone last; returns it with the steps that were taken.
+    /// Undoes the last change or redoes the last undone one. Returns it with the steps taken.
     pub fn step(
         &mut self,
         way: UndoDirection,
@@ -66,20 +66,18 @@ impl FileHistory {
         step_back(from, to, saves)
     }
 
-    /// Of how many steps the next change one way is.
+    /// Number of steps of the next change in a direction.
     pub fn steps(&self, way: UndoDirection) -> usize {
         let from = if way == UndoDirection::Back { &self.done } else { &self.undone };
         from.last().map_or(0, |change| change.steps.len())
     }
 
-    /// Takes the next change one way out, to be undone step by step by somebody who has time. [`Self::settle`] takes in
-    /// what came of it.
+    /// Removes the next change in a direction, for a background task. [`Self::settle`] records its result.
     pub fn take(&mut self, way: UndoDirection) -> Option<LibraryChange> {
         self.both_ways(way).0.pop()
     }
 
-    /// Takes in what came of a change that was taken out: the steps that were taken, and those of it that are left.
-    /// Returns the former.
+    /// Records the result of a change from [`Self::take`]: the steps taken and the steps left. Returns the former.
     pub fn settle(
         &mut self,
         way: UndoDirection,
@@ -98,7 +96,7 @@ impl FileHistory {
         change
     }
 
-    /// Where changes come from that are taken one way, and where they go.
+    /// Source and destination of a change in a direction.
     fn both_ways(
         &mut self,
         way: UndoDirection,
@@ -110,8 +108,8 @@ impl FileHistory {
     }
 }
 
-/// Undoes the last change of `from`; what undoes that goes to `to`. Where a step fails, those that are not undone
-/// stay, unless what they are about is gone for good.
+/// Undoes the last change of `from` and pushes its inverse to `to`. After a failure the remaining steps stay in `from`,
+/// except a step whose file no longer exists.
 fn step_back(
     from: &mut Vec<LibraryChange>,
     to: &mut Vec<LibraryChange>,
@@ -124,7 +122,7 @@ fn step_back(
         match step.undo(saves) {
             Ok(inverse) => taken.push(inverse),
             Err(error) => {
-                // What cannot be found will not be found the next time either.
+                // A missing file will still be missing at the next try.
                 if !matches!(error, SaveError::Unreadable { .. }) {
                     steps.push(step);
                 }

@@ -1,4 +1,4 @@
-//! From a save to the stage, or to a run that begins with it.
+//! Loads saves for the stage or as founders of runs.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use crate::save::{LoadedChampion, load_generation};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::current_run::CurrentRun;
 
-/// A name on the stage is cut off after so many characters.
+/// Maximum length of a name on the stage, in characters.
 const LONGEST_LABEL: usize = 40;
 
-/// Begins a run of which the champion of an entry is a parent; `best` as in [`exhibit_of`].
+/// Prepares a run that starts from an entry's champion; `best` as in [`champion_of`].
 ///
 /// # Errors
 /// The champion cannot be read, or a run cannot begin with it.
@@ -25,8 +25,8 @@ pub fn found_run(
     evolution.found_run(&loaded.champion, &place.name())
 }
 
-/// The champion of an entry and, of a run's best, its generation. Where that is known already, the run's log, which
-/// may be long, need not be read.
+/// The champion of an entry, and its generation if the entry is a run. If the best generation is known, the run's log,
+/// which may be long, is not read.
 fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<u32>), String> {
     let loaded = match (place, best) {
         (SavePlace::Run(run), Some(best)) => load_generation(run, best).map(|it| (it, Some(best))),
@@ -35,7 +35,7 @@ fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<
     loaded.map_err(|error| error.to_string())
 }
 
-/// The champion of an entry, to be shown; of a run its best, whose generation is `best` if that is known.
+/// The champion of an entry for the stage; of a run, its best, from generation `best` if known.
 pub fn champion_of(place: &SavePlace, best: Option<u32>) -> Result<StagedChampion, String> {
     let (loaded, generation) = load(place, best)?;
     let name = match generation {
@@ -48,7 +48,7 @@ pub fn champion_of(place: &SavePlace, best: Option<u32>) -> Result<StagedChampio
     Ok(shown(&loaded, &name, &format!("{place:?}{generation:?}")))
 }
 
-/// The champion of a run's generation, to be shown.
+/// The champion of a run's generation for the stage.
 pub fn generation_of(run: &Path, generation: u32) -> Result<StagedChampion, String> {
     let loaded = load_generation(run, generation).map_err(|error| error.to_string())?;
     let identity = format!("{:?}{:?}", SavePlace::Run(run.to_owned()), Some(generation));

@@ -1,6 +1,6 @@
-//! Wording shared by the messages of the library.
+//! Wording of the library's messages.
 
-/// Names in a few words: one by itself, several counted.
+/// One name, or the number of several.
 pub(super) fn listed(names: &[String]) -> String {
     match names {
         [one] => one.clone(),
