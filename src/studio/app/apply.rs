@@ -180,7 +180,7 @@ fn apply(
         history.note(command, before, evolution.next_plan());
         notices.problems(done.err());
     }
-    // An import or an export is done some time after it was asked for.
+    // Imports and exports finish some time after their command.
     for label in library.take_done() {
         history.push(UndoStep::Library { label });
     }
@@ -217,7 +217,7 @@ fn changes_own_run(command: &Command) -> bool {
     )
 }
 
-/// Takes back what was done with saves, or does it again.
+/// Undoes or redoes a change of saves.
 fn undo_in(library: &mut Library, way: UndoDirection, notices: &mut Notices) -> Result<(), String> {
     let said = library.step(way)?;
     notices.info(said.unwrap_or(way.nothing().to_owned()));

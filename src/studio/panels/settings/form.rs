@@ -245,7 +245,7 @@ fn next_generation_mark(ui: &mut egui::Ui) {
     response.on_hover_text("A change takes effect from the next generation");
 }
 
-/// What stands in a setting's tooltip: what it does, what may be typed, when a change takes effect.
+/// Text of a setting's tooltip: its effect, its range, and when a change takes effect.
 fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     let mut hint = format!("{}.", setting.hint.trim_end_matches('.'));
     let allowed = setting.range_in_words();
@@ -258,7 +258,7 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     hint
 }
 
-/// What asks for a new value.
+/// The command that sets a new value.
 fn set(field: &str, text: &str) -> Command {
     match text.parse() {
         Ok(population) if field == "evolution.population" => Command::SetPopulation(population),
