@@ -205,7 +205,7 @@ mod tests {
         let ice = Command::SetPreset("ice".to_owned());
         assert_eq!(sent("preset ice", press), [Command::CloseModal, ice]);
         assert_eq!(sent("grip", press), [Command::CloseModal, Command::BeginLesson(0)]);
-        let setting = Command::FindSetting("Slip");
+        let setting = Command::FindSetting("Creep (slip)");
         assert_eq!(sent("setting slip", press), [Command::CloseModal, setting]);
         assert_eq!(sent("no such thing", press), []);
     }

@@ -285,11 +285,17 @@ mod tests {
         let listed = all.iter().find(|listed| listed.path == "evolution.generations");
         let generations = &listed.expect("a setting").setting;
         let said = hint(generations, Some(Ok(())));
-        assert!(said.starts_with("Generations in a run."), "{said}");
+        assert!(said.starts_with("Number of generations in a run."), "{said}");
         assert!(said.contains("\nAllowed: 1 to 10000, whole numbers."), "{said}");
         assert!(said.ends_with("\nTakes effect from the next generation."), "{said}");
-        let said = hint(generations, Some(Err("The map is laid out by it; the next run takes it")));
-        assert!(said.ends_with("\nThe map is laid out by it; the next run takes it."), "{said}");
+        let said = hint(
+            generations,
+            Some(Err("Takes effect with the next run, because the archive depends on it")),
+        );
+        assert!(
+            said.ends_with("\nTakes effect with the next run, because the archive depends on it."),
+            "{said}"
+        );
         assert!(!hint(generations, None).contains("next"), "no run is under way");
     }
 }

@@ -256,7 +256,7 @@ fn one_value_becomes_a_list_and_back() {
     let commands = clicked(&run, width, switch);
     assert_eq!(commands, [set(width, "1.5")]);
     let torque = "trial.agent.max_bend_torque_nm";
-    let commands = clicked(&run, torque, "Largest bend torque: joint by joint");
+    let commands = clicked(&run, torque, "Maximum bend torque: joint by joint");
     assert_eq!(commands, [set(torque, "[1000, 1000, 1000, 1000]")]);
 }
 
