@@ -27,7 +27,7 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 /// Shown when the user leaves a what-if without discarding the change.
-const CHANGE_STAYS: &str = "The next run keeps the change: see the World tab.";
+const CHANGE_STAYS: &str = "The next run keeps the change: see the World panel.";
 
 /// Executes the commands in the order in which they were sent.
 fn apply(
@@ -193,7 +193,7 @@ fn apply(
     }
     let (undoable, redoable) = library.counts();
     if history.agree_with_library(undoable, redoable) > 0 {
-        // Something else was done since: it cannot be done again in its place.
+        // A newer change has cleared the redo stack here, so clear the library's as well.
         library.forget_undone();
     }
 }
@@ -387,7 +387,7 @@ mod tests {
         app.world_mut().write_message_batch(commands);
         app.update();
         assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "one show request");
-        assert!(!app.world().resource::<Playback>().is_playing(), "and held");
+        assert!(!app.world().resource::<Playback>().is_playing(), "and paused");
     }
 
     #[test]

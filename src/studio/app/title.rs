@@ -53,13 +53,13 @@ fn update(
             format!("{what}{manner}{disturbed}")
         }
     };
-    let held = match playback.is_playing() {
+    let stopped = match playback.is_playing() {
         true => String::new(),
-        false => format!(", held at {:.2} s", playback.time_s()),
+        false => format!(", stopped at {:.2} s", playback.time_s()),
     };
     let from = evolution.founder().map(|name| format!(", from {name}")).unwrap_or_default();
     let title = format!(
-        "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{held}",
+        "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{stopped}",
         evolution.preset(),
         evolution.seed(),
         evolution.reports().len(),

@@ -81,10 +81,9 @@ impl ChampionsPanel {
         area.show_rows(ui, height, rows, |ui, seen| {
             for index in seen {
                 if let Some(saved) = opening.get(index) {
-                    let name = if opening.len() == 1 { "Saved champion" } else { &saved.name };
                     let is_shown = shown.contains(&ShownChampion::Opening(index));
                     let champion = &saved.loaded.champion;
-                    entry(ui, is_shown, name, champion, Pick::Opened(index), None, commands);
+                    entry(ui, is_shown, &saved.name, champion, Pick::Opened(index), None, commands);
                     continue;
                 }
                 // The newest generation is listed first.

@@ -369,7 +369,7 @@ impl CurrentRun {
                 let evaluator = Arc::clone(&self.engine.evaluator);
                 self.engine.set_run_folder(Some(source.folder.clone()));
                 BackgroundRun::start(source, evaluator, self.before.take())
-                    .map_err(|error| format!("evolution could not be started: {error}"))?
+                    .map_err(|error| format!("Evolution could not be started: {error}"))?
             }
         };
         Ok(self.background.insert(background))

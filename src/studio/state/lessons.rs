@@ -207,8 +207,9 @@ impl Lessons {
                 current.lanes.clear();
                 current.runs = runs.iter().map(found).collect();
                 let started = ParallelRuns::start(plans);
-                current.under_way =
-                    Some(started.map_err(|error| format!("The runs cannot begin: {error}"))?);
+                current.under_way = Some(
+                    started.map_err(|error| format!("The runs could not be started: {error}"))?,
+                );
                 Ok(None)
             }
         }
@@ -227,7 +228,7 @@ impl Lessons {
                 }
                 ParallelRunsEvent::Failed(problem) => {
                     current.under_way = None;
-                    return Err(format!("The lesson's runs broke off: {problem}"));
+                    return Err(format!("The lesson's runs failed: {problem}"));
                 }
             }
         }

@@ -210,24 +210,23 @@ impl Library {
         way: UndoDirection,
     ) -> Result<Option<String>, String> {
         self.look_again();
-        let verb = if way == UndoDirection::Back { "Undone" } else { "Done again" };
         let Some(change) = result? else { return Ok(None) };
+        let done = undone_in_words(way, &change);
         let elsewhere = change.steps.iter().filter_map(|step| match step {
             FileStep::Restored { wanted, to } if wanted != to => {
                 let [wanted, to] = [wanted, to].map(|path| name_of(path));
-                Some(format!(" The name {wanted} is taken by now: it is called {to}."))
+                Some(format!(" The name {wanted} was taken, so the new name is {to}."))
             }
             _ => None,
         });
         let mut elsewhere: Vec<String> = elsewhere.collect();
         if elsewhere.len() > MOST_AT_ONCE {
             let count = elsewhere.len();
-            elsewhere =
-                vec![format!(" {count} names are taken by now: those have a number added.")];
+            elsewhere = vec![format!(" {count} names were taken, so a number was added to them.")];
         }
         let elsewhere = elsewhere.concat();
         self.point_out(change.steps.iter().find_map(FileStep::place));
-        Ok(Some(format!("{verb}: {}.{elsewhere}", change.words)))
+        Ok(Some(format!("{done}.{elsewhere}")))
     }
 
     fn look_again(&self) {
@@ -280,6 +279,21 @@ impl Library {
     }
 }
 
+/// Message after an undo or redo of a change.
+fn undone_in_words(way: UndoDirection, change: &LibraryChange) -> String {
+    let restored = change.steps.iter().map(|step| match step {
+        FileStep::Restored { wanted, .. } => Some(name_of(wanted)),
+        _ => None,
+    });
+    match (way, restored.collect::<Option<Vec<String>>>()) {
+        (UndoDirection::Back, Some(names)) if !names.is_empty() => {
+            format!("{} restored", words::listed(&names))
+        }
+        (UndoDirection::Back, _) => format!("Undone: {}", change.words),
+        (UndoDirection::Forth, _) => format!("Redone: {}", change.words),
+    }
+}
+
 fn name_of(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
@@ -326,7 +340,7 @@ mod tests {
         assert_eq!(own(&mut library), ["b"]);
         assert_eq!(library.undoable(), Some("deleted 2 saves"));
         let said = library.step(UndoDirection::Back).expect("undone").expect("something");
-        assert_eq!(said, "Undone: deleted 2 saves.");
+        assert_eq!(said, "2 saves restored.");
         assert_eq!(own(&mut library), ["a", "b", "c"]);
         assert_eq!((library.undoable(), library.redoable()), (None, Some("deleted 2 saves")));
         library.step(UndoDirection::Forth).expect("redone");
@@ -341,7 +355,7 @@ mod tests {
         library.apply(&LibraryCommand::Delete(vec![a]), &mut Notices::default()).expect("deleted");
         std::fs::write(folder.path().join("a.ron"), "another").expect("written");
         let said = library.step(UndoDirection::Back).expect("undone").expect("something");
-        assert_eq!(said, "Undone: deleted a. The name a is taken by now: it is called a 2.");
+        assert_eq!(said, "a restored. The name a was taken, so the new name is a 2.");
         let (count, newest) = library.newest();
         assert_eq!((count, newest.map(SavePlace::name)), (1, Some("a 2".to_owned())));
     }

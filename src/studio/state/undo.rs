@@ -20,6 +20,9 @@ pub(crate) use follow::followed;
 /// Maximum number of steps that can be undone.
 const MOST_STEPS: usize = 200;
 
+/// Subject of the step that discards the changes of a what-if.
+const DISCARD: &str = "discard";
+
 /// Subject of the step that resumes another run.
 const CONTINUE: &str = "continue";
 
@@ -76,8 +79,13 @@ pub(crate) enum UndoDirection {
 impl UndoDirection {
     /// Message after a step.
     pub fn taken(self, step: &UndoStep) -> String {
-        let done = if self == Self::Back { "Undone" } else { "Redone" };
-        format!("{done}: {}", step.label())
+        match (self, step) {
+            (Self::Back, UndoStep::Plan { subject, .. }) if subject == DISCARD => {
+                "Changes restored".to_owned()
+            }
+            (Self::Back, _) => format!("Undone: {}", step.label()),
+            (Self::Forth, _) => format!("Redone: {}", step.label()),
+        }
     }
 
     /// Message if there is no step.
@@ -247,7 +255,7 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
         Command::SetSeed(seed) => ("seed".to_owned(), format!("seed {seed}")),
         Command::SetPreset(name) => ("preset".to_owned(), format!("preset {name}")),
         Command::StorePreset(name) => ("preset".to_owned(), format!("preset {name}")),
-        Command::DropChange => ("drop".to_owned(), "discarded changes".to_owned()),
+        Command::DropChange => (DISCARD.to_owned(), "discarded changes".to_owned()),
         Command::StartFrom(_) | Command::Library(LibraryCommand::StartFrom(_)) => {
             let name = after.founder.as_ref().map_or("a champion", |founder| founder.name());
             ("founder".to_owned(), format!("start of the next run from {name}"))

@@ -85,7 +85,7 @@ pub(crate) fn what_if(
     };
     let changed = original.in_world(&trial, label);
     changed.check().map_err(|reason| {
-        format!("What is on show stays in its own world, the new one does not suit it: {reason}")
+        format!("The snake on the stage stays in its world, because it does not fit the new one: {reason}")
     })?;
     let champions = vec![original.clone(), changed];
     Ok(Some(Show { champions, mode: StageMode::WhatIf { before } }))

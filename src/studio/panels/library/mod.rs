@@ -167,7 +167,7 @@ impl LibraryPanel {
         if rows.is_empty() {
             let text = match (library.problem(), library.is_listed(), self.search.is_empty()) {
                 (Some(problem), ..) => problem,
-                (_, false, _) => "Loading ...",
+                (_, false, _) => "Loading…",
                 (_, true, true) => "There are no saves yet.",
                 (_, true, false) => "No save matches all of these words.",
             };

@@ -200,10 +200,10 @@ mod tests {
     #[test]
     fn each_button_of_the_player_sends_its_command() {
         for (label, command) in [
-            ("From the start", Command::Restart),
-            ("Step back", Command::Step { forward: false }),
+            ("Go to start", Command::Restart),
+            ("Previous step", Command::Step { forward: false }),
             ("Pause playback", Command::TogglePlayback),
-            ("Step forward", Command::Step { forward: true }),
+            ("Next step", Command::Step { forward: true }),
             ("Loop", Command::ToggleLoop),
         ] {
             assert_eq!(sent(900.0, |harness| harness.get_by_label(label).click()), [command]);

@@ -36,7 +36,7 @@ impl Sheet {
             list.response
                 .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, said));
             let sentence = chosen.map_or("", |choice| &choice.sentence);
-            list.response.on_hover_text(format!("{}\n\nNow: {sentence}", shown.hint));
+            list.response.on_hover_text(format!("{}\n\nSelected: {sentence}", shown.hint));
             requested
         })
     }

@@ -132,7 +132,7 @@ impl Sheet {
             return;
         }
         let name = self.values.preset_name();
-        let hint = format!("All of \"{}\" back to what the preset {name} has", section.title);
+        let hint = format!("Reset all settings of \"{}\" to the preset {name}", section.title);
         if ui.small_button("Reset section").on_hover_text(hint).clicked() {
             commands.push(Command::SetFields(back));
         }
@@ -175,10 +175,10 @@ impl Sheet {
     pub(super) fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let preset = self.values.changed_from(shown.field)?.to_owned();
         let in_words = match preset.as_str() {
-            "none" => "each snake's own",
+            "none" => "off",
             other => other,
         };
-        let hint = format!("Back to {in_words}, the preset's value");
+        let hint = format!("Reset to the preset's value: {in_words}");
         let label = format!("Reset {}", shown.setting.label);
         small_icon_button(ui, Icon::Reset, &label, &hint).clicked().then_some(preset)
     }

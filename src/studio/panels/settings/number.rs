@@ -63,7 +63,7 @@ impl Sheet {
                     requested
                 }
                 Part::Control if !is_given => {
-                    weak(ui, "each snake's own");
+                    weak(ui, "off: each snake has its own");
                     None
                 }
                 Part::Control if each.is_some() => {
@@ -305,9 +305,9 @@ fn number_name(
         let is_each = each.is_some();
         let of_what = if matches!(range.parts, Parts::Limbs(_)) { "limb" } else { "joint" };
         let hint = if is_each {
-            format!("Back to one value for every {of_what}: that of the first")
+            format!("Use the value of the first {of_what} for all")
         } else {
-            format!("A value of its own for each {of_what}")
+            format!("Set each {of_what} separately")
         };
         let switch = ui.selectable_label(is_each, "each").on_hover_text(hint);
         let (is_on, said) =

@@ -79,7 +79,8 @@ fn take_in(
                 let generations = evolution.settings().evolution.generations;
                 let last = behind.last().filter(|last| last.generation < generations);
                 if let Some(last) = last {
-                    notices.info(format!("The run goes on after generation {}.", last.generation));
+                    notices
+                        .info(format!("The run continues after generation {}.", last.generation));
                 }
                 let champions = behind.iter().filter_map(|report| report.champion.as_ref());
                 let fitness = |champion: &&Champion| champion.evaluation.fitness;
@@ -88,7 +89,7 @@ fn take_in(
                 evolution.reports = behind;
             }
             RunEvent::Refused(problem) => {
-                notices.problem(format!("Nothing is evolved: {problem}"));
+                notices.problem(format!("The run cannot start: {problem}"));
                 evolution.background = None;
                 evolution.engine.set_run_folder(None);
             }
@@ -98,7 +99,7 @@ fn take_in(
             }
             RunEvent::SettingNotChanged { field, reason } => {
                 evolution.await_as_it_is(&field);
-                notices.problem(format!("The run keeps its {field}: {reason}"));
+                notices.problem(format!("{field} was not changed in the current run: {reason}"));
             }
             RunEvent::Explored(exploration) => evolution.explore(exploration),
             RunEvent::Generation(report) => {

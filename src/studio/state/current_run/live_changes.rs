@@ -29,11 +29,11 @@ impl CurrentRun {
     /// Whether the current run accepts changes of settings at all. The error is a sentence for a tooltip.
     pub fn takes_changes(&self) -> Result<(), &'static str> {
         if self.is_lent {
-            return Err("A lesson is going on, and your own run waits.");
+            return Err("A lesson is open and your own run is paused.");
         }
         if !self.next_is_own {
             return Err(
-                "The run under way keeps its own: the next run's settings are of another preset or run.",
+                "Takes effect with the next run, because these settings come from another preset or run.",
             );
         }
         Ok(())
@@ -127,7 +127,8 @@ impl CurrentRun {
         let plan = settings
             .check()
             .and_then(|()| RunPlan::new(&next.preset, next.seed, settings).starting_from(founder));
-        self.engine.next = plan.map_err(|error| format!("No run can begin from it: {error}"))?;
+        self.engine.next =
+            plan.map_err(|error| format!("No run can start from this champion: {error}"))?;
         self.take_over_if_ready()
     }
 

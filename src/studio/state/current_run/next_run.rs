@@ -76,7 +76,7 @@ impl CurrentRun {
 
     fn plan_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
         plan.check_founder().map_err(|error| {
-            format!("The next run begins from a champion, whom this does not suit: {error}")
+            format!("The champion from which the next run starts does not fit: {error}")
         })?;
         let before = std::mem::replace(&mut self.engine.next, plan);
         let next = &self.engine.next;
@@ -128,7 +128,7 @@ impl CurrentRun {
     /// Stores the next run's settings as a user preset, which becomes the next run's preset.
     pub fn store_preset(&mut self, name: &str) -> Result<(), String> {
         let next = &self.engine.next;
-        let about = format!("Your own; it began as {}.", next.preset);
+        let about = format!("Your own preset, based on {}.", next.preset);
         let preset = Preset { name: name.to_owned(), about, settings: next.settings.clone() };
         self.engine.saves.store_own_preset(&preset).map_err(|error| error.to_string())?;
         self.list_presets();

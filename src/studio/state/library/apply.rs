@@ -77,7 +77,7 @@ impl Library {
             }
             LibraryCommand::Delete(places) => {
                 if let Some(words) = self.each(DELETED, places, delete)? {
-                    notices.info(format!("{}. Ctrl Z brings it back", capital(&words)));
+                    notices.info(format!("{}. Press Ctrl Z to undo.", capital(&words)));
                 }
             }
             LibraryCommand::Export { places, to } => {
@@ -129,7 +129,7 @@ impl Library {
             return load().map(Some);
         }
         let task = BackgroundTask::start(load);
-        self.loading = Some(task.map_err(|error| format!("Nothing was read: {error}"))?);
+        self.loading = Some(task.map_err(|error| format!("The save could not be read: {error}"))?);
         Ok(None)
     }
 

@@ -41,7 +41,7 @@ impl BatchTask {
         match self {
             Self::Act(verb) => verb.doing,
             Self::Undo(UndoDirection::Back, _) => "Undoing",
-            Self::Undo(UndoDirection::Forth, _) => "Doing again",
+            Self::Undo(UndoDirection::Forth, _) => "Redoing",
         }
     }
 }
@@ -97,7 +97,7 @@ impl Library {
     /// Reason why no other operation can begin now, if any: undo steps must keep their order.
     pub fn busy(&self) -> Option<String> {
         let words = self.under_way().next()?.0;
-        Some(format!("{words} saves goes on: wait until that is done, or cancel it first"))
+        Some(format!("{words} saves is in progress: wait for it, or cancel it"))
     }
 
     pub(super) fn refuse_while_busy(&self) -> Result<(), String> {
@@ -118,7 +118,7 @@ impl Library {
         leave: impl Fn(I) -> BatchOutcome + Send + 'static,
     ) -> Result<(), String> {
         let batch = BackgroundTask::for_each(things, act, leave)
-            .map_err(|error| format!("{} saves could not begin: {error}", task.doing()))?;
+            .map_err(|error| format!("{} saves could not be started: {error}", task.doing()))?;
         self.errands.push(BatchJobs { task, batch });
         Ok(())
     }
@@ -131,7 +131,7 @@ impl Library {
         steps.reverse();
         let said = format!(
             "{} of {}: {words}",
-            if way == UndoDirection::Back { "Undoing" } else { "Doing again" },
+            if way == UndoDirection::Back { "Undoing" } else { "Redoing" },
             steps.len()
         );
         let saves = self.saves.clone();
@@ -156,7 +156,7 @@ impl Library {
                 Some(Ok(outcomes)) => self.take_back(task, outcomes, notices),
                 Some(Err(problem)) => {
                     let doing = task.doing();
-                    notices.problem(format!("{doing} saves ended by an error: {problem}"));
+                    notices.problem(format!("{doing} saves failed: {problem}"));
                     self.look_again();
                 }
             }
@@ -183,11 +183,11 @@ impl Library {
         let more = problems.len().saturating_sub(MOST_PROBLEMS);
         problems.into_iter().take(MOST_PROBLEMS).for_each(|problem| notices.problem(problem));
         if more > 0 {
-            notices.problem(format!("{more} more could not be dealt with."));
+            notices.problem(format!("{more} more saves failed."));
         }
         let cancelled = match cancelled {
             0 => String::new(),
-            number => format!(" Cancelled: {number} of {total} were left."),
+            number => format!(" Cancelled: {number} of {total} remain."),
         };
         match task {
             BatchTask::Undo(way, words) => {
@@ -233,7 +233,7 @@ fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
 /// End of the sentence that says where the saves are now.
 fn ending(verb: Verb, first: &FileStep) -> String {
     if verb == DELETED {
-        return ". Ctrl Z brings it back.".to_owned();
+        return ". Press Ctrl Z to undo.".to_owned();
     }
     let place = first.place();
     let folder = place.as_ref().and_then(|place| place.path()?.parent());
@@ -271,9 +271,9 @@ mod tests {
         let (_folder, mut library, places) = of_many(300);
         let mut notices = Notices::default();
         library.apply(&LibraryCommand::Delete(places), &mut notices).expect("begun");
-        assert!(library.under_way().next().expect("it goes on").0.starts_with("Deleting "));
-        let refusal = library.step(UndoDirection::Back).expect_err("it goes on");
-        assert!(refusal.contains("of 300 saves goes on"), "{refusal}");
+        assert!(library.under_way().next().expect("in progress").0.starts_with("Deleting "));
+        let refusal = library.step(UndoDirection::Back).expect_err("in progress");
+        assert!(refusal.contains("of 300 saves is in progress"), "{refusal}");
         wait(&mut library, &mut notices);
         assert!(own(&mut library).is_empty());
         assert_eq!(library.undoable(), Some("deleted 300 saves"));

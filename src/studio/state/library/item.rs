@@ -62,7 +62,7 @@ impl LibraryItem {
 
     fn describe(&mut self) {
         let kind = match self.place() {
-            SavePlace::Shipped(_) => "champion comes with the program",
+            SavePlace::Shipped(_) => "champion built-in",
             SavePlace::Champion(_) => "champion",
             SavePlace::Run(_) => "run",
         };
@@ -177,10 +177,10 @@ impl LibraryItem {
         self.champion().map(|of| &of.thumbnail).or(self.run().map(|of| &of.thumbnail))
     }
 
-    /// Modification date, or "comes with the program".
+    /// Modification date, or "built-in".
     pub fn date_text(&self) -> String {
         match self.place() {
-            SavePlace::Shipped(_) => "comes with the program".to_owned(),
+            SavePlace::Shipped(_) => "built-in".to_owned(),
             SavePlace::Champion(_) | SavePlace::Run(_) => date(self.entry.modified),
         }
     }
@@ -258,12 +258,12 @@ mod tests {
             item
         };
         let good = item(true);
-        for sought in ["fast", "climb", "gait", "program"] {
+        for sought in ["fast", "climb", "gait", "built-in"] {
             assert!(good.has_all(&[sought]), "{sought}");
         }
         assert!(good.has_all(&["gait", "fas"]) && !good.has_all(&["gait", "slow"]));
         assert!(!good.has_all(&["damaged"]));
-        assert_eq!(good.label(), "fast, 24.05 m, climb, generation 95, comes with the program");
+        assert_eq!(good.label(), "fast, 24.05 m, climb, generation 95, built-in");
         let bad = item(false);
         assert!(bad.has_all(&["damaged"]) && !bad.has_all(&["climb"]));
         assert_eq!(bad.label(), "fast, damaged: cut off");

@@ -48,7 +48,9 @@ pub(crate) fn followed(
 }
 
 fn unsuited(reason: &str) -> String {
-    format!("What is on show stays in its own world, the new one does not suit it: {reason}")
+    format!(
+        "The snake on the stage stays in its world, because it does not fit the new one: {reason}"
+    )
 }
 
 /// The world on the stage with the differences between two plans applied. A setting that returns to its value from the
