@@ -160,7 +160,7 @@ pub(crate) const ACTIONS: &[Action] = &[
         Some(Command::ToggleOverlay(Overlay::Wireframe))
     }),
     action(Menu::View, "Anti-aliasing", &["A"], |_| Some(Command::ToggleSmoothEdges)),
-    action(Menu::View, "Light / dark theme", &["T"], |_| Some(Command::ToggleTheme)),
+    action(Menu::View, "Dark theme", &["T"], |_| Some(Command::ToggleTheme)),
     action(Menu::View, "Larger panels", &["Ctrl +", "Ctrl ="], |_| {
         Some(Command::ChangeScale { larger: true })
     }),

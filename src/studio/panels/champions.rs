@@ -64,7 +64,7 @@ impl ChampionsPanel {
                 ),
             ] {
                 let button = egui::Button::new(name);
-                let disabled_hint = "Nothing to race yet: wait for the next generation";
+                let disabled_hint = "Nothing to race yet: finish a generation first";
                 let response = ui.add_enabled(is_on, button).on_hover_text(hint);
                 if response.on_disabled_hover_text(disabled_hint).clicked() {
                     commands.push(command);

@@ -168,7 +168,9 @@ fn draw(
         egui::Panel::top("menu").frame(egui::Frame::new().fill(fill).inner_margin(margin)).show(
             &mut root,
             |ui| {
-                menu(ui, situation, &format!("{preset}, seed {seed}"), viewer.commands);
+                let is_on = |command: &Command| data.on_stage.is_on(command, *data.theme);
+                let about = format!("{preset}, seed {seed}");
+                menu(ui, situation, &is_on, &about, viewer.commands);
             },
         );
         let style = style(&root);
