@@ -31,7 +31,7 @@ impl Disqualification {
             Self::JointBroke => "a joint came apart",
             Self::TooFast => "it exceeded the speed limit",
             Self::LeftArena => "it left the arena",
-            Self::Crashed => "the program failed on it",
+            Self::Crashed => "its simulation failed",
         }
     }
 }
