@@ -32,7 +32,7 @@ const CHANGE_STAYS: &str = "The next run keeps the change: see the World panel."
 /// Executes the commands in the order in which they were sent.
 fn apply(
     mut commands: MessageReader<Command>,
-    mut evolution: ResMut<CurrentRun>,
+    mut run: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,
     mut history: ResMut<UndoHistory>,
     mut exit: MessageWriter<AppExit>,
@@ -43,41 +43,41 @@ fn apply(
     mut stage: StageParams,
 ) {
     for command in commands.read() {
-        let before = evolution.next_plan().clone();
+        let before = run.next_plan().clone();
         let done = match command {
             command if lessons.view().is_some() && changes_own_run(command) => {
                 Err(LESSON.to_owned())
             }
             Command::Start => {
-                if evolution.status() == RunStatus::Finished {
+                if run.status() == RunStatus::Finished {
                     stage.settle();
                 }
-                evolution.start()
+                run.start()
             }
-            Command::Pause => evolution.pause(),
-            Command::SingleGeneration => evolution.single_generation(),
+            Command::Pause => run.pause(),
+            Command::SingleGeneration => run.single_generation(),
             Command::Reset => {
                 stage.settle();
-                evolution.reset()
+                run.reset()
             }
-            Command::SetSeed(seed) => evolution.set_seed(*seed),
-            Command::SetPopulation(population) => evolution.set_population(*population),
+            Command::SetSeed(seed) => run.set_seed(*seed),
+            Command::SetPopulation(population) => run.set_population(*population),
             Command::Continue(folder) => {
                 stage.settle();
-                evolution.go_on_with(folder)
+                run.go_on_with(folder)
             }
-            Command::ListRuns => evolution.list_runs(),
-            Command::Compare(folder) => evolution.compare_with(folder),
-            Command::ExportChart(chart) => evolution.export(chart).map(|path| {
+            Command::ListRuns => run.list_runs(),
+            Command::Compare(folder) => run.compare_with(folder),
+            Command::ExportChart(chart) => run.export(chart).map(|path| {
                 notices.info(format!("Chart saved to {}", path.display()));
             }),
             Command::SetField { field, text } => {
-                stage.try_out(&mut evolution, &WorldChange::Field { field, text })
+                stage.try_out(&mut run, &WorldChange::Field { field, text })
             }
-            Command::SetThreads(threads) => evolution.set_threads(*threads),
-            Command::StartFrom(pick) => match champion_of(pick, &evolution, &opening) {
+            Command::SetThreads(threads) => run.set_threads(*threads),
+            Command::StartFrom(pick) => match champion_of(pick, &run, &opening) {
                 Some(founder) => {
-                    let found = evolution.found_run(founder.champion(), founder.name());
+                    let found = run.found_run(founder.champion(), founder.name());
                     if found.is_ok() {
                         notices.info(format!("The next run starts from {}.", founder.name()));
                     }
@@ -85,14 +85,12 @@ fn apply(
                 }
                 None => Ok(()),
             },
-            Command::ForgetFounder => evolution.forget_founder(),
-            Command::SetFields(changes) => {
-                stage.try_out(&mut evolution, &WorldChange::Fields(changes))
-            }
-            Command::SetPreset(name) => stage.try_out(&mut evolution, &WorldChange::Preset(name)),
-            Command::StorePreset(name) => evolution.store_preset(name),
+            Command::ForgetFounder => run.forget_founder(),
+            Command::SetFields(changes) => stage.try_out(&mut run, &WorldChange::Fields(changes)),
+            Command::SetPreset(name) => stage.try_out(&mut run, &WorldChange::Preset(name)),
+            Command::StorePreset(name) => run.store_preset(name),
             Command::ListPresets => {
-                evolution.list_presets();
+                run.list_presets();
                 Ok(())
             }
             // A running batch operation is not on the undo stack yet, and an earlier step would be the wrong one.
@@ -114,7 +112,7 @@ fn apply(
                     let said =
                         step.as_ref().map_or(way.nothing().to_owned(), |step| way.taken(step));
                     notices.info(said);
-                    step.map_or(Ok(()), |step| stage.step(&mut evolution, &step, way))
+                    step.map_or(Ok(()), |step| stage.step(&mut run, &step, way))
                 }
             }
             Command::Library(request @ (LibraryCommand::Undo | LibraryCommand::Redo)) => {
@@ -131,8 +129,8 @@ fn apply(
             }
             Command::Library(LibraryCommand::StartFrom(place)) => {
                 stage.settle();
-                found_run(&mut evolution, place, library.best_of(place))
-                    .and_then(|()| evolution.begin_next())
+                found_run(&mut run, place, library.best_of(place))
+                    .and_then(|()| run.begin_next())
                     .map(|()| notices.info(format!("A run started from {}.", place.name())))
             }
             Command::Library(request) => library.apply(request, &mut notices).map(|show| {
@@ -141,12 +139,12 @@ fn apply(
                 }
                 stage.present(show);
             }),
-            Command::DropChange => stage.drop_change(&mut evolution),
+            Command::DropChange => stage.drop_change(&mut run),
             Command::BeginLesson(index) => {
                 workspace.is_bare = false;
                 workspace.layout.open(PanelKind::Lessons);
                 let on_show = stage.on_show();
-                let shown = lessons.begin(*index, &mut evolution, on_show, &mut history);
+                let shown = lessons.begin(*index, &mut run, on_show, &mut history);
                 shown.map(|show| stage.present(show))
             }
             Command::ShowLessonScene(scene) => {
@@ -161,7 +159,7 @@ fn apply(
                 Ok(())
             }
             Command::LeaveLesson => {
-                let shown = lessons.leave(&mut evolution, &mut history);
+                let shown = lessons.leave(&mut run, &mut history);
                 shown.map(|show| stage.present(show))
             }
             Command::Quit => {
@@ -170,14 +168,14 @@ fn apply(
             }
             command if apply_to_workspace(command, &mut workspace) => Ok(()),
             command => {
-                let shown = on_stage(command, &mut stage, &evolution, &opening);
+                let shown = on_stage(command, &mut stage, &run, &opening);
                 if shown == Ok(true) && stage.leaves_change(command) {
                     notices.info(CHANGE_STAYS.to_owned());
                 }
                 shown.map(drop)
             }
         };
-        history.note(command, before, evolution.next_plan());
+        history.note(command, before, run.next_plan());
         notices.problems(done.err());
     }
     // Imports and exports finish some time after their command.

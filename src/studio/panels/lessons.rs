@@ -204,10 +204,10 @@ mod tests {
 
     #[test]
     fn lesson_buttons_run_an_experiment_show_the_conclusion_and_leave() {
-        let mut evolution = prepared_run();
+        let mut run = prepared_run();
         let mut of = Lessons::default();
         let on_show = Show { champions: Vec::new(), mode: StageMode::Solo };
-        of.begin(0, &mut evolution, on_show, &mut UndoHistory::default()).expect("allowed");
+        of.begin(0, &mut run, on_show, &mut UndoHistory::default()).expect("allowed");
         let second = LESSONS[0].scenes[1].label();
         assert_eq!(sent(&of, second), [Command::ShowLessonScene(1)]);
         assert_eq!(sent(&of, "Show conclusion"), [Command::ShowLessonAnswer]);

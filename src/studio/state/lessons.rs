@@ -106,7 +106,7 @@ impl Lessons {
     pub fn begin(
         &mut self,
         index: usize,
-        evolution: &mut CurrentRun,
+        run: &mut CurrentRun,
         Show { champions, mode }: Show,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
@@ -121,18 +121,18 @@ impl Lessons {
                 before.own
             }
             None => {
-                let pace = match evolution.status() {
-                    RunStatus::Running if evolution.is_single_generation() => Pace::OneGeneration,
+                let pace = match run.status() {
+                    RunStatus::Running if run.is_single_generation() => Pace::OneGeneration,
                     RunStatus::Running => Pace::Running,
                     RunStatus::Ready | RunStatus::Paused | RunStatus::Finished => Pace::Held,
                 };
-                evolution.pause()?;
-                evolution.lend(true);
-                let (next, history) = (evolution.next_plan().clone(), history.lend());
+                run.pause()?;
+                run.lend(true);
+                let (next, history) = (run.next_plan().clone(), history.lend());
                 Own { next, champions, mode, history, pace }
             }
         };
-        evolution.set_next_plan(own.next.clone())?;
+        run.set_next_plan(own.next.clone())?;
         self.current = Some(Current {
             index,
             scene: 0,
@@ -163,17 +163,17 @@ impl Lessons {
     /// Ends the lesson and restores stage, settings and run.
     pub fn leave(
         &mut self,
-        evolution: &mut CurrentRun,
+        run: &mut CurrentRun,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
         let Some(Current { own, .. }) = self.current.take() else { return Ok(None) };
-        evolution.set_next_plan(own.next)?;
-        evolution.lend(false);
+        run.set_next_plan(own.next)?;
+        run.lend(false);
         history.give_back(own.history);
         match own.pace {
-            Pace::Running if evolution.status() == RunStatus::Paused => evolution.start()?,
-            Pace::OneGeneration if evolution.status() == RunStatus::Paused => {
-                evolution.single_generation()?;
+            Pace::Running if run.status() == RunStatus::Paused => run.start()?,
+            Pace::OneGeneration if run.status() == RunStatus::Paused => {
+                run.single_generation()?;
             }
             Pace::Running | Pace::OneGeneration | Pace::Held => {}
         }
@@ -412,23 +412,21 @@ mod tests {
 
     #[test]
     fn after_a_lesson_stage_and_settings_are_as_they_were() {
-        let mut evolution = prepared_run();
+        let mut run = prepared_run();
         let own = champions("climber", &[lanes(0, 0)[1].clone()]).expect("it fits");
-        let next = evolution.next_plan().clone();
+        let next = run.next_plan().clone();
         let mut lessons = Lessons::default();
         let stage = |champions: Vec<StagedChampion>| Show { champions, mode: StageMode::Solo };
         let mut history = UndoHistory::default();
-        let shown = lessons.begin(0, &mut evolution, stage(own.clone()), &mut history);
+        let shown = lessons.begin(0, &mut run, stage(own.clone()), &mut history);
         assert_eq!(shown.expect("allowed").expect("a scene").champions.len(), 3);
-        evolution.set_field("surface.friction", "0.2").expect("allowed");
-        lessons.begin(1, &mut evolution, stage(Vec::new()), &mut history).expect("allowed");
-        assert_eq!(*evolution.next_plan(), next, "the next lesson starts with the user's settings");
-        evolution.set_field("surface.friction", "0.3").expect("allowed");
-        let back = lessons
-            .leave(&mut evolution, &mut history)
-            .expect("allowed")
-            .expect("the earlier stage");
-        assert_eq!(*evolution.next_plan(), next);
+        run.set_field("surface.friction", "0.2").expect("allowed");
+        lessons.begin(1, &mut run, stage(Vec::new()), &mut history).expect("allowed");
+        assert_eq!(*run.next_plan(), next, "the next lesson starts with the user's settings");
+        run.set_field("surface.friction", "0.3").expect("allowed");
+        let back =
+            lessons.leave(&mut run, &mut history).expect("allowed").expect("the earlier stage");
+        assert_eq!(*run.next_plan(), next);
         assert_eq!(back.mode, StageMode::Solo);
         assert_eq!(back.champions.len(), own.len());
         assert!(lessons.view().is_none());

@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_name_changes_nothing_and_the_next_change_forgets_what_was_undone() {
+    fn a_refused_name_changes_nothing_and_a_new_change_clears_the_redo_stack() {
         let (_folder, mut library) = library(&["a", "b"]);
         let mut notices = Notices::default();
         let mut named = |library: &mut Library, from: &str, to: &str| {

@@ -13,19 +13,19 @@ const CHOSEN_GENERATIONS: usize = 6;
 /// The champion that was picked; `None` if it is no longer kept.
 pub(crate) fn champion_of(
     pick: &Pick,
-    evolution: &CurrentRun,
+    run: &CurrentRun,
     opening: &OpeningChampions,
 ) -> Option<StagedChampion> {
-    let number = evolution.number();
+    let number = run.number();
     let found = |champion: &Champion| StagedChampion::from_run(champion, number);
     match *pick {
         Pick::Opened(index) => opening.staged(index),
-        Pick::Generation(generation) => evolution.champion_of(generation).map(found),
+        Pick::Generation(generation) => run.champion_of(generation).map(found),
         Pick::Front { generation, individual } => {
-            evolution.front_member(generation, individual).as_ref().map(found)
+            run.front_member(generation, individual).as_ref().map(found)
         }
-        Pick::Elite(cell) => evolution.elite(cell).as_ref().map(found),
-        Pick::Individual(place) => evolution.individual(place).as_ref().map(found),
+        Pick::Elite(cell) => run.elite(cell).as_ref().map(found),
+        Pick::Individual(place) => run.individual(place).as_ref().map(found),
     }
 }
 
@@ -55,13 +55,13 @@ pub(crate) fn with_one_more(
 
 /// The champions of the generations of the current run; of many, some at equal distances, the first and the last
 /// among them.
-pub(crate) fn all_generations(evolution: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
+pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
     let champions: Vec<&Champion> =
-        evolution.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
+        run.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
     if champions.len() < 2 {
         return Err("Nothing to race yet: finish two generations first.".to_owned());
     }
-    let number = evolution.number();
+    let number = run.number();
     let chosen = evenly_chosen(champions.len());
     Ok(chosen.map(|index| StagedChampion::from_run(champions[index], number)).collect())
 }
@@ -79,14 +79,14 @@ pub(super) fn evenly(count: usize, most: usize, few: usize) -> impl Iterator<Ite
 
 /// The best of a generation, or of the latest one.
 pub(crate) fn leaders(
-    evolution: &CurrentRun,
+    run: &CurrentRun,
     generation: Option<u32>,
 ) -> Result<Vec<StagedChampion>, String> {
-    let leaders = evolution.leaders(generation);
+    let leaders = run.leaders(generation);
     if leaders.len() < 2 {
         return Err("Nothing to race yet: finish a generation first.".to_owned());
     }
-    let number = evolution.number();
+    let number = run.number();
     let names = (1..).map(|rank| format!("No. {rank}"));
     let champions = leaders.iter().zip(names);
     Ok(champions

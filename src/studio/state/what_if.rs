@@ -28,19 +28,19 @@ pub(crate) enum WorldChange<'a> {
 /// Applies a change to the next run. Returns the first champion on the stage, unchanged and in the changed world;
 /// `None` if the change does not affect it.
 pub(crate) fn what_if(
-    evolution: &mut CurrentRun,
+    run: &mut CurrentRun,
     on_show: &[StagedChampion],
     mode: &StageMode,
     change: &WorldChange,
 ) -> Result<Option<Show>, String> {
     let before = match mode {
         StageMode::WhatIf { before } => before.clone(),
-        StageMode::Solo | StageMode::Race => Box::new(evolution.next_plan().clone()),
+        StageMode::Solo | StageMode::Race => Box::new(run.next_plan().clone()),
     };
     match change {
-        WorldChange::Field { field, text } => evolution.set_field(field, text)?,
-        WorldChange::Fields(changes) => evolution.set_fields(changes)?,
-        WorldChange::Preset(name) => evolution.set_preset(name)?,
+        WorldChange::Field { field, text } => run.set_field(field, text)?,
+        WorldChange::Fields(changes) => run.set_fields(changes)?,
+        WorldChange::Preset(name) => run.set_preset(name)?,
     }
     // Both lanes are simulated, so that only the change makes a difference.
     let Some(original) = on_show.first().map(StagedChampion::simulated) else { return Ok(None) };
@@ -50,7 +50,7 @@ pub(crate) fn what_if(
         StageMode::WhatIf { .. } => on_show.last().unwrap_or(original),
         StageMode::Solo | StageMode::Race => original,
     };
-    let next = evolution.next_settings();
+    let next = run.next_settings();
     let trial = match change {
         // Apply only this change, not other differences of the next run's world.
         WorldChange::Field { field, text } => {
@@ -93,12 +93,12 @@ pub(crate) fn what_if(
 
 /// Discards the changes.
 pub(crate) fn dropped(
-    evolution: &mut CurrentRun,
+    run: &mut CurrentRun,
     on_show: &[StagedChampion],
     mode: &StageMode,
 ) -> Result<Option<Show>, String> {
     let StageMode::WhatIf { before } = mode else { return Ok(None) };
-    evolution.undo_world(before)?;
+    run.undo_world(before)?;
     Ok(on_show.first().cloned().map(Show::solo))
 }
 

@@ -91,7 +91,7 @@ impl StageParams<'_, '_> {
     /// Shows the effect of a change beside the unchanged champion.
     pub(crate) fn try_out(
         &mut self,
-        evolution: &mut CurrentRun,
+        run: &mut CurrentRun,
         change: &WorldChange,
     ) -> Result<(), String> {
         let mut on_show = self.champions();
@@ -99,14 +99,14 @@ impl StageParams<'_, '_> {
             // In a race, the change applies to the selected lane.
             on_show.swap(0, self.selection.lane);
         }
-        let show = what_if(evolution, &on_show, &self.mode, change)?;
+        let show = what_if(run, &on_show, &self.mode, change)?;
         self.present(show);
         Ok(())
     }
 
     /// Discards a change: shows the unchanged champion and removes the change from the next run.
-    pub(crate) fn drop_change(&mut self, evolution: &mut CurrentRun) -> Result<(), String> {
-        let show = dropped(evolution, &self.champions(), &self.mode)?;
+    pub(crate) fn drop_change(&mut self, run: &mut CurrentRun) -> Result<(), String> {
+        let show = dropped(run, &self.champions(), &self.mode)?;
         self.present(show);
         Ok(())
     }
@@ -114,7 +114,7 @@ impl StageParams<'_, '_> {
     /// Undoes or redoes a step, and updates the stage.
     pub(crate) fn step(
         &mut self,
-        evolution: &mut CurrentRun,
+        run: &mut CurrentRun,
         step: &UndoStep,
         way: UndoDirection,
     ) -> Result<(), String> {
@@ -122,14 +122,14 @@ impl StageParams<'_, '_> {
             UndoStep::Plan { before, after, .. } => {
                 let (from, to) =
                     if way == UndoDirection::Back { (after, before) } else { (before, after) };
-                let now = evolution.next_plan().clone();
+                let now = run.next_plan().clone();
                 let next = stepped(&now, from, to);
                 if step.is_of_another_run() {
-                    evolution.set_next_plan_alone(next)?;
+                    run.set_next_plan_alone(next)?;
                 } else {
-                    evolution.set_next_plan(next)?;
+                    run.set_next_plan(next)?;
                 }
-                let next = evolution.next_plan();
+                let next = run.next_plan();
                 let show = followed(&self.champions(), &self.mode, &now, next)?;
                 self.present(show);
             }
@@ -144,25 +144,25 @@ impl StageParams<'_, '_> {
 pub(crate) fn on_stage(
     command: &Command,
     stage: &mut StageParams,
-    evolution: &CurrentRun,
+    run: &CurrentRun,
     opening: &OpeningChampions,
 ) -> Result<bool, String> {
     let (end_s, step_s) = (stage.end_s(), stage.step_s());
     let on_show = || stage.champions();
     let show = match command {
         // The individual may have been replaced since the click; then do nothing.
-        Command::Show(pick) => champion_of(pick, evolution, opening).map(Show::solo),
+        Command::Show(pick) => champion_of(pick, run, opening).map(Show::solo),
         Command::Join(pick) => {
             let mut on_show = on_show();
             if matches!(*stage.mode, StageMode::WhatIf { .. }) {
                 // The two lanes of a what-if show one champion.
                 on_show.truncate(1);
             }
-            let staged = champion_of(pick, evolution, opening);
+            let staged = champion_of(pick, run, opening);
             staged.map(|staged| with_one_more(on_show, staged)).transpose()?.flatten()
         }
-        Command::RaceGenerations => Some(Show::race(all_generations(evolution)?)),
-        Command::RaceLeaders(generation) => Some(Show::race(leaders(evolution, *generation)?)),
+        Command::RaceGenerations => Some(Show::race(all_generations(run)?)),
+        Command::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),
         Command::KeepChange => kept(&on_show(), &stage.mode),
         Command::Single if *stage.mode != StageMode::Race => None,
         Command::Single => on_show().into_iter().nth(stage.selection.lane).map(Show::solo),

@@ -19,8 +19,8 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// Evolution starts with the program.
-fn start_at_once(mut evolution: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
-    if let Err(problem) = evolution.start() {
+fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
+    if let Err(problem) = run.start() {
         notices.problem(problem);
     }
 }
@@ -28,30 +28,30 @@ fn start_at_once(mut evolution: ResMut<CurrentRun>, mut notices: ResMut<Notices>
 /// Handles events of the background run. A champion that beats all earlier ones and the one on the stage replaces it,
 /// unless the user is looking at something.
 fn take_in(
-    mut evolution: ResMut<CurrentRun>,
+    mut run: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,
     mut show: MessageWriter<Show>,
     lanes: Query<&Lane>,
     (mode, mut playback): (Res<StageMode>, ResMut<Playback>),
 ) {
-    evolution.others.take_in();
-    let Some(background) = &evolution.background else { return };
+    run.others.take_in();
+    let Some(background) = &run.background else { return };
     let events: Vec<RunEvent> = std::iter::from_fn(|| background.poll()).collect();
     // Most frames have no event; skip the search through all reports.
     if events.is_empty() {
         return;
     }
     // Fitness can only be compared within the same world.
-    let world = &evolution.settings().trial;
+    let world = &run.settings().trial;
     let rivals = lanes.iter().map(Lane::staged);
     let rivals = rivals.filter(|staged| staged.champion().trial == *world);
-    let champions = evolution.reports.iter().filter_map(|report| report.champion.as_ref());
+    let champions = run.reports.iter().filter_map(|report| report.champion.as_ref());
     let known = champions.map(|champion| champion.evaluation.fitness);
     let mut to_beat = rivals.map(StagedChampion::fitness).chain(known).fold(f32::MIN, f32::max);
     // Pausing, several lanes, or another world mean that the user is looking at something.
     let is_tried = |lane: &Lane| lane.staged().is_changed() && lane.trial() != world;
     let is_looked_at =
-        evolution.is_lent || *mode != StageMode::Solo || lanes.iter().any(Lane::is_disturbed);
+        run.is_lent || *mode != StageMode::Solo || lanes.iter().any(Lane::is_disturbed);
     let is_held = is_looked_at || !playback.is_playing() || lanes.iter().any(is_tried);
     let mut present = |champion: &Champion, number, notices: &mut Notices| {
         if champion.evaluation.fitness <= to_beat {
@@ -67,16 +67,16 @@ fn take_in(
             show.write(Show::solo(staged));
         }
     };
-    let number = evolution.number;
+    let number = run.number;
     for event in events {
         match event {
             RunEvent::Opened(opened) => {
                 let OpenedRun { plan_now, reports: behind, .. } = *opened;
-                evolution.take_in_opened_plan(plan_now);
+                run.take_in_opened_plan(plan_now);
                 // A later restart must not discard the run again.
-                evolution.source.earlier = ExistingRun::Keep;
-                evolution.discarded = None;
-                let generations = evolution.settings().evolution.generations;
+                run.source.earlier = ExistingRun::Keep;
+                run.discarded = None;
+                let generations = run.settings().evolution.generations;
                 let last = behind.last().filter(|last| last.generation < generations);
                 if let Some(last) = last {
                     notices
@@ -86,38 +86,38 @@ fn take_in(
                 let fitness = |champion: &&Champion| champion.evaluation.fitness;
                 let best = champions.max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
                 best.into_iter().for_each(|best| present(best, number, &mut notices));
-                evolution.reports = behind;
+                run.reports = behind;
             }
             RunEvent::Refused(problem) => {
                 notices.problem(format!("The run cannot start: {problem}"));
-                evolution.background = None;
-                evolution.engine.set_run_folder(None);
+                run.background = None;
+                run.engine.set_run_folder(None);
             }
             RunEvent::SettingChanged { change, plan_now } => {
                 notices.info(news_of(&change));
-                evolution.take_in_change(&change.field, *plan_now);
+                run.take_in_change(&change.field, *plan_now);
             }
             RunEvent::SettingNotChanged { field, reason } => {
-                evolution.await_as_it_is(&field);
+                run.await_as_it_is(&field);
                 notices.problem(format!("{field} was not changed in the current run: {reason}"));
             }
-            RunEvent::Explored(exploration) => evolution.explore(exploration),
+            RunEvent::Explored(exploration) => run.explore(exploration),
             RunEvent::Generation(report) => {
                 let champion = report.champion.iter();
                 champion.for_each(|champion| present(champion, number, &mut notices));
-                evolution.reports.push(*report);
+                run.reports.push(*report);
             }
             RunEvent::Finished { run_hash } => {
-                evolution.run_hash = Some(run_hash);
+                run.run_hash = Some(run_hash);
                 // Changes requested too late apply to the next run only.
-                evolution.await_no_change();
-                evolution.engine.set_run_folder(None);
+                run.await_no_change();
+                run.engine.set_run_folder(None);
                 notices.info("The run is finished; \"New run\" starts another.".to_owned());
             }
             RunEvent::Failed => {
                 let problem = "The run stopped because of a program error. Press E to resume from what was saved.";
                 notices.problem(problem.to_owned());
-                evolution.open_again();
+                run.open_again();
                 return;
             }
             RunEvent::NotSaved(problem) => {
@@ -238,8 +238,8 @@ mod tests {
             run.begin_next()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.seed(), evolution.reports().len()), (1, 3));
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.seed(), run.reports().len()), (1, 3));
     }
 
     #[test]
@@ -260,16 +260,16 @@ mod tests {
             run.change_running("evolution.halving.parents", "2")
         });
         wait_until(&mut app, |run| run.changes().len() == 2);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!(evolution.awaited, *evolution.settings());
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!(run.awaited, *run.settings());
     }
 
     #[test]
     fn a_second_run_without_changes_has_the_next_seed() {
         let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.begin_next());
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.number(), evolution.seed()), (1, 2));
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.number(), run.seed()), (1, 2));
     }
 
     #[test]
@@ -283,8 +283,8 @@ mod tests {
             run.start()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.reports().len(), evolution.changes().len()), (3, 1));
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.reports().len(), run.changes().len()), (3, 1));
     }
 
     #[test]
@@ -313,18 +313,18 @@ mod tests {
             run.start()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        let sizes: Vec<u32> = evolution.reports().iter().map(|report| report.evaluations).collect();
+        let run = app.world().resource::<CurrentRun>();
+        let sizes: Vec<u32> = run.reports().iter().map(|report| report.evaluations).collect();
         assert_eq!(sizes, [6, 4, 4, 4]);
         // Resumed by another session, it has the same hash and changes.
-        let (hash, folder) = (evolution.run_hash(), evolution.source.folder.clone());
+        let (hash, folder) = (run.run_hash(), run.source.folder.clone());
         drop(app);
         let mut app = studio(&saves);
         act(&mut app, |run| run.go_on_with(&folder));
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.run_hash(), evolution.changes().len()), (hash, 3));
-        assert_eq!(evolution.settings().evolution.generations, 4);
-        assert!(!evolution.next_run_differs(), "the next run is like this one");
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.run_hash(), run.changes().len()), (hash, 3));
+        assert_eq!(run.settings().evolution.generations, 4);
+        assert!(!run.next_run_differs(), "the next run is like this one");
     }
 }

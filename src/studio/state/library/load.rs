@@ -16,13 +16,9 @@ const LONGEST_LABEL: usize = 40;
 ///
 /// # Errors
 /// The champion cannot be read, or a run cannot begin with it.
-pub fn found_run(
-    evolution: &mut CurrentRun,
-    place: &SavePlace,
-    best: Option<u32>,
-) -> Result<(), String> {
+pub fn found_run(run: &mut CurrentRun, place: &SavePlace, best: Option<u32>) -> Result<(), String> {
     let (loaded, _) = load(place, best)?;
-    evolution.found_run(&loaded.champion, &place.name())
+    run.found_run(&loaded.champion, &place.name())
 }
 
 /// The champion of an entry, and its generation if the entry is a run. If the best generation is known, the run's log,

@@ -54,18 +54,18 @@ fn take_drops(
 /// Lists the folder again after each generation, and tracks which run is in progress.
 fn follow(
     mut library: ResMut<Library>,
-    evolution: Res<CurrentRun>,
+    run: Res<CurrentRun>,
     time: Res<Time<Real>>,
     mut seen: Local<(u32, usize)>,
     mut looked_s: Local<f32>,
 ) {
-    let goes_on = matches!(evolution.status(), RunStatus::Running | RunStatus::Paused);
-    let current = goes_on.then(|| evolution.folder());
+    let goes_on = matches!(run.status(), RunStatus::Running | RunStatus::Paused);
+    let current = goes_on.then(|| run.folder());
     if library.current.as_deref() != current {
         library.current = current.map(ToOwned::to_owned);
         library.revision += 1;
     }
-    let now = (evolution.number(), evolution.reports().len());
+    let now = (run.number(), run.reports().len());
     let now_s = time.elapsed_secs();
     if *seen != now && library.is_open() && now_s - *looked_s > EARLIEST_LOOK_S {
         (*seen, *looked_s) = (now, now_s);
