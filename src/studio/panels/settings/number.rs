@@ -327,5 +327,6 @@ fn number_name(
 }
 
 fn weak(ui: &mut egui::Ui, text: &str) {
-    ui.label(egui::RichText::new(text).color(theme::of(ui).text_weak));
+    let text = egui::RichText::new(text).color(theme::of(ui).text_weak);
+    ui.add(egui::Label::new(text).wrap());
 }
