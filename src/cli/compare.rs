@@ -49,7 +49,7 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     within("seeds", compared.seeds, 1..=10_000)?;
     let first_seed = args.seed()?;
     let last_seed = first_seed.checked_add(compared.seeds - 1).ok_or_else(|| {
-        Invalid::new("seed", first_seed, "a first seed with room for the others after it")
+        Invalid::new("seed", first_seed, "a first seed that leaves room for the others after it")
     })?;
     let mut plans = Vec::new();
     for &strategy in &strategies {

@@ -44,7 +44,7 @@ pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
         let champion = &loaded.champion;
         let origin = &champion.origin;
         let note = match (loaded.is_of_this_engine(), &loaded.recording) {
-            (false, Some(_)) => format!("   as engine {} recorded it", loaded.engine),
+            (false, Some(_)) => format!("   as recorded by engine {}", loaded.engine),
             _ if evaluation.agrees_with(&champion.evaluation) => String::new(),
             _ => "   REPLAY DIFFERS FROM THE RECORD".to_owned(),
         };

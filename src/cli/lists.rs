@@ -27,13 +27,12 @@ pub fn print_settings(args: &Args, as_markdown: bool) -> Result<(), CliError> {
     if as_markdown {
         return print(&format!(
             "# Settings\n\n\
-             `snakes --set NAME=VALUE` changes a setting, in the window and without it. The beginning of a name may \
-             be left out if no other setting ends like the rest: `--set rise_m=0.4`. The panels of the window set \
-             the same settings.\n\n\
-             The values below, and what is fixed, are those of the preset `{preset}`. A setting that may change takes \
-             another value while a run goes on, from its next generation, if the strategy of the run uses it; a fixed \
-             one waits for the next run.\n\n\
-             The program writes this page: `snakes settings --markdown > docs/settings.md`.\n{}",
+             `snakes --set NAME=VALUE` changes a setting. The start of a name may be left out if the rest is \
+             unambiguous: `--set rise_m=0.4`. The studio's panels change the same settings.\n\n\
+             The values below, and whether a setting is fixed, are those of the preset `{preset}`. If a setting may \
+             change, a new value takes effect with the next generation of the current run, provided that the run's \
+             strategy uses it; a fixed setting takes effect with the next run.\n\n\
+             The program generates this page: `snakes settings --markdown > docs/settings.md`.\n{}",
             markdown(&settings)
         ));
     }

@@ -76,14 +76,17 @@ impl SettingGroup for GenomeSpace {
             density_max_kg_m3,
         } = self;
         walk.section(Self::CONTROLLER);
-        walk.setting(choice("controller", "Controller").hint("What drives the joints"), controller);
+        walk.setting(
+            choice("controller", "Controller").hint("How the genome drives the joints"),
+            controller,
+        );
         walk.section(Self::TORQUES);
         let kind = *controller;
         walk.used_if(kind.uses("torque_range_nm"));
         walk.setting(
             number("torque_range_nm", "Torque range", 0.001..=1.0e6)
                 .unit("N·m")
-                .hint("Torques of signals and waves stay within plus and minus this")
+                .hint("Torques of signals and waves stay between minus and plus this value")
                 .slider(1.0, 2000.0),
             torque_range_nm,
         );
@@ -91,14 +94,14 @@ impl SettingGroup for GenomeSpace {
         walk.setting(
             number("torque_step_nm", "Torque step", 0.0..=1.0e6)
                 .unit("N·m")
-                .hint("From one point of a newborn signal to the next it changes by at most this")
+                .hint("Maximum change between adjacent points of a random signal")
                 .slider(0.0, 2000.0),
             torque_step_nm,
         );
         walk.used_if(kind.uses("points_per_s"));
         walk.setting(
             number("points_per_s", "Points per second", POINTS_PER_S_RANGE)
-                .hint("How often a signal's torque changes. One to three a second move a snake, many cancel out")
+                .hint("How often a signal's torque changes. One to three points per second move a snake; many cancel out")
                 .slider(0.5, 60.0)
                 .logarithmic_from(0.5),
             points_per_s,
@@ -114,9 +117,7 @@ impl SettingGroup for GenomeSpace {
                 0.0..=LARGEST_LIMIT_RAD,
             )
             .unit("rad")
-            .hint(
-                "Each snake is born with one of these. A list with one number gives all the same",
-            ),
+            .hint("Each random snake gets one of these. A single number applies to all"),
             bend_limits_rad,
         );
         walk.setting(
@@ -126,21 +127,21 @@ impl SettingGroup for GenomeSpace {
                 0.0..=LARGEST_LIMIT_RAD,
             )
             .unit("rad")
-            .hint("Each snake is born with one of these. 0 holds the joint's twist fast"),
+            .hint("Each random snake gets one of these. 0 locks the twist"),
             twist_limits_rad,
         );
         walk.setting(
-            number("density_min_kg_m3", "Least density", DENSITY_RANGE_KG_M3)
+            number("density_min_kg_m3", "Minimum density", DENSITY_RANGE_KG_M3)
                 .unit("kg/m³")
-                .hint("The lightest material that a snake may be born with")
+                .hint("Lightest material that a snake may have")
                 .slider(0.1, 50.0)
                 .logarithmic_from(0.1),
             density_min_kg_m3,
         );
         walk.setting(
-            number("density_max_kg_m3", "Greatest density", DENSITY_RANGE_KG_M3)
+            number("density_max_kg_m3", "Maximum density", DENSITY_RANGE_KG_M3)
                 .unit("kg/m³")
-                .hint("The heaviest material that a snake may be born with")
+                .hint("Heaviest material that a snake may have")
                 .slider(0.1, 50.0)
                 .logarithmic_from(0.1),
             density_max_kg_m3,
@@ -167,16 +168,16 @@ impl Choices for ControllerKind {
 impl GenomeSpace {
     /// The section of the controller's kind.
     pub const CONTROLLER: Section =
-        Section { title: "Controller", about: "What turns genes into torques." };
+        Section { title: "Controller", about: "How genes become torques." };
     /// The section of torques.
     pub const TORQUES: Section = Section {
         title: "Torques",
-        about: "The range of all torques, and how newborn signals wander in it.",
+        about: "Range of the torques, and how random signals vary within it.",
     };
     /// The section of limits and densities.
     pub const NEWBORNS: Section = Section {
         title: "Random snakes",
-        about: "What each snake's own limits and density are drawn from, where they are not given.",
+        about: "Where joint limits and densities of snakes come from, unless they have fixed values.",
     };
 
     /// How many points a signal needs to last `duration_s`.

@@ -54,7 +54,7 @@ pub const MOST_HARMONICS: u32 = 5;
 impl WaveSpace {
     /// The section of these settings.
     pub const SECTION: Section =
-        Section { title: "Waves and gaits", about: "The ranges of motions that repeat." };
+        Section { title: "Waves and gaits", about: "Ranges of periodic motions." };
 }
 
 impl SettingGroup for WaveSpace {
@@ -70,46 +70,48 @@ impl SettingGroup for WaveSpace {
         } = self;
         walk.section(Self::SECTION);
         walk.setting(
-            number("frequency_min_hz", "Least frequency", FREQUENCY_RANGE_HZ)
+            number("frequency_min_hz", "Minimum frequency", FREQUENCY_RANGE_HZ)
                 .unit("Hz")
-                .hint("The slowest motion that a snake may be born with")
+                .hint("Slowest motion that a snake may have")
                 .slider(0.05, 5.0)
                 .logarithmic_from(0.05),
             frequency_min_hz,
         );
         walk.setting(
-            number("frequency_max_hz", "Greatest frequency", FREQUENCY_RANGE_HZ)
+            number("frequency_max_hz", "Maximum frequency", FREQUENCY_RANGE_HZ)
                 .unit("Hz")
-                .hint("The quickest motion that a snake may be born with")
+                .hint("Fastest motion that a snake may have")
                 .slider(0.05, 10.0)
                 .logarithmic_from(0.05),
             frequency_max_hz,
         );
         walk.setting(
-            whole("harmonics", "Terms of a wave", 1..=MOST_HARMONICS)
-                .hint("1 is a plain sine; more make richer motions and more genes")
+            whole("harmonics", "Harmonics", 1..=MOST_HARMONICS)
+                .hint("1 is a plain sine; more allow richer motions but add genes")
                 .slider(1.0, 5.0),
             harmonics,
         );
         walk.setting(
             number("angle_range_rad", "Angle range", 0.0..=super::LARGEST_LIMIT_RAD)
                 .unit("rad")
-                .hint("How far a gait may swing a joint, and shift the middle of its swing")
+                .hint(
+                    "Maximum amplitude of a gait's joint angles, and maximum offset to either side",
+                )
                 .slider(0.0, 3.0),
             angle_range_rad,
         );
         walk.setting(
-            number("stiffness_min_nm_per_rad", "Least stiffness", STIFFNESS_RANGE_NM_PER_RAD)
+            number("stiffness_min_nm_per_rad", "Minimum stiffness", STIFFNESS_RANGE_NM_PER_RAD)
                 .unit("N·m/rad")
-                .hint("The softest servo that a snake may be born with: it gives way to what it touches")
+                .hint("Softest servo that a snake may have: it yields to obstacles")
                 .slider(0.0, 5000.0)
                 .logarithmic_from(1.0),
             stiffness_min_nm_per_rad,
         );
         walk.setting(
-            number("stiffness_max_nm_per_rad", "Greatest stiffness", STIFFNESS_RANGE_NM_PER_RAD)
+            number("stiffness_max_nm_per_rad", "Maximum stiffness", STIFFNESS_RANGE_NM_PER_RAD)
                 .unit("N·m/rad")
-                .hint("The stiffest servo that a snake may be born with: it holds its angles")
+                .hint("Stiffest servo that a snake may have: it holds its angles")
                 .slider(0.0, 5000.0)
                 .logarithmic_from(1.0),
             stiffness_max_nm_per_rad,
@@ -117,7 +119,7 @@ impl SettingGroup for WaveSpace {
         walk.setting(
             number("servo_damping_nms_per_rad", "Servo damping", SERVO_DAMPING_RANGE)
                 .unit("N·m·s/rad")
-                .hint("How much the servo itself resists quick turns, on top of the joints' own damping")
+                .hint("How much the servo resists fast turns, in addition to the joint damping")
                 .slider(0.0, 200.0)
                 .logarithmic_from(1.0),
             servo_damping_nms_per_rad,

@@ -40,7 +40,7 @@ pub enum HeadlessError {
     },
     /// A generation could not be saved.
     #[error(
-        "{source}; generations up to {saved} are saved, continue the run with --resume {}",
+        "{source}; generations up to {saved} are saved; continue the run with --resume {}",
         folder.display()
     )]
     NotSaved {
@@ -62,7 +62,7 @@ pub enum HeadlessError {
     /// The interrupt key was pressed.
     #[error("cancelled; {}", match kept {
         Some(path) => format!("the best so far is saved to {}", path.display()),
-        None => "the first seed was not finished, nothing is saved".to_owned(),
+        None => "the first seed was not finished, so nothing is saved".to_owned(),
     })]
     Cancelled {
         /// The file of the best so far.
@@ -77,7 +77,7 @@ pub enum HeadlessError {
         difference: String,
     },
     /// Every agent of every generation was disqualified.
-    #[error("no champion: every agent of every generation was disqualified")]
+    #[error("no champion: every snake of every generation was disqualified")]
     NoChampion,
 }
 
@@ -101,7 +101,7 @@ pub fn evolve(
     let generations = settings.evolution.generations;
     let earlier = match reports.len() {
         0 => String::new(),
-        _ if experiment.is_over() => "; finished before (--restart evolves it again)".to_owned(),
+        _ if experiment.is_over() => "; already finished (--restart starts over)".to_owned(),
         finished => format!("; continues after generation {finished}"),
     };
     let founder = founder.map(|founder| format!(", from {}", founder.name()));

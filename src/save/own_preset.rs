@@ -81,7 +81,7 @@ pub fn check_own_name(name: &str) -> Result<(), Invalid> {
     check::name("name", name)?;
     let shipped = shipped_presets().unwrap_or_default();
     if shipped.iter().any(|preset| preset.name == name) {
-        let allowed = "a name that no shipped preset has";
+        let allowed = "a name that no built-in preset has";
         return Err(Invalid::new("name", format!("{name:?}"), allowed));
     }
     Ok(())

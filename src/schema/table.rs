@@ -18,8 +18,7 @@ pub fn markdown(group: &(impl SettingGroup + Clone)) -> String {
     for section in sections {
         let Section { title, about } = section;
         let _ = write!(text, "\n## {title}\n\n{about}\n\n");
-        text +=
-            "| setting | allowed | value | during a run | what it does |\n|---|---|---|---|---|\n";
+        text += "| setting | allowed | value | during a run | effect |\n|---|---|---|---|---|\n";
         for listed in all.iter().filter(|listed| listed.section == section) {
             text += &line(listed);
         }

@@ -86,7 +86,7 @@ impl SettingGroup for AgentSettings {
         // Two limbs make a joint; with more than twelve the snake is longer than the arena.
         walk.setting(
             whole("limbs", "Limbs", 2..=12)
-                .hint("Number of blocks, each joined to the next. Genomes for other numbers do not fit")
+                .hint("Number of blocks in a row. Genomes for a different number do not fit")
                 .slider(2.0, 12.0),
             limbs,
         );
@@ -108,7 +108,7 @@ impl SettingGroup for AgentSettings {
         walk.setting(
             per_part("limb_height_m", "Limb height", 0.1..=10.0, each_limb)
                 .unit("m")
-                .hint("Size of a block upwards. High blocks reach the next step more easily")
+                .hint("Size of a block upwards. Tall blocks reach the next step more easily")
                 .slider(0.2, 3.0),
             limb_height_m,
         );
@@ -117,7 +117,7 @@ impl SettingGroup for AgentSettings {
                 .unit("kg/m³")
                 .hint(
                     "Mass per volume of the blocks. Heavy snakes press harder and need more torque. \
-                     Without a value, each snake has its own, and it evolves",
+                     Without a value, each snake has its own, which evolves",
                 )
                 .slider(0.1, 50.0)
                 .logarithmic_from(0.1),
@@ -127,7 +127,7 @@ impl SettingGroup for AgentSettings {
         walk.setting(
             number("angular_damping_per_s", "Angular damping", 0.0..=1000.0)
                 .unit("1/s")
-                .hint("Share of its spin that a block loses per second, as in thick air")
+                .hint("Rate at which a block loses its spin, as in thick air")
                 .slider(0.0, 500.0)
                 .logarithmic_from(0.1),
             angular_damping_per_s,
@@ -138,7 +138,7 @@ impl SettingGroup for AgentSettings {
             optional_per_part("bend_limit_rad", "Bend limit", limits.clone(), each_joint, 1.0)
                 .unit("rad")
                 .hint(
-                    "Largest bend to either side, like snapping a stick. Without a value, each snake has its own, \
+                    "Maximum bend to either side, like snapping a stick. Without a value, each snake has its own, \
                      drawn from a list",
                 )
                 .slider(0.0, 3.0),
@@ -148,7 +148,7 @@ impl SettingGroup for AgentSettings {
             optional_per_part("twist_limit_rad", "Twist limit", limits, each_joint, 1.0)
                 .unit("rad")
                 .hint(
-                    "Largest twist to either side, like wringing a sponge. Without a value, each snake has its own, \
+                    "Maximum twist to either side, like wringing a sponge. Without a value, each snake has its own, \
                      drawn from a list",
                 )
                 .slider(0.0, 3.0),
@@ -156,16 +156,18 @@ impl SettingGroup for AgentSettings {
         );
         // A thousand times the report's torque; more would only disqualify.
         walk.setting(
-            per_part("max_bend_torque_nm", "Largest bend torque", 0.0..=1.0e6, each_joint)
+            per_part("max_bend_torque_nm", "Maximum bend torque", 0.0..=1.0e6, each_joint)
                 .unit("N·m")
-                .hint("How strongly a joint can bend. Whatever is asked of it beyond is cut off")
+                .hint(
+                    "How strongly a joint can bend. Larger torques from the controller are cut off",
+                )
                 .slider(0.0, 2000.0),
             max_bend_torque_nm,
         );
         walk.setting(
-            per_part("max_twist_torque_nm", "Largest twist torque", 0.0..=1.0e6, each_joint)
+            per_part("max_twist_torque_nm", "Maximum twist torque", 0.0..=1.0e6, each_joint)
                 .unit("N·m")
-                .hint("How strongly a joint can twist. Whatever is asked of it beyond is cut off")
+                .hint("How strongly a joint can twist. Larger torques from the controller are cut off")
                 .slider(0.0, 2000.0),
             max_twist_torque_nm,
         );
@@ -174,8 +176,8 @@ impl SettingGroup for AgentSettings {
             per_part("joint_damping_nms_per_rad", "Joint damping", 0.0..=1.0e5, each_joint)
                 .unit("N·m·s/rad")
                 .hint(
-                    "Torque that resists a turning joint. Without it the motion is chaotic, and children are \
-                     nothing like their parents",
+                    "Resistance of a joint to turning. Without it, motion is chaotic and children hardly resemble \
+                     their parents",
                 )
                 .slider(0.0, 500.0)
                 .logarithmic_from(1.0),
@@ -183,9 +185,9 @@ impl SettingGroup for AgentSettings {
         );
         // At 0.1 m/s per N a report's snake comes apart under its own weight.
         walk.setting(
-            per_part("joint_cfm_m_s_per_n", "Joint CFM", 0.0..=0.1, each_joint)
+            per_part("joint_cfm_m_s_per_n", "Joint softness (CFM)", 0.0..=0.1, each_joint)
                 .unit("m/s per N")
-                .hint("0 is rigid; the larger, the more the joints give way under load")
+                .hint("0 is rigid; larger values let the joints give way under load")
                 .slider(0.0, 0.1)
                 .logarithmic_from(1.0e-6),
             joint_cfm_m_s_per_n,
@@ -195,20 +197,13 @@ impl SettingGroup for AgentSettings {
 
 impl AgentSettings {
     /// The section of the limbs.
-    pub const BODY: Section = Section {
-        title: "Body",
-        about: "How many blocks the snake has, how large and how heavy they are.",
-    };
+    pub const BODY: Section =
+        Section { title: "Body", about: "Number, size and weight of the blocks." };
     /// The section of the joints.
-    pub const JOINTS: Section = Section {
-        title: "Joints",
-        about: "How far the joints turn, how strong they are, how much they resist.",
-    };
+    pub const JOINTS: Section =
+        Section { title: "Joints", about: "Range, strength and resistance of the joints." };
     /// The section of the skin.
-    pub const SKIN: Section = Section {
-        title: "Skin",
-        about: "The material of the snake itself, where it touches something.",
-    };
+    pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
 
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {

@@ -81,10 +81,10 @@ impl Fitness {
     /// Unwanted behaviour that the measure rewards, in a sentence.
     pub fn rewards_wrongly(self) -> &'static str {
         match self {
-            Self::Centre => "Passing the stairs at their side, and being in mid-leap at the end.",
-            Self::Climb => "Being in mid-leap over the stairs at the end.",
-            Self::Head => "Stretching or throwing the head forward instead of going anywhere.",
-            Self::CentreOfMass => "The same as the centre; and a curled snake scores less.",
+            Self::Centre => "Passing beside the stairs, and being caught in mid-leap at the end.",
+            Self::Climb => "Being caught in mid-leap over the stairs at the end.",
+            Self::Head => "Stretching or throwing the head forward.",
+            Self::CentreOfMass => "The same as with the centre; a curled snake scores less.",
             Self::Height => "Jumping and rearing on the spot.",
             Self::FurthestY => "A leap that falls back.",
             Self::StepsClimbed => "Nothing before the first step, so the search starts blindly.",
@@ -111,11 +111,12 @@ impl Choices for Fitness {
             Self::Head => "Head, y",
             Self::CentreOfMass => "Centre of mass, y",
             Self::Height => "Height",
-            Self::FurthestY => "Furthest y ever",
+            Self::FurthestY => "Furthest y",
             Self::StepsClimbed => "Steps climbed",
             Self::Climb => "Climb: y on the stairs",
         };
-        let about = format!("The {}.\nRewards wrongly: {}", self.words(), self.rewards_wrongly());
+        let about =
+            format!("The {}.\nUnintended rewards: {}", self.words(), self.rewards_wrongly());
         Choice::new(self.name(), title, about)
     }
 }

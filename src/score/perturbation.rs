@@ -36,33 +36,33 @@ impl SettingGroup for PerturbationRange {
         // No factor may become zero or negative.
         walk.setting(
             number("friction", "Friction variation", 0.0..=0.9)
-                .hint("Share by which friction is larger or smaller: 0.2 is a fifth to either side")
+                .hint("Maximum relative change of friction: 0.2 is 20 % up or down")
                 .slider(0.0, 0.9),
             friction,
         );
         walk.setting(
             number("rise", "Rise variation", 0.0..=0.9)
-                .hint("Share by which the steps are higher or lower: 0.1 is a tenth to either side")
+                .hint("Maximum relative change of the steps' height: 0.1 is 10 % up or down")
                 .slider(0.0, 0.9),
             rise,
         );
         walk.setting(
             number("density", "Density variation", 0.0..=0.9)
-                .hint("Share by which the limbs are heavier or lighter")
+                .hint("Maximum relative change of the limbs' density")
                 .slider(0.0, 0.9),
             density,
         );
         walk.setting(
             number("start_m", "Start variation", 0.0..=5.0)
                 .unit("m")
-                .hint("How far ahead, behind or aside the snake starts")
+                .hint("Maximum shift of the start, along and across the stairs")
                 .slider(0.0, 2.0),
             start_m,
         );
         walk.setting(
-            number("turn_deg", "Start turned by", 0.0..=180.0)
+            number("turn_deg", "Start direction variation", 0.0..=180.0)
                 .unit("°")
-                .hint("How far the snake is turned to either side at the start")
+                .hint("Maximum turn of the snake at the start, to either side")
                 .slider(0.0, 45.0),
             turn_deg,
         );

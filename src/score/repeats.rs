@@ -38,7 +38,7 @@ impl Repeats {
     /// The section of these settings.
     pub const SECTION: Section = Section {
         title: "Repeated trials",
-        about: "A snake that does well in several trials, each a little different, has learned more.",
+        about: "Several slightly different trials per snake favour robust motion.",
     };
 }
 
@@ -48,14 +48,13 @@ impl SettingGroup for Repeats {
         walk.section(Self::SECTION);
         // A hundred trials of 15 s are a second and a half.
         walk.setting(
-            whole("trials", "Trials for each snake", 1..=100)
-                .hint("The first is exact, the others are off by the values below. Each takes its time")
+            whole("trials", "Trials per snake", 1..=100)
+                .hint("The first is exact, the others vary by the values below. Each trial takes additional time")
                 .slider(1.0, 10.0),
             trials,
         );
         walk.setting(
-            choice("counts", "What counts")
-                .hint("Which of the trials' results a snake is scored by"),
+            choice("counts", "Combined score").hint("How the results of the trials are combined"),
             counts,
         );
         walk.group("off", off);
@@ -67,10 +66,8 @@ impl Choices for RepeatAggregate {
 
     fn choice(self) -> Choice {
         match self {
-            Self::Mean => Choice::new("mean", "Their mean", "All trials count alike."),
-            Self::Worst => {
-                Choice::new("worst", "The worst of them", "A snake is as good as its worst trial.")
-            }
+            Self::Mean => Choice::new("mean", "Mean", "All trials count equally."),
+            Self::Worst => Choice::new("worst", "Worst", "A snake is as good as its worst trial."),
         }
     }
 }

@@ -77,7 +77,7 @@ impl SettingGroup for Trial {
             Some(ground) => walk.group("ground", ground),
             None => walk.setting(
                 absent("ground", "Ground", "none, or set ground.friction and its like")
-                    .hint("Without a surface of its own the ground has that of the stairs"),
+                    .hint("Without its own surface, the ground has that of the stairs"),
                 &mut (),
             ),
         }
@@ -86,27 +86,30 @@ impl SettingGroup for Trial {
         walk.section(Self::TIME);
         // Ten minutes are a third of a second to compute; longer genomes make unreadable saves.
         walk.setting(
-            number("duration_s", "Time", 0.1..=600.0)
+            number("duration_s", "Duration", 0.1..=600.0)
                 .unit("s")
-                .hint("How long each snake has. Longer trials take longer to evaluate")
+                .hint("Simulated time of a trial. Longer trials take longer to evaluate")
                 .slider(1.0, 30.0),
             duration_s,
         );
         walk.setting(
             number("start_y_m", "Start at y", -100.0..=100.0)
                 .unit("m")
-                .hint("Where the snake's middle stands at first; the stairs are in the direction of larger y")
+                .hint("Initial position of the snake's middle. The stairs are at larger y")
                 .slider(-20.0, 10.0),
             start_y_m,
         );
         walk.group("physics", physics);
         walk.section(Self::REWARD);
-        walk.setting(choice("fitness", "Fitness").hint("What a snake is scored by"), fitness);
+        walk.setting(
+            choice("fitness", "Fitness").hint("Quantity that evolution maximises"),
+            fitness,
+        );
         // At 1000 a joule costs a metre.
         walk.setting(
-            number("energy_cost_per_kj", "Cost of energy", 0.0..=1000.0)
+            number("energy_cost_per_kj", "Energy cost", 0.0..=1000.0)
                 .unit("per kJ")
-                .hint("Taken off the fitness for each kJ that the joints spend. At 0 all effort is free")
+                .hint("Subtracted from the fitness for each kJ that the joints use")
                 .slider(0.0, 10.0)
                 .logarithmic_from(0.01),
             energy_cost_per_kj,
@@ -120,17 +123,18 @@ impl Trial {
     /// The section of the material of the stairs.
     pub const SURFACE: Section = Section {
         title: "Surface",
-        about: "The material of the stairs, and of the ground too if it has no surface of its own.",
+        about: "Material of the stairs, and of the ground unless it has its own surface.",
     };
     /// The section of the material of the ground.
     pub const GROUND: Section =
-        Section { title: "Ground", about: "The material of the ground before the stairs." };
+        Section { title: "Ground", about: "Material of the ground before the stairs." };
     /// The section of duration and start.
-    pub const TIME: Section =
-        Section { title: "Time and start", about: "How long each snake has, and where it begins." };
+    pub const TIME: Section = Section {
+        title: "Time and start",
+        about: "Duration of a trial, and where the snake starts.",
+    };
     /// The section of the reward.
-    pub const REWARD: Section =
-        Section { title: "Reward", about: "What the search tries to make large." };
+    pub const REWARD: Section = Section { title: "Reward", about: "What evolution maximises." };
 
     /// Checks every field against its range.
     ///

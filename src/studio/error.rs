@@ -23,8 +23,8 @@ pub enum StudioError {
     Champion(#[from] SaveError),
     /// The program panicked while the window was open.
     #[error("the studio failed: {message}; {}", match run {
-        Some(folder) => format!("the run is safe, it goes on with --resume {}", folder.display()),
-        None => "no run was going on".to_owned(),
+        Some(folder) => format!("the run is saved; continue it with --resume {}", folder.display()),
+        None => "no run was in progress".to_owned(),
     })]
     Crashed {
         /// The panic's message.

@@ -48,7 +48,7 @@ pub use state::options::Options;
 pub use ui::theme::Theme;
 
 /// Name of the built-in champion.
-const SHIPPED: &str = "Saved champion";
+const SHIPPED: &str = "climber (built-in)";
 
 /// Opens the studio and returns when its window is closed.
 ///

@@ -29,9 +29,9 @@ impl Disqualification {
         match self {
             Self::NotFinite => "its state was not finite",
             Self::JointBroke => "a joint came apart",
-            Self::TooFast => "it outran the speed limit",
+            Self::TooFast => "it exceeded the speed limit",
             Self::LeftArena => "it left the arena",
-            Self::Crashed => "the program failed on it",
+            Self::Crashed => "its simulation failed",
         }
     }
 }
@@ -62,7 +62,7 @@ impl HealthLimits {
     /// The section of these settings.
     pub const SECTION: Section = Section {
         title: "Disqualification",
-        about: "A snake that breaks the physics instead of climbing is taken out.",
+        about: "A snake that breaks the physics instead of climbing is disqualified.",
     };
 }
 
@@ -74,7 +74,7 @@ impl SettingGroup for HealthLimits {
         walk.setting(
             number("joint_drift_m", "Joint gap", 0.001..=10.0)
                 .unit("m")
-                .hint("A snake whose joint comes apart further than this is disqualified")
+                .hint("A snake is disqualified if a joint comes apart by more than this")
                 .slider(0.01, 1.0)
                 .logarithmic_from(0.01),
             joint_drift_m,
@@ -82,21 +82,21 @@ impl SettingGroup for HealthLimits {
         walk.setting(
             number("speed_m_s", "Speed limit", 1.0..=1000.0)
                 .unit("m/s")
-                .hint("A snake with a limb faster than this is disqualified: only an explosion is that fast")
+                .hint("A snake is disqualified if a limb is faster than this, which only an unstable simulation reaches")
                 .slider(1.0, 100.0),
             speed_m_s,
         );
         walk.setting(
-            number("arena_half_width_m", "Arena to either side", 1.0..=1000.0)
+            number("arena_half_width_m", "Arena to the side", 1.0..=1000.0)
                 .unit("m")
-                .hint("A snake that is further off the middle is disqualified")
+                .hint("A snake is disqualified if it is further from the middle than this")
                 .slider(2.0, 50.0),
             arena_half_width_m,
         );
         walk.setting(
-            number("arena_back_m", "Arena backwards", 1.0..=1000.0)
+            number("arena_back_m", "Arena to the rear", 1.0..=1000.0)
                 .unit("m")
-                .hint("A snake with a limb behind minus this y is disqualified")
+                .hint("A snake is disqualified if the y of a limb is below minus this value")
                 .slider(5.0, 100.0),
             arena_back_m,
         );

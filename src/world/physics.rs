@@ -30,20 +30,20 @@ impl SettingGroup for PhysicsSettings {
         walk.setting(
             number("gravity_m_s2", "Gravity", 0.0..=100.0)
                 .unit("m/s²")
-                .hint("How strongly everything is pulled down: 9.81 on earth, 1.62 on the moon")
+                .hint("Acceleration of free fall: 9.81 on Earth, 1.62 on the Moon")
                 .slider(0.0, 20.0),
             gravity_m_s2,
         );
         // Below 20 a second bodies pass through each other; above 1000 nothing changes.
         walk.setting(
             whole("steps_per_s", "Physics steps per second", 20..=1000)
-                .hint("More are more exact and take longer. Other numbers make other motions")
+                .hint("More steps are more accurate but take longer. A different number changes all motions")
                 .slider(20.0, 240.0),
             steps_per_s,
         );
         walk.setting(
-            whole("substeps", "Substeps in a step", 1..=32)
-                .hint("How often contacts and joints are solved within a step. More are stiffer and take longer")
+            whole("substeps", "Substeps per step", 1..=32)
+                .hint("How often contacts and joints are solved within a step. More are stiffer but take longer")
                 .slider(1.0, 16.0),
             substeps,
         );
@@ -52,8 +52,7 @@ impl SettingGroup for PhysicsSettings {
 
 impl PhysicsSettings {
     /// The section of these settings.
-    pub const SECTION: Section =
-        Section { title: "Physics", about: "Gravity, and how finely time is cut." };
+    pub const SECTION: Section = Section { title: "Physics", about: "Gravity and time step." };
 
     /// Length of one physics step, in seconds.
     pub fn step_s(&self) -> f32 {

@@ -53,7 +53,7 @@ impl SettingGroup for Stairs {
         // A hundred steps are far more than any snake climbs, and still quick.
         walk.setting(
             whole("steps", "Steps", 0..=100)
-                .hint("Number of steps. Without any there is flat ground")
+                .hint("Number of steps; 0 gives flat ground")
                 .slider(0.0, 20.0),
             steps,
         );
@@ -61,14 +61,14 @@ impl SettingGroup for Stairs {
         walk.setting(
             number("rise_m", "Rise", 0.01..=5.0)
                 .unit("m")
-                .hint("Height of a step. Higher is harder")
+                .hint("Height of a step")
                 .slider(0.05, 2.0),
             rise_m,
         );
         walk.setting(
             number("tread_m", "Tread", 0.1..=20.0)
                 .unit("m")
-                .hint("Depth of a step. On a deep one there is room to gather")
+                .hint("Depth of a step. A deep tread gives the snake more room")
                 .slider(0.2, 5.0),
             tread_m,
         );
@@ -76,7 +76,7 @@ impl SettingGroup for Stairs {
         walk.setting(
             number("width_m", "Width", 1.0..=100.0)
                 .unit("m")
-                .hint("Width of the stairs. From narrow ones a snake that drifts falls off")
+                .hint("Width of the stairs. A snake that drifts sideways falls off narrow stairs")
                 .slider(1.0, 20.0),
             width_m,
         );
@@ -84,14 +84,14 @@ impl SettingGroup for Stairs {
         walk.setting(
             number("first_riser_y_m", "First riser at y", -100.0..=100.0)
                 .unit("m")
-                .hint("Where the stairs begin. The further away, the longer the way to them")
+                .hint("Position at which the stairs begin")
                 .slider(0.0, 20.0),
             first_riser_y_m,
         );
         walk.setting(
             number("landing_m", "Landing", 0.0..=100.0)
                 .unit("m")
-                .hint("Depth of the landing behind the last step, on which a snake that has climbed stands")
+                .hint("Depth of the landing behind the last step")
                 .slider(0.0, 60.0),
             landing_m,
         );
@@ -101,7 +101,7 @@ impl SettingGroup for Stairs {
 impl Stairs {
     /// The section of these settings.
     pub const SECTION: Section =
-        Section { title: "Stairs", about: "The shape of the staircase, and where it begins." };
+        Section { title: "Stairs", about: "Shape and position of the staircase." };
 
     /// Position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {

@@ -57,7 +57,7 @@ impl SettingGroup for Surface {
         walk.setting(
             number("friction", "Friction", 0.0..=1000.0)
                 .hint(
-                    "Grip: largest sideways force divided by the force that presses down. 0 is no grip at all",
+                    "Grip: largest sideways force divided by the force pressing down. 0 is no grip, 1 normal, 5 like glue",
                 )
                 .slider(0.0, 5.0),
             friction,
@@ -65,7 +65,7 @@ impl SettingGroup for Surface {
         // More than 1 would create energy.
         walk.setting(
             number("bounce", "Bounce", 0.0..=1.0)
-                .hint("Share of the speed kept after an impact: 0 does not bounce, 1 bounces back to full height")
+                .hint("How much speed is kept after an impact: 0 does not bounce, 1 bounces back to full height")
                 .slider(0.0, 1.0),
             bounce,
         );
@@ -82,7 +82,7 @@ impl SettingGroup for Surface {
         // At 0 nothing would ever be pushed out again and the snake would sink through the ground.
         walk.setting(
             number("soft_erp", "Springiness (ERP)", 0.01..=1.0)
-                .hint("How quickly a soft surface springs back: the share of a dent that is pushed out in one step")
+                .hint("How quickly a soft surface springs back: share of a dent that is corrected per physics step")
                 .slider(0.01, 1.0),
             soft_erp,
         );
@@ -90,16 +90,16 @@ impl SettingGroup for Surface {
         walk.setting(
             number("soft_cfm_m_s_per_n", "Softness (CFM)", 0.0..=1.0)
                 .unit("m/s per N")
-                .hint("0 is hard; the larger, the deeper the snake sinks in")
+                .hint("0 is hard; larger values let the snake sink in deeper")
                 .slider(0.0, 1.0)
                 .logarithmic_from(1.0e-5),
             soft_cfm_m_s_per_n,
         );
         // At 10 m/s per N a limb's own weight is too much for the surface's hold.
         walk.setting(
-            number("slip_m_s_per_n", "Slip", 0.0..=10.0)
+            number("slip_m_s_per_n", "Creep (slip)", 0.0..=10.0)
                 .unit("m/s per N")
-                .hint("How fast a limb creeps under a push that friction would hold, as on oil")
+                .hint("How fast a limb creeps under a force that friction would otherwise hold, as on oil")
                 .slider(0.0, 1.0)
                 .logarithmic_from(1.0e-4),
             slip_m_s_per_n,
@@ -108,7 +108,7 @@ impl SettingGroup for Surface {
         walk.setting(
             number("dampen_per_s", "Damping", 0.0..=20.0)
                 .unit("1/s")
-                .hint("Share of its speed that a limb loses per second while it touches, as in mud")
+                .hint("Share of its speed that a limb loses per second while it touches the surface, as in mud")
                 .slider(0.0, 20.0),
             dampen_per_s,
         );
@@ -140,26 +140,26 @@ impl SettingGroup for Skin {
         let Self { friction, bounce, soft_erp, soft_cfm_m_s_per_n } = self;
         walk.setting(
             number("friction", "Skin friction", 0.0..=1000.0)
-                .hint("Multiplies the friction of whatever the snake touches. 1 leaves it as it is")
+                .hint("Factor for the friction of everything that the snake touches. 1 changes nothing")
                 .slider(0.0, 5.0),
             friction,
         );
         walk.setting(
             number("bounce", "Skin bounce", 0.0..=1.0)
-                .hint("Share of the speed kept after an impact. The bouncier of skin and surface counts")
+                .hint("How much speed is kept after an impact. The larger value of skin and surface counts")
                 .slider(0.0, 1.0),
             bounce,
         );
         walk.setting(
             number("soft_erp", "Skin springiness (ERP)", 0.01..=1.0)
-                .hint("How quickly a soft skin springs back: the share of a dent that is pushed out in one step")
+                .hint("How quickly a soft skin springs back: share of a dent that is corrected per physics step")
                 .slider(0.01, 1.0),
             soft_erp,
         );
         walk.setting(
             number("soft_cfm_m_s_per_n", "Skin softness (CFM)", 0.0..=1.0)
                 .unit("m/s per N")
-                .hint("0 is hard; the larger, the squishier the blocks")
+                .hint("0 is hard; larger values make the blocks softer")
                 .slider(0.0, 1.0)
                 .logarithmic_from(1.0e-5),
             soft_cfm_m_s_per_n,

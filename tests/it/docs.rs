@@ -1,4 +1,4 @@
-//! Pages of `docs/` that the program writes.
+//! Pages of `docs/` that the program generates.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use super::program::{folder, stdout_of};
 
 #[test]
-fn the_page_of_settings_is_what_the_program_writes() {
+fn the_settings_page_is_up_to_date() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/settings.md");
     let page = fs::read_to_string(path).expect("docs/settings.md");
     let written = stdout_of(folder().path(), "settings --markdown");

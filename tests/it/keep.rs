@@ -310,7 +310,7 @@ fn a_full_disk_ends_the_run_with_an_error_and_the_run_can_be_resumed() {
     };
     let error = error_of(&output);
     assert!(error.contains("No space left on device"), "{error}");
-    assert!(error.contains("are saved, continue the run with --resume small/out/"), "{error}");
+    assert!(error.contains("are saved; continue the run with --resume small/out/"), "{error}");
     let run = run_in(&saves.path().join("kept")).expect("a run");
     resumes_to_the_same_end(saves.path(), &run);
 }

@@ -39,12 +39,12 @@ fn space_pauses_and_plays_the_stage() {
     let Some(studio) = Studio::open("space", "--preset quick") else { return };
     studio.pause_evolution();
     studio.key("space");
-    studio.wait_for_title(", held");
+    studio.wait_for_title(", stopped");
     let held = studio.still_picture();
     std::thread::sleep(Duration::from_secs(1));
     assert_eq!(difference(&held, &studio.picture()), 0, "a paused stage does not move");
     studio.key("space");
-    studio.wait_for_title_without(", held");
+    studio.wait_for_title_without(", stopped");
     studio.picture_with(|picture| difference(&held, picture) > 500);
 }
 
@@ -130,7 +130,7 @@ fn the_mouse_moves_the_camera_and_home_resets_it() {
     let Some(studio) = Studio::open("camera", "--preset quick") else { return };
     studio.pause_evolution();
     studio.key("space");
-    studio.wait_for_title(", held");
+    studio.wait_for_title(", stopped");
     let home = studio.still_picture();
     let (x, y) = studio.stage().at(0.58, 0.64);
     studio.drag(1, (x, y), (x + 100, y + 40));
@@ -164,11 +164,11 @@ fn r_plays_from_the_start_and_f_stops_following() {
     std::thread::sleep(Duration::from_secs(3));
     studio.key("f");
     studio.key("space");
-    studio.wait_for_title(", held");
+    studio.wait_for_title(", stopped");
     let held = studio.still_picture();
     assert!(difference(&start, &held) > 1000);
     studio.key("r");
-    studio.wait_for_title_without(", held");
+    studio.wait_for_title_without(", stopped");
     studio.picture_with(|picture| difference(&held, picture) > 1000);
     // Without following, the stairs do not move on the screen. The sky and the far ground at the top of the stage
     // and the far ground at the top of the stage show it.

@@ -10,7 +10,7 @@ pub struct CompareArgs {
     pub strategies: String,
     #[arg(long, value_name = "X,Y", default_value = "all", help = controllers_help())]
     pub controllers: String,
-    /// Number of seeds, beginning with --seed
+    /// Number of seeds, starting with --seed
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub seeds: u64,
     /// Evaluations that each run may spend

@@ -27,7 +27,7 @@ pub struct Args {
     /// Seed of the run; the same seed gives the same bits [default: 1]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) seed: Option<String>,
-    /// Individuals per generation
+    /// Snakes per generation
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) population: Option<String>,
     /// Number of generations
@@ -52,8 +52,8 @@ pub struct Args {
         ]
     )]
     pub(super) resume: Option<PathBuf>,
-    /// Begin a run from a saved champion: the first generation descends from it, in its own world unless --preset
-    /// or --set say otherwise
+    /// Start a run from a saved champion: the first generation descends from it, in its own world unless --preset or
+    /// --set say otherwise
     #[arg(long, value_name = "FILE", conflicts_with = "resume", help_heading = RUN)]
     pub(super) from: Option<PathBuf>,
     /// Start over, even if this run has saved generations; without this, an unfinished run continues and a finished
@@ -142,7 +142,7 @@ pub enum Subcommand {
     Presets,
     /// List every setting with its value, in the form that --set takes
     Settings {
-        /// Describe them too: tables in Markdown, as in docs/settings.md
+        /// Print Markdown tables with descriptions, as in docs/settings.md
         #[arg(long)]
         markdown: bool,
     },

@@ -26,11 +26,11 @@ impl Choices for Descriptor {
 
     fn choice(self) -> Choice {
         let about = match self {
-            Self::BodyHeight => "How high the snake carries itself, on average.",
-            Self::Sideways => "How far from the middle of the stairs it goes, on average.",
-            Self::EnergyPerMetre => "How much energy it spends for a metre forward.",
-            Self::ContactDuty => "How many of its limbs touch something, on average.",
-            Self::Frequency => "How often its motion repeats in a second.",
+            Self::BodyHeight => "Mean height of the snake over the treads.",
+            Self::Sideways => "Mean distance from the middle of the stairs.",
+            Self::EnergyPerMetre => "Energy used per metre forward.",
+            Self::ContactDuty => "Mean share of limbs that touch something.",
+            Self::Frequency => "How often the motion repeats per second.",
         };
         Choice::new(self.name(), self.label(), about)
     }
@@ -61,7 +61,7 @@ impl Descriptor {
     pub fn label(self) -> &'static str {
         match self {
             Self::BodyHeight => "Height over the treads (m)",
-            Self::Sideways => "Off the middle (m)",
+            Self::Sideways => "Distance from the middle (m)",
             Self::EnergyPerMetre => "Energy per metre (J/m)",
             Self::ContactDuty => "Share of limbs in contact",
             Self::Frequency => "Gait frequency (Hz)",

@@ -30,7 +30,7 @@ impl Default for CmaEsSettings {
 impl CmaEsSettings {
     /// The section of these settings.
     pub const SECTION: Section =
-        Section { title: "CMA-ES", about: "Learns in which directions it pays to vary." };
+        Section { title: "CMA-ES", about: "Learns in which directions variation pays off." };
 
     /// Checks that a generation fits into memory.
     pub(super) fn check_size(population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
@@ -51,7 +51,7 @@ impl SettingGroup for CmaEsSettings {
         walk.section(Self::SECTION);
         walk.setting(
             number("step", "Initial step size", 1.0e-6..=10.0)
-                .hint("Spread of the first generation, as a share of each gene's range. Small ones search nearby")
+                .hint("Spread of the first generation, as a share of each gene's range. Small steps search nearby")
                 .slider(0.01, 1.0)
                 .logarithmic_from(0.01)
                 .fixed(LEARNED),
@@ -59,13 +59,13 @@ impl SettingGroup for CmaEsSettings {
         );
         walk.setting(
             switch("active", "Also learn from poor snakes")
-                .hint("Bad snakes count too: the directions in which they lie become less likely")
+                .hint("Directions that lead to poor snakes become less likely (active CMA-ES)")
                 .fixed(LEARNED),
             active,
         );
         walk.setting(
             choice("restarts", "Restarts")
-                .hint("How the search goes on when it has come to its end")
+                .hint("How the search continues after it has converged")
                 .fixed(LEARNED),
             restarts,
         );
@@ -73,8 +73,7 @@ impl SettingGroup for CmaEsSettings {
         walk.setting(
             whole("newborns", "Random snakes first", 0..=10_000)
                 .hint(
-                    "The search begins at the best of that many random snakes. At 0 it begins in the middle of \
-                     all ranges",
+                    "The search starts at the best of this many random snakes; at 0, in the middle of all ranges",
                 )
                 .slider(0.0, 1000.0)
                 .fixed(LEARNED),
@@ -88,13 +87,15 @@ impl Choices for RestartKind {
 
     fn choice(self) -> Choice {
         match self {
-            Self::None => Choice::new("none", "None", "The search goes on where it is."),
-            Self::Ipop => {
-                Choice::new("ipop", "Larger", "A new search with twice the population (IPOP).")
-            }
+            Self::None => Choice::new("none", "None", "The search continues where it is."),
+            Self::Ipop => Choice::new(
+                "ipop",
+                "Larger population",
+                "A new search with twice the population (IPOP).",
+            ),
             Self::Bipop => Choice::new(
                 "bipop",
-                "Larger or smaller",
+                "Larger or smaller population",
                 "New searches, some with twice the population, some with a small one (BIPOP).",
             ),
         }

@@ -79,7 +79,7 @@ impl GaSettings {
     /// The section of these settings.
     pub const SECTION: Section = Section {
         title: "Genetic algorithm",
-        about: "Parents are chosen, crossed and mutated. Novelty search makes its children like this too.",
+        about: "Parents are selected, crossed and mutated. Novelty search uses these settings too.",
     };
 
     /// Checks that a generation and what is known of the one before fit into memory.
@@ -106,28 +106,27 @@ impl SettingGroup for GaSettings {
         walk.setting(choice("selection", "Selection").hint("How parents are selected"), selection);
         walk.setting(
             whole("tournament", "Tournament", 1..=1000)
-                .hint("Number of individuals drawn, the best of which becomes a parent. Large ones settle quickly")
+                .hint("Number of snakes drawn at random, the best of which becomes a parent. Large values converge quickly")
                 .slider(1.0, 20.0),
             tournament,
         );
         walk.setting(
-            choice("crossover", "Crossover").hint("How two parents make one child"),
+            choice("crossover", "Crossover").hint("How the genes of two parents are combined"),
             crossover,
         );
         walk.setting(
             number("crossover_share", "Share with two parents", 0.0..=1.0)
-                .hint("The other children are copies of one parent before they mutate")
+                .hint("Share of children with two parents. The others are mutated copies of one parent")
                 .slider(0.0, 1.0),
             crossover_share,
         );
         walk.setting(
-            choice("mutation", "Mutation")
-                .hint("How a child's genes differ from those it inherited"),
+            choice("mutation", "Mutation").hint("Distribution of the changes of inherited genes"),
             mutation,
         );
         walk.setting(
             number("step", "Initial mutation size", 1.0e-4..=0.5)
-                .hint("As a share of each gene's range. Later the step is inherited, and mutates itself")
+                .hint("As a share of each gene's range. Later generations inherit the step, which mutates as well")
                 .slider(0.001, 0.5)
                 .logarithmic_from(0.001)
                 .fixed("Takes effect with the next run, because later generations inherit the value of the first."),
@@ -135,13 +134,13 @@ impl SettingGroup for GaSettings {
         );
         walk.setting(
             number("cooling", "Cooling", 0.5..=1.0)
-                .hint("Factor of the steps from one generation to the next. Below 1 the search settles")
+                .hint("Factor by which mutation steps change per generation. Below 1, the search converges")
                 .slider(0.5, 1.0),
             cooling,
         );
         walk.setting(
             whole("elites", "Elites", 0..=LARGEST_POPULATION)
-                .hint("How many of the best go on unchanged into the next generation")
+                .hint("Number of best snakes copied unchanged into the next generation")
                 .slider(0.0, 20.0),
             elites,
         );
@@ -154,10 +153,10 @@ impl Choices for ParentSelection {
     fn choice(self) -> Choice {
         match self {
             Self::Tournament => {
-                Choice::new("tournament", "Tournament", "The best of a few that are drawn.")
+                Choice::new("tournament", "Tournament", "The best of a few snakes drawn at random.")
             }
             Self::Rank => {
-                let about = "Any individual, the better the more often; the worst hardly ever.";
+                let about = "Any snake; better ranks are more likely.";
                 Choice::new("rank", "Rank", about)
             }
         }
@@ -169,10 +168,11 @@ impl Choices for Crossover {
 
     fn choice(self) -> Choice {
         match self {
-            Self::Uniform => Choice::new("uniform", "Uniform", "Each gene is of either parent."),
+            Self::Uniform => {
+                Choice::new("uniform", "Uniform", "Each gene comes from either parent at random.")
+            }
             Self::OnePoint => {
-                let about =
-                    "The genes before a point are of one parent, those after it of the other.";
+                let about = "Genes before a random point come from one parent, those after it from the other.";
                 Choice::new("one_point", "One point", about)
             }
         }
@@ -185,10 +185,10 @@ impl Choices for Mutation {
     fn choice(self) -> Choice {
         match self {
             Self::Gaussian => {
-                Choice::new("gaussian", "Gaussian", "Mostly small steps, now and then a large one.")
+                Choice::new("gaussian", "Gaussian", "Mostly small steps, occasionally a large one.")
             }
             Self::Uniform => {
-                let about = "Steps of any length up to a limit, all as likely.";
+                let about = "Steps of any length up to a limit, all equally likely.";
                 Choice::new("uniform", "Uniform", about)
             }
         }

@@ -28,7 +28,7 @@ impl HalvingSettings {
     /// The section of these settings.
     pub const SECTION: Section = Section {
         title: "Halving (the report's)",
-        about: "The best few have children, each shifted at random within a range that shrinks.",
+        about: "The best few become parents; children vary at random within a range that shrinks each generation.",
     };
 
     /// The report's run has six generations. The range halves with each, so that more would stand still.
@@ -48,20 +48,22 @@ impl SettingGroup for HalvingSettings {
         walk.section(Self::SECTION);
         walk.setting(
             whole("parents", "Parents", 1..=LARGEST_POPULATION)
-                .hint("How many of the best become parents. Few settle quickly, many keep more variety")
+                .hint("Number of best snakes that become parents. Few converge quickly, many keep more variety")
                 .slider(1.0, 50.0),
             parents,
         );
         walk.setting(
             number("mutation_range_nm", "Mutation range", 0.0..=1.0e6)
                 .unit("N·m")
-                .hint("How far the children of the second generation may differ from their parents")
+                .hint(
+                    "Maximum difference between parents and the children of the second generation",
+                )
                 .slider(0.0, 1000.0),
             mutation_range_nm,
         );
         walk.setting(
             number("mutation_decay", "Mutation decay", 0.0..=1.0)
-                .hint("Factor of the range from one generation to the next: 0.5 halves it, 1 keeps it")
+                .hint("Factor by which the range changes per generation: 0.5 halves it, 1 keeps it")
                 .slider(0.0, 1.0),
             mutation_decay,
         );

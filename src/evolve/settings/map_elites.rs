@@ -46,7 +46,7 @@ impl MapElitesSettings {
     /// The section of these settings.
     pub const SECTION: Section = Section {
         title: "MAP-Elites",
-        about: "Keeps the best of every kind of behaviour in a map, and breeds from all of them.",
+        about: "Keeps the best snake for each kind of behaviour in an archive and breeds from all of them.",
     };
 
     /// Checks that a generation and the archive fit into memory.
@@ -65,26 +65,26 @@ impl SettingGroup for MapElitesSettings {
         let Self { x, y, cells, step, line, cma_share, cma_step } = self;
         walk.section(Self::SECTION);
         walk.setting(
-            choice("x", "Columns of the map")
-                .hint("The behaviour that the columns of the map tell apart")
+            choice("x", "Archive columns")
+                .hint("Behaviour that distinguishes the columns of the archive")
                 .fixed(LAYOUT),
             x,
         );
         walk.setting(
-            choice("y", "Rows of the map")
-                .hint("The behaviour that the rows of the map tell apart")
+            choice("y", "Archive rows")
+                .hint("Behaviour that distinguishes the rows of the archive")
                 .fixed(LAYOUT),
             y,
         );
         walk.setting(
             whole("cells", "Columns and rows", 2..=100)
-                .hint("Number of columns, and of rows. More keep finer differences apart")
+                .hint("Number of columns and of rows of the archive. More distinguish finer differences")
                 .slider(2.0, 50.0)
                 .fixed(LAYOUT),
             cells,
         );
         walk.setting(
-            number("step", "Step of mutation", 0.0..=1.0)
+            number("step", "Mutation step", 0.0..=1.0)
                 .hint("Spread of random steps from an elite, as a share of each gene's range")
                 .slider(0.0, 0.3),
             step,
@@ -96,14 +96,14 @@ impl SettingGroup for MapElitesSettings {
             line,
         );
         walk.setting(
-            number("cma_share", "Share made by CMA-ES", 0.0..=1.0)
-                .hint("Share of each generation that is bred by CMA-ES around an elite")
+            number("cma_share", "CMA-ES share", 0.0..=1.0)
+                .hint("Share of each generation that CMA-ES creates around an elite")
                 .slider(0.0, 1.0),
             cma_share,
         );
         walk.setting(
-            number("cma_step", "Step of that CMA-ES", 1.0e-6..=1.0)
-                .hint("Its first spread around the elite, as a share of each gene's range")
+            number("cma_step", "CMA-ES initial step size", 1.0e-6..=1.0)
+                .hint("Initial spread of CMA-ES around an elite, as a share of each gene's range")
                 .slider(0.001, 1.0)
                 .logarithmic_from(0.001),
             cma_step,
@@ -114,6 +114,6 @@ impl SettingGroup for MapElitesSettings {
         if self.x != self.y {
             return Ok(());
         }
-        Err(Invalid::new("y", self.y.name(), "another descriptor than that of x"))
+        Err(Invalid::new("y", self.y.name(), "a descriptor other than that of x"))
     }
 }

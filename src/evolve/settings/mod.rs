@@ -69,7 +69,7 @@ strategy_kinds! {
     Halving = StrategyInfo {
         name: "halving",
         title: "Halving (the report's)",
-        words: "The best few have children, each shifted at random within a range that halves.",
+        words: "The best few become parents; children vary at random within a range that halves each generation.",
         color: [0xd5, 0x5e, 0x00],
         settings: &["halving"],
         compared_generations: Some(HalvingSettings::REPORT_GENERATIONS),
@@ -80,7 +80,7 @@ strategy_kinds! {
     Ga = StrategyInfo {
         name: "ga",
         title: "Genetic algorithm",
-        words: "Parents are chosen, crossed and mutated; the step of mutation evolves with them.",
+        words: "Parents are selected, crossed and mutated; the mutation step evolves as well.",
         color: [0x00, 0x9e, 0x73],
         settings: &["ga"],
         check_size: |evolution, size| GaSettings::check_size(evolution.population, size),
@@ -90,7 +90,7 @@ strategy_kinds! {
     CmaEs = StrategyInfo {
         name: "cma_es",
         title: "CMA-ES",
-        words: "Learns in which directions it pays to vary: covariance matrix adaptation.",
+        words: "Covariance matrix adaptation: learns in which directions variation pays off.",
         color: [0x00, 0x72, 0xb2],
         settings: &["cma_es"],
         is_budget_driven: true,
@@ -101,7 +101,7 @@ strategy_kinds! {
     MapElites = StrategyInfo {
         name: "map_elites",
         title: "MAP-Elites",
-        words: "Keeps the best of every kind of behaviour, and breeds from all of them.",
+        words: "Keeps the best snake for each kind of behaviour and breeds from all of them.",
         color: [0xcc, 0x79, 0xa7],
         settings: &["map_elites"],
         has_archive: true,
@@ -112,7 +112,7 @@ strategy_kinds! {
     Novelty = StrategyInfo {
         name: "novelty",
         title: "Novelty search",
-        words: "Rewards what has not been seen before, and distance as much as it is told to.",
+        words: "Rewards new behaviour, mixed with fitness in any proportion.",
         color: [0xe6, 0x9f, 0x00],
         settings: &["novelty", "ga"],
         check_size: |evolution, size| NoveltySettings::check_size(evolution.population, size),
@@ -122,7 +122,7 @@ strategy_kinds! {
     Random = StrategyInfo {
         name: "random",
         title: "Random",
-        words: "Draws every genome at random: the baseline that any method has to beat.",
+        words: "Draws every genome at random: the baseline for every other strategy.",
         color: [0x80, 0x80, 0x80],
         ..StrategyInfo::PLAIN
     };
@@ -172,19 +172,19 @@ impl SettingGroup for EvolutionSettings {
             self;
         walk.section(Self::RUN);
         let row = whole("population", "Population", 1..=LARGEST_POPULATION)
-            .hint("Snakes in a generation. More find more, and take longer");
+            .hint("Number of snakes in a generation. More find better solutions, but take longer");
         let row = if strategy.info().is_budget_driven { row.fixed(cma_es::LEARNED) } else { row };
         walk.setting(row, population);
         walk.setting(
             whole("generations", "Generations", 1..=10_000).hint(
-                "Generations in a run. With the population they give the evaluations that it may cost",
+                "Number of generations in a run. Population times generations limits the evaluations",
             ),
             generations,
         );
         walk.section(Self::STRATEGY);
         walk.setting(
             choice("strategy", "Strategy")
-                .hint("The method of the search")
+                .hint("Search algorithm")
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state."),
             strategy,
         );
@@ -213,11 +213,12 @@ impl Choices for StrategyKind {
 
 impl EvolutionSettings {
     /// The section of a run's size and length.
-    pub const RUN: Section =
-        Section { title: "Run", about: "How many snakes, for how many generations." };
+    pub const RUN: Section = Section { title: "Run", about: "Size and length of a run." };
     /// The section of the method.
-    pub const STRATEGY: Section =
-        Section { title: "Strategy", about: "How the next generation is made from the last." };
+    pub const STRATEGY: Section = Section {
+        title: "Strategy",
+        about: "How each generation is created from the previous one.",
+    };
 
     /// Number of evaluations that a run may cost.
     pub fn budget(&self) -> u64 {

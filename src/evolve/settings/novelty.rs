@@ -44,7 +44,7 @@ impl NoveltySettings {
     /// The section of these settings.
     pub const SECTION: Section = Section {
         title: "Novelty search",
-        about: "Rewards new behaviour. Children are made by the settings of the genetic algorithm.",
+        about: "Rewards new behaviour. Children are created with the settings of the genetic algorithm.",
     };
 
     /// Checks that a generation fits into memory and can be compared.
@@ -60,39 +60,41 @@ impl SettingGroup for NoveltySettings {
         let Self { weight, neighbours, remembered, archive_limit, first, second } = self;
         walk.section(Self::SECTION);
         walk.setting(
-            number("weight", "Weight of novelty", 0.0..=1.0)
-                .hint("1 is pure novelty search, 0 only looks at fitness")
+            number("weight", "Novelty weight", 0.0..=1.0)
+                .hint("1 is pure novelty search, 0 uses fitness only")
                 .slider(0.0, 1.0),
             weight,
         );
         walk.setting(
             whole("neighbours", "Neighbours", 1..=1000)
-                .hint("Novelty is the mean distance to this many of the most similar snakes")
+                .hint("Novelty is the mean distance to this number of most similar snakes")
                 .slider(1.0, 50.0),
             neighbours,
         );
         walk.setting(
-            whole("remembered", "Remembered of each generation", 0..=1000)
-                .hint("Number of snakes, chosen at random, that later ones are compared with")
+            whole("remembered", "Memory per generation", 0..=1000)
+                .hint("Number of random snakes per generation kept for comparison with later ones")
                 .slider(0.0, 50.0),
             remembered,
         );
         // Each individual is compared with all of them.
         walk.setting(
             whole("archive_limit", "Memory size", 1..=20_000)
-                .hint("Beyond that, new ones take the places of others")
+                .hint("Maximum number of snakes kept for comparison; beyond it, new ones replace others")
                 .slider(100.0, 20_000.0)
                 .logarithmic_from(100.0),
             archive_limit,
         );
         walk.setting(
-            choice("first", "Told apart by")
-                .hint("The behaviour that tells snakes apart, beside where they end")
+            choice("first", "First behaviour")
+                .hint("Behaviour that distinguishes snakes, in addition to their final position")
                 .fixed(LAYOUT),
             first,
         );
         walk.setting(
-            choice("second", "And by").hint("A second such behaviour").fixed(LAYOUT),
+            choice("second", "Second behaviour")
+                .hint("A second behaviour that distinguishes snakes")
+                .fixed(LAYOUT),
             second,
         );
     }

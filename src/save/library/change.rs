@@ -176,7 +176,7 @@ fn restore(kept: &Path, wanted: &Path) -> Result<FileStep, SaveError> {
 
 fn refused(place: &SavePlace, allowed: &str) -> SaveError {
     let found = match place {
-        SavePlace::Shipped(_) => "part of the program",
+        SavePlace::Shipped(_) => "built-in",
         SavePlace::Champion(_) => "a champion",
         SavePlace::Run(_) => "a run",
     };
@@ -242,7 +242,7 @@ mod tests {
             "entry is a run; allowed: only a champion's file can be renamed",
         );
         says(duplicate(&saves, &run), "only a champion's file can be duplicated");
-        says(rename(&shipped, "other"), "entry is part of the program");
+        says(rename(&shipped, "other"), "entry is built-in");
         says(delete(&saves, &shipped), "a champion's file or a run's folder");
     }
 

@@ -124,11 +124,7 @@ fn no_champion(folder: &Path) -> SaveError {
 pub fn text_of_shipped(name: &str) -> Result<&'static str, SaveError> {
     shipped_text(name).ok_or_else(|| SaveError::Invalid {
         path: name.into(),
-        source: Invalid::new(
-            "name",
-            format!("{name:?}"),
-            "the name of a champion that is part of the program",
-        ),
+        source: Invalid::new("name", format!("{name:?}"), "the name of a built-in champion"),
     })
 }
 

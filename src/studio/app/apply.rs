@@ -95,7 +95,7 @@ fn apply(
                 };
                 match history.take(way) {
                     Some(UndoStep::Plan(step)) => {
-                        notices.info(way.taken(&step.label));
+                        notices.info(step.message(way));
                         history.complete(way, Some(UndoStep::Plan(step.clone())), None);
                         stage.step(&mut run, &step, way)
                     }
@@ -303,7 +303,7 @@ mod tests {
         app.world_mut().write_message_batch(commands);
         app.update();
         assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "one show request");
-        assert!(!app.world().resource::<Playback>().is_playing(), "and held");
+        assert!(!app.world().resource::<Playback>().is_playing(), "and paused");
     }
 
     #[test]

@@ -15,12 +15,12 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 fn update(
-    evolution: Res<CurrentRun>,
+    run: Res<CurrentRun>,
     lanes: Query<&Lane>,
     (mode, playback): (Res<StageMode>, Res<Playback>),
     mut window: Single<&mut Window, With<PrimaryWindow>>,
 ) {
-    let status = match evolution.status() {
+    let status = match run.status() {
         RunStatus::Ready => "ready",
         RunStatus::Running => "running",
         RunStatus::Paused => "paused",
@@ -37,7 +37,7 @@ fn update(
                     "saved champion".to_owned()
                 }
                 ChampionSource::Lesson => "a lesson".to_owned(),
-                ChampionSource::Run(run) if run == evolution.number() => {
+                ChampionSource::Run(number) if number == run.number() => {
                     format!("generation {generation}")
                 }
                 ChampionSource::Run(_) => format!("generation {generation} of an earlier run"),
@@ -53,17 +53,17 @@ fn update(
             format!("{what}{manner}{disturbed}")
         }
     };
-    let held = match playback.is_playing() {
+    let stopped = match playback.is_playing() {
         true => String::new(),
-        false => format!(", held at {:.2} s", playback.time_s()),
+        false => format!(", stopped at {:.2} s", playback.time_s()),
     };
-    let from = evolution.founder().map(|name| format!(", from {name}")).unwrap_or_default();
+    let from = run.founder().map(|name| format!(", from {name}")).unwrap_or_default();
     let title = format!(
-        "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{held}",
-        evolution.preset(),
-        evolution.seed(),
-        evolution.reports().len(),
-        evolution.settings().evolution.generations,
+        "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{stopped}",
+        run.preset(),
+        run.seed(),
+        run.reports().len(),
+        run.settings().evolution.generations,
     );
     if window.title != title {
         window.title = title;

@@ -195,9 +195,7 @@ pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::View, "Anti-aliasing", &["A"], |_| {
         Some(Command::View(ViewCommand::ToggleSmoothEdges))
     }),
-    action(Menu::View, "Light / dark theme", &["T"], |_| {
-        Some(Command::View(ViewCommand::ToggleTheme))
-    }),
+    action(Menu::View, "Dark theme", &["T"], |_| Some(Command::View(ViewCommand::ToggleTheme))),
     action(Menu::View, "Larger panels", &["Ctrl +", "Ctrl ="], |_| {
         Some(Command::Window(WindowCommand::ChangeScale { larger: true }))
     }),

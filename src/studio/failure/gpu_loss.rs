@@ -57,7 +57,7 @@ fn report_restart(mut notices: ResMut<Notices>) {
     if restarts() > 0 {
         notices.problem(
             "The graphics driver failed and the studio restarted. Evolution continues where it was; runs \
-             started later are under \"Resume a stopped run\"."
+             started later are listed under \"Resume a stopped run\"."
                 .to_owned(),
         );
     }

@@ -64,7 +64,7 @@ impl ChampionsPanel {
                 ),
             ] {
                 let button = egui::Button::new(name);
-                let disabled_hint = "Nothing to race yet: wait for the next generation";
+                let disabled_hint = "Nothing to race yet: finish a generation first";
                 let response = ui.add_enabled(is_on, button).on_hover_text(hint);
                 if response.on_disabled_hover_text(disabled_hint).clicked() {
                     commands.push(command);
@@ -81,10 +81,9 @@ impl ChampionsPanel {
         area.show_rows(ui, height, rows, |ui, seen| {
             for index in seen {
                 if let Some(saved) = opening.get(index) {
-                    let name = if opening.len() == 1 { "Saved champion" } else { &saved.name };
                     let is_shown = shown.contains(&ShownChampion::Opening(index));
                     let champion = &saved.loaded.champion;
-                    entry(ui, is_shown, name, champion, Pick::Opened(index), None, commands);
+                    entry(ui, is_shown, &saved.name, champion, Pick::Opened(index), None, commands);
                     continue;
                 }
                 // The newest generation is listed first.

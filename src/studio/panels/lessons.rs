@@ -207,12 +207,12 @@ mod tests {
 
     #[test]
     fn lesson_buttons_run_an_experiment_show_the_conclusion_and_leave() {
-        let mut evolution = prepared_run();
+        let mut run = prepared_run();
         let mut of = Lessons::default();
         let on_show = Show { champions: Vec::new(), mode: StageMode::Solo };
         let mut apply = |of: &mut Lessons, command| {
             let (show, history) = (on_show.clone(), &mut UndoHistory::default());
-            of.apply(&command, &mut evolution, show, history).expect("allowed");
+            of.apply(&command, &mut run, show, history).expect("allowed");
         };
         apply(&mut of, LessonCommand::Begin(0));
         let second = LESSONS[0].scenes[1].label();

@@ -111,7 +111,7 @@ fn set_click_limits(context: &egui::Context) {
 /// State that the panels read.
 #[derive(SystemParam)]
 struct PanelData<'w, 's> {
-    evolution: Res<'w, CurrentRun>,
+    run: Res<'w, CurrentRun>,
     opening: Res<'w, OpeningChampions>,
     on_stage: OnStage<'w, 's>,
     theme: Res<'w, theme::Theme>,
@@ -141,7 +141,7 @@ fn draw(
     context.set_zoom_factor(workspace.scale);
     let mut commands = Vec::new();
     let situation =
-        Situation::of(&data.evolution, &data.on_stage.mode, &workspace, &data.on_stage.history);
+        Situation::of(&data.run, &data.on_stage.mode, &workspace, &data.on_stage.history);
     let mut root = egui::Ui::new(
         context.clone(),
         "root".into(),
@@ -168,13 +168,15 @@ fn draw(
     } else if workspace.is_bare {
         viewer.stage(&mut root);
     } else {
-        let (preset, seed) = (data.evolution.preset(), data.evolution.seed());
+        let (preset, seed) = (data.run.preset(), data.run.seed());
         let fill = theme::of_context(&context).panel;
         let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, theme::GAP as i8 / 4);
         egui::Panel::top("menu").frame(egui::Frame::new().fill(fill).inner_margin(margin)).show(
             &mut root,
             |ui| {
-                menu(ui, situation, &format!("{preset}, seed {seed}"), viewer.commands);
+                let is_on = |command: &Command| data.on_stage.is_on(command, *data.theme);
+                let about = format!("{preset}, seed {seed}");
+                menu(ui, situation, &is_on, &about, viewer.commands);
             },
         );
         let style = style(&root);
@@ -252,7 +254,7 @@ impl Viewer<'_, '_, '_> {
                 .frame(egui::Frame::new().fill(fill).inner_margin(margin))
                 .show(ui, |ui| {
                     let ends_s = end_s(self.lanes.iter().copied());
-                    let run = self.data.evolution.number();
+                    let run = self.data.run.number();
                     self.panels.timeline.ui(ui, lane, playback, ends_s, run, self.commands);
                 });
         }
@@ -265,33 +267,25 @@ impl Viewer<'_, '_, '_> {
 
     /// Champions of the list that are on the stage.
     fn shown(&self) -> Vec<ShownChampion> {
-        let run = self.data.evolution.number();
+        let run = self.data.run.number();
         self.lanes.iter().filter_map(|lane| ShownChampion::of(lane.staged(), run)).collect()
     }
 
     fn panel(&mut self, ui: &mut egui::Ui, kind: PanelKind) {
         let shown = self.shown();
-        let PanelData { evolution, opening, .. } = self.data;
+        let PanelData { run, opening, .. } = self.data;
         let (panels, commands) = (&mut *self.panels, &mut *self.commands);
         match kind {
             PanelKind::Stage => {}
             PanelKind::Run => {
-                panels.evolution.ui(ui, evolution, commands);
-                panels.fitness.ui(
-                    ui,
-                    evolution,
-                    theme::CHART_HEIGHT,
-                    shown.first().copied(),
-                    commands,
-                );
+                panels.evolution.ui(ui, run, commands);
+                panels.fitness.ui(ui, run, theme::CHART_HEIGHT, shown.first().copied(), commands);
             }
-            PanelKind::World => {
-                panels.world.ui(ui, evolution, &self.data.on_stage.history, commands)
-            }
-            PanelKind::Charts => panels.charts.ui(ui, evolution, shown.first().copied(), commands),
+            PanelKind::World => panels.world.ui(ui, run, &self.data.on_stage.history, commands),
+            PanelKind::Charts => panels.charts.ui(ui, run, shown.first().copied(), commands),
             PanelKind::Champions => {
-                let reports = evolution.reports();
-                let leaders = |generation| evolution.leaders(generation).len();
+                let reports = run.reports();
+                let leaders = |generation| run.leaders(generation).len();
                 panels.champions.ui(ui, &opening.0, reports, &shown, leaders, commands);
             }
             PanelKind::Lessons => lessons(ui, self.data.lessons.view(), commands),

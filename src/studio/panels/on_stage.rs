@@ -3,6 +3,8 @@
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
+use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::{Command, PlayerCommand, ViewCommand};
 use crate::studio::scene::camera::{CameraRig, StageCamera};
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::StageMode;
@@ -10,6 +12,7 @@ use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
 use crate::studio::state::undo::UndoHistory;
+use crate::studio::ui::theme::Theme;
 
 /// State of the stage that the panels read.
 #[derive(SystemParam)]
@@ -22,4 +25,24 @@ pub(crate) struct OnStage<'w, 's> {
     pub overlays: Res<'w, Overlays>,
     pub history: Res<'w, UndoHistory>,
     pub smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
+}
+
+impl OnStage<'_, '_> {
+    /// Whether the setting that a command toggles is on; `None` for other commands.
+    pub fn is_on(&self, command: &Command, theme: Theme) -> Option<bool> {
+        match command {
+            Command::Player(PlayerCommand::ToggleLoop) => Some(self.playback.loops()),
+            Command::View(ViewCommand::ToggleFollow) => {
+                Some(self.rig.camera_mode() != CameraMode::Free)
+            }
+            Command::View(ViewCommand::ToggleOverlay(overlay)) => {
+                Some(self.overlays.shows(*overlay))
+            }
+            Command::View(ViewCommand::ToggleSmoothEdges) => {
+                Some(self.smoothing.iter().any(|msaa| *msaa != Msaa::Off))
+            }
+            Command::View(ViewCommand::ToggleTheme) => Some(theme == Theme::Dark),
+            _ => None,
+        }
+    }
 }

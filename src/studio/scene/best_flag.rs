@@ -69,9 +69,9 @@ fn dress(theme: Res<Theme>, cloth: Res<Cloth>, mut materials: ResMut<Assets<Stan
 }
 
 /// Reads the best distance from the run's champions.
-fn look_up(evolution: Option<Res<CurrentRun>>, mut best: ResMut<BestSoFar>) {
-    let Some(evolution) = evolution else { return };
-    let champions = evolution.reports().iter().filter_map(|report| report.champion.as_ref());
+fn look_up(run: Option<Res<CurrentRun>>, mut best: ResMut<BestSoFar>) {
+    let Some(run) = run else { return };
+    let champions = run.reports().iter().filter_map(|report| report.champion.as_ref());
     let reached_m = champions.map(|champion| champion.evaluation.centre_y_m);
     best.set_if_neq(BestSoFar(reached_m.reduce(f32::max)));
 }

@@ -87,7 +87,7 @@ pub(super) fn lanes(champions: Vec<StagedChampion>) -> (Vec<Lane>, Vec<String>) 
         let name = staged.name().to_owned();
         let built = staged.check().map_err(|invalid| invalid.to_string()).and_then(|()| {
             caught(|| Lane::new(staged, lanes.len()))
-                .map_err(|message| format!("the program failed on it: {message}"))
+                .map_err(|message| format!("its simulation failed: {message}"))
         });
         match built {
             Ok(lane) => lanes.push(lane),
@@ -167,7 +167,7 @@ fn advance(
     for (entity, mut lane) in &mut lanes {
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
         let failed = lane.show(playback.time_s(), pull).err();
-        notices.problems(failed.map(|message| format!("The program failed on it: {message}")));
+        notices.problems(failed.map(|message| format!("The simulation failed: {message}")));
         lane.poll_lookahead();
         if lane.has_just_ended() {
             notices.problems(differs_from_record(&lane));
@@ -198,11 +198,13 @@ fn differs_from_record(lane: &Lane) -> Option<String> {
 fn explain_other_engine(staged: &StagedChampion, notices: &mut Notices) {
     let Some(engine) = staged.other_engine() else { return };
     let text = if staged.recording().is_some() {
-        "you see what was recorded then. \"Simulate here\" shows what this engine makes of it."
+        "Its recording is shown; \"Simulate here\" simulates it with this engine."
     } else {
-        "what you see is simulated anew, and may go another way than it did then."
+        "It is simulated again, so its motion may differ."
     };
-    notices.info(format!("Found by engine {engine}, this is engine {ENGINE_VERSION}: {text}"));
+    notices.info(format!(
+        "This champion was found with engine {engine}; this is engine {ENGINE_VERSION}. {text}"
+    ));
 }
 
 #[cfg(test)]

@@ -200,9 +200,9 @@ impl StagedChampion {
             }
             (_, None) => ": ".to_owned(),
             (_, Some(engine)) if self.recording().is_some() => {
-                format!(" as engine {engine} recorded it: ")
+                format!(" as recorded by engine {engine}: ")
             }
-            (_, Some(engine)) => format!(" simulated anew; engine {engine} recorded "),
+            (_, Some(engine)) => format!(", simulated again; engine {engine} recorded "),
         };
         format!("{name}{shown_as}{}", self.champion.reached())
     }

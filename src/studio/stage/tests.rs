@@ -176,7 +176,7 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     for (drawn, recorded) in shown.drawn_poses().zip(last) {
         assert!((drawn.translation - recorded.translation).length() < 1e-5);
     }
-    assert!(shown.staged().caption().contains("as engine 1 recorded it"));
+    assert!(shown.staged().caption().contains("as recorded by engine 1"));
     let simulated = shown.staged().simulated();
     app.world_mut().write_message(Show::solo(simulated));
     clock(&mut app).restart();

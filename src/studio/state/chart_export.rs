@@ -1,4 +1,4 @@
-//! Charts as files: a picture, or a table.
+//! Exports charts as pictures or tables.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use crate::plot;
 use crate::save::{SavesFolder, store_csv, store_picture};
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
 
-/// Writes a chart into the folder for them, under a name that is not taken yet. Returns the file's path.
+/// Writes a chart to the exports folder under a free name. Returns the file's path.
 pub(crate) fn export(saves: &SavesFolder, export: &ChartExport) -> Result<PathBuf, String> {
     let ChartExport { figure, name, format } = export;
     let folder = saves.exports();
@@ -34,7 +34,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_chart_becomes_a_picture_and_a_table_beside_those_before() {
+    fn charts_are_exported_under_free_names() {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         let points = vec![[1.0, 2.0], [2.0, 3.5]];

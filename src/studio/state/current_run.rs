@@ -1,4 +1,4 @@
-//! The experiment behind the window: started, held, reset; its reports kept for the panels.
+//! The run in the background: started, paused, reset; its reports are kept for the panels.
 
 mod compared_runs;
 mod events;
@@ -25,55 +25,54 @@ use individuals::Ancestors;
 pub(crate) use compared_runs::{ComparedRuns, MOST_COMPARED};
 pub(crate) use live_changes::news_of;
 
-/// Of so many generations the best ten are remembered.
+/// Number of generations whose best ten are kept.
 const REMEMBERED_GENERATIONS: usize = 200;
 
-/// Where a run stands.
+/// Status of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum RunStatus {
     /// Prepared, nothing evaluated yet.
     Ready,
     /// Evaluating.
     Running,
-    /// Held.
+    /// Paused.
     Paused,
-    /// All generations are done.
+    /// All generations are finished.
     Finished,
 }
 
-/// The current run and what it found.
+/// The current run and its results.
 #[derive(Resource, Debug)]
 pub(crate) struct CurrentRun {
-    engine: RunContext,
-    /// Which run of this session it is; the first is 0.
+    context: RunContext,
+    /// Number of the run within this session; the first is 0.
     number: u32,
-    /// The current run as it began; the engine's plan is that of the next.
+    /// The current run, with its plan as it began.
     source: RunSource,
-    /// Its plan after all its changes.
-    source_now: RunPlan,
-    /// Its settings once those changes are made, too, that wait for its next generation.
-    awaited: Settings,
+    /// The plan of the current run after all its changes.
+    plan_now: RunPlan,
+    /// The plan of the next run.
+    plan_next: RunPlan,
+    /// Requested changes of the current run that wait for its next generation: full dotted names and values.
+    pending: Vec<(String, String)>,
     background: Option<BackgroundRun>,
-    /// The run before, if it may still be ending.
+    /// The previous run, which may still be stopping.
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
-    /// What the run has found besides, once a generation is finished.
+    /// Results besides champions, after the first finished generation.
     exploration: Option<Box<Exploration>>,
-    /// Everybody in it who has descendants, by place, once somebody is looked for.
+    /// Individuals with descendants, by place; computed on first use.
     ancestors: OnceLock<Ancestors>,
-    /// How often it was told what the run has found.
+    /// Number of updates of `exploration`.
     times_explored: u64,
-    /// Other runs, to be laid over this one.
+    /// Other runs shown in the charts.
     others: ComparedRuns,
     /// The best ten of each of the latest generations of this session, the earliest first.
     leaders: VecDeque<Vec<Champion>>,
     run_hash: Option<u64>,
     /// Whether a lesson has the stage and the settings: see [`Self::lend`].
     is_lent: bool,
-    /// Whether the next run's settings are set for the run under way, too, as far as they may change there: they are
-    /// not if they came from another preset or another run.
-    next_is_own: bool,
-    /// The folder of a run that was reset: what is in it is thrown away when such a run begins.
+    /// Folder of a run that was reset; its contents are deleted when the run starts again.
     discarded: Option<PathBuf>,
 }
 
@@ -88,18 +87,18 @@ impl FromWorld for CurrentRun {
 }
 
 impl CurrentRun {
-    /// The run the studio opens with, prepared.
-    pub fn new(engine: RunContext) -> Self {
-        Self::prepared(engine.first.clone(), engine)
+    /// Prepares the run that the studio opens with.
+    pub fn new(context: RunContext) -> Self {
+        Self::prepared(context.first.clone(), context.first.plan.clone(), context)
     }
 
-    /// A prepared run.
-    fn prepared(source: RunSource, engine: RunContext) -> Self {
+    fn prepared(source: RunSource, plan_next: RunPlan, context: RunContext) -> Self {
         Self {
-            source_now: source.plan.clone(),
-            awaited: source.plan.settings.clone(),
+            plan_now: source.plan.clone(),
+            plan_next,
+            pending: Vec::new(),
             source,
-            engine,
+            context,
             number: 0,
             background: None,
             before: None,
@@ -111,12 +110,11 @@ impl CurrentRun {
             leaders: VecDeque::new(),
             run_hash: None,
             is_lent: false,
-            next_is_own: true,
             discarded: None,
         }
     }
 
-    /// Where the run stands.
+    /// Status of the run.
     pub fn status(&self) -> RunStatus {
         match &self.background {
             _ if self.run_hash.is_some() => RunStatus::Finished,
@@ -126,12 +124,12 @@ impl CurrentRun {
         }
     }
 
-    /// How many evaluations the current run may cost, after all its changes.
+    /// Maximum number of evaluations of the current run, with all its changes.
     pub fn budget(&self) -> u64 {
-        self.source_now.budget()
+        self.plan_now.budget()
     }
 
-    /// Which run of this session it is; the first is 0.
+    /// Number of the run within this session; the first is 0.
     pub fn number(&self) -> u32 {
         self.number
     }
@@ -153,10 +151,10 @@ impl CurrentRun {
 
     /// Settings of the current run, as they are after all its changes.
     pub fn settings(&self) -> &Settings {
-        &self.source_now.settings
+        &self.plan_now.settings
     }
 
-    /// Runs that were stopped before their end and can go on, once somebody has asked for runs.
+    /// Stopped runs that can be resumed; `None` until the runs are listed.
     pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
         let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
         Some(self.others.runs()?.iter().filter(is_other))
@@ -167,23 +165,23 @@ impl CurrentRun {
         &self.reports
     }
 
-    /// What the run has found besides champions, once a generation is finished.
+    /// Results besides champions, after the first finished generation.
     pub fn exploration(&self) -> Option<&Exploration> {
         self.exploration.as_deref()
     }
 
-    /// Another value whenever something that charts show has changed.
+    /// Changes whenever something shown by charts changes.
     pub fn version(&self) -> (u32, u64, usize, u64) {
         (self.number, self.times_explored, self.reports.len(), self.others.version())
     }
 
-    /// Other runs, to be laid over this one.
+    /// Other runs shown in the charts.
     pub fn others(&self) -> &ComparedRuns {
         &self.others
     }
 
-    /// The best ten of a generation, or of the latest one, the best first; nobody of one that an earlier session has
-    /// finished, or of long ago.
+    /// The best ten of a generation, or of the latest one, best first; empty for generations of earlier sessions or
+    /// long ago.
     pub fn leaders(&self, generation: Option<u32>) -> &[Champion] {
         let is_it = |leaders: &&Vec<Champion>| match (generation, leaders.first()) {
             (None, _) => true,
@@ -193,7 +191,7 @@ impl CurrentRun {
         self.leaders.iter().rev().find(is_it).map_or(&[], Vec::as_slice)
     }
 
-    /// Takes in what was found besides champions.
+    /// Stores results besides champions.
     fn explore(&mut self, mut exploration: Box<Exploration>) {
         let leaders = std::mem::take(&mut exploration.leaders);
         if !leaders.is_empty() {
@@ -207,7 +205,7 @@ impl CurrentRun {
         self.times_explored += 1;
     }
 
-    /// Finished evaluations of the current generation, and how many it has.
+    /// Finished and total evaluations of the current generation.
     pub fn progress(&self) -> (u32, u32) {
         match &self.background {
             Some(background) => background.progress(),
@@ -241,7 +239,7 @@ impl CurrentRun {
             RunCommand::ListRuns => self.list_runs(),
             RunCommand::Compare(folder) => self.others.toggle(folder),
             RunCommand::ExportChart(chart) => {
-                let path = chart_export::export(&self.engine.saves, chart)?;
+                let path = chart_export::export(&self.context.saves, chart)?;
                 notices.info(format!("Chart saved to {}", path.display()));
                 Ok(())
             }
@@ -255,7 +253,7 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Holds evolution.
+    /// Pauses evolution.
     pub fn pause(&mut self) -> Result<(), String> {
         if self.status() == RunStatus::Running {
             self.background()?.pause();
@@ -272,7 +270,7 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Begins another run now, with the next seed if nothing else differs; the current one can be gone on with later.
+    /// Starts another run, with the next seed if nothing else differs. The current one can be resumed later.
     pub fn begin_next(&mut self) -> Result<(), String> {
         if self.next_run_differs() || self.is_under_way() {
             self.prepare_another();
@@ -280,11 +278,11 @@ impl CurrentRun {
         self.start()
     }
 
-    /// Prepares the next run. The same run is thrown away, and begins anew; another, which was stopped at
-    /// some time, will go on.
+    /// Prepares the next run. If its plan is that of the current run, the current run is discarded and starts again; a
+    /// different run that was stopped earlier is resumed.
     pub fn reset(&mut self) -> Result<(), String> {
-        // One that was changed on its way is another than one that begins with what it was changed to.
-        if self.source.plan != self.engine.next {
+        // A run whose settings changed midway differs from one started with the final settings.
+        if self.source.plan != self.plan_next {
             self.prepare_next();
         } else {
             self.discarded = Some(self.source.folder.clone());
@@ -293,18 +291,18 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Prepares the next run.
+    /// Makes the next run the current one, without starting it.
     fn prepare_next(&mut self) {
-        let plan = self.engine.next.clone();
-        let mut source = RunSource::in_saves(&self.engine.saves, plan, ExistingRun::Keep);
-        // Whoever has reset it means so even after having looked at other settings.
+        let plan = self.plan_next.clone();
+        let mut source = RunSource::in_saves(&self.context.saves, plan, ExistingRun::Keep);
+        // A reset still holds after switching settings back and forth.
         if self.discarded.as_ref() == Some(&source.folder) {
             source.earlier = ExistingRun::Discard;
         }
         self.replace(source);
     }
 
-    /// Puts another run in the place of the current one, which ends in the background.
+    /// Replaces the current run, which stops in the background.
     fn replace(&mut self, source: RunSource) {
         let before = self.background.take().or(self.before.take());
         *self = Self {
@@ -313,41 +311,40 @@ impl CurrentRun {
             others: std::mem::take(&mut self.others),
             is_lent: self.is_lent,
             discarded: self.discarded.take(),
-            ..Self::prepared(source, self.engine.clone())
+            ..Self::prepared(source, self.plan_next.clone(), self.context.clone())
         };
         if self.others.runs().is_some() {
-            // Somebody may be looking at the list: the run that was replaced belongs into it. What cannot
-            // be listed now is listed when it is asked for again.
+            // The list may be visible, and the replaced run belongs in it. After a failure, it is listed again on
+            // request.
             let _ = self.list_runs();
         }
     }
 
-    /// Prepares the current run to go on with what is kept of it.
+    /// Prepares the current run to resume from its saved state.
     fn open_again(&mut self) {
-        self.engine.set_run_folder(None);
+        self.context.set_run_folder(None);
         self.replace(RunSource { earlier: ExistingRun::Keep, ..self.source.clone() });
-        self.next_is_own = self.next_looks_own();
     }
 
-    /// Looks for all runs in the folder of saves.
+    /// Lists all runs in the saves folder, in the background.
     pub fn list_runs(&mut self) -> Result<(), String> {
-        self.others.list(self.engine.saves.clone())
+        self.others.list(self.context.saves.clone())
     }
 
     /// Goes on with a run that was stopped; the current one can be gone on with later.
     pub fn go_on_with(&mut self, folder: &Path) -> Result<(), String> {
         let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
-        self.engine.next = source.plan.clone();
+        self.plan_next = source.plan.clone();
         self.replace(source);
         self.start()
     }
 
-    /// Lends stage and settings to a lesson, or takes them back: meanwhile the run under way is changed by nothing.
+    /// Lends stage and settings to a lesson, or takes them back. Meanwhile the current run ignores edits of settings.
     pub fn lend(&mut self, is_lent: bool) {
         self.is_lent = is_lent;
     }
 
-    /// Whether the run under way will hold after its current generation.
+    /// Whether the current run will pause after its current generation.
     pub fn is_single_generation(&self) -> bool {
         self.background.as_ref().is_some_and(BackgroundRun::is_single_generation)
     }
@@ -359,31 +356,31 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// After the end of a run the next one: what was asked for meanwhile, or the next seed.
+    /// After a finished run, prepares the next one: the plan set meanwhile, or the next seed.
     fn begin_next_if_over(&mut self) {
         if self.status() == RunStatus::Finished {
             self.prepare_another();
         }
     }
 
-    /// Prepares a run that is not the current one once more: with the next seed, if nothing else differs.
+    /// Prepares a run that differs from the current one: with the next seed if nothing else differs.
     fn prepare_another(&mut self) {
         if !self.next_run_differs() {
-            self.engine.next.seed = self.engine.next.seed.wrapping_add(1);
+            self.plan_next.seed = self.plan_next.seed.wrapping_add(1);
         }
         self.prepare_next();
     }
 
-    /// The run's thread, started if it was not.
+    /// The run's background thread; started on first use.
     fn background(&mut self) -> Result<&BackgroundRun, String> {
         let background = match self.background.take() {
             Some(background) => background,
             None => {
                 let source = self.source.clone();
-                let evaluator = Arc::clone(&self.engine.evaluator);
-                self.engine.set_run_folder(Some(source.folder.clone()));
+                let evaluator = Arc::clone(&self.context.evaluator);
+                self.context.set_run_folder(Some(source.folder.clone()));
                 BackgroundRun::start(source, evaluator, self.before.take())
-                    .map_err(|error| format!("evolution could not be started: {error}"))?
+                    .map_err(|error| format!("Evolution could not be started: {error}"))?
             }
         };
         Ok(self.background.insert(background))

@@ -1,5 +1,5 @@
-//! Lessons: what the first stair climbers taught their makers, to be tried. A lesson borrows the stage and the settings of
-//! the next run, and gives both back; the run under way is held meanwhile, and otherwise left alone.
+//! Guided experiments. A lesson borrows the stage and the next run's settings and restores both at its end; the current
+//! run is paused meanwhile.
 
 mod catalogue;
 
@@ -22,40 +22,40 @@ use catalogue::{LessonScene, Side};
 
 pub(crate) use catalogue::LESSONS;
 
-/// The lesson that is going on, if one is.
+/// The current lesson, if any.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Lessons {
     current: Option<Current>,
 }
 
-/// A lesson that is going on.
+/// State of the current lesson.
 #[derive(Debug)]
 struct Current {
-    /// Which one; the first is 0.
+    /// Index of the lesson.
     index: usize,
-    /// Which of its scenes is on the stage; the first is 0.
+    /// Index of the scene on the stage.
     scene: usize,
-    /// What became of each lane of the scene: its name, and how it ended.
+    /// Name and result of each lane of the scene.
     lanes: Vec<(String, Evaluation)>,
-    /// What became of each run of the scene.
+    /// Results of the scene's runs.
     runs: Vec<Found>,
     under_way: Option<ParallelRuns>,
     has_tried: bool,
     own: Own,
 }
 
-/// A run of a lesson.
+/// Results of a lesson's run.
 #[derive(Debug, Clone)]
 pub(crate) struct Found {
-    /// What it is called.
+    /// Name of the run.
     pub name: String,
-    /// Its finished generations.
+    /// Reports of the finished generations.
     pub reports: Vec<GenerationReport>,
-    /// Its hash, once it is finished.
+    /// Hash, once the run is finished.
     pub run_hash: Option<u64>,
 }
 
-/// What a person had before the lesson.
+/// State to restore after the lesson.
 #[derive(Debug)]
 struct Own {
     next: RunPlan,
@@ -65,7 +65,7 @@ struct Own {
     pace: Pace,
 }
 
-/// How one's own run was going on.
+/// How the current run was advancing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Pace {
     Running,
@@ -73,25 +73,25 @@ enum Pace {
     Held,
 }
 
-/// A lesson as a panel sees it.
+/// View of the current lesson for its panel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LessonView<'l> {
-    /// Which one; the first is 0.
+    /// Index of the lesson.
     pub index: usize,
-    /// Which of its scenes is on the stage; the first is 0.
+    /// Index of the scene on the stage.
     pub scene: usize,
-    /// What became of each lane: its name, and how it ended.
+    /// Name and result of each lane.
     pub lanes: &'l [(String, Evaluation)],
-    /// What became of each run.
+    /// Results of the runs.
     pub runs: &'l [Found],
-    /// Whether runs are under way.
+    /// Whether runs are in progress.
     pub is_busy: bool,
-    /// Whether something was tried, so that the answer may be told.
+    /// Whether the user has tried something, so that the conclusion may be shown.
     pub has_tried: bool,
 }
 
 impl Lessons {
-    /// The lesson that is going on.
+    /// The current lesson.
     pub fn view(&self) -> Option<LessonView<'_>> {
         self.current.as_ref().map(|current| LessonView {
             index: current.index,
@@ -110,12 +110,12 @@ impl Lessons {
     pub fn apply(
         &mut self,
         command: &LessonCommand,
-        evolution: &mut CurrentRun,
+        run: &mut CurrentRun,
         on_show: Show,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
         match command {
-            LessonCommand::Begin(index) => self.begin(*index, evolution, on_show, history),
+            LessonCommand::Begin(index) => self.begin(*index, run, on_show, history),
             LessonCommand::ShowScene(scene) => {
                 self.allow_answer();
                 self.show(*scene)
@@ -124,7 +124,7 @@ impl Lessons {
                 self.allow_answer();
                 Ok(None)
             }
-            LessonCommand::Leave => self.leave(evolution, history),
+            LessonCommand::Leave => self.leave(run, history),
         }
     }
 
@@ -132,7 +132,7 @@ impl Lessons {
     pub fn begin(
         &mut self,
         index: usize,
-        evolution: &mut CurrentRun,
+        run: &mut CurrentRun,
         Show { champions, mode }: Show,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
@@ -140,25 +140,25 @@ impl Lessons {
             return Err(format!("There are {} lessons.", LESSONS.len()));
         }
         let own = match self.current.take() {
-            // From one lesson to the next: one's own is still that of before the first.
+            // From one lesson to the next: keep the state from before the first.
             Some(before) => {
-                // What was set in the lesson before means nothing in this one.
+                // Undo steps of the previous lesson do not apply to this one.
                 history.give_back(UndoHistory::default());
                 before.own
             }
             None => {
-                let pace = match evolution.status() {
-                    RunStatus::Running if evolution.is_single_generation() => Pace::OneGeneration,
+                let pace = match run.status() {
+                    RunStatus::Running if run.is_single_generation() => Pace::OneGeneration,
                     RunStatus::Running => Pace::Running,
                     RunStatus::Ready | RunStatus::Paused | RunStatus::Finished => Pace::Held,
                 };
-                evolution.pause()?;
-                evolution.lend(true);
-                let (next, history) = (evolution.next_plan().clone(), history.lend());
+                run.pause()?;
+                run.lend(true);
+                let (next, history) = (run.next_plan().clone(), history.lend());
                 Own { next, champions, mode, history, pace }
             }
         };
-        evolution.set_next_plan(own.next.clone())?;
+        run.set_next_plan(own.next.clone())?;
         self.current = Some(Current {
             index,
             scene: 0,
@@ -178,27 +178,27 @@ impl Lessons {
         }
     }
 
-    /// Ends the lesson: stage, settings and run are as they were before it.
+    /// Ends the lesson and restores stage, settings and run.
     pub fn leave(
         &mut self,
-        evolution: &mut CurrentRun,
+        run: &mut CurrentRun,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
         let Some(Current { own, .. }) = self.current.take() else { return Ok(None) };
-        evolution.set_next_plan(own.next)?;
-        evolution.lend(false);
+        run.set_next_plan(own.next)?;
+        run.lend(false);
         history.give_back(own.history);
         match own.pace {
-            Pace::Running if evolution.status() == RunStatus::Paused => evolution.start()?,
-            Pace::OneGeneration if evolution.status() == RunStatus::Paused => {
-                evolution.single_generation()?;
+            Pace::Running if run.status() == RunStatus::Paused => run.start()?,
+            Pace::OneGeneration if run.status() == RunStatus::Paused => {
+                run.single_generation()?;
             }
             Pace::Running | Pace::OneGeneration | Pace::Held => {}
         }
         Ok(Some(Show { champions: own.champions, mode: own.mode }))
     }
 
-    /// Puts a scene on the stage, or begins its runs.
+    /// Shows a scene, or starts its runs.
     fn show(&mut self, number: usize) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
         let Some(scene) = LESSONS[current.index].scenes.get(number) else { return Ok(None) };
@@ -225,14 +225,15 @@ impl Lessons {
                 current.lanes.clear();
                 current.runs = runs.iter().map(found).collect();
                 let started = ParallelRuns::start(plans);
-                current.under_way =
-                    Some(started.map_err(|error| format!("The runs cannot begin: {error}"))?);
+                current.under_way = Some(
+                    started.map_err(|error| format!("The runs could not be started: {error}"))?,
+                );
                 Ok(None)
             }
         }
     }
 
-    /// Takes in what the runs have found. Says who is to be shown once they are over: the best of each.
+    /// Handles events of the lesson's runs. Once all are finished, returns the best champion of each.
     fn take_in(&mut self) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
         while let Some(event) = current.under_way.as_ref().and_then(ParallelRuns::poll) {
@@ -245,7 +246,7 @@ impl Lessons {
                 }
                 ParallelRunsEvent::Failed(problem) => {
                     current.under_way = None;
-                    return Err(format!("The lesson's runs broke off: {problem}"));
+                    return Err(format!("The lesson's runs failed: {problem}"));
                 }
             }
         }
@@ -264,7 +265,7 @@ impl Lessons {
 }
 
 impl Found {
-    /// The best of all its generations so far.
+    /// The best champion so far.
     pub fn best(&self) -> Option<&Champion> {
         let champions = self.reports.iter().filter_map(|report| report.champion.as_ref());
         champions.max_by(|a, b| a.evaluation.fitness.total_cmp(&b.evaluation.fitness))
@@ -291,7 +292,7 @@ fn take_in(
     }
 }
 
-/// A champion that comes with the program in each of these worlds.
+/// A built-in champion in each of these worlds.
 fn champions(champion: &'static str, lanes: &[Side]) -> Result<Vec<StagedChampion>, String> {
     let place = SavePlace::Shipped(champion);
     let (loaded, _) = load_entry(&place).map_err(|error| error.to_string())?;
@@ -311,7 +312,7 @@ fn champions(champion: &'static str, lanes: &[Side]) -> Result<Vec<StagedChampio
         .collect()
 }
 
-/// The run of one side: the quick preset with its changes.
+/// Plan and thread count of a run: the preset "quick" with changes.
 fn plan(side: &Side) -> Result<(RunPlan, usize), String> {
     let preset = load_preset("quick").map_err(|error| error.to_string())?;
     let settings = with_fields(&preset.settings, side.changes.iter().copied())
@@ -329,7 +330,7 @@ mod tests {
     use crate::run::{Experiment, LocalPool, RunControl};
     use crate::studio::state::current_run::prepared_run;
 
-    /// What the runs of a scene come to.
+    /// Evolves the runs of a scene.
     fn outcome(sides: &[Side]) -> Vec<Found> {
         sides
             .iter()
@@ -348,7 +349,7 @@ mod tests {
             .collect()
     }
 
-    /// How the lanes of a scene end: the place of the centre, in metres.
+    /// Final distance of the centre in each lane of a scene, in metres.
     fn ends_m(champion: &'static str, lanes: &[Side]) -> Vec<f32> {
         let champions = champions(champion, lanes).expect("they fit");
         let evaluate =
@@ -369,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_lesson_tells_the_truth_about_friction() {
+    fn the_conclusion_about_friction_is_true() {
         let ends = ends_m("robust", lanes(0, 0));
         let [little, original, much] = ends[..] else { panic!("three lanes") };
         assert!(original > 21.0, "the original stands on the landing");
@@ -379,32 +380,32 @@ mod tests {
     }
 
     #[test]
-    fn the_second_lesson_tells_the_truth_about_the_frame_rate() {
+    fn the_conclusion_about_the_frame_rate_is_true() {
         let ends = ends_m("climber", lanes(1, 0));
         assert!(ends[1..].iter().all(|end| (end - ends[0]).abs() > 0.5), "{ends:?}");
     }
 
     #[test]
-    fn the_third_lesson_tells_the_truth_about_limits() {
+    fn the_conclusion_about_limits_is_true() {
         let found = outcome(runs(2, 1));
         let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
         let [with, without] = &found[..] else { panic!("two runs") };
-        let best = |of: &Found| last(of).expect("somebody was healthy").best;
+        let best = |of: &Found| last(of).expect("a healthy snake").best;
         assert!(best(with) > best(without) + 3.0, "{} and {}", best(with), best(without));
         let out = |of: &Found| of.reports.iter().map(|report| report.disqualified).sum::<u32>();
         assert!(out(without) > out(with), "{} and {}", out(without), out(with));
     }
 
     #[test]
-    fn the_fourth_lesson_tells_the_truth_about_halving() {
+    fn the_conclusion_about_halving_is_true() {
         let found = outcome(runs(3, 1));
         let [halved, kept] = &found[..] else { panic!("two runs") };
-        let best = |of: &Found| of.best().expect("somebody").evaluation.fitness;
+        let best = |of: &Found| of.best().expect("a champion").evaluation.fitness;
         assert!(best(kept) > best(halved) + 3.0, "{} and {}", best(kept), best(halved));
     }
 
     #[test]
-    fn the_fifth_lesson_tells_the_truth_about_bits() {
+    fn the_conclusion_about_bits_is_true() {
         let twice = outcome(runs(4, 1));
         assert_eq!(twice[0].run_hash, twice[1].run_hash);
         let apart = outcome(runs(4, 2));
@@ -429,21 +430,21 @@ mod tests {
 
     #[test]
     fn after_a_lesson_stage_and_settings_are_as_they_were() {
-        let mut evolution = prepared_run();
+        let mut run = prepared_run();
         let own = champions("climber", &[lanes(0, 0)[1].clone()]).expect("it fits");
-        let next = evolution.next_plan().clone();
+        let next = run.next_plan().clone();
         let mut lessons = Lessons::default();
         let stage = |champions: Vec<StagedChampion>| Show { champions, mode: StageMode::Solo };
         let mut history = UndoHistory::default();
-        let shown = lessons.begin(0, &mut evolution, stage(own.clone()), &mut history);
+        let shown = lessons.begin(0, &mut run, stage(own.clone()), &mut history);
         assert_eq!(shown.expect("allowed").expect("a scene").champions.len(), 3);
-        evolution.set_field("surface.friction", "0.2").expect("allowed");
-        lessons.begin(1, &mut evolution, stage(Vec::new()), &mut history).expect("allowed");
-        assert_eq!(*evolution.next_plan(), next, "the next lesson begins with one's own, too");
-        evolution.set_field("surface.friction", "0.3").expect("allowed");
+        run.set_field("surface.friction", "0.2").expect("allowed");
+        lessons.begin(1, &mut run, stage(Vec::new()), &mut history).expect("allowed");
+        assert_eq!(*run.next_plan(), next, "the next lesson starts with the user's settings");
+        run.set_field("surface.friction", "0.3").expect("allowed");
         let back =
-            lessons.leave(&mut evolution, &mut history).expect("allowed").expect("one's own");
-        assert_eq!(*evolution.next_plan(), next);
+            lessons.leave(&mut run, &mut history).expect("allowed").expect("the earlier stage");
+        assert_eq!(*run.next_plan(), next);
         assert_eq!(back.mode, StageMode::Solo);
         assert_eq!(back.champions.len(), own.len());
         assert!(lessons.view().is_none());

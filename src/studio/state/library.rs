@@ -25,35 +25,35 @@ pub(crate) use item::{LibraryItem, fitness_text};
 pub(crate) use load::founder_of;
 pub(crate) use poll::plugin;
 
-/// What is in the folder of saves, as far as it is read, and what was done with it.
+/// Entries of the saves folder, and the operations that are under way or can be undone.
 #[derive(Resource, Debug)]
 pub(crate) struct Library {
     saves: SavesFolder,
-    /// Nobody reads before somebody has looked.
+    /// `None` until the library is first opened.
     reader: Option<LibraryReader>,
-    /// In the order of their places.
+    /// Sorted by place.
     items: Vec<LibraryItem>,
     is_listed: bool,
-    /// How many entries are not read yet.
+    /// Number of entries not read yet.
     unread: usize,
-    /// Why the folder cannot be read.
+    /// Reason why the folder cannot be read.
     problem: Option<String>,
-    /// Counts the changes of what there is to be seen.
+    /// Incremented with every visible change.
     revision: u64,
-    /// Counts the changes of what there is.
+    /// Incremented when entries are added or removed.
     listings: u64,
-    /// Counts the changes of what entries are sorted and found by.
+    /// Incremented when a sort or search key changes.
     sortings: u64,
     errands: Vec<BatchJobs>,
-    /// Who is being read to take the stage.
+    /// Champions being read for the stage.
     loading: Option<BackgroundTask<Result<Show, String>>>,
-    /// Who is to take the stage, once read.
+    /// Result of `loading`, until it is shown.
     loaded: Option<Result<Show, String>>,
-    /// What there is new, to be pointed out, and how often there was.
+    /// Entry to highlight, and a counter of such entries.
     newest: (u64, Option<SavePlace>),
-    /// The folder of the run that goes on now.
+    /// Folder of the run in progress.
     current: Option<PathBuf>,
-    /// Whether files are held over the window.
+    /// Whether files are being dragged over the window.
     is_drop_near: bool,
 }
 
@@ -64,7 +64,7 @@ impl FromWorld for Library {
 }
 
 impl Library {
-    /// That of a folder, which nobody has looked into yet.
+    /// The library of a folder; nothing is read yet.
     pub fn new(saves: SavesFolder) -> Self {
         Self {
             saves,
@@ -85,17 +85,17 @@ impl Library {
         }
     }
 
-    /// Whether somebody has looked: from then on it is read.
+    /// Whether the library was opened; from then on it is read.
     pub fn is_open(&self) -> bool {
         self.reader.is_some() || self.is_listed
     }
 
-    /// Whether it is known what there is.
+    /// Whether the entries are listed.
     pub fn is_listed(&self) -> bool {
         self.is_listed
     }
 
-    /// What there is, in the order of places.
+    /// The entries, sorted by place.
     pub fn items(&self) -> &[LibraryItem] {
         &self.items
     }
@@ -106,7 +106,7 @@ impl Library {
         found.ok().map(|index| &self.items[index])
     }
 
-    /// How many entries are not read yet.
+    /// Number of entries not read yet.
     pub fn unread(&self) -> usize {
         self.unread
     }
@@ -116,22 +116,22 @@ impl Library {
         self.problem.as_deref()
     }
 
-    /// Changes whenever there is something else to be seen.
+    /// Changes with every visible change.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Changes whenever there are other entries: an index of before means another one then.
+    /// Changes when entries are added or removed, which invalidates indices.
     pub fn listings(&self) -> u64 {
         self.listings
     }
 
-    /// Changes whenever something that entries are sorted or found by has changed.
+    /// Changes when a sort or search key of an entry changes.
     pub fn sortings(&self) -> u64 {
         self.sortings
     }
 
-    /// The generation of a run's best, as far as that has been read.
+    /// The generation of a run's best champion, if it has been read.
     pub fn best_of(&self, place: &SavePlace) -> Option<u32> {
         let run = self.item(place)?.run()?;
         let best = run.best.map(|(generation, _)| generation);
@@ -139,22 +139,22 @@ impl Library {
         there.or(run.champions.last().copied())
     }
 
-    /// What was made, renamed or brought back last, and how often that has happened.
+    /// The entry created, renamed or restored last, and a counter of such changes.
     pub fn newest(&self) -> (u64, Option<&SavePlace>) {
         (self.newest.0, self.newest.1.as_ref())
     }
 
-    /// Whether it is the folder of the run that goes on now.
+    /// Whether it is the folder of the run in progress.
     pub fn is_current(&self, place: &SavePlace) -> bool {
         self.current.is_some() && place.run() == self.current.as_deref()
     }
 
-    /// Whether files are held over the window, to be dropped.
+    /// Whether files are being dragged over the window.
     pub fn is_drop_near(&self) -> bool {
         self.is_drop_near
     }
 
-    /// The folder.
+    /// The saves folder.
     pub fn folder(&self) -> &Path {
         self.saves.path()
     }
@@ -180,7 +180,7 @@ impl Library {
         }
     }
 
-    /// That of entries that were read without a folder, for tests.
+    /// A library of these entries without a folder, for tests.
     #[cfg(test)]
     pub fn of(events: Vec<crate::run::LibraryEvent>) -> Self {
         let mut library = Self::new(SavesFolder::find(Some(Path::new("saves"))));
@@ -284,7 +284,7 @@ mod tests {
         assert_eq!(tried.own(), ["b"]);
         assert_eq!(tried.next(), (Some("deleted 2 saves"), None));
         tried.step(UndoDirection::Back);
-        assert_eq!(tried.notices.last(), Some("Undone: deleted 2 saves."));
+        assert_eq!(tried.notices.last(), Some("2 saves restored."));
         assert_eq!(tried.own(), ["a", "b", "c"]);
         assert_eq!(tried.next(), (None, Some("deleted 2 saves")));
         tried.step(UndoDirection::Forth);
@@ -299,7 +299,7 @@ mod tests {
         tried.apply(&LibraryCommand::Delete(vec![a])).expect("deleted");
         std::fs::write(tried.folder.path().join("a.ron"), "another").expect("written");
         tried.step(UndoDirection::Back);
-        let said = "Undone: deleted a. The name a is taken, so it is now called a 2.";
+        let said = "a restored. The name a was taken, so the new name is a 2.";
         assert_eq!(tried.notices.last(), Some(said));
         let (count, newest) = tried.library.newest();
         assert_eq!((count, newest.map(SavePlace::name)), (1, Some("a 2".to_owned())));

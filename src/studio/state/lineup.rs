@@ -7,35 +7,35 @@ use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::stage::{MAX_LANES, Show};
 
-/// So many generations race if there are more than there are lanes: as many as the report shows.
+/// Number of generations that race if there are more than lanes: as many as the report shows.
 const CHOSEN_GENERATIONS: usize = 6;
 
-/// Somebody who was pointed at. None if there is nobody any more.
+/// The champion that was picked; `None` if it is no longer kept.
 pub(crate) fn champion_of(
     pick: &Pick,
-    evolution: &CurrentRun,
+    run: &CurrentRun,
     opening: &OpeningChampions,
 ) -> Option<StagedChampion> {
-    let number = evolution.number();
+    let number = run.number();
     let found = |champion: &Champion| StagedChampion::from_run(champion, number);
     match *pick {
         Pick::Opened(index) => opening.staged(index),
-        Pick::Generation(generation) => evolution.champion_of(generation).map(found),
+        Pick::Generation(generation) => run.champion_of(generation).map(found),
         Pick::Front { generation, individual } => {
-            evolution.front_member(generation, individual).as_ref().map(found)
+            run.front_member(generation, individual).as_ref().map(found)
         }
-        Pick::Elite(cell) => evolution.elite(cell).as_ref().map(found),
-        Pick::Individual(place) => evolution.individual(place).as_ref().map(found),
+        Pick::Elite(cell) => run.elite(cell).as_ref().map(found),
+        Pick::Individual(place) => run.individual(place).as_ref().map(found),
     }
 }
 
-/// Whether two exhibits are the same individual.
+/// Whether two lanes show the same individual.
 fn are_one(a: &StagedChampion, b: &StagedChampion) -> bool {
     let is_run = |staged: &StagedChampion| matches!(staged.source(), ChampionSource::Run(_));
     a.source() == b.source() && (!is_run(a) || a.champion().origin == b.champion().origin)
 }
 
-/// Those on the stage and one more; if it is there already, without it.
+/// The stage with one champion added, or removed if it is there already.
 pub(crate) fn with_one_more(
     mut on_show: Vec<StagedChampion>,
     staged: StagedChampion,
@@ -55,13 +55,13 @@ pub(crate) fn with_one_more(
 
 /// The champions of the generations of the current run; of many, some at equal distances, the first and the last
 /// among them.
-pub(crate) fn all_generations(evolution: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
+pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
     let champions: Vec<&Champion> =
-        evolution.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
+        run.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
     if champions.len() < 2 {
         return Err("Nothing to race yet: finish two generations first.".to_owned());
     }
-    let number = evolution.number();
+    let number = run.number();
     let chosen = evenly_chosen(champions.len());
     Ok(chosen.map(|index| StagedChampion::from_run(champions[index], number)).collect())
 }
@@ -79,14 +79,14 @@ pub(super) fn evenly(count: usize, most: usize, few: usize) -> impl Iterator<Ite
 
 /// The best of a generation, or of the latest one.
 pub(crate) fn leaders(
-    evolution: &CurrentRun,
+    run: &CurrentRun,
     generation: Option<u32>,
 ) -> Result<Vec<StagedChampion>, String> {
-    let leaders = evolution.leaders(generation);
+    let leaders = run.leaders(generation);
     if leaders.len() < 2 {
         return Err("Nothing to race yet: finish a generation first.".to_owned());
     }
-    let number = evolution.number();
+    let number = run.number();
     let names = (1..).map(|rank| format!("No. {rank}"));
     let champions = leaders.iter().zip(names);
     Ok(champions

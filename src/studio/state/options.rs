@@ -1,4 +1,4 @@
-//! The options that the studio is opened with.
+//! Options of the studio.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::run::{Evaluator, RunSource};
 use crate::save::{Comparison, LoadedChampion, PreferencesFile, SavesFolder};
 use crate::studio::ui::theme::Theme;
 
-/// With what the studio opens.
+/// Options of the studio.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The first run.
@@ -20,25 +20,25 @@ pub struct Options {
     pub evaluator: Arc<dyn Evaluator>,
     /// Where the next runs are saved.
     pub saves: SavesFolder,
-    /// The champions to open with, and what they are called; several race. Without one, the shipped one.
+    /// Champions to open with, and their names; several race. If empty, the built-in champion.
     pub champions: Vec<(String, LoadedChampion)>,
     /// A comparison of methods to show.
     pub comparison: Option<Comparison>,
-    /// Size of the window, in logical pixels; none: as it was before.
+    /// Size of the window, in logical pixels; `None`: as last time.
     pub window_size: Option<(u32, u32)>,
-    /// The colours to open with; none: as they were before.
+    /// Colour theme; `None`: as last time.
     pub theme: Option<Theme>,
-    /// Where it is kept what a person has chosen for the window.
+    /// File of the window preferences.
     pub preferences: PreferencesFile,
-    /// Where to write what the panels show, for scripts and tests.
+    /// File to which the panels' texts and positions are written, for scripts and tests.
     pub places: Option<PathBuf>,
-    /// After how many frames to close by itself.
+    /// Number of frames after which the window closes.
     pub exit_after_frames: Option<u32>,
 }
 
 #[cfg(test)]
 impl Options {
-    /// Those of a test: this run, on one thread, and nothing of a person's own.
+    /// Options for tests: this run, on one thread, without preferences.
     pub(crate) fn of_test(run: RunSource, saves: SavesFolder) -> Self {
         Self {
             run,

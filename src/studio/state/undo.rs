@@ -20,6 +20,9 @@ pub(crate) use follow::followed;
 /// Maximum number of steps that can be undone.
 const MAX_STEPS: usize = 200;
 
+/// Subject of the step that discards the changes of a what-if.
+const DISCARD: &str = "discard";
+
 /// Subject of the step that continues another run.
 const CONTINUE: &str = "continue";
 
@@ -64,6 +67,14 @@ pub(crate) struct PlanStep {
 }
 
 impl PlanStep {
+    /// Message after the step was undone or redone.
+    pub fn message(&self, way: UndoDirection) -> String {
+        if way == UndoDirection::Back && self.subject == DISCARD {
+            return "Changes restored".to_owned();
+        }
+        way.taken(&self.label)
+    }
+
     /// Whether the step continued another run: its settings are no edit of the run in progress.
     pub fn is_of_another_run(&self) -> bool {
         self.subject == CONTINUE
@@ -197,7 +208,7 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
             PlanCommand::SetPreset(name) | PlanCommand::StorePreset(name) => {
                 ("preset", format!("preset {name}"))
             }
-            PlanCommand::DropChange => ("drop", "discarded changes".to_owned()),
+            PlanCommand::DropChange => (DISCARD, "discarded changes".to_owned()),
             PlanCommand::StartFrom(_) | PlanCommand::StartFromSave(_) => {
                 let name = after.founder.as_ref().map_or("a champion", |founder| founder.name());
                 ("founder", format!("start of the next run from {name}"))
@@ -282,14 +293,14 @@ mod tests {
         })
     }
 
-    /// The plans of a step.
+    /// Plans before and after a step.
     fn plans(step: Option<UndoStep>) -> (RunPlan, RunPlan) {
         let Some(UndoStep::Plan(PlanStep { before, after, .. })) = step else { panic!("a step") };
         (*before, *after)
     }
 
     #[test]
-    fn steps_go_back_and_forth_with_their_names() {
+    fn steps_are_undone_and_redone_with_their_labels() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
         history.settle();
@@ -303,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn one_drag_is_one_step_however_often_it_rests() {
+    fn one_drag_is_one_step_even_if_it_rests() {
         let mut history = UndoHistory::default();
         for (before, after) in [("1", "0.8"), ("0.8", "0.5"), ("0.5", "0.3")] {
             history.note(&set(after), plan(before), &plan(after));
@@ -317,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_new_change_ends_what_could_be_redone_and_what_changes_nothing_is_no_step() {
+    fn a_new_change_clears_the_redo_stack_and_a_change_without_effect_is_no_step() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
         step(&mut history, UndoDirection::Back);
@@ -328,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn only_so_many_steps_are_kept() {
+    fn the_number_of_steps_is_limited() {
         let mut history = UndoHistory::default();
         for number in 0..MAX_STEPS + 50 {
             let after = plan(&format!("{}", number + 2));
@@ -340,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_of_a_new_run_is_left_alone_by_a_step_that_is_not_about_it() {
+    fn a_step_that_did_not_change_the_seed_keeps_the_current_one() {
         let now = RunPlan { seed: 2, ..plan("0.5") };
         assert_eq!(stepped(&now, &plan("0.5"), &plan("1")).seed, 2);
         let other_seed = RunPlan { seed: 9, ..plan("1") };

@@ -1,4 +1,4 @@
-//! Who can be put on the stage, and beside whom: from what a person points at to lanes.
+//! What-if: a copy of the champion in a changed world, beside the original.
 
 use bevy::prelude::*;
 
@@ -18,31 +18,31 @@ pub(crate) enum WorldChange<'a> {
     Preset(&'a str),
 }
 
-/// Makes a change for the next run, and says what is to be shown: the first of those on the stage as it is, and
-/// beside it with the change; nothing if the change does not concern it.
+/// Applies a change to the next run. Returns the first champion on the stage, unchanged and in the changed world;
+/// `None` if the change does not affect it.
 pub(crate) fn what_if(
-    evolution: &mut CurrentRun,
+    run: &mut CurrentRun,
     on_show: &[StagedChampion],
     mode: &StageMode,
     change: &WorldChange,
 ) -> Result<Option<Show>, String> {
     let before = match mode {
         StageMode::WhatIf { before } => before.clone(),
-        StageMode::Solo | StageMode::Race => Box::new(evolution.next_plan().clone()),
+        StageMode::Solo | StageMode::Race => Box::new(run.next_plan().clone()),
     };
     match change {
-        WorldChange::Fields(changes) => evolution.set_fields(changes)?,
-        WorldChange::Preset(name) => evolution.set_preset(name)?,
+        WorldChange::Fields(changes) => run.set_fields(changes)?,
+        WorldChange::Preset(name) => run.set_preset(name)?,
     }
-    // Only the change is to make a difference, not another engine too.
+    // Both lanes are simulated, so that only the change makes a difference.
     let Some(original) = on_show.first().map(StagedChampion::simulated) else { return Ok(None) };
     let original = &original;
-    // Further changes add up.
+    // Changes accumulate.
     let so_far = match mode {
         StageMode::WhatIf { .. } => on_show.last().unwrap_or(original),
         StageMode::Solo | StageMode::Race => original,
     };
-    let next = evolution.next_settings();
+    let next = run.next_settings();
     let trial = match change {
         // Other differences of the next run's world are left out.
         WorldChange::Fields(changes) => {
@@ -50,7 +50,7 @@ pub(crate) fn what_if(
             let changed = with_fields(&settings, changes.iter().copied());
             changed.map_err(|error| error.to_string())?.trial
         }
-        // Its world; how long it lasts and what is rewarded stay, so that the two can be compared.
+        // Duration and fitness stay, so that the lanes can be compared.
         WorldChange::Preset(_) => Trial {
             duration_s: so_far.trial().duration_s,
             fitness: so_far.trial().fitness,
@@ -71,24 +71,24 @@ pub(crate) fn what_if(
     };
     let changed = original.in_world(&trial, label);
     changed.check().map_err(|reason| {
-        format!("What is on show stays in its own world, the new one does not suit it: {reason}")
+        format!("The snake on the stage stays in its world, because it does not fit the new one: {reason}")
     })?;
     let champions = vec![original.clone(), changed];
     Ok(Some(Show { champions, mode: StageMode::WhatIf { before } }))
 }
 
-/// Forgets what was changed.
+/// Discards the changes.
 pub(crate) fn dropped(
-    evolution: &mut CurrentRun,
+    run: &mut CurrentRun,
     on_show: &[StagedChampion],
     mode: &StageMode,
 ) -> Result<Option<Show>, String> {
     let StageMode::WhatIf { before } = mode else { return Ok(None) };
-    evolution.undo_world(before)?;
+    run.undo_world(before)?;
     Ok(on_show.first().cloned().map(Show::solo))
 }
 
-/// Goes on with what was changed.
+/// Keeps the changed lane.
 pub(crate) fn kept(on_show: &[StagedChampion], mode: &StageMode) -> Option<Show> {
     let is_what_if = matches!(mode, StageMode::WhatIf { .. });
     on_show.last().filter(|_| is_what_if).cloned().map(Show::solo)
@@ -133,7 +133,7 @@ mod tests {
         let shown = shown.expect("allowed").expect("the original");
         assert_eq!(shown.champions[0].trial(), original.trial());
         assert_eq!(*run.next_plan(), plan, "as it was before the first change");
-        // What was chosen meanwhile, and is no matter of the world, stays.
+        // Other settings changed meanwhile stay.
         what_if(&mut run, &[saved(0)], &StageMode::Solo, &field("surface.friction", "0.3"))
             .expect("allowed");
         run.set_seed(77).expect("allowed");
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn a_preset_that_the_genome_does_not_fit_is_refused_with_the_reason() {
+    fn a_world_that_the_genome_does_not_fit_is_refused_with_the_reason() {
         let mut run = prepared_run();
         let limbs = WorldChange::Fields(vec![("agent.limbs", "7")]);
         let refusal = what_if(&mut run, &[saved(0)], &StageMode::Solo, &limbs);
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_matter_of_the_world_changes_nothing_on_the_stage() {
+    fn settings_outside_the_world_do_not_affect_the_stage() {
         let mut run = prepared_run();
         let parents = WorldChange::Fields(vec![("evolution.population", "7")]);
         let shown = what_if(&mut run, &[saved(0)], &StageMode::Solo, &parents).expect("allowed");

@@ -4,16 +4,16 @@ use crate::evolve::Settings;
 use crate::schema::list;
 use crate::score::Trial;
 
-/// A change is named by so many settings; more are counted.
+/// Maximum number of settings named in a description; more are counted.
 const MOST_NAMED: usize = 2;
 
-/// What is other in a world, in a few words: "friction 0.5, rise 0.7".
+/// Description of the differences between two worlds: "friction 0.5, rise 0.7".
 pub(crate) fn world_in_words(original: &Trial, changed: &Trial) -> String {
     let of = |trial: &Trial| Settings { trial: trial.clone(), ..Settings::default() };
     changes_in_words(&of(original), &of(changed))
 }
 
-/// What is other in some settings, in a few words.
+/// Description of the differences between two settings.
 pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> String {
     let (before, mut after) = (list(original), list(changed));
     after.sort_by(|a, b| a.path.cmp(&b.path));
@@ -25,7 +25,7 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
             match was {
                 Some(was) if was.value == listed.value => None,
                 Some(_) => Some(format!("{name} {}", listed.value)),
-                // A group that was not there before is named as a whole.
+                // A new group is named as a whole.
                 None => Some(format!("own {}", listed.path.rsplit('.').nth(1).unwrap_or(&name))),
             }
         })

@@ -29,11 +29,11 @@ impl Icon {
     /// Label for screen readers.
     fn label(self) -> &'static str {
         match self {
-            Self::ToStart => "From the start",
-            Self::StepBack => "Step back",
+            Self::ToStart => "Go to start",
+            Self::StepBack => "Previous step",
             Self::Play => "Play",
             Self::Pause => "Pause playback",
-            Self::StepForward => "Step forward",
+            Self::StepForward => "Next step",
             Self::Loop => "Loop",
             Self::Reset => "Reset",
             Self::Undo => "Undo",

@@ -13,7 +13,7 @@ use crate::studio::state::undo::{UndoDirection, UndoHistory};
 #[derive(SystemParam)]
 pub(crate) struct CurrentSituation<'w> {
     mode: Res<'w, StageMode>,
-    evolution: Res<'w, CurrentRun>,
+    run: Res<'w, CurrentRun>,
     workspace: Res<'w, Workspace>,
     history: Res<'w, UndoHistory>,
 }
@@ -21,20 +21,20 @@ pub(crate) struct CurrentSituation<'w> {
 impl CurrentSituation<'_> {
     /// The current situation.
     pub fn situation(&self) -> Situation {
-        Situation::of(&self.evolution, &self.mode, &self.workspace, &self.history)
+        Situation::of(&self.run, &self.mode, &self.workspace, &self.history)
     }
 }
 
 impl Situation {
     /// The situation of this state.
     pub fn of(
-        evolution: &CurrentRun,
+        run: &CurrentRun,
         mode: &StageMode,
         workspace: &Workspace,
         history: &UndoHistory,
     ) -> Self {
         Self {
-            is_running: evolution.status() == RunStatus::Running,
+            is_running: run.status() == RunStatus::Running,
             is_what_if: matches!(mode, StageMode::WhatIf { .. }),
             is_race: *mode == StageMode::Race,
             is_covered: workspace.modal().is_some() || workspace.is_bare,

@@ -191,7 +191,7 @@ impl Studio {
     /// Time at which the stage is paused, in simulated seconds, from the title.
     pub fn held_at_s(&self) -> f64 {
         let title = self.title();
-        let text = title.rsplit_once("held at ").and_then(|(_, rest)| rest.strip_suffix(" s"));
+        let text = title.rsplit_once("stopped at ").and_then(|(_, rest)| rest.strip_suffix(" s"));
         text.and_then(|text| text.parse().ok()).unwrap_or_else(|| panic!("title: {title}"))
     }
 

@@ -209,7 +209,7 @@ impl Studio {
         let tab = self.place("Panel Champions").area;
         let generation = format!("Generation {row}");
         let is_it = |place: &Place| {
-            let rest = place.label.strip_prefix(if row == 0 { "Saved" } else { &generation });
+            let rest = place.label.strip_prefix(if row == 0 { "climber" } else { &generation });
             let is_named = rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
             let is_here = place.area.top > tab.bottom && place.area.right < self.stage().left;
             place.role == "Button" && is_named && is_here
@@ -251,6 +251,6 @@ impl Studio {
 
     /// Seeks to this fraction of the time.
     pub fn seek(&self, share: f64) {
-        self.click_at(self.place("Moment, in simulated seconds").area.at(share, 0.5));
+        self.click_at(self.place("Time, in simulated seconds").area.at(share, 0.5));
     }
 }

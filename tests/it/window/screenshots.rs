@@ -81,7 +81,7 @@ impl Album {
         studio.key("n");
         studio.wait_for_title("showing a race of 6");
         studio.key("space");
-        studio.wait_for_title(", held");
+        studio.wait_for_title(", stopped");
         studio.seek(0.55);
         self.keep(&studio, "race");
 
@@ -91,7 +91,7 @@ impl Album {
         studio.drag_slider("Friction", 0.3);
         studio.wait_for_title("what if");
         studio.key("space");
-        studio.wait_for_title(", held");
+        studio.wait_for_title(", stopped");
         studio.seek(0.5);
         self.keep(&studio, "what-if");
         drop(studio);
@@ -103,7 +103,7 @@ impl Album {
         for key in ["a", "0", "space", "v", "j", "b"] {
             studio.key(key);
         }
-        studio.wait_for_title(", held");
+        studio.wait_for_title(", stopped");
         studio.seek(0.3);
         let limb = studio.still_picture().find(super::is_red).expect("a red limb");
         studio.double_click_at(limb);
@@ -117,7 +117,7 @@ impl Album {
         studio.key("a");
         studio.key("0");
         studio.key("space");
-        studio.wait_for_title(", held");
+        studio.wait_for_title(", stopped");
         studio.seek(0.42);
         self.keep(&studio, "single");
 
@@ -146,7 +146,7 @@ impl Album {
         studio.click_label("Begin lesson 1");
         studio.wait_for_title("showing a race of 3");
         studio.key("space");
-        studio.wait_for_title(", held");
+        studio.wait_for_title(", stopped");
         studio.seek(0.6);
         self.keep(&studio, "lesson");
         drop(studio);

@@ -9,9 +9,9 @@ fn held_at_start(test: &str) -> Option<Studio> {
     let studio = Studio::open(test, "--preset quick --saves saves")?;
     studio.pause_evolution();
     studio.key("space");
-    studio.wait_for_title(", held at ");
+    studio.wait_for_title(", stopped at ");
     studio.seek(0.0);
-    studio.wait_for_title("held at 0.00 s");
+    studio.wait_for_title("stopped at 0.00 s");
     Some(studio)
 }
 
@@ -20,36 +20,37 @@ fn the_player_pauses_steps_and_seeks() {
     let Some(studio) = Studio::open("player", "--preset quick") else { return };
     studio.pause_evolution();
     studio.click_label("Pause playback");
-    studio.wait_for_title(", held at ");
+    studio.wait_for_title(", stopped at ");
     studio.seek(0.5);
     // A pixel of the strip is a few hundredths of a second.
-    let is_there = || ["held at 7.4", "held at 7.5"].iter().any(|at| studio.title().contains(at));
+    let is_there =
+        || ["stopped at 7.4", "stopped at 7.5"].iter().any(|at| studio.title().contains(at));
     studio.wait(is_there, || format!("the middle of 15 s in {:?}", studio.title()));
     let middle = studio.held_at_s();
     let picture = studio.still_picture();
-    studio.click_label("Step back");
-    studio.click_label("Step back");
+    studio.click_label("Previous step");
+    studio.click_label("Previous step");
     let before = studio.held_at_s();
     assert!((0.015..0.035).contains(&(middle - before)), "{middle} to {before}");
     studio.key("Right");
     studio.key("Left");
-    studio.click_label("Step forward");
-    studio.click_label("Step forward");
+    studio.click_label("Next step");
+    studio.click_label("Next step");
     let again = studio.held_at_s();
     assert!((again - middle).abs() < 0.018, "{middle} and {again}");
     studio.seek(0.5);
     assert!((studio.held_at_s() - middle).abs() < 0.001);
     studio.picture_with(|now| difference(&picture, now) < 50);
     studio.key("End");
-    studio.wait_for_title("held at 15.00 s");
-    studio.click_label("From the start");
-    studio.wait_for_title_without("held");
+    studio.wait_for_title("stopped at 15.00 s");
+    studio.click_label("Go to start");
+    studio.wait_for_title_without("stopped");
     // Four times the speed, without looping.
     studio.key("o");
     for _ in 0..4 {
         studio.key("plus");
     }
-    studio.wait_for_title("held at 15.00 s");
+    studio.wait_for_title("stopped at 15.00 s");
 }
 
 #[test]

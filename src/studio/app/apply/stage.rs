@@ -27,7 +27,7 @@ pub(crate) struct StageParams<'w, 's> {
 }
 
 /// Shown when the user leaves a what-if without discarding the change.
-const CHANGE_STAYS: &str = "The next run keeps the change: see the World tab.";
+const CHANGE_STAYS: &str = "The next run keeps the change: see the World panel.";
 
 impl StageParams<'_, '_> {
     /// The champions on the stage, by lane.

@@ -108,7 +108,7 @@ impl ChartKind {
             Self::Ancestors => {
                 "The ancestors of the best snake will appear here after the first generation."
             }
-            Self::Torques => "Computing torques ...",
+            Self::Torques => "Computing torques…",
             Self::Parents => {
                 "The gene values of the parents will appear here when this session finishes a generation. Random \
                  search and CMA-ES have no parents."
@@ -117,7 +117,7 @@ impl ChartKind {
             Self::Archive => "The best snake for each kind of behaviour will appear here.",
             Self::Runs => "The curves of this run will appear here after the first generation.",
             Self::Methods => {
-                "No comparison is open. \"snakes compare\" makes one, \"snakes --comparison FILE\" opens it."
+                "No comparison is open. \"snakes compare\" creates one, \"snakes --comparison FILE\" opens it."
             }
         }
     }

@@ -103,7 +103,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
     for compared in others.compared() {
         let name = compared.folder.file_name().unwrap_or_default().display();
         match &compared.read {
-            None => explain(ui, &format!("Loading {name} ...")),
+            None => explain(ui, &format!("Loading {name}…")),
             Some(Err(problem)) => {
                 ui.colored_label(theme::of(ui).problem, format!("Not shown: {problem}"));
             }
@@ -113,7 +113,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             Some(Ok(_)) => {}
         }
     }
-    let Some(runs) = others.runs() else { return explain(ui, "Loading the list of runs ...") };
+    let Some(runs) = others.runs() else { return explain(ui, "Loading the list of runs…") };
     let mut choices = runs.iter().filter(|other| other.folder != run.folder()).peekable();
     ui.horizontal(|ui| {
         match choices.peek() {

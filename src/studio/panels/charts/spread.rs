@@ -152,7 +152,7 @@ mod tests {
         ];
         let words = disqualified(&evaluations);
         assert!(words.starts_with("3 of 4 were disqualified: 1 because a joint"), "{words}");
-        assert!(words.ends_with("2 because it outran the speed limit."), "{words}");
+        assert!(words.ends_with("2 because it exceeded the speed limit."), "{words}");
         assert_eq!(disqualified(&evaluations[..1]), "None of 1 were disqualified.");
     }
 }

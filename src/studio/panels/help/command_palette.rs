@@ -212,7 +212,7 @@ mod tests {
             sent("grip", press),
             [Command::Window(WindowCommand::CloseModal), Command::Lesson(LessonCommand::Begin(0))]
         );
-        let setting = Command::Window(WindowCommand::FindSetting("Slip"));
+        let setting = Command::Window(WindowCommand::FindSetting("Creep (slip)"));
         assert_eq!(
             sent("setting slip", press),
             [Command::Window(WindowCommand::CloseModal), setting]

@@ -7,10 +7,12 @@ use crate::studio::commands::Command;
 use crate::studio::commands::actions::{ACTIONS, Action, Menu, Situation};
 use crate::studio::ui::theme;
 
-/// Draws the menus and collects the user's commands. `about` is shown at the right end.
+/// Draws the menus and collects the user's commands. `is_on` says whether the setting that a command toggles is on.
+/// `about` is shown at the right end.
 pub(crate) fn menu(
     ui: &mut egui::Ui,
     situation: Situation,
+    is_on: &dyn Fn(&Command) -> Option<bool>,
     about: &str,
     commands: &mut Vec<Command>,
 ) {
@@ -22,7 +24,7 @@ pub(crate) fn menu(
             ui.menu_button(menu.name(), |ui| {
                 ui.set_min_width(theme::MENU_WIDTH);
                 for action in ACTIONS.iter().filter(|action| action.menu == menu) {
-                    entry(ui, action, situation, commands);
+                    entry(ui, action, situation, is_on, commands);
                 }
             });
         }
@@ -33,13 +35,22 @@ pub(crate) fn menu(
     });
 }
 
-fn entry(ui: &mut egui::Ui, action: &Action, situation: Situation, commands: &mut Vec<Command>) {
+fn entry(
+    ui: &mut egui::Ui,
+    action: &Action,
+    situation: Situation,
+    is_on: &dyn Fn(&Command) -> Option<bool>,
+    commands: &mut Vec<Command>,
+) {
     // An action for a range of digits needs a digit, which a menu cannot supply.
     if action.key().contains("...") {
         return;
     }
     let command = (action.asks)(situation);
-    let button = egui::Button::new(action.name).shortcut_text(action.key());
+    let mut button = egui::Button::new(action.name).shortcut_text(action.key());
+    if let Some(is_on) = command.as_ref().and_then(is_on) {
+        button = button.selected(is_on);
+    }
     if ui.add_enabled(command.is_some(), button).clicked() {
         commands.extend(command);
         ui.close();
@@ -56,7 +67,7 @@ mod tests {
     #[test]
     fn a_menu_entry_sends_its_command() {
         let mut harness = Harness::new_ui_state(
-            |ui, commands| menu(ui, Situation::default(), "climb, seed 1", commands),
+            |ui, commands| menu(ui, Situation::default(), &|_| None, "climb, seed 1", commands),
             Vec::new(),
         );
         harness.get_by_label("Run").click();

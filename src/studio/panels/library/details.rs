@@ -55,7 +55,7 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem) {
         return;
     }
     if !item.is_read() {
-        return explain(ui, "Loading ...");
+        return explain(ui, "Loading…");
     }
     let mut lines = Vec::new();
     if let Some(champion) = item.champion() {

@@ -80,7 +80,7 @@ impl LibraryPanel {
         }
         let available = ui.available_height();
         if !available.is_finite() {
-            return self.parts(ui, library, theme::LIST_HEIGHTS[0], commands);
+            return self.parts(ui, library, history, theme::LIST_HEIGHTS[0], commands);
         }
         let [usual, least] = theme::LIST_HEIGHTS;
         let rest = if self.surrounding_heights == [0.0; 2] {
@@ -178,7 +178,7 @@ impl LibraryPanel {
         if rows.is_empty() {
             let text = match (library.problem(), library.is_listed(), self.search.is_empty()) {
                 (Some(problem), ..) => problem,
-                (_, false, _) => "Loading ...",
+                (_, false, _) => "Loading…",
                 (_, true, true) => "There are no saves yet.",
                 (_, true, false) => "No save matches all of these words.",
             };

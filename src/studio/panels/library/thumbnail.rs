@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn the_whole_drawing_fits_into_the_thumbnail() {
         let Ok(EntryDetails::Champion(of)) = read_entry(&SavePlace::Shipped("climber")) else {
-            panic!("it comes with the program");
+            panic!("it is built-in");
         };
         let rect = Rect::from_min_size(egui::pos2(10.0, 20.0), theme::THUMBNAIL_SIZE);
         let view = ThumbnailView::new(rect, &of.thumbnail);

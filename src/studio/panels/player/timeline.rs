@@ -215,10 +215,10 @@ mod tests {
     #[test]
     fn each_button_of_the_player_sends_its_command() {
         for (label, command) in [
-            ("From the start", Command::Player(PlayerCommand::Restart)),
-            ("Step back", Command::Player(PlayerCommand::Step { forward: false })),
+            ("Go to start", Command::Player(PlayerCommand::Restart)),
+            ("Previous step", Command::Player(PlayerCommand::Step { forward: false })),
             ("Pause playback", Command::Player(PlayerCommand::Toggle)),
-            ("Step forward", Command::Player(PlayerCommand::Step { forward: true })),
+            ("Next step", Command::Player(PlayerCommand::Step { forward: true })),
             ("Loop", Command::Player(PlayerCommand::ToggleLoop)),
         ] {
             assert_eq!(sent(900.0, |harness| harness.get_by_label(label).click()), [command]);

@@ -49,7 +49,7 @@ impl TorqueStrip {
         let size = egui::vec2(ui.available_width(), height);
         let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click_and_drag());
         response.widget_info(|| {
-            egui::WidgetInfo::slider(ui.is_enabled(), now_s, "Moment, in simulated seconds")
+            egui::WidgetInfo::slider(ui.is_enabled(), now_s, "Time, in simulated seconds")
         });
         let palette = theme::of(ui);
         let painter = ui.painter_at(rect);
@@ -229,7 +229,7 @@ mod tests {
             },
             Vec::new(),
         );
-        let strip = harness.get_by_label("Moment, in simulated seconds").rect();
+        let strip = harness.get_by_label("Time, in simulated seconds").rect();
         let at = |share: f32| strip.lerp_inside(egui::vec2(share, 0.5));
         harness.hover_at(at(0.5));
         harness.drag_at(at(0.5));

@@ -241,7 +241,7 @@ fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Comma
     let header = egui::CollapsingHeader::new("Resume a stopped run");
     let opened = header.show(ui, |ui| {
         let Some(stopped) = run.stopped() else {
-            return explain(ui, "Loading ...");
+            return explain(ui, "Loading…");
         };
         let mut stopped = stopped.peekable();
         if stopped.peek().is_none() {

@@ -1,4 +1,4 @@
-//! Controls for what is no number: a choice among names, a box to tick, a list of numbers.
+//! Controls for choices, switches and lists of numbers.
 
 use bevy_egui::egui;
 
@@ -7,7 +7,7 @@ use super::number::Control;
 use crate::schema::Choice;
 
 impl Sheet {
-    /// A list of names to choose from. Returns the one that is chosen.
+    /// A drop-down list. Returns the new choice.
     pub(super) fn choice(
         &mut self,
         ui: &mut egui::Ui,
@@ -36,12 +36,12 @@ impl Sheet {
             list.response
                 .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, said));
             let sentence = chosen.map_or("", |choice| &choice.sentence);
-            list.response.on_hover_text(format!("{}\n\nNow: {sentence}", shown.hint));
+            list.response.on_hover_text(format!("{}\n\nSelected: {sentence}", shown.hint));
             requested
         })
     }
 
-    /// A box to tick. Returns what it is set to.
+    /// A check box. Returns the new value.
     pub(super) fn on_off(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         self.row(ui, shown, true, |_, ui, _, name| {
             let mut is_on = shown.value == "true";
@@ -50,7 +50,7 @@ impl Sheet {
         })
     }
 
-    /// Several numbers with commas between them. Returns them when the field is left.
+    /// A text field with comma-separated numbers. Returns the new list when the field loses focus.
     pub(super) fn list(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let check = |text: &str| shown.check.typed(text);
         let plain = shown.value.trim_start_matches('[').trim_end_matches(']');

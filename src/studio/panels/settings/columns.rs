@@ -1,4 +1,4 @@
-//! Where a setting's name, control and way back stand: in columns where there is room, else in two lines.
+//! Layout of a setting's label, control and reset button: in columns, or in two lines on narrow panels.
 
 use bevy_egui::egui;
 
@@ -15,24 +15,23 @@ pub struct Columns {
 /// A part of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// The name.
+    /// Label.
     Label,
-    /// The control.
+    /// Control.
     Control,
-    /// The way back to the preset's value.
+    /// Button that resets to the preset's value.
     Reset,
 }
 
-/// From this width on a row needs only one line, in points.
+/// Minimum width of a one-line row, in points.
 const WIDE: f32 = 460.0;
-/// Width of the way back, in points.
+/// Width of the reset button, in points.
 pub const RESET_WIDTH: f32 = 22.0;
-/// Width of a field for a number, in points.
+/// Width of a number field, in points.
 pub const VALUE_WIDTH: f32 = 76.0;
 
 impl Columns {
-    /// The columns for what is left of a panel's width; a control that needs no more than a field's width stands
-    /// beside its name even where there is little room.
+    /// Columns for the available width. A small control shares the line with its label even on a narrow panel.
     pub fn of(ui: &egui::Ui, is_small: bool) -> Self {
         let all = ui.available_width();
         let gap = theme::GAP;
@@ -47,13 +46,13 @@ impl Columns {
                 control: all,
             };
         }
-        // On a very wide panel a slider over its whole width is no easier to set.
+        // Limit the width: a longer slider is no easier to set.
         let label = (all * 0.42).min(300.0);
         let control = (all - label - RESET_WIDTH - 2.0 * gap).min(440.0);
         Self { is_wide: true, label, control }
     }
 
-    /// Draws a row: its parts in the order of reading.
+    /// Draws a row, its parts in reading order.
     pub fn row(self, ui: &mut egui::Ui, mut part: impl FnMut(&mut egui::Ui, Part, f32)) {
         let Self { is_wide, label, control } = self;
         ui.horizontal(|ui| {
@@ -69,8 +68,8 @@ impl Columns {
     }
 }
 
-/// A part of exactly this width, whatever is in it: what is too wide for it moves no other column. What needs more
-/// lines makes the row higher.
+/// A part of exactly this width, so that wide contents do not move other columns. Contents of several lines make the
+/// row higher.
 fn cell(ui: &mut egui::Ui, width: f32, show: impl FnOnce(&mut egui::Ui)) {
     let height = ui.spacing().interact_size.y;
     let rect = egui::Rect::from_min_size(ui.cursor().min, egui::vec2(width, height));

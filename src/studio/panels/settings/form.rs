@@ -1,8 +1,8 @@
-//! The controls of settings, and what is being dragged or typed in them.
+//! Controls of settings, and the values being dragged or typed.
 //!
-//! A change also goes to the stage: beside what is on show the same genome begins under it. So that a drag does not
-//! start the stage again with every pixel, a slider is taken when it is let go, or rests for a moment. What is typed
-//! is taken when its field is left; what is wrong stays there, with the reason under it.
+//! A change also starts a what-if lane on the stage. So that a drag does not restart it with every pixel, a slider
+//! takes effect on release or after a short rest. Typed text takes effect when its field loses focus; invalid text
+//! stays, with the reason below it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,47 +19,47 @@ use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::icons::{Icon, small_icon_button};
 use crate::studio::ui::theme;
 
-/// What is being dragged or typed in a panel's controls.
+/// Values being dragged or typed in a panel's controls.
 #[derive(Debug, Default)]
 pub struct Sheet {
     pub(super) values: Arc<Values>,
-    /// What is being dragged.
+    /// The slider being dragged.
     pub(super) changing: Option<Changing>,
-    /// What is being typed, or was and is wrong, by control.
+    /// Unfinished or invalid text, by control.
     pub(super) typed: BTreeMap<String, Typed>,
-    /// The frame in which the panel was drawn last.
+    /// Last frame in which the panel was drawn.
     pub(super) drawn_in: u64,
 }
 
-/// A slider that is being moved.
+/// A slider being dragged.
 #[derive(Debug)]
 pub(super) struct Changing {
-    /// Which control.
+    /// Id of the control.
     pub id: String,
-    /// The value it has so far.
+    /// Current value.
     pub so_far: f32,
-    /// Since when, in seconds.
+    /// Time of the last change, in seconds.
     pub since_s: f64,
 }
 
-/// A text that is not taken yet.
+/// Text that has not taken effect.
 #[derive(Debug)]
 pub(super) struct Typed {
     pub text: String,
-    /// What is wrong with it.
+    /// Reason why it is invalid.
     pub problem: Option<String>,
-    /// The value beside which it was typed: with another it is out of date.
+    /// The setting's value when it was typed; if that changes, the text is dropped.
     pub beside: String,
-    /// The frame in which its control was drawn last.
+    /// Last frame in which its control was drawn.
     pub seen_in: u64,
 }
 
 impl Sheet {
-    /// Takes in what the settings are now; to be called before anything is drawn.
+    /// Reads the current settings; call before anything is drawn.
     pub fn begin(&mut self, ui: &egui::Ui, run: &CurrentRun) {
         let frame = ui.ctx().cumulative_frame_nr();
         if frame > self.drawn_in + 1 {
-            // A drag that was left unfinished when the panel was left is forgotten.
+            // Forget a drag that was unfinished when the panel was hidden.
             self.changing = None;
         }
         self.drawn_in = frame;
@@ -68,19 +68,19 @@ impl Sheet {
         }
     }
 
-    /// Whether something wrong stands in a field that is on show.
+    /// Whether a visible field contains invalid text.
     pub fn has_problem(&self) -> bool {
         let is_on_show = |typed: &Typed| typed.seen_in + 1 >= self.drawn_in;
         self.typed.values().any(|typed| typed.problem.is_some() && is_on_show(typed))
     }
 
-    /// Keeps a text that is not taken yet.
+    /// Keeps unfinished or invalid text.
     pub(super) fn keep(&mut self, id: &str, text: String, problem: Option<String>, beside: &str) {
         let (beside, seen_in) = (beside.to_owned(), self.drawn_in);
         self.typed.insert(id.to_owned(), Typed { text, problem, beside, seen_in });
     }
 
-    /// Keeps a text that is wrong.
+    /// Keeps invalid text.
     #[cfg(test)]
     pub fn keep_wrong(&mut self, id: &str, text: &str, beside: &str) {
         self.keep(id, text.to_owned(), Some("wrong".to_owned()), beside);
@@ -97,7 +97,7 @@ impl Sheet {
         self.values.listed().iter().filter(move |listed| listed.section == section)
     }
 
-    /// Draws a section's settings, and the way back for all of them.
+    /// Draws a section's settings and its reset button.
     pub fn section(
         &mut self,
         ui: &mut egui::Ui,
@@ -109,7 +109,7 @@ impl Sheet {
         self.reset_section(ui, section, commands);
     }
 
-    /// Draws those of a section's settings that are wanted.
+    /// Draws the settings of a section for which `is_wanted` holds.
     pub fn entries(
         &mut self,
         ui: &mut egui::Ui,
@@ -132,13 +132,13 @@ impl Sheet {
             return;
         }
         let name = self.values.preset_name();
-        let hint = format!("All of \"{}\" back to what the preset {name} has", section.title);
+        let hint = format!("Reset all settings of \"{}\" to the preset {name}", section.title);
         if ui.small_button("Reset section").on_hover_text(hint).clicked() {
             commands.push(Command::Plan(PlanCommand::SetFields(back)));
         }
     }
 
-    /// Draws one setting; nothing where there is no such setting now.
+    /// Draws one setting, if it exists at present.
     pub fn entry(
         &mut self,
         ui: &mut egui::Ui,
@@ -171,20 +171,19 @@ impl Sheet {
         }
     }
 
-    /// Draws the way back to the preset's value, if the value is another. Returns the preset's value when it is
-    /// asked for.
+    /// Draws the reset button if the value differs from the preset's. Returns the preset's value after a click.
     pub(super) fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let preset = self.values.changed_from(shown.field)?.to_owned();
         let in_words = match preset.as_str() {
-            "none" => "each snake's own",
+            "none" => "off",
             other => other,
         };
-        let hint = format!("Back to {in_words}, the preset's value");
+        let hint = format!("Reset to the preset's value: {in_words}");
         let label = format!("Reset {}", shown.setting.label);
         small_icon_button(ui, Icon::Reset, &label, &hint).clicked().then_some(preset)
     }
 
-    /// Draws what is wrong with what stands in a control.
+    /// Draws the reason why a control's text is invalid.
     pub(super) fn problem(&self, ui: &mut egui::Ui, id: &str) {
         if let Some(problem) = self.typed.get(id).and_then(|typed| typed.problem.as_deref()) {
             let text = egui::RichText::new(problem).color(theme::of(ui).problem);
@@ -192,7 +191,7 @@ impl Sheet {
         }
     }
 
-    /// A row of a setting with its name and its way back; `control` is drawn between them. Returns a new value.
+    /// A setting's row: label, `control` and reset button. Returns a new value.
     pub(super) fn row(
         &mut self,
         ui: &mut egui::Ui,
@@ -212,22 +211,22 @@ impl Sheet {
     }
 }
 
-/// A setting as it is on show.
+/// A setting being drawn.
 pub(super) struct Shown<'a> {
     pub setting: &'a Setting,
-    /// The text of its tooltip.
+    /// Text of the tooltip.
     pub hint: String,
-    /// What may be typed.
+    /// Checks typed text.
     pub check: Check<'a>,
-    /// Its full name.
+    /// Full dotted name.
     pub field: &'a str,
-    /// Its value as text.
+    /// Value as text.
     pub value: &'a str,
     is_from_next_generation: bool,
 }
 
 impl Shown<'_> {
-    /// Draws its name.
+    /// Draws the label.
     pub fn name(&self, ui: &mut egui::Ui, width: f32) -> egui::Response {
         ui.set_max_width(width);
         if self.is_from_next_generation {
@@ -238,7 +237,7 @@ impl Shown<'_> {
     }
 }
 
-/// A dot at what may change while the run goes on.
+/// A dot marks settings that may change during the run.
 fn next_generation_mark(ui: &mut egui::Ui) {
     let (rect, response) =
         ui.allocate_exact_size(egui::Vec2::splat(theme::GAP), egui::Sense::hover());
@@ -246,7 +245,7 @@ fn next_generation_mark(ui: &mut egui::Ui) {
     response.on_hover_text("A change takes effect from the next generation");
 }
 
-/// What stands in a setting's tooltip: what it does, what may be typed, when a change takes effect.
+/// Text of a setting's tooltip: its effect, its range, and when a change takes effect.
 fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     let mut hint = format!("{}.", setting.hint.trim_end_matches('.'));
     let allowed = setting.range_in_words();
@@ -259,7 +258,7 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     hint
 }
 
-/// What asks for a new value.
+/// The command that sets a new value.
 fn set(field: &str, text: &str) -> Command {
     match text.parse() {
         Ok(population) if field == "evolution.population" => {
@@ -271,7 +270,7 @@ fn set(field: &str, text: &str) -> Command {
     }
 }
 
-/// When a change takes effect, in a sentence.
+/// Sentence that says when a change takes effect.
 fn when(answer: Result<(), &'static str>) -> String {
     match answer {
         Ok(()) => "Takes effect from the next generation.".to_owned(),
@@ -285,16 +284,22 @@ mod tests {
     use crate::studio::panels::settings::every_setting;
 
     #[test]
-    fn a_tooltip_says_what_it_does_what_is_allowed_and_when_it_takes_effect() {
+    fn a_tooltip_has_the_hint_the_range_and_when_a_change_takes_effect() {
         let all = every_setting();
         let listed = all.iter().find(|listed| listed.path == "evolution.generations");
         let generations = &listed.expect("a setting").setting;
         let said = hint(generations, Some(Ok(())));
-        assert!(said.starts_with("Generations in a run."), "{said}");
+        assert!(said.starts_with("Number of generations in a run."), "{said}");
         assert!(said.contains("\nAllowed: 1 to 10000, whole numbers."), "{said}");
         assert!(said.ends_with("\nTakes effect from the next generation."), "{said}");
-        let said = hint(generations, Some(Err("The map is laid out by it; the next run takes it")));
-        assert!(said.ends_with("\nThe map is laid out by it; the next run takes it."), "{said}");
+        let said = hint(
+            generations,
+            Some(Err("Takes effect with the next run, because the archive depends on it")),
+        );
+        assert!(
+            said.ends_with("\nTakes effect with the next run, because the archive depends on it."),
+            "{said}"
+        );
         assert!(!hint(generations, None).contains("next"), "no run is under way");
     }
 }

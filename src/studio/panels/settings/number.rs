@@ -1,4 +1,4 @@
-//! Controls for numbers: a slider and a field, for one value or for one of each part.
+//! Controls for numbers: a slider and a field, for one value or one per part.
 
 use bevy_egui::egui;
 
@@ -9,28 +9,28 @@ use crate::schema::{NumberRange, Parts};
 use crate::studio::ui::number_field::select_all_on_focus;
 use crate::studio::ui::theme;
 
-/// A slider that is held still for so long shows what it does, in seconds.
+/// Time without movement after which a slider takes effect, in seconds.
 const REST_S: f64 = 0.35;
-/// Width of the switch between one value for all parts and one for each, in points.
+/// Width of the switch between one value and one per part, in points.
 const SWITCH_WIDTH: f32 = 52.0;
 
 /// A control for one text.
 pub(super) struct Control<'a> {
-    /// Which one.
+    /// Id.
     pub id: &'a str,
-    /// The name on the screen.
+    /// Id of the label.
     pub name: egui::Id,
-    /// What a screen reader says, if the name on the screen is not enough.
+    /// Accessible name, if the label is not enough.
     pub said: Option<String>,
-    /// The value as text.
+    /// Value as text.
     pub value: &'a str,
     pub hint: &'a str,
-    /// The text of the setting, from what was typed.
+    /// Turns typed text into the setting's text.
     pub check: &'a dyn Fn(&str) -> Result<String, String>,
 }
 
 impl<'a> Control<'a> {
-    /// That of a setting as a whole, with its name on the screen.
+    /// The control of a whole setting.
     pub(super) fn of(
         shown: &'a Shown,
         name: egui::Id,
@@ -42,7 +42,7 @@ impl<'a> Control<'a> {
 }
 
 impl Sheet {
-    /// Draws a number, or one for each part. Returns a new value.
+    /// Draws a number, or one per part. Returns a new value.
     pub(super) fn number(
         &mut self,
         ui: &mut egui::Ui,
@@ -63,7 +63,7 @@ impl Sheet {
                     requested
                 }
                 Part::Control if !is_given => {
-                    weak(ui, "each snake's own");
+                    weak(ui, "off: each snake has its own");
                     None
                 }
                 Part::Control if each.is_some() => {
@@ -87,7 +87,7 @@ impl Sheet {
         new
     }
 
-    /// Draws the number of one part. Returns the new list of all.
+    /// Draws the number of one part. Returns the new list.
     fn part(
         &mut self,
         ui: &mut egui::Ui,
@@ -138,8 +138,8 @@ impl Sheet {
         new.map(|text| with(&text))
     }
 
-    /// A slider, if there is one, and a field. What the slider is set to is returned when it is let go, what is
-    /// typed when the field is left.
+    /// A slider, if the range has one, and a field. Returns the slider's value on release or rest, and the field's when
+    /// it loses focus.
     fn slider_and_field(
         &mut self,
         ui: &mut egui::Ui,
@@ -153,7 +153,7 @@ impl Sheet {
                 (width - VALUE_WIDTH - theme::GAP).max(theme::GAP * 4.0);
             slid = self.slider(ui, control, range, ends);
         } else {
-            // In the column of the other fields.
+            // Align with the other fields.
             ui.add_space(width - VALUE_WIDTH);
         }
         let value = match &self.changing {
@@ -199,7 +199,7 @@ impl Sheet {
             Some(changing) if changing.id == control.id => changing.since_s,
             _ => return None,
         };
-        // With the arrow keys it has the keyboard's focus and is never let go.
+        // With the arrow keys it has the focus and is never released.
         let is_held = response.dragged() || response.has_focus();
         let rests = is_held && now_s - since_s > REST_S;
         if !is_held {
@@ -210,7 +210,7 @@ impl Sheet {
             return None;
         }
         if rests {
-            // Once, until it is moved again.
+            // Only once, until it is moved again.
             let id = control.id.to_owned();
             self.changing = Some(Changing { id, so_far, since_s: f64::INFINITY });
         }
@@ -226,7 +226,7 @@ impl Sheet {
         }
     }
 
-    /// A field to type into. Its text is returned when the field is left, if it is allowed.
+    /// A text field. Returns its text when it loses focus, if valid.
     pub(super) fn text_field(
         &mut self,
         ui: &mut egui::Ui,
@@ -235,7 +235,7 @@ impl Sheet {
         width: f32,
     ) -> Option<String> {
         if self.typed.get(control.id).is_some_and(|typed| typed.beside != control.value) {
-            // The value has changed meanwhile: by an undo, another preset, the slider.
+            // The value was changed elsewhere: by undo, a preset or the slider.
             self.typed.remove(control.id);
         }
         let seen_in = self.drawn_in;
@@ -268,7 +268,7 @@ impl Sheet {
             return None;
         }
         if self.typed.get(control.id).is_some_and(|typed| typed.problem.is_some()) {
-            // What is wrong stays to be corrected.
+            // Invalid text stays, to be corrected.
             return None;
         }
         let typed = self.typed.remove(control.id)?;
@@ -276,8 +276,8 @@ impl Sheet {
     }
 }
 
-/// The name of a number: with a box to tick where it has a value only if it is given, and a switch between one
-/// value and several where there can be several. Returns what was asked for, too.
+/// The label of a number, with a check box if the value is optional, and a switch if each part may have its own value.
+/// Returns its id and the requested value.
 fn number_name(
     ui: &mut egui::Ui,
     shown: &Shown,
@@ -305,9 +305,9 @@ fn number_name(
         let is_each = each.is_some();
         let of_what = if matches!(range.parts, Parts::Limbs(_)) { "limb" } else { "joint" };
         let hint = if is_each {
-            format!("Back to one value for every {of_what}: that of the first")
+            format!("Use the value of the first {of_what} for all")
         } else {
-            format!("A value of its own for each {of_what}")
+            format!("Set each {of_what} separately")
         };
         let switch = ui.selectable_label(is_each, "each").on_hover_text(hint);
         let (is_on, said) =
@@ -327,5 +327,6 @@ fn number_name(
 }
 
 fn weak(ui: &mut egui::Ui, text: &str) {
-    ui.label(egui::RichText::new(text).color(theme::of(ui).text_weak));
+    let text = egui::RichText::new(text).color(theme::of(ui).text_weak);
+    ui.add(egui::Label::new(text).wrap());
 }

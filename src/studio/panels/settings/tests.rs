@@ -1,4 +1,4 @@
-//! No setting is missing, none is made up, and every control sends what was asked of it.
+//! Every setting is shown once, and every control sends the value that was entered.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use crate::schema::{NumberRange, Parts, SettingKind};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
 
-/// That nothing one reads or uses lies beside a panel of this width, in points.
+/// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
     harness: &Harness<'_, S>,
     width: f32,
@@ -28,7 +28,7 @@ pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
     }
 }
 
-/// A run in which everything that can be given is given, and whatever has a least value has it.
+/// A run in which all optional settings have values, and lower bounds of ranges are at their minimum.
 fn run_with_all_given() -> CurrentRun {
     let mut run = prepared_run();
     let given = [
@@ -50,7 +50,7 @@ fn setting(run: &CurrentRun, field: &str) -> ListedSetting {
     all.into_iter().find(|listed| listed.path == field).expect("a setting")
 }
 
-/// A number that is allowed and is not there yet.
+/// An allowed number that differs from the current one.
 fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) -> String {
     let [least, most] = range.slider.unwrap_or([range.least, range.most]);
     let places = [0.5, 0.25, 0.1, 0.02, 0.0].map(|share| least + (most - least) * share);
@@ -59,7 +59,7 @@ fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) ->
     others.next().expect("an allowed one")
 }
 
-/// A panel with one setting in it.
+/// A panel with one setting.
 fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Harness<'a, Vec<Command>> {
     let listed = setting(run, field);
     let mut sheet = Sheet::default();
@@ -72,7 +72,7 @@ fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Harness<'a, Vec<Command>> {
     )
 }
 
-/// Types into a panel's only field, and leaves it.
+/// Types into the only field and presses Enter.
 fn type_into(harness: &mut Harness<'_, Vec<Command>>, text: &str) {
     let field = || egui::accesskit::Role::TextInput;
     harness.get_by_role(field()).focus();
@@ -108,7 +108,7 @@ fn every_setting_is_shown_once_by_the_panels() {
 }
 
 #[test]
-fn every_setting_can_be_changed_by_hand_and_is_changed_to_what_was_asked() {
+fn every_control_sends_the_value_that_was_entered() {
     let run = run_with_all_given();
     let settings = run.next_settings();
     let values: Vec<(String, String)> = fields(settings);
@@ -157,7 +157,7 @@ fn every_setting_can_be_changed_by_hand_and_is_changed_to_what_was_asked() {
 }
 
 #[test]
-fn what_a_tooltip_calls_allowed_is_what_the_settings_allow() {
+fn the_ranges_in_tooltips_are_those_of_the_settings() {
     let run = run_with_all_given();
     let settings = run.next_settings();
     for listed in list(settings) {
@@ -182,7 +182,7 @@ fn what_a_tooltip_calls_allowed_is_what_the_settings_allow() {
 }
 
 #[test]
-fn the_names_in_a_list_are_all_that_there_are_and_each_has_a_sentence() {
+fn drop_down_lists_are_complete_and_every_choice_has_a_sentence() {
     let settings = Settings::default();
     for listed in list(&settings) {
         let full = listed.path;
@@ -198,7 +198,7 @@ fn the_names_in_a_list_are_all_that_there_are_and_each_has_a_sentence() {
 }
 
 #[test]
-fn every_setting_says_what_it_does_in_plain_words() {
+fn every_setting_has_a_label_a_hint_and_a_unit() {
     let mut labels = BTreeSet::new();
     for listed in every_setting() {
         let ListedSetting { path: full, section, setting: entry, .. } = listed;
@@ -208,13 +208,13 @@ fn every_setting_says_what_it_does_in_plain_words() {
         let has_unit = ["_m", "_s", "_rad", "_hz", "_nm"].iter().any(|unit| full.ends_with(unit));
         let says_unit = !entry.unit.is_empty() || entry.label.ends_with("per second");
         assert!(!has_unit || says_unit, "{full} has a unit");
-        // In one section no two are called the same.
+        // Labels are unique within a section.
         assert!(labels.insert((section.title, entry.label)), "{full}");
     }
 }
 
 #[test]
-fn what_is_typed_wrong_stays_with_its_reason_and_nothing_is_sent() {
+fn invalid_text_stays_with_its_reason_and_nothing_is_sent() {
     let run = prepared_run();
     let mut panel = panel_of(&run, "trial.stairs.rise_m");
     type_into(&mut panel, "9");
@@ -230,7 +230,7 @@ fn what_is_typed_wrong_stays_with_its_reason_and_nothing_is_sent() {
     assert_eq!(*panel.state(), [set("trial.stairs.rise_m", "4")], "beyond the slider's end");
 }
 
-/// What one click on a label sends.
+/// The commands that a click on a label sends.
 fn clicked(run: &CurrentRun, field: &str, label: &str) -> Vec<Command> {
     let mut panel = panel_of(run, field);
     panel.run();
@@ -244,7 +244,7 @@ fn set(field: &str, text: &str) -> Command {
 }
 
 #[test]
-fn a_value_for_all_becomes_one_for_each_and_back() {
+fn one_value_becomes_a_list_and_back() {
     let mut run = prepared_run();
     let width = "trial.agent.limb_width_m";
     let switch = "Limb width: limb by limb";
@@ -254,12 +254,12 @@ fn a_value_for_all_becomes_one_for_each_and_back() {
     let commands = clicked(&run, width, switch);
     assert_eq!(commands, [set(width, "1.5")]);
     let torque = "trial.agent.max_bend_torque_nm";
-    let commands = clicked(&run, torque, "Largest bend torque: joint by joint");
+    let commands = clicked(&run, torque, "Maximum bend torque: joint by joint");
     assert_eq!(commands, [set(torque, "[1000, 1000, 1000, 1000]")]);
 }
 
 #[test]
-fn one_limb_is_changed_and_the_others_stay() {
+fn one_limb_changes_without_the_others() {
     let mut run = prepared_run();
     run.set_field("trial.agent.limb_width_m", "[1.5, 1, 1, 1, 1]").expect("allowed");
     let mut panel = panel_of(&run, "trial.agent.limb_width_m");
@@ -281,7 +281,7 @@ fn one_limb_is_changed_and_the_others_stay() {
 }
 
 #[test]
-fn a_limit_is_each_snakes_own_until_it_is_given() {
+fn a_limit_is_optional() {
     let mut run = prepared_run();
     let commands = clicked(&run, "trial.agent.bend_limit_rad", "Bend limit, rad");
     assert_eq!(commands, [set("trial.agent.bend_limit_rad", "1")]);
@@ -294,7 +294,7 @@ fn a_limit_is_each_snakes_own_until_it_is_given() {
 }
 
 #[test]
-fn what_may_have_a_value_for_each_part_is_what_the_settings_allow_a_list_for() {
+fn only_settings_that_allow_a_list_have_one_value_per_part() {
     let run = run_with_all_given();
     for listed in list(run.next_settings()) {
         let full = listed.path;
@@ -311,7 +311,7 @@ fn what_may_have_a_value_for_each_part_is_what_the_settings_allow_a_list_for() {
 }
 
 #[test]
-fn a_slider_shows_what_the_shipped_presets_have() {
+fn sliders_contain_the_values_of_the_built_in_presets() {
     let mut beyond = Vec::new();
     for preset in crate::save::shipped_presets().expect("well formed") {
         let values = fields(&preset.settings);
@@ -323,7 +323,7 @@ fn a_slider_shows_what_the_shipped_presets_have() {
             };
             let now = values.iter().find(|(field, _)| *field == full);
             let Some(value) = now.and_then(|(_, text)| text.parse::<f32>().ok()) else { continue };
-            // Frictions as large as the engine manual's 150 all hold alike.
+            // Large frictions, such as 150 in the engine's manual, behave alike.
             if !(least..=most).contains(&value) && entry.label != "Friction" {
                 beyond.push(format!("{full} = {value} of {}", preset.name));
             }

@@ -1,16 +1,16 @@
-//! What is typed into a setting: brought into the form that settings have, or refused in plain words.
+//! Checks and normalises text typed into a setting.
 
 use super::values::numbers;
 use crate::check::Invalid;
 use crate::evolve::{Settings, with_field};
 use crate::schema::{ListedSetting, Setting, SettingKind};
 
-/// Which setting is typed, and beside which others.
+/// A setting being typed, with all others.
 #[derive(Clone, Copy)]
 pub struct Check<'a> {
-    /// All settings as they are now.
+    /// Current settings.
     pub settings: &'a Settings,
-    /// The setting's full name.
+    /// Full dotted name.
     pub field: &'a str,
     /// Its row.
     pub setting: &'a Setting,
@@ -19,10 +19,10 @@ pub struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// The text of a setting from what was typed.
+    /// The setting's text for the typed text.
     ///
     /// # Errors
-    /// What was typed is not allowed: which setting, what it would be, what is allowed.
+    /// The text is invalid; the message has the setting, the value and the allowed range.
     pub fn typed(&self, text: &str) -> Result<String, String> {
         let typed = text.trim();
         let unreadable = || {
@@ -42,7 +42,7 @@ impl Check<'_> {
                 };
                 let allowed = range.least..=range.most;
                 let is_allowed = text.parse().is_ok_and(|value: f32| allowed.contains(&value));
-                // What cannot be right is said in the setting's own words.
+                // Use the label in the message.
                 if !is_number || !is_allowed {
                     return Err(unreadable());
                 }
@@ -63,23 +63,23 @@ impl Check<'_> {
         self.whole(&text).map(|()| text)
     }
 
-    /// Whether the settings allow a text here, beside all others.
+    /// Checks the text together with all other settings.
     ///
     /// # Errors
-    /// They do not, in words.
+    /// The text is invalid, in words.
     pub fn whole(&self, text: &str) -> Result<(), String> {
         let checked = with_field(self.settings, self.field, text);
         checked.map(drop).map_err(|invalid| in_words(&invalid, self.all))
     }
 }
 
-/// A decimal comma is a point: "0,5".
+/// Accepts a decimal comma: "0,5".
 fn with_point(typed: &str) -> String {
     let is_comma = typed.matches(',').count() == 1 && !typed.contains('.');
     if is_comma { typed.replace(',', ".") } else { typed.to_owned() }
 }
 
-/// What is wrong, under the name by which people know the setting.
+/// Error message with the setting's label.
 fn in_words(invalid: &Invalid, all: &[ListedSetting]) -> String {
     let Invalid { field, value, allowed } = invalid;
     let (path, index) = field
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_typed_is_taken_as_it_was_meant() {
+    fn typed_text_is_normalised() {
         assert_eq!(typed("trial.stairs.rise_m", " 0,7 "), Ok("0.7".to_owned()));
         assert_eq!(typed("trial.stairs.rise_m", "4.5"), Ok("4.5".to_owned()), "beyond the slider");
         assert_eq!(typed("trial.stairs.steps", "12"), Ok("12".to_owned()));
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_name_value_and_range() {
+    fn messages_have_label_value_and_range() {
         for (field, text, message) in [
             ("trial.stairs.rise_m", "9", "Rise is \"9\"; allowed: 0.01 to 5 m"),
             ("trial.stairs.rise_m", "high", "Rise is \"high\"; allowed: 0.01 to 5 m"),
@@ -133,7 +133,7 @@ mod tests {
                 "0.6, 4",
                 "Bend limits to choose from is 4; allowed: 0 to 3",
             ),
-            // Another setting stands in the way.
+            // The value conflicts with another setting.
             (
                 "trial.agent.limbs",
                 "6",

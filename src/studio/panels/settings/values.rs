@@ -1,4 +1,4 @@
-//! The settings of the next run and those of its preset, and which of them the run under way takes.
+//! Settings of the next run and of its preset, and which of them may change in the current run.
 
 use std::collections::BTreeMap;
 
@@ -6,23 +6,23 @@ use crate::evolve::{Settings, fields};
 use crate::schema::{ListedSetting, list};
 use crate::studio::state::current_run::CurrentRun;
 
-/// The settings of the next run beside those of its preset.
+/// Settings of the next run and of its preset.
 #[derive(Debug, Default)]
 pub struct Values {
     settings: Settings,
     settings_of_preset: Option<Settings>,
     settings_of_run: Settings,
-    /// The next run's settings with their rows.
+    /// Rows of the next run's settings.
     listed: Vec<ListedSetting>,
     now: BTreeMap<String, String>,
     preset: BTreeMap<String, String>,
     preset_name: String,
-    /// Whether the current run takes a change of a setting.
+    /// Whether a setting may change in the current run.
     live: BTreeMap<String, Result<(), &'static str>>,
 }
 
 impl Values {
-    /// The values of a run's next settings.
+    /// The values for a run.
     pub fn of(run: &CurrentRun) -> Self {
         let settings = run.next_settings().clone();
         let settings_of_preset = run.preset_settings().cloned();
@@ -39,7 +39,7 @@ impl Values {
         }
     }
 
-    /// Whether they are still those of a run.
+    /// Whether they are up to date.
     pub fn are_of(&self, run: &CurrentRun) -> bool {
         self.settings == *run.next_settings()
             && self.settings_of_preset.as_ref() == run.preset_settings()
@@ -48,17 +48,17 @@ impl Values {
             && !self.now.is_empty()
     }
 
-    /// The next run's settings, in the order of their sections.
+    /// Rows of the next run's settings, in the order of their sections.
     pub fn listed(&self) -> &[ListedSetting] {
         &self.listed
     }
 
-    /// Whether the current run takes a change of a setting; if not, a sentence that says why.
+    /// Whether a setting may change in the current run; if not, a sentence with the reason.
     pub fn live(&self, field: &str) -> Result<(), &'static str> {
         self.live.get(field).copied().unwrap_or(Ok(()))
     }
 
-    /// The value of a setting; none if there is no such setting now.
+    /// The value of a setting; `None` if it does not exist at present.
     pub fn now(&self, field: &str) -> Option<&str> {
         self.now.get(field).map(String::as_str)
     }
@@ -68,18 +68,18 @@ impl Values {
         self.preset.get(field).map(String::as_str)
     }
 
-    /// What the preset is called.
+    /// Name of the preset.
     pub fn preset_name(&self) -> &str {
         &self.preset_name
     }
 
-    /// The preset's value of a setting that has another now.
+    /// The preset's value, if it differs from the current one.
     pub fn changed_from(&self, field: &str) -> Option<&str> {
         let preset = self.in_preset(field)?;
         (self.now(field)? != preset).then_some(preset)
     }
 
-    /// The changes that give these settings the preset's values again.
+    /// The changes that reset these settings to the preset's values.
     pub fn back<'a>(&self, fields: impl IntoIterator<Item = &'a str>) -> Vec<(String, String)> {
         let back = |field: &str| {
             let preset = self.changed_from(field)?.to_owned();
@@ -89,19 +89,19 @@ impl Values {
     }
 }
 
-/// The numbers of a list as text: `[1, 2]`.
+/// Parses a list: `[1, 2]`.
 pub fn numbers(text: &str) -> Option<Vec<f32>> {
     let inside = text.trim().strip_prefix('[')?.strip_suffix(']')?;
     inside.split(',').map(|number| number.trim().parse().ok()).collect()
 }
 
-/// A list of numbers as it is typed into a setting.
+/// Formats a list as setting text.
 pub fn list_of(numbers: &[f32]) -> String {
     let texts: Vec<String> = numbers.iter().map(f32::to_string).collect();
     format!("[{}]", texts.join(", "))
 }
 
-/// A slider's value with as many digits as a person can mean: four that count.
+/// A slider's value, rounded to four significant digits.
 pub fn rounded(value: f32) -> String {
     let four_digits: f32 = format!("{value:.3e}").parse().unwrap_or(value);
     four_digits.to_string()

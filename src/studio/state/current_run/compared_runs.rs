@@ -1,4 +1,4 @@
-//! Other runs in the folder of saves, to be laid over the current one.
+//! Other runs of the saves folder, shown in the charts beside the current one.
 
 use std::path::{Path, PathBuf};
 
@@ -6,14 +6,14 @@ use crate::evolve::RunPlan;
 use crate::run::BackgroundTask;
 use crate::save::{GenerationRecord, RunSummary, SavesFolder, load_log};
 
-/// The other runs that are known, and those that are compared with the current one.
+/// Known runs, and those compared with the current one.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
     listing: Option<BackgroundTask<Vec<RunSummary>>>,
-    /// All runs in the folder of saves, once somebody has asked for them.
+    /// All runs in the saves folder; `None` until listed.
     runs: Option<Vec<RunSummary>>,
     compared: Vec<ComparedRun>,
-    /// Grows with every change.
+    /// Incremented with every change.
     version: u64,
 }
 
@@ -23,24 +23,24 @@ pub(crate) struct ComparedRun {
     /// Its folder.
     pub folder: PathBuf,
     reading: Option<BackgroundTask<Result<Other, String>>>,
-    /// What was read, once it is there; or what is wrong with it.
+    /// Contents or read error, once read.
     pub read: Option<Result<Other, String>>,
 }
 
-/// Another run.
+/// A run read from the saves folder.
 #[derive(Debug)]
 pub(crate) struct Other {
-    /// What run it is.
+    /// Its plan.
     pub plan: RunPlan,
-    /// Its finished generations, the first first.
+    /// Its finished generations, in order.
     pub records: Vec<GenerationRecord>,
 }
 
-/// More lines than those of so many other runs nobody could tell apart.
+/// Maximum number of compared runs: the lines of more could not be told apart.
 pub(crate) const MOST_COMPARED: usize = 3;
 
 impl ComparedRuns {
-    /// Begins to look for all runs.
+    /// Starts to list all runs.
     pub fn list(&mut self, saves: SavesFolder) -> Result<(), String> {
         let listing = BackgroundTask::start(move || saves.runs());
         self.listing =
@@ -48,7 +48,7 @@ impl ComparedRuns {
         Ok(())
     }
 
-    /// Lays a run over the current one, or takes it away again.
+    /// Adds a run to the comparison, or removes it.
     pub fn toggle(&mut self, folder: &Path) -> Result<(), String> {
         self.version += 1;
         if let Some(place) = self.compared.iter().position(|run| run.folder == folder) {
@@ -69,7 +69,7 @@ impl ComparedRuns {
         Ok(())
     }
 
-    /// Takes in what was found meanwhile.
+    /// Receives results of the background tasks.
     pub fn take_in(&mut self) {
         if let Some(runs) = self.listing.as_ref().and_then(BackgroundTask::poll) {
             (self.runs, self.listing) = (Some(runs.unwrap_or_default()), None);
@@ -84,17 +84,17 @@ impl ComparedRuns {
         }
     }
 
-    /// All runs in the folder of saves, once somebody has asked for them.
+    /// All runs in the saves folder; `None` until listed.
     pub fn runs(&self) -> Option<&[RunSummary]> {
         self.runs.as_deref()
     }
 
-    /// Those that are compared with the current run.
+    /// The runs compared with the current one.
     pub fn compared(&self) -> &[ComparedRun] {
         &self.compared
     }
 
-    /// Another number after every change.
+    /// Changes with every change.
     pub fn version(&self) -> u64 {
         self.version
     }

@@ -1,4 +1,4 @@
-//! Takes in what the background found, and shows what is better than all before.
+//! Handles events of the background run and shows new best champions.
 
 use bevy::prelude::*;
 
@@ -18,40 +18,40 @@ pub(super) fn plugin(app: &mut App) {
     app.add_systems(Startup, start_at_once).add_systems(Update, take_in.in_set(FrameSet::TakeIn));
 }
 
-/// A fresh run evolves from the first moment.
-fn start_at_once(mut evolution: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
-    if let Err(problem) = evolution.start() {
+/// Evolution starts with the program.
+fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
+    if let Err(problem) = run.start() {
         notices.problem(problem);
     }
 }
 
-/// Takes in what the background found. A champion that beats the one on show and all before it takes the stage,
-/// unless that is held: then somebody is looking at something.
+/// Handles events of the background run. A champion that beats all earlier ones and the one on the stage replaces it,
+/// unless the user is looking at something.
 fn take_in(
-    mut evolution: ResMut<CurrentRun>,
+    mut run: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,
     mut show: MessageWriter<Show>,
     lanes: Query<&Lane>,
     (mode, mut playback): (Res<StageMode>, ResMut<Playback>),
 ) {
-    evolution.others.take_in();
-    let Some(background) = &evolution.background else { return };
+    run.others.take_in();
+    let Some(background) = &run.background else { return };
     let events: Vec<RunEvent> = std::iter::from_fn(|| background.poll()).collect();
-    // In most frames nothing has come: what is to be beaten need not be looked for among all reports.
+    // Most frames have no event; skip the search through all reports.
     if events.is_empty() {
         return;
     }
-    // Only what was found in the world of this run can be compared with what it finds.
-    let world = &evolution.settings().trial;
+    // Fitness can only be compared within the same world.
+    let world = &run.settings().trial;
     let rivals = lanes.iter().map(Lane::staged);
     let rivals = rivals.filter(|staged| staged.champion().trial == *world);
-    let champions = evolution.reports.iter().filter_map(|report| report.champion.as_ref());
+    let champions = run.reports.iter().filter_map(|report| report.champion.as_ref());
     let known = champions.map(|champion| champion.evaluation.fitness);
     let mut to_beat = rivals.map(StagedChampion::fitness).chain(known).fold(f32::MIN, f32::max);
-    // Who holds the stage, has several on it, or tries out another world than the run's, is looking at something.
+    // Pausing, several lanes, or another world mean that the user is looking at something.
     let is_tried = |lane: &Lane| lane.staged().is_changed() && lane.trial() != world;
     let is_looked_at =
-        evolution.is_lent || *mode != StageMode::Solo || lanes.iter().any(Lane::is_disturbed);
+        run.is_lent || *mode != StageMode::Solo || lanes.iter().any(Lane::is_disturbed);
     let is_held = is_looked_at || !playback.is_playing() || lanes.iter().any(is_tried);
     let mut present = |champion: &Champion, number, notices: &mut Notices| {
         if champion.evaluation.fitness <= to_beat {
@@ -67,56 +67,58 @@ fn take_in(
             show.write(Show::solo(staged));
         }
     };
-    let number = evolution.number;
+    let number = run.number;
     for event in events {
         match event {
             RunEvent::Opened(opened) => {
                 let OpenedRun { plan_now, reports: behind, .. } = *opened;
-                evolution.take_in_opened_plan(plan_now);
-                // Whatever happens from now on, it is not thrown away once more.
-                evolution.source.earlier = ExistingRun::Keep;
-                evolution.discarded = None;
-                let generations = evolution.settings().evolution.generations;
+                run.take_in_opened_plan(plan_now);
+                // A later restart must not discard the run again.
+                run.source.earlier = ExistingRun::Keep;
+                run.discarded = None;
+                let generations = run.settings().evolution.generations;
                 let last = behind.last().filter(|last| last.generation < generations);
                 if let Some(last) = last {
-                    notices.info(format!("The run goes on after generation {}.", last.generation));
+                    notices
+                        .info(format!("The run continues after generation {}.", last.generation));
                 }
                 let champions = behind.iter().filter_map(|report| report.champion.as_ref());
                 let fitness = |champion: &&Champion| champion.evaluation.fitness;
                 let best = champions.max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
                 best.into_iter().for_each(|best| present(best, number, &mut notices));
-                evolution.reports = behind;
+                run.reports = behind;
             }
             RunEvent::Refused(problem) => {
-                notices.problem(format!("Nothing is evolved: {problem}"));
-                evolution.background = None;
-                evolution.engine.set_run_folder(None);
+                notices.problem(format!("The run cannot start: {problem}"));
+                run.background = None;
+                run.context.set_run_folder(None);
             }
             RunEvent::SettingChanged { change, plan_now } => {
                 notices.info(news_of(&change));
-                evolution.take_in_change(&change.field, *plan_now);
+                run.settle_change(&change.field);
+                run.plan_now = *plan_now;
             }
             RunEvent::SettingNotChanged { field, reason } => {
-                evolution.await_as_it_is(&field);
-                notices.problem(format!("The run keeps its {field}: {reason}"));
+                run.settle_change(&field);
+                notices.problem(format!("{field} was not changed in the current run: {reason}"));
             }
-            RunEvent::Explored(exploration) => evolution.explore(exploration),
+            RunEvent::Explored(exploration) => run.explore(exploration),
             RunEvent::Generation(report) => {
                 let champion = report.champion.iter();
                 champion.for_each(|champion| present(champion, number, &mut notices));
-                evolution.reports.push(*report);
+                run.reports.push(*report);
             }
             RunEvent::Finished { run_hash } => {
-                evolution.run_hash = Some(run_hash);
-                // What was asked for too late concerns the next run alone.
-                evolution.await_no_change();
-                evolution.engine.set_run_folder(None);
+                run.run_hash = Some(run_hash);
+                // Changes requested too late apply to the next run only.
+                run.pending.clear();
+                run.context.set_run_folder(None);
                 notices.info("The run is finished; \"New run\" starts another.".to_owned());
             }
             RunEvent::Failed => {
                 let problem = "The run stopped because of a program error. Press E to resume from what was saved.";
                 notices.problem(problem.to_owned());
-                evolution.open_again();
+                run.open_again();
                 return;
             }
             RunEvent::NotSaved(problem) => {
@@ -141,7 +143,7 @@ mod tests {
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 
-    /// A studio without a window, whose run is saved in a folder.
+    /// A studio without a window whose run is saved in this folder.
     fn studio(saves: &SavesFolder) -> App {
         let mut settings = Settings::default();
         settings.evolution.population = 6;
@@ -160,9 +162,9 @@ mod tests {
         app
     }
 
-    /// Lets frames pass until something is so.
+    /// Updates the app until a condition holds.
     fn wait_until(app: &mut App, is_so: impl Fn(&CurrentRun) -> bool) {
-        // Nobody ever sends: whoever listens rests.
+        // A channel without messages serves as a sleep.
         let (_never, rest) = std::sync::mpsc::channel::<()>();
         let began = Instant::now();
         while began.elapsed() < Duration::from_secs(60) {
@@ -172,16 +174,16 @@ mod tests {
             }
             let _ = rest.recv_timeout(Duration::from_millis(2));
         }
-        panic!("it never came");
+        panic!("the condition never held");
     }
 
-    /// Does something with the run.
+    /// Calls a fallible method of the run.
     fn act<T>(app: &mut App, act: impl FnOnce(&mut CurrentRun) -> Result<T, String>) -> T {
         act(&mut app.world_mut().resource_mut::<CurrentRun>()).expect("allowed")
     }
 
-    /// A studio whose run is held after its first generation.
-    fn held_studio() -> (TempDir, App) {
+    /// A studio whose run is paused after its first generation.
+    fn paused_studio() -> (TempDir, App) {
         let folder = tempfile::tempdir().expect("a folder");
         let mut app = studio(&SavesFolder::find(Some(folder.path())));
         act(&mut app, |run| run.single_generation());
@@ -191,34 +193,34 @@ mod tests {
 
     #[test]
     fn settings_of_another_preset_or_run_do_not_change_the_run_under_way() {
-        let (_folder, mut app) = held_studio();
+        let (_folder, mut app) = paused_studio();
         let before = act(&mut app, |run| {
             let before = run.next_plan().clone();
             run.set_preset("report")?;
             run.set_population(9)?;
-            assert!(run.may_change("evolution.population").is_err());
-            assert_eq!(run.awaited.evolution.population, 6);
-            // As undoing does that.
+            assert!(run.takes_changes().is_err());
+            assert_eq!(run.requested_settings().evolution.population, 6);
+            // As undo does.
             run.set_next_plan(before.clone())?;
-            assert_eq!(run.may_change("evolution.population"), Ok(()));
+            assert_eq!(run.takes_changes(), Ok(()));
             Ok(before)
         });
         act(&mut app, |run| {
-            // As undoing does that somebody went on with this run, before which another was set.
+            // As undoing the resumption of this run does, before which another plan was set.
             let mut other = before;
             other.settings.evolution.population = 5;
             run.set_next_plan_alone(other)?;
             run.set_field("halving.parents", "3")?;
-            let awaited = &run.awaited.evolution;
-            assert_eq!((awaited.population, awaited.halving.parents), (6, 4));
+            let requested = run.requested_settings().evolution;
+            assert_eq!((requested.population, requested.halving.parents), (6, 4));
             assert!(run.next_run_differs());
             Ok(())
         });
     }
 
     #[test]
-    fn a_run_that_was_reset_begins_anew_even_after_a_look_at_other_settings() {
-        let (_folder, mut app) = held_studio();
+    fn a_reset_run_starts_again_even_after_other_settings_were_set() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
             run.reset()?;
             run.set_population(5)?;
@@ -228,7 +230,7 @@ mod tests {
         wait_until(&mut app, |run| !run.reports().is_empty());
         let reports = app.world().resource::<CurrentRun>().reports();
         assert_eq!(reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
-        // What was evolved since is not thrown away again.
+        // Later progress is not discarded again.
         act(&mut app, |run| {
             run.set_seed(2)?;
             run.begin_next()?;
@@ -237,43 +239,43 @@ mod tests {
             run.begin_next()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.seed(), evolution.reports().len()), (1, 3));
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.seed(), run.reports().len()), (1, 3));
     }
 
     #[test]
-    fn what_a_run_may_cost_counts_the_generations_before_a_change_as_they_were() {
-        let (_folder, mut app) = held_studio();
+    fn the_budget_counts_generations_before_a_change_at_their_size() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.set_population(4));
         wait_until(&mut app, |run| run.changes().len() == 1);
         assert_eq!(app.world().resource::<CurrentRun>().budget(), 6 + 4 + 4);
     }
 
     #[test]
-    fn a_refused_change_takes_no_other_along() {
-        let (_folder, mut app) = held_studio();
+    fn a_refused_change_does_not_affect_others() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
-            // A strategy cannot change on the way: the run refuses that, and takes what is before and after it.
+            // The strategy cannot change during a run: this change is refused, those before and after it are made.
             run.change_running("evolution.population", "5")?;
             run.background()?.request_changes([("evolution.strategy".to_owned(), "ga".to_owned())]);
             run.change_running("evolution.halving.parents", "2")
         });
         wait_until(&mut app, |run| run.changes().len() == 2);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!(evolution.awaited, *evolution.settings());
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!(run.pending, []);
     }
 
     #[test]
-    fn a_champion_that_founds_a_run_twice_founds_two() {
-        let (_folder, mut app) = held_studio();
+    fn a_second_run_without_changes_has_the_next_seed() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.begin_next());
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.number(), evolution.seed()), (1, 2));
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.number(), run.seed()), (1, 2));
     }
 
     #[test]
-    fn a_run_that_broke_off_can_be_gone_on_with() {
-        let (_folder, mut app) = held_studio();
+    fn a_run_that_failed_can_be_resumed() {
+        let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.change_running("evolution.halving.parents", "2"));
         wait_until(&mut app, |run| run.changes().len() == 1);
         act(&mut app, |run| {
@@ -282,12 +284,12 @@ mod tests {
             run.start()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.reports().len(), evolution.changes().len()), (3, 1));
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.reports().len(), run.changes().len()), (3, 1));
     }
 
     #[test]
-    fn what_may_change_changes_in_the_run_and_the_next_and_what_may_not_in_the_next_alone() {
+    fn live_settings_change_in_both_runs_and_others_only_in_the_next() {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         let mut app = studio(&saves);
@@ -308,22 +310,22 @@ mod tests {
             assert_eq!((now.halving.parents, now.population, now.generations), (2, 4, 4));
             assert_eq!((next.halving.parents, next.population, next.generations), (2, 4, 3));
             assert!(run.changes().iter().all(|change| change.generation == 2));
-            assert!(run.may_change("trial.surface.friction").is_err());
+            assert!(run.run_allows("trial.surface.friction").is_err());
             run.start()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        let sizes: Vec<u32> = evolution.reports().iter().map(|report| report.evaluations).collect();
+        let run = app.world().resource::<CurrentRun>();
+        let sizes: Vec<u32> = run.reports().iter().map(|report| report.evaluations).collect();
         assert_eq!(sizes, [6, 4, 4, 4]);
-        // Gone on with by another session, it is what it was.
-        let (hash, folder) = (evolution.run_hash(), evolution.source.folder.clone());
+        // Resumed by another session, it has the same hash and changes.
+        let (hash, folder) = (run.run_hash(), run.source.folder.clone());
         drop(app);
         let mut app = studio(&saves);
         act(&mut app, |run| run.go_on_with(&folder));
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let evolution = app.world().resource::<CurrentRun>();
-        assert_eq!((evolution.run_hash(), evolution.changes().len()), (hash, 3));
-        assert_eq!(evolution.settings().evolution.generations, 4);
-        assert!(!evolution.next_run_differs(), "the next run is like this one");
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.run_hash(), run.changes().len()), (hash, 3));
+        assert_eq!(run.settings().evolution.generations, 4);
+        assert!(!run.next_run_differs(), "the next run is like this one");
     }
 }

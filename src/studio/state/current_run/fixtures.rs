@@ -8,12 +8,12 @@ use crate::save::{SavesFolder, store_csv};
 use crate::score::evaluate;
 use crate::studio::state::options::Options;
 
-/// A run of the report's settings that has not begun.
+/// A run with the report's settings that has not started.
 pub fn prepared_run() -> CurrentRun {
     run_of(RunPlan::new("report", 1, Settings::default()))
 }
 
-/// A small run of MAP-Elites that has explored for two generations.
+/// A small MAP-Elites run after two generations.
 pub fn explored_run() -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.strategy = StrategyKind::MapElites;
@@ -32,8 +32,7 @@ pub fn explored_run() -> CurrentRun {
     run
 }
 
-/// The explored run, compared with another in this folder of saves, which has two generations behind it; or whose log
-/// is damaged.
+/// The explored run, compared with another run of two generations in this folder, whose log may be damaged.
 pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.population = 4;
@@ -63,7 +62,7 @@ pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
 }
 
 #[test]
-fn another_run_is_laid_over_this_one_once_and_taken_away_again() {
+fn a_run_is_added_to_the_comparison_and_removed_again() {
     let saves = tempfile::tempdir().expect("a folder");
     let mut run = compared_run(saves.path(), false);
     let version = run.version();
@@ -87,7 +86,7 @@ fn run_of(plan: RunPlan) -> CurrentRun {
 }
 
 #[test]
-fn an_elite_and_one_of_the_front_are_those_that_were_found() {
+fn elites_and_front_members_are_evaluated_as_they_were_found() {
     let run = explored_run();
     let exploration = run.exploration().expect("explored");
     let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");

@@ -1,4 +1,4 @@
-//! Somebody of the current run, by its place in it.
+//! Looks up individuals of the current run by their place.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,12 +9,12 @@ use crate::genome::Genome;
 use crate::run::{Ancestor, caught};
 use crate::score::{Evaluation, evaluate};
 
-/// Those who have descendants, by their places in the run.
+/// Individuals with descendants, by place.
 pub(super) type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;
 
 impl CurrentRun {
-    /// Somebody of the latest generation, a champion, or one who has descendants; none if nobody remembers it. What
-    /// is not known of it besides its genes is found out anew.
+    /// An individual of the latest generation, a champion, or an individual with descendants; `None` if it is not kept.
+    /// An unknown evaluation is computed again.
     pub fn individual(&self, place: IndividualId) -> Option<Champion> {
         let genome = self.genome_of(place)?;
         let trial = self.settings().trial.clone();
@@ -26,7 +26,7 @@ impl CurrentRun {
         Some(Champion { genome: (*genome).clone(), trial, evaluation, origin })
     }
 
-    /// Somebody of the front of distance and energy.
+    /// A member of the Pareto front of distance and energy.
     pub fn front_member(&self, generation: u32, individual: u32) -> Option<Champion> {
         let mut members = self.exploration()?.front.members();
         let member =
@@ -39,8 +39,7 @@ impl CurrentRun {
         })
     }
 
-    /// The best of a cell of the archive. The archive keeps its genes and its fitness; what else there is to know
-    /// of it is found out anew.
+    /// The elite of an archive cell. The archive keeps point and fitness; the evaluation is computed again.
     pub fn elite(&self, cell: u32) -> Option<Champion> {
         let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
         let Settings { trial, genome: space, .. } = self.settings();
@@ -54,7 +53,7 @@ impl CurrentRun {
         Origin { preset: self.preset().to_owned(), seed: self.seed(), generation, individual }
     }
 
-    /// The genes of somebody, if anybody remembers them.
+    /// The genome of an individual, if it is kept.
     pub fn genome_of(&self, place: IndividualId) -> Option<Arc<Genome>> {
         let exploration = self.exploration()?;
         let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
@@ -67,7 +66,7 @@ impl CurrentRun {
         of_latest.or_else(of_ancestor).cloned().or_else(of_champion)
     }
 
-    /// Whom somebody comes from, if anybody remembers it.
+    /// The parents of an individual, if they are kept.
     pub fn parents_of(&self, place: IndividualId) -> Option<Parents> {
         let exploration = self.exploration()?;
         let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
@@ -75,16 +74,16 @@ impl CurrentRun {
         of_latest.or_else(|| Some(self.ancestor(place)?.parents))
     }
 
-    /// Somebody who has descendants.
+    /// An individual with descendants.
     fn ancestor(&self, place: IndividualId) -> Option<&Arc<Ancestor>> {
         let exploration = self.exploration()?;
-        // A line may be ten thousand generations long, and who follows it looks somebody up at every step.
+        // A line may have ten thousand generations, each of which is looked up, so build a map once.
         let ancestors = self.ancestors.get_or_init(|| {
             let ancestry = &exploration.ancestry;
             let parents = exploration.parents.iter().map(|(parent, _)| parent);
             let all = parents.rev().chain(ancestry.others.iter().rev());
             let all = all.chain(ancestry.line.iter().rev());
-            // Of several at one place the first of the line counts.
+            // If several share a place, the first of the line wins, since it is inserted last.
             all.map(|ancestor| (ancestor.place, Arc::clone(ancestor))).collect()
         });
         ancestors.get(&place)

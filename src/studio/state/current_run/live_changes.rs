@@ -1,114 +1,101 @@
-//! The run under way is changed, or a champion founds the next one.
+//! Changes of the current run's settings, and founders of the next run.
 
 use std::sync::Arc;
 
 use super::{CurrentRun, RunStatus};
 use crate::check::within;
 use crate::evolve::{
-    Champion, Founder, RunPlan, SettingChange, Settings, fields, may_change_during_run, with_field,
+    Champion, Founder, RunPlan, SettingChange, Settings, may_change_during_run, with_field,
 };
 use crate::run::THREADS_RANGE;
 use crate::schema::list;
 
 impl CurrentRun {
-    /// Whether a run is under way whose settings could change.
+    /// Whether a run is in progress whose settings could change.
     pub fn is_under_way(&self) -> bool {
         matches!(self.status(), RunStatus::Running | RunStatus::Paused)
     }
 
-    /// Whether a setting, by its full dotted name, may change in the run under way. The error is a sentence for a
-    /// tooltip.
-    pub fn may_change(&self, field: &str) -> Result<(), &'static str> {
+    /// Whether a setting, by its full dotted name, may change in the current run. The error is a sentence for a tooltip.
+    pub(super) fn run_allows(&self, field: &str) -> Result<(), &'static str> {
         if !self.is_under_way() {
             return Err("No run is in progress, so it takes effect with the next run.");
         }
-        self.takes_changes()?;
         may_change_during_run(field, self.settings())
     }
 
-    /// Whether the run under way takes changes of its settings at all. The error is a sentence for a tooltip.
+    /// Whether the current run accepts changes of settings at all. The error is a sentence for a tooltip.
     pub fn takes_changes(&self) -> Result<(), &'static str> {
         if self.is_lent {
-            return Err("A lesson is going on, and your own run waits.");
+            return Err("A lesson is open and your own run is paused.");
         }
-        if !self.next_is_own {
+        if !self.next_suits_run() {
             return Err(
-                "The run under way keeps its own: the next run's settings are of another preset or run.",
+                "Takes effect with the next run, because its search settings already differ from those of the current run.",
             );
         }
         Ok(())
     }
 
-    /// Changes a setting of the run under way, by its full dotted name, from its next generation on.
+    /// Changes a setting of the current run, by its full dotted name, from its next generation on.
     pub(super) fn change_running(&mut self, field: &str, text: &str) -> Result<(), String> {
-        self.may_change(field).map_err(str::to_owned)?;
-        self.awaited = with_field(&self.awaited, field, text).map_err(|error| error.to_string())?;
+        self.run_allows(field).map_err(str::to_owned)?;
+        let change = (field.to_owned(), text.to_owned());
+        with_field(&self.requested_settings(), field, text).map_err(|error| error.to_string())?;
         if let Some(background) = &self.background {
-            background.request_changes([(field.to_owned(), text.to_owned())]);
+            background.request_changes([change.clone()]);
         }
+        self.pending.push(change);
         Ok(())
     }
 
-    /// Changes a setting of the run under way if it may change, and leaves it to the next run if not.
-    pub(super) fn change_running_too(&mut self, field: &str, text: &str) -> Result<(), String> {
-        if self.may_change(field).is_err() {
-            return Ok(());
-        }
-        self.change_running(field, text)
-    }
-
-    /// What was changed in the current run, the earliest first: for marks in a chart.
+    /// Changes made in the current run, in order, for marks in a chart.
     pub fn changes(&self) -> &[SettingChange] {
-        self.source_now.changes.made()
+        self.plan_now.changes.made()
     }
 
-    /// Takes over the plan after the run has changed a setting.
-    pub(super) fn take_in_change(&mut self, field: &str, plan_now: RunPlan) {
-        self.source_now = plan_now;
-        self.await_as_it_is(field);
+    /// Settings of the current run once its pending changes are made.
+    pub(super) fn requested_settings(&self) -> Settings {
+        let change = |settings: Settings, (field, text): &(String, String)| {
+            // A setting of an option that is no longer selected does not exist and can be skipped.
+            with_field(&settings, field, text).unwrap_or(settings)
+        };
+        self.pending.iter().fold(self.plan_now.settings.clone(), change)
     }
 
-    /// Awaits that a setting, by its full dotted name, stays as the run has it by now.
-    pub(super) fn await_as_it_is(&mut self, field: &str) {
-        let all = fields(&self.source_now.settings);
-        let Some((_, value)) = all.into_iter().find(|(of, _)| of == field) else { return };
-        // What belongs to a choice that is awaited no more is of no account then.
-        if let Ok(awaited) = with_field(&self.awaited, field, &value) {
-            self.awaited = awaited;
+    /// Removes a pending change of a setting, by its full dotted name, because it was made or refused.
+    pub(super) fn settle_change(&mut self, field: &str) {
+        if let Some(place) = self.pending.iter().position(|(pending, _)| pending == field) {
+            self.pending.remove(place);
         }
     }
 
-    /// Takes over the plan of a run that was opened. If earlier sessions have changed it, the next run gets the changed
+    /// Stores the plan of an opened run. If earlier sessions changed its settings, the next run gets the changed
     /// settings.
     pub(super) fn take_in_opened_plan(&mut self, plan_now: RunPlan) {
         if plan_now.changes.made().is_empty() {
             return;
         }
-        let is_alike = self.source.plan == self.engine.next;
-        self.source_now = plan_now;
-        self.awaited = self.source_now.settings.clone();
+        let is_alike = self.source.plan == self.plan_next;
+        self.plan_now = plan_now;
         if is_alike {
-            self.engine.next.settings = self.awaited.clone();
+            self.plan_next.settings = self.plan_now.settings.clone();
         }
     }
 
-    /// Takes in that nothing more will change.
-    pub(super) fn await_no_change(&mut self) {
-        self.awaited = self.source_now.settings.clone();
-    }
-
-    /// How many threads evolve.
+    /// Number of evaluation threads.
     pub fn threads(&self) -> usize {
-        self.engine.evaluator.workers()
+        self.context.evaluator.workers()
     }
 
-    /// Evolves on so many threads, from the next generation on and in later runs. That changes no bit.
+    /// Sets the number of evaluation threads, from the next generation on and for later runs. Results do not depend on
+    /// it.
     pub fn set_threads(&mut self, threads: usize) -> Result<(), String> {
         within("threads", threads, THREADS_RANGE).map_err(|error| error.to_string())?;
-        let evaluator = self.engine.evaluator.with_workers(threads);
-        self.engine.evaluator = evaluator.map_err(|error| error.to_string())?;
+        let evaluator = self.context.evaluator.with_workers(threads);
+        self.context.evaluator = evaluator.map_err(|error| error.to_string())?;
         if let Some(background) = &self.background {
-            background.set_evaluator(Arc::clone(&self.engine.evaluator));
+            background.set_evaluator(Arc::clone(&self.context.evaluator));
         }
         Ok(())
     }
@@ -116,7 +103,7 @@ impl CurrentRun {
     /// Prepares the next run so that it descends from a champion, in the champion's own world. Genomes may be what
     /// they could be, and what the champion is. A run that has not begun is replaced by it at once.
     pub fn start_next_from(&mut self, champion: &Champion, name: &str) -> Result<(), String> {
-        let next = &self.engine.next;
+        let next = &self.plan_next;
         let settings = Settings {
             trial: champion.trial.clone(),
             genome: next.settings.genome.widened_for(&champion.genome),
@@ -126,28 +113,29 @@ impl CurrentRun {
         let plan = settings
             .check()
             .and_then(|()| RunPlan::new(&next.preset, next.seed, settings).starting_from(founder));
-        self.engine.next = plan.map_err(|error| format!("No run can begin from it: {error}"))?;
+        self.plan_next =
+            plan.map_err(|error| format!("No run can start from this champion: {error}"))?;
         self.take_over_if_ready()
     }
 
-    /// Lets the next run begin from nothing again.
+    /// Lets the next run start from random snakes again.
     pub fn forget_founder(&mut self) -> Result<(), String> {
-        self.engine.next.founder = None;
+        self.plan_next.founder = None;
         self.take_over_if_ready()
     }
 
-    /// What the founder of the current run is called, if it has one.
+    /// Name of the current run's founder, if any.
     pub fn founder(&self) -> Option<&str> {
         self.source.plan.founder.as_ref().map(|founder| founder.name())
     }
 
-    /// What the founder of the next run is called, if it has one.
+    /// Name of the next run's founder, if any.
     pub fn next_founder(&self) -> Option<&str> {
-        self.engine.next.founder.as_ref().map(|founder| founder.name())
+        self.plan_next.founder.as_ref().map(|founder| founder.name())
     }
 }
 
-/// A change in a few words: "From generation 8: mutation range 50 N·m".
+/// Description of a change: "From generation 8: mutation range 50 N·m".
 pub(crate) fn news_of(change: &SettingChange) -> String {
     let SettingChange { generation, field, value } = change;
     let all = list(&Settings::default());
@@ -165,7 +153,7 @@ mod tests {
     use crate::studio::state::current_run::prepared_run;
 
     #[test]
-    fn a_change_is_told_in_words() {
+    fn a_change_is_described_in_words() {
         let change = |field: &str, value: &str| {
             let (field, value) = (format!("evolution.{field}"), value.to_owned());
             news_of(&SettingChange { generation: 8, field, value })
@@ -176,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_can_be_changed_of_a_run_that_has_not_begun() {
+    fn a_run_that_has_not_started_accepts_no_changes() {
         let mut run = prepared_run();
         let reason = run.change_running("evolution.generations", "9").expect_err("refused");
         assert!(reason.starts_with("No run is in progress"), "{reason}");
@@ -203,12 +191,12 @@ mod tests {
         assert_eq!(run.settings().genome.controller, champion.genome.controller.kind());
         let refusal = run.set_field("agent.limbs", "7").expect_err("refused");
         assert!(refusal.contains("founder.controller joints is 4; allowed: 6"), "{refusal}");
-        assert_eq!(run.next_founder(), Some("climber"), "and everything is as it was");
+        assert_eq!(run.next_founder(), Some("climber"), "nothing has changed");
         run.forget_founder().expect("allowed");
         assert_eq!((run.founder(), run.next_founder()), (None, None));
         run.set_field("agent.limbs", "7").expect("allowed again");
         run.start_next_from(&champion, "climber").expect("it fits");
         run.set_preset("report").expect("shipped");
-        assert_eq!(run.next_founder(), None, "a preset begins from nothing");
+        assert_eq!(run.next_founder(), None, "a preset has no founder");
     }
 }

@@ -1,4 +1,4 @@
-//! The plan of the next run: what is set, taken from a preset, undone.
+//! The plan of the next run: edits, presets, undo.
 
 use std::sync::Arc;
 
@@ -10,133 +10,134 @@ use crate::save::{Preset, PresetList, load_preset};
 impl CurrentRun {
     /// Seed of the next run.
     pub fn next_seed(&self) -> u64 {
-        self.engine.next.seed
+        self.plan_next.seed
     }
 
     /// Settings of the next run.
     pub fn next_settings(&self) -> &Settings {
-        &self.engine.next.settings
+        &self.plan_next.settings
     }
 
     /// The plan of the next run.
     pub fn next_plan(&self) -> &RunPlan {
-        &self.engine.next
+        &self.plan_next
     }
 
     /// Name of the preset that the next run starts from.
     pub fn next_preset(&self) -> &str {
-        &self.engine.next.preset
+        &self.plan_next.preset
     }
 
-    /// Whether the next run has another seed, founder or settings than the current one has by now, or soon.
+    /// Whether the next run's seed, preset, founder or settings differ from those of the current run with its pending
+    /// changes.
     pub fn next_run_differs(&self) -> bool {
-        let (now, next) = (&self.source_now, &self.engine.next);
+        let (now, next) = (&self.plan_now, &self.plan_next);
         let of = |plan: &RunPlan| (plan.seed, plan.preset.clone());
-        of(now) != of(next) || now.founder != next.founder || self.awaited != next.settings
+        of(now) != of(next)
+            || now.founder != next.founder
+            || self.requested_settings() != next.settings
     }
 
-    /// Sets the seed of the next run; a run that has not begun takes it at once.
+    /// Sets the seed of the next run. A run that has not started takes it at once.
     pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
-        self.engine.next.seed = seed;
+        self.plan_next.seed = seed;
         self.take_over_if_ready()
     }
 
-    /// Sets the population of the next run; a run that has not begun takes it at once, and one that is under way from
-    /// its next generation on, if its method allows it.
+    /// Sets the population of the next run. A run that has not started takes it at once; a run in progress takes it
+    /// with its next generation if its strategy allows this.
     pub fn set_population(&mut self, population: u32) -> Result<(), String> {
         self.set_field("evolution.population", &population.to_string())
     }
 
-    /// Sets one setting of the next run, by its name; a run that has not begun takes it at once, and one that is under
-    /// way from its next generation on, if it may.
+    /// Sets one setting of the next run, by its name. A run that has not started takes it at once; a run in progress
+    /// takes it with its next generation if this setting may change.
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
         self.set_fields(&[(field, text)])
     }
 
     /// Sets several settings of the next run at once, as [`Self::set_field`] does.
     pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
-        let next = &self.engine.next;
+        let next = &self.plan_next;
         let settings = with_fields(&next.settings, changes.iter().copied())
             .map_err(|error: Invalid| error.to_string())?;
         self.set_next_plan(RunPlan { settings, ..next.clone() })
     }
 
-    /// Gives the next run another plan; a run that has not begun takes it at once. What may change in a run under way
-    /// changes there too, unless the plan is that of another preset or of another run.
+    /// Replaces the next run's plan. A run that has not started takes it at once. Settings that may change during a run
+    /// also change in the current one, unless the plan is that of another preset or run.
     pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
-        self.plan_next(plan, true)
+        self.replace_next(plan, true)
     }
 
-    /// Gives the next run another plan, and leaves the run under way as it is.
+    /// Replaces the next run's plan without changing the current run.
     pub fn set_next_plan_alone(&mut self, plan: RunPlan) -> Result<(), String> {
-        self.plan_next(plan, false)
+        self.replace_next(plan, false)
     }
 
-    fn plan_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
+    fn replace_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
         plan.check_founder().map_err(|error| {
-            format!("The next run begins from a champion, whom this does not suit: {error}")
+            format!("The champion from which the next run starts does not fit: {error}")
         })?;
-        let before = std::mem::replace(&mut self.engine.next, plan);
-        let next = &self.engine.next;
-        if before == *next {
-            return Ok(());
-        }
-        if !self.is_lent {
-            if is_edit && self.next_is_own && before.preset == next.preset {
-                let known = fields(&before.settings);
-                let all = fields(&next.settings).into_iter();
-                for (field, text) in all.filter(|field| !known.contains(field)).collect::<Vec<_>>()
-                {
-                    self.change_running_too(&field, &text)?;
+        let suited_run = self.next_suits_run();
+        let before = std::mem::replace(&mut self.plan_next, plan);
+        let next = &self.plan_next;
+        if is_edit && suited_run && !self.is_lent && before.preset == next.preset {
+            let known = fields(&before.settings);
+            let all = fields(&next.settings).into_iter();
+            for (field, text) in all.filter(|field| !known.contains(field)).collect::<Vec<_>>() {
+                if self.run_allows(&field).is_ok() {
+                    self.change_running(&field, &text)?;
                 }
-            } else {
-                self.next_is_own = self.next_looks_own();
             }
         }
+        if before == self.plan_next {
+            return Ok(());
+        }
         self.take_over_if_ready()
     }
 
-    /// Whether the next run's settings could be those of the run under way, and what is set there be meant for it, too.
-    pub(super) fn next_looks_own(&self) -> bool {
-        let next = &self.engine.next;
-        let is_same_preset = next.preset == self.source_now.preset;
-        let is_alike = next.settings.evolution == self.awaited.evolution;
-        next.settings == self.awaited || (is_same_preset && is_alike)
+    /// Whether edits of the next run's settings are meant for the current run, too: both have the same search settings.
+    pub(super) fn next_suits_run(&self) -> bool {
+        let (next, requested) = (&self.plan_next, self.requested_settings());
+        let is_same_preset = next.preset == self.plan_now.preset;
+        let is_same_search = next.settings.evolution == requested.evolution;
+        next.settings == requested || (is_same_preset && is_same_search)
     }
 
-    /// The presets that can be chosen.
+    /// Presets to choose from.
     pub fn presets(&self) -> &PresetList {
-        &self.engine.presets
+        &self.context.presets
     }
 
-    /// Looks for a person's own presets anew.
+    /// Reads the user's presets again.
     pub fn list_presets(&mut self) {
-        self.engine.presets = Arc::new(PresetList::read(&self.engine.saves));
+        self.context.presets = Arc::new(PresetList::read(&self.context.saves));
     }
 
-    /// The settings of the next run's preset as they come, if it is known.
+    /// Unchanged settings of the next run's preset, if known.
     pub fn preset_settings(&self) -> Option<&Settings> {
         let name = self.next_preset();
-        let first = &self.engine.first.plan;
-        // Somebody may have begun with a file of their own.
+        let first = &self.context.first.plan;
+        // The program may have been started with a preset file.
         let of_first = (first.preset == name).then_some(&first.settings);
-        self.engine.presets.settings_of(name).or(of_first)
+        self.context.presets.settings_of(name).or(of_first)
     }
 
-    /// Keeps the next run's settings as a preset of a person's own, of which they are from now on.
+    /// Stores the next run's settings as a user preset, which becomes the next run's preset.
     pub fn store_preset(&mut self, name: &str) -> Result<(), String> {
-        let next = &self.engine.next;
-        let about = format!("Your own; it began as {}.", next.preset);
+        let next = &self.plan_next;
+        let about = format!("Your own preset, based on {}.", next.preset);
         let preset = Preset { name: name.to_owned(), about, settings: next.settings.clone() };
-        self.engine.saves.store_own_preset(&preset).map_err(|error| error.to_string())?;
+        self.context.saves.store_own_preset(&preset).map_err(|error| error.to_string())?;
         self.list_presets();
-        self.engine.next.preset = preset.name;
+        self.plan_next.preset = preset.name;
         self.take_over_if_ready()
     }
 
-    /// Takes a preset for the next run: a shipped one, or one of a person's own.
+    /// Sets the preset of the next run: a built-in one or one of the user's own.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
-        let preset = match self.engine.presets.find(name)? {
+        let preset = match self.context.presets.find(name)? {
             Some(preset) => preset.clone(),
             None => load_preset(name).map_err(|error| error.to_string())?,
         };
@@ -144,8 +145,8 @@ impl CurrentRun {
         self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
     }
 
-    /// Gives the next run the world back that it had in a plan, and the rest if that is of another preset. Seed and
-    /// population, which are no matter of the world, stay.
+    /// Restores the next run's world from an earlier plan, or all its settings if that plan has another preset. The
+    /// seed stays.
     pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
         let mut next = self.next_plan().clone();
         if next.preset == before.preset {
@@ -155,7 +156,7 @@ impl CurrentRun {
             next.settings = before.settings.clone();
             next.founder.clone_from(&before.founder);
         }
-        // One that was chosen meanwhile may not suit that world.
+        // A founder chosen meanwhile may not fit that world.
         if next.check_founder().is_err() {
             next.founder = None;
         }

@@ -114,7 +114,7 @@ impl Library {
             return load().map(Some);
         }
         let task = BackgroundTask::start(load);
-        self.loading = Some(task.map_err(|error| format!("Nothing was read: {error}"))?);
+        self.loading = Some(task.map_err(|error| format!("The save could not be read: {error}"))?);
         Ok(None)
     }
 }

@@ -47,7 +47,7 @@ impl BatchTask {
 /// The outcome for one file.
 #[derive(Debug)]
 pub(super) enum BatchOutcome {
-    /// It is done.
+    /// Done.
     Done(FileStep),
     /// It failed. The step is kept if a later undo may succeed.
     Failed(SaveError, Option<FileStep>),
@@ -95,7 +95,7 @@ impl Library {
     /// The reason why files cannot be changed now: a long batch is running, and steps are undone in order.
     pub fn busy(&self) -> Option<String> {
         let words = self.under_way().next()?.0;
-        Some(format!("{words} saves: wait until this is finished, or cancel it first"))
+        Some(format!("{words} saves is in progress: wait for it, or cancel it"))
     }
 
     pub(super) fn refuse_while_busy(&self) -> Result<(), String> {
@@ -143,7 +143,7 @@ impl Library {
     ) -> Result<(), String> {
         self.refuse_while_busy()?;
         let batch = BackgroundTask::for_each(things, act, leave)
-            .map_err(|error| format!("{} saves could not begin: {error}", task.doing()))?;
+            .map_err(|error| format!("{} saves could not be started: {error}", task.doing()))?;
         self.errands.push(BatchJobs { task, batch });
         Ok(())
     }
@@ -231,7 +231,7 @@ impl Library {
         let mut said = match (&task, steps.first()) {
             (_, None) => String::new(),
             (BatchTask::Undo(way, label), _) => {
-                format!("{}.{}", way.taken(label), renamed_on_return(&steps))
+                format!("{}.{}", undone_in_words(*way, label, &steps), renamed_on_return(&steps))
             }
             (BatchTask::Act(verb), Some(first)) => {
                 format!("{}{}", capital(&listed_steps(*verb, &steps)), ending(*verb, first))
@@ -266,18 +266,27 @@ fn capital(words: &str) -> String {
     first.into_iter().flatten().chain(letters).collect()
 }
 
+/// The message after an undo or redo.
+fn undone_in_words(way: UndoDirection, label: &str, steps: &[FileStep]) -> String {
+    match steps {
+        [FileStep::Restored { wanted, .. }] => format!("{} restored", name_of(wanted)),
+        [FileStep::Restored { .. }, ..] => format!("{} saves restored", steps.len()),
+        _ => way.taken(label),
+    }
+}
+
 /// Names that entries got on their return because their own were taken meanwhile.
 fn renamed_on_return(steps: &[FileStep]) -> String {
     let renamed = steps.iter().filter_map(|step| match step {
         FileStep::Restored { wanted, to } if wanted != to => {
             let [wanted, to] = [wanted, to].map(|path| name_of(path));
-            Some(format!(" The name {wanted} is taken, so it is now called {to}."))
+            Some(format!(" The name {wanted} was taken, so the new name is {to}."))
         }
         _ => None,
     });
     let renamed: Vec<String> = renamed.collect();
     if renamed.len() > MAX_AT_ONCE {
-        return format!(" {} names are taken; those saves got a number.", renamed.len());
+        return format!(" {} names were taken, so a number was added to them.", renamed.len());
     }
     renamed.concat()
 }
@@ -297,7 +306,7 @@ fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
 /// The end of the message: how to restore the saves, or where they are.
 fn ending(verb: Verb, first: &FileStep) -> String {
     if verb == DELETED {
-        return ". Ctrl Z restores it.".to_owned();
+        return ". Press Ctrl Z to undo.".to_owned();
     }
     let place = first.place();
     let folder = place.as_ref().and_then(|place| place.path()?.parent());
@@ -332,7 +341,7 @@ mod tests {
         let running = tried.library.under_way().next().expect("running");
         assert!(running.0.starts_with("Deleting "), "{}", running.0);
         let refusal = tried.apply(&LibraryCommand::Delete(places)).expect_err("running");
-        assert!(refusal.contains("of 300 saves: wait"), "{refusal}");
+        assert!(refusal.contains("of 300 saves is in progress"), "{refusal}");
         tried.wait();
         assert!(tried.own().is_empty());
         assert_eq!(tried.next(), (Some("deleted 300 saves"), None));

@@ -1,4 +1,4 @@
-//! An entry of the library as it is listed: what is known of it, in words and numbers to sort by.
+//! An entry of the library list: its texts and sort keys.
 
 use std::time::Duration;
 
@@ -8,23 +8,23 @@ use crate::save::library::{
 };
 use crate::score::Fitness;
 
-/// An entry, and what stands in it once it is read.
+/// An entry and, once read, its contents.
 #[derive(Debug)]
 pub struct LibraryItem {
     entry: LibraryEntry,
-    /// What its file is like by now, if it has changed since it was read.
+    /// The changed file's entry, until it is read again.
     awaited: Option<LibraryEntry>,
     name: String,
-    /// What stands in it, or what is wrong with it.
+    /// Contents or read error.
     read: Option<Result<EntryDetails, String>>,
-    /// Its name in small letters, to sort by.
+    /// Lower-case name, the sort key.
     sorted_as: String,
-    /// All that can be searched for, in small letters.
+    /// Searchable words in lower case.
     words: String,
 }
 
 impl LibraryItem {
-    /// An entry of which only the name is known.
+    /// An entry that is not read yet.
     pub fn new(entry: LibraryEntry) -> Self {
         let name = entry.place.name();
         let sorted_as = name.to_lowercase();
@@ -34,24 +34,24 @@ impl LibraryItem {
         item
     }
 
-    /// Takes in what its file is like by now. If that has changed, what is known of it, its date too, is of before
-    /// until it is read: so its row moves once, not twice.
+    /// Notes a change of the file. The old contents and date stay until the file is read again, so that its row moves
+    /// once, not twice.
     pub fn follow(&mut self, entry: LibraryEntry) {
         if *self.awaited.as_ref().unwrap_or(&self.entry) != entry {
             self.awaited = Some(entry);
         }
     }
 
-    /// Whether it is to be read, for the first time or anew.
+    /// Whether it must be read, for the first time or again.
     pub fn is_to_be_read(&self) -> bool {
         self.read.is_none() || self.awaited.is_some()
     }
 
-    /// Takes in what stands in it. Returns whether anything that it is sorted or found by is different now.
+    /// Stores the contents. Returns whether a sort or search key changed.
     pub fn learn(&mut self, read: Result<EntryDetails, String>) -> bool {
         let date = self.entry.modified;
         let before = (date, self.fitness().map(f32::to_bits), self.generation());
-        // Presets and whether it is damaged are among the words.
+        // The words include the preset and "damaged".
         let words = std::mem::take(&mut self.words);
         self.entry = self.awaited.take().unwrap_or_else(|| self.entry.clone());
         self.read = Some(read);
@@ -62,7 +62,7 @@ impl LibraryItem {
 
     fn describe(&mut self) {
         let kind = match self.place() {
-            SavePlace::Shipped(_) => "champion comes with the program",
+            SavePlace::Shipped(_) => "champion built-in",
             SavePlace::Champion(_) => "champion",
             SavePlace::Run(_) => "run",
         };
@@ -77,27 +77,27 @@ impl LibraryItem {
         self.words = words.join("\n").to_lowercase();
     }
 
-    /// The entry.
+    /// Place, size and modification time.
     pub fn entry(&self) -> &LibraryEntry {
         &self.entry
     }
 
-    /// Where it is.
+    /// Its place.
     pub fn place(&self) -> &SavePlace {
         &self.entry.place
     }
 
-    /// What it is called.
+    /// Its name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its name in small letters, to sort by.
+    /// Lower-case name, the sort key.
     pub fn sorted_as(&self) -> &str {
         &self.sorted_as
     }
 
-    /// Whether all of these are found in it; they are in small letters.
+    /// Whether its words contain all of these lower-case words.
     pub fn has_all(&self, sought: &[&str]) -> bool {
         sought.iter().all(|sought| self.words.contains(sought))
     }
@@ -107,12 +107,12 @@ impl LibraryItem {
         self.read.is_some()
     }
 
-    /// What is wrong with it, if something is.
+    /// The read error, if any.
     pub fn problem(&self) -> Option<&str> {
         self.read.as_ref()?.as_ref().err().map(String::as_str)
     }
 
-    /// What stands in it, if it is a champion.
+    /// The contents, if it is a champion.
     pub fn champion(&self) -> Option<&ChampionDetails> {
         match &self.read {
             Some(Ok(EntryDetails::Champion(champion))) => Some(champion),
@@ -120,7 +120,7 @@ impl LibraryItem {
         }
     }
 
-    /// What stands in it, if it is a run.
+    /// The contents, if it is a run.
     pub fn run(&self) -> Option<&RunDetails> {
         match &self.read {
             Some(Ok(EntryDetails::Run(run))) => Some(run),
@@ -128,13 +128,13 @@ impl LibraryItem {
         }
     }
 
-    /// What it reached; of a run its best.
+    /// Its fitness; of a run, the best.
     pub fn fitness(&self) -> Option<f32> {
         let of_run = || self.run()?.best.map(|(_, fitness)| fitness);
         self.champion().map(|champion| champion.fitness).or_else(of_run)
     }
 
-    /// The same with its unit, or nothing.
+    /// Fitness with its unit, or an empty string.
     pub fn fitness_text(&self) -> String {
         let rewarded = self.champion().map(|of| of.rewarded).or(self.run().map(|of| of.rewarded));
         match (self.fitness(), rewarded) {
@@ -143,13 +143,13 @@ impl LibraryItem {
         }
     }
 
-    /// The generation it is from; of a run how many are finished.
+    /// The champion's generation; of a run, the number of finished generations.
     pub fn generation(&self) -> Option<u32> {
         let of_champion = self.champion().map(|champion| champion.origin.generation);
         of_champion.or(self.run().map(|run| run.finished))
     }
 
-    /// The same in words: "generation 3"; of a run "3 of 100 generations".
+    /// Generation as text: "generation 3", or of a run "3 of 100 generations".
     pub fn generation_text(&self) -> String {
         match (self.champion(), self.run()) {
             (Some(champion), _) => format!("generation {}", champion.origin.generation),
@@ -167,25 +167,25 @@ impl LibraryItem {
         self.champion().map(|champion| champion.origin.preset.as_str()).or_else(of_run)
     }
 
-    /// What drives its joints.
+    /// Its controller.
     pub fn controller(&self) -> Option<ControllerKind> {
         self.champion().map(|of| of.controller).or(self.run().map(|of| of.controller))
     }
 
-    /// What it does, from the side.
+    /// Its thumbnail, from the side.
     pub fn thumbnail(&self) -> Option<&Thumbnail> {
         self.champion().map(|of| &of.thumbnail).or(self.run().map(|of| &of.thumbnail))
     }
 
-    /// When it was last changed, in words.
+    /// Modification date, or "built-in".
     pub fn date_text(&self) -> String {
         match self.place() {
-            SavePlace::Shipped(_) => "comes with the program".to_owned(),
+            SavePlace::Shipped(_) => "built-in".to_owned(),
             SavePlace::Champion(_) | SavePlace::Run(_) => date(self.entry.modified),
         }
     }
 
-    /// All there is to say of it in a line, for who does not see the row.
+    /// One-line description for screen readers.
     pub fn label(&self) -> String {
         if let Some(problem) = self.problem() {
             return format!("{}, damaged: {problem}", self.name);
@@ -211,7 +211,7 @@ pub fn fitness_text(fitness: f32, rewarded: Fitness) -> String {
     }
 }
 
-/// A day, from the time since the beginning of 1970: "21 Nov 2026", in UTC.
+/// A date, from the time since the beginning of 1970: "21 Nov 2026", in UTC.
 pub fn date(since_1970: Duration) -> String {
     const MONTHS: [&str; 12] =
         ["Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec", "Jan", "Feb"];
@@ -234,7 +234,7 @@ mod tests {
     use crate::save::library::read_entry;
 
     #[test]
-    fn days_have_their_dates() {
+    fn dates_are_those_of_the_calendar() {
         for (seconds, expected) in [
             (0, "1 Jan 1970"),
             (951_782_400, "29 Feb 2000"),
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_found_by_name_preset_and_controller_and_by_being_damaged() {
+    fn the_search_finds_name_preset_controller_and_damage() {
         let item = |read: bool| {
             let place = SavePlace::Shipped("fast");
             let details = read_entry(&place).map_err(|error| error.to_string());
@@ -258,12 +258,12 @@ mod tests {
             item
         };
         let good = item(true);
-        for sought in ["fast", "climb", "gait", "program"] {
+        for sought in ["fast", "climb", "gait", "built-in"] {
             assert!(good.has_all(&[sought]), "{sought}");
         }
         assert!(good.has_all(&["gait", "fas"]) && !good.has_all(&["gait", "slow"]));
         assert!(!good.has_all(&["damaged"]));
-        assert_eq!(good.label(), "fast, 24.05 m, climb, generation 95, comes with the program");
+        assert_eq!(good.label(), "fast, 24.05 m, climb, generation 95, built-in");
         let bad = item(false);
         assert!(bad.has_all(&["damaged"]) && !bad.has_all(&["climb"]));
         assert_eq!(bad.label(), "fast, damaged: cut off");

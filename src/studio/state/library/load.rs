@@ -20,8 +20,8 @@ pub fn founder_of(place: &SavePlace, best: Option<u32>) -> Result<Champion, Stri
     load(place, best).map(|(loaded, _)| loaded.champion)
 }
 
-/// The champion of an entry and, of a run's best, its generation. Where that is known already, the run's log, which
-/// may be long, need not be read.
+/// The champion of an entry, and its generation if the entry is a run. If the best generation is known, the run's log,
+/// which may be long, is not read.
 fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<u32>), String> {
     let loaded = match (place, best) {
         (SavePlace::Run(run), Some(best)) => load_generation(run, best).map(|it| (it, Some(best))),
@@ -30,7 +30,7 @@ fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<
     loaded.map_err(|error| error.to_string())
 }
 
-/// The champion of an entry, to be shown; of a run its best, whose generation is `best` if that is known.
+/// The champion of an entry for the stage; of a run, its best, from generation `best` if known.
 pub fn champion_of(place: &SavePlace, best: Option<u32>) -> Result<StagedChampion, String> {
     let (loaded, generation) = load(place, best)?;
     let name = match generation {
@@ -43,7 +43,7 @@ pub fn champion_of(place: &SavePlace, best: Option<u32>) -> Result<StagedChampio
     Ok(shown(&loaded, &name, &format!("{place:?}{generation:?}")))
 }
 
-/// The champion of a run's generation, to be shown.
+/// The champion of a run's generation for the stage.
 pub fn generation_of(run: &Path, generation: u32) -> Result<StagedChampion, String> {
     let loaded = load_generation(run, generation).map_err(|error| error.to_string())?;
     let identity = format!("{:?}{:?}", SavePlace::Run(run.to_owned()), Some(generation));

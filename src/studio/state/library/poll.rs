@@ -1,4 +1,4 @@
-//! What happens to the library by itself: it is read, follows the run, and takes files that are dropped.
+//! Systems of the library: reading results, following the current run, importing dropped files.
 
 use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
@@ -18,9 +18,9 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (take_drops, follow, take_in).chain().in_set(FrameSet::TakeIn));
 }
 
-/// So many events are taken in within a frame: some tenths of a millisecond.
+/// Maximum number of events handled per frame: some tenths of a millisecond.
 const MOST_EVENTS: usize = 100;
-/// A folder that changes with every generation is looked at again after so many seconds at the earliest.
+/// Minimum interval between two listings of the folder, in seconds, since each generation of a run changes it.
 const EARLIEST_LOOK_S: f32 = 2.0;
 
 fn take_in(
@@ -35,7 +35,7 @@ fn take_in(
     }
 }
 
-/// Files that are dropped into the window are imported, all of a frame at once.
+/// Imports all files dropped within a frame as one batch.
 fn take_drops(
     mut drops: MessageReader<FileDragAndDrop>,
     mut library: ResMut<Library>,
@@ -53,21 +53,21 @@ fn take_drops(
     }
 }
 
-/// Looks again when the run has another generation, and knows which run goes on.
+/// Lists the folder again after each generation, and tracks which run is in progress.
 fn follow(
     mut library: ResMut<Library>,
-    evolution: Res<CurrentRun>,
+    run: Res<CurrentRun>,
     time: Res<Time<Real>>,
     mut seen: Local<(u32, usize)>,
     mut looked_s: Local<f32>,
 ) {
-    let goes_on = matches!(evolution.status(), RunStatus::Running | RunStatus::Paused);
-    let current = goes_on.then(|| evolution.folder());
+    let goes_on = matches!(run.status(), RunStatus::Running | RunStatus::Paused);
+    let current = goes_on.then(|| run.folder());
     if library.current.as_deref() != current {
         library.current = current.map(ToOwned::to_owned);
         library.revision += 1;
     }
-    let now = (evolution.number(), evolution.reports().len());
+    let now = (run.number(), run.reports().len());
     let now_s = time.elapsed_secs();
     if *seen != now && library.is_open() && now_s - *looked_s > EARLIEST_LOOK_S {
         (*seen, *looked_s) = (now, now_s);
@@ -89,7 +89,7 @@ impl Library {
         }
     }
 
-    /// Whether somebody has been read who is to take the stage: see [`LibraryCommand::ShowLoaded`].
+    /// Whether champions for the stage have been read: see [`LibraryCommand::ShowLoaded`].
     pub(super) fn has_loaded(&self) -> bool {
         self.loaded.is_some()
     }
@@ -116,8 +116,8 @@ impl Library {
         }
     }
 
-    /// Takes in what there is by name; what was known of entries of before stays known until it is read anew. While a
-    /// run goes on, only its entry changes, every few seconds: then all the others are left as they are.
+    /// Takes over a listing; known contents stay until they are read again. During a run only the run's own entry
+    /// changes, every few seconds; then all others stay untouched.
     fn list(&mut self, entries: Vec<LibraryEntry>) {
         let is_known = self.is_listed && self.problem.is_none();
         let places = self.items.iter().map(LibraryItem::place);
@@ -155,7 +155,7 @@ mod tests {
     use crate::studio::state::current_run::prepared_run;
 
     #[test]
-    fn while_a_run_goes_on_its_entry_alone_is_sorted_anew_and_only_once_it_is_read() {
+    fn during_a_run_only_its_entry_is_sorted_again_and_only_after_it_is_read() {
         let place = |name: &str| SavePlace::Champion(format!("saves/{name}.ron").into());
         let entry = |name: &str, day: u64| LibraryEntry {
             place: place(name),

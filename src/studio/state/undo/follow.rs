@@ -1,4 +1,4 @@
-//! The stage follows when the next run's plan goes a step back or forth.
+//! Updates the stage after an undo or redo of the next run's plan.
 
 use std::collections::BTreeMap;
 
@@ -8,11 +8,11 @@ use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::wording::world_in_words;
 
-/// What is to be shown when the plan went from one to another: whatever is other in the new plan's world is so on
-/// the stage too. Nothing if that concerns nobody there.
+/// The champions to show after the plan changed from `from` to `to`: the settings of the world that differ also change
+/// on the stage. `None` if nothing changes there.
 ///
 /// # Errors
-/// The world does not suit what is on show.
+/// The champion on the stage does not fit the new world.
 pub(crate) fn followed(
     on_show: &[StagedChampion],
     mode: &StageMode,
@@ -22,7 +22,7 @@ pub(crate) fn followed(
     let Some(first) = on_show.first() else { return Ok(None) };
     let changed = on_show.last().unwrap_or(first);
     let (original, begins, shown) = match mode {
-        // Nobody in a race is the one whom it concerns.
+        // A race has no lane to which a change belongs.
         StageMode::Race => return Ok(None),
         StageMode::WhatIf { before } => (first.clone(), Some(&**before), changed),
         StageMode::Solo => (first.simulated(), None, first),
@@ -39,7 +39,7 @@ pub(crate) fn followed(
     let restored = original.in_world(&trial, label);
     restored.check().map_err(|reason| unsuited(&reason.to_string()))?;
     if begins.is_none() && first.is_changed() {
-        // A change that was kept stands alone on the stage, and its world is the one that is stepped in.
+        // After a change was kept, its lane is alone, and undo changes its world in place.
         return Ok(Some(Show::solo(restored)));
     }
     let before = Box::new(begins.unwrap_or(from).clone());
@@ -48,11 +48,13 @@ pub(crate) fn followed(
 }
 
 fn unsuited(reason: &str) -> String {
-    format!("What is on show stays in its own world, the new one does not suit it: {reason}")
+    format!(
+        "The snake on the stage stays in its world, because it does not fit the new one: {reason}"
+    )
 }
 
-/// A world on the stage with what is other between two plans. What is again as it was when the what-if began is
-/// as in the world it began with.
+/// The world on the stage with the differences between two plans applied. A setting that returns to its value from the
+/// start of the what-if gets the original lane's value.
 fn taken_over(
     shown: &Trial,
     original: &Trial,
@@ -61,12 +63,12 @@ fn taken_over(
     to: &RunPlan,
 ) -> Result<Trial, String> {
     let named = |trial: &Trial| -> BTreeMap<String, String> {
-        // Who has a ground of its own has it as a whole.
+        // A separate ground is compared as a whole, below.
         let trial = Trial { ground: None, ..trial.clone() };
         fields(&Settings { trial, ..Settings::default() }).into_iter().collect()
     };
     let (old, new) = (named(&from.settings.trial), named(&to.settings.trial));
-    // A preset that is tried out has its whole world on the stage.
+    // After a change of preset, the whole world changes on the stage.
     let is_other_preset = from.preset != to.preset && from.settings.trial != to.settings.trial;
     let begins = begins.filter(|begins| !is_other_preset || begins.preset == to.preset);
     let (originally, at_first) =
@@ -95,7 +97,7 @@ fn taken_over(
         .map_err(|error| error.to_string())
 }
 
-/// What stays as it is on the stage when another preset is tried out, so that the two can be compared.
+/// Settings that do not follow a change of preset on the stage, so that the lanes can be compared.
 fn stays_with_a_preset(field: &str) -> bool {
     let fields = ["trial.duration_s", "trial.fitness", "trial.energy_cost_per_kj"];
     fields.contains(&field) || field.starts_with("trial.repeats.")
@@ -112,7 +114,7 @@ mod tests {
         StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
     }
 
-    /// Changes a field, and returns the plan before and what is shown then.
+    /// Changes a field. Returns the earlier plan and the resulting stage.
     fn change(
         run: &mut CurrentRun,
         on_show: &[StagedChampion],
@@ -126,47 +128,47 @@ mod tests {
     }
 
     #[test]
-    fn the_changed_lane_goes_back_step_by_step_until_nothing_is_changed() {
+    fn undo_reverts_the_changed_lane_step_by_step() {
         let mut run = prepared_run();
         let (start, first) =
             change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
         let (one, second) = change(&mut run, &first.champions, &first.mode, "stairs.rise_m", "0.7");
         let two = run.next_plan().clone();
         let back = followed(&second.champions, &second.mode, &two, &one);
-        let back = back.expect("fits").expect("the rise is other");
+        let back = back.expect("fits").expect("the rise differs");
         assert_eq!(back.champions[1].trial(), first.champions[1].trial());
         assert_eq!(back.champions[1].label(), "friction 0.3");
         let end = followed(&back.champions, &back.mode, &one, &start);
-        let end = end.expect("fits").expect("the friction is other");
+        let end = end.expect("fits").expect("the friction differs");
         assert_eq!((end.champions.len(), &end.mode), (1, &StageMode::Solo));
         assert_eq!(end.champions[0].trial(), saved().trial());
-        // And forth again.
+        // Redo.
         let forth = followed(&end.champions, &end.mode, &start, &one);
-        let forth = forth.expect("fits").expect("the friction is other");
+        let forth = forth.expect("fits").expect("the friction differs");
         assert_eq!(forth.champions[1].trial(), first.champions[1].trial());
         assert_eq!(forth.mode, StageMode::WhatIf { before: Box::new(start) });
     }
 
     #[test]
-    fn a_drop_that_is_undone_shows_the_change_again() {
+    fn undoing_a_discard_shows_the_change_again() {
         let mut run = prepared_run();
         let (_, tried) = change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
         let changed = run.next_plan().clone();
         let alone = dropped(&mut run, &tried.champions, &tried.mode).expect("allowed");
         let alone = alone.expect("the original");
         let again = followed(&alone.champions, &alone.mode, run.next_plan(), &changed);
-        let again = again.expect("fits").expect("the friction is other");
+        let again = again.expect("fits").expect("the friction differs");
         assert_eq!(again.champions[1].label(), "friction 0.3");
     }
 
     #[test]
-    fn a_kept_change_that_is_undone_leaves_the_snake_alone_on_the_stage() {
+    fn undoing_a_kept_change_leaves_one_lane() {
         let mut run = prepared_run();
         let (start, tried) =
             change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
         let kept = tried.champions[1].clone();
         let back = followed(&[kept], &StageMode::Solo, run.next_plan(), &start);
-        let back = back.expect("fits").expect("the friction is other");
+        let back = back.expect("fits").expect("the friction differs");
         assert_eq!((back.champions.len(), back.mode), (1, StageMode::Solo));
         assert_eq!(
             back.champions[0].trial().surface.friction,
@@ -175,19 +177,19 @@ mod tests {
     }
 
     #[test]
-    fn an_own_ground_goes_as_a_whole() {
+    fn a_separate_ground_is_removed_as_a_whole() {
         let mut run = prepared_run();
         let (start, tried) =
             change(&mut run, &[saved()], &StageMode::Solo, "ground.friction", "0.1");
         let plan = run.next_plan().clone();
         let back = followed(&tried.champions, &tried.mode, &plan, &start);
-        let back = back.expect("fits").expect("the ground is other");
+        let back = back.expect("fits").expect("the ground differs");
         assert_eq!(back.champions[0].trial().ground, saved().trial().ground);
         assert_eq!(back.mode, StageMode::Solo);
     }
 
     #[test]
-    fn a_preset_that_is_undone_gives_the_world_back() {
+    fn undoing_a_preset_restores_the_world() {
         let mut run = prepared_run();
         let before = run.next_plan().clone();
         let show = what_if(&mut run, &[saved()], &StageMode::Solo, &WorldChange::Preset("ice"));
@@ -198,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_race_and_a_change_of_the_search_leave_the_stage_alone() {
+    fn races_and_changes_of_the_search_do_not_affect_the_stage() {
         let mut run = prepared_run();
         let before = run.next_plan().clone();
         run.set_population(9).expect("allowed");
