@@ -1,11 +1,11 @@
-//! The order of the systems within a frame.
+//! The order of the systems within a frame, and the rate at which results are taken in.
 
 use bevy::prelude::*;
 
 /// Sets of systems in a frame, in this order.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum FrameSet {
-    /// Take over results of the background run.
+    /// Read keys and dropped files, and take in what was read from the saves folder.
     TakeIn,
     /// Apply the commands of keys and of the last frame's panels.
     Apply,
@@ -14,3 +14,7 @@ pub(crate) enum FrameSet {
     /// Draw the stage in its current state.
     Draw,
 }
+
+/// Rate of `FixedUpdate`, in hertz. Results of evolution are taken in there, so that neither the frame rate nor a slow
+/// panel decides when.
+pub(crate) const RESULTS_HZ: f64 = 20.0;

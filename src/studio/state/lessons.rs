@@ -7,18 +7,15 @@ use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
-use crate::evolve::{Champion, RunPlan, Settings, with_fields};
+use crate::evolve::{Champion, RunPlan};
 use crate::run::{GenerationReport, ParallelRuns, ParallelRunsEvent};
-use crate::save::library::{SavePlace, load_entry};
-use crate::save::load_preset;
 use crate::score::{Evaluation, evaluate};
 use crate::studio::commands::LessonCommand;
-use crate::studio::schedule::FrameSet;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::ui::notifications::Notices;
 
-use catalogue::{LessonScene, Side};
+use catalogue::{LessonScene, Side, champions, plan};
 
 pub(crate) use catalogue::LESSONS;
 
@@ -273,7 +270,7 @@ impl Found {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Lessons>().add_systems(Update, take_in.in_set(FrameSet::TakeIn));
+    app.init_resource::<Lessons>().add_systems(FixedUpdate, take_in);
 }
 
 fn take_in(
@@ -290,34 +287,6 @@ fn take_in(
         }
         Err(problem) => notices.problem(problem),
     }
-}
-
-/// A built-in champion in each of these worlds.
-fn champions(champion: &'static str, lanes: &[Side]) -> Result<Vec<StagedChampion>, String> {
-    let place = SavePlace::Shipped(champion);
-    let (loaded, _) = load_entry(&place).map_err(|error| error.to_string())?;
-    let original = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
-    lanes
-        .iter()
-        .map(|Side { name, changes, .. }| {
-            let settings = Settings { trial: original.trial().clone(), ..Settings::default() };
-            let settings = with_fields(&settings, changes.iter().copied())
-                .map_err(|error| error.to_string())?;
-            let same = original.clone().named("The same snake".to_owned());
-            let changed = same.in_world(&settings.trial, (*name).to_owned());
-            let staged = if changed.is_changed() { changed } else { original.clone() };
-            staged.check().map_err(|error| error.to_string())?;
-            Ok(staged)
-        })
-        .collect()
-}
-
-/// Plan and thread count of a run: the preset "quick" with changes.
-fn plan(side: &Side) -> Result<(RunPlan, usize), String> {
-    let preset = load_preset("quick").map_err(|error| error.to_string())?;
-    let settings = with_fields(&preset.settings, side.changes.iter().copied())
-        .map_err(|error| error.to_string())?;
-    Ok((RunPlan::new(&preset.name, side.seed, settings), side.threads))
 }
 
 fn found(side: &Side) -> Found {

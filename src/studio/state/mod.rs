@@ -14,6 +14,9 @@ pub mod wording;
 
 use bevy::prelude::*;
 
+use super::schedule::RESULTS_HZ;
+
 pub(super) fn plugin(app: &mut App) {
+    app.insert_resource(Time::<Fixed>::from_hz(RESULTS_HZ));
     app.add_plugins((undo::plugin, current_run::plugin, library::plugin, lessons::plugin));
 }

@@ -7,7 +7,6 @@ use super::live_changes::news_of;
 use crate::evolve::Champion;
 use crate::run::{OpenedRun, RunEvent};
 use crate::save::ExistingRun;
-use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::StagedChampion;
@@ -15,7 +14,7 @@ use crate::studio::stage::{Show, StageMode};
 use crate::studio::ui::notifications::Notices;
 
 pub(super) fn plugin(app: &mut App) {
-    app.add_systems(Startup, start_at_once).add_systems(Update, take_in.in_set(FrameSet::TakeIn));
+    app.add_systems(Startup, start_at_once).add_systems(FixedUpdate, take_in);
 }
 
 /// Evolution starts with the program.
@@ -137,9 +136,11 @@ mod tests {
     use crate::evolve::{RunPlan, Settings};
     use crate::run::RunSource;
     use crate::save::SavesFolder;
-    use crate::studio::state::current_run::RunStatus;
+    use crate::studio::schedule::RESULTS_HZ;
+    use crate::studio::state::current_run::{RunStatus, prepared_run};
     use crate::studio::state::options::Options;
     use crate::studio::state::run_context::RunContext;
+    use bevy::time::TimeUpdateStrategy;
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 
@@ -190,6 +191,34 @@ mod tests {
         wait_until(&mut app, |run| run.reports().len() == 1 && run.status() == RunStatus::Paused);
         (folder, app)
     }
+
+    #[test]
+    fn results_are_taken_in_at_a_fixed_rate_at_any_frame_rate() {
+        let frame = |length_ms| {
+            let mut app = App::new();
+            app.add_plugins(bevy::time::TimePlugin)
+                .insert_resource(Time::<Fixed>::from_hz(RESULTS_HZ))
+                .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(
+                    length_ms,
+                )))
+                .insert_resource(prepared_run())
+                .init_resource::<Notices>()
+                .init_resource::<StageMode>()
+                .init_resource::<Playback>()
+                .init_resource::<Calls>()
+                .add_message::<Show>()
+                .add_plugins(plugin)
+                .add_systems(FixedUpdate, (|mut calls: ResMut<Calls>| calls.0 += 1).after(take_in));
+            // The first update only starts the clock.
+            (0..=600 / length_ms).for_each(|_| app.update());
+            app.world().resource::<Calls>().0
+        };
+        assert_eq!([10, 60, 200].map(frame), [12; 3], "20 times a second for 0.6 s");
+    }
+
+    /// Number of fixed updates.
+    #[derive(Resource, Default)]
+    struct Calls(u32);
 
     #[test]
     fn settings_of_another_preset_or_run_do_not_change_the_run_under_way() {

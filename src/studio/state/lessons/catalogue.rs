@@ -1,5 +1,10 @@
 //! Texts and scenes of the five lessons. Tests in [`super`] check that the conclusions are true.
 
+use crate::evolve::{RunPlan, Settings, with_fields};
+use crate::save::library::{SavePlace, load_entry};
+use crate::save::load_preset;
+use crate::studio::stage::staged_champion::StagedChampion;
+
 /// A guided experiment.
 #[derive(Debug)]
 pub(crate) struct Lesson {
@@ -242,3 +247,34 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         ],
     },
 ];
+
+/// A built-in champion in each of these worlds.
+pub(super) fn champions(
+    champion: &'static str,
+    lanes: &[Side],
+) -> Result<Vec<StagedChampion>, String> {
+    let place = SavePlace::Shipped(champion);
+    let (loaded, _) = load_entry(&place).map_err(|error| error.to_string())?;
+    let original = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
+    lanes
+        .iter()
+        .map(|Side { name, changes, .. }| {
+            let settings = Settings { trial: original.trial().clone(), ..Settings::default() };
+            let settings = with_fields(&settings, changes.iter().copied())
+                .map_err(|error| error.to_string())?;
+            let same = original.clone().named("The same snake".to_owned());
+            let changed = same.in_world(&settings.trial, (*name).to_owned());
+            let staged = if changed.is_changed() { changed } else { original.clone() };
+            staged.check().map_err(|error| error.to_string())?;
+            Ok(staged)
+        })
+        .collect()
+}
+
+/// Plan and thread count of a run: the preset "quick" with changes.
+pub(super) fn plan(side: &Side) -> Result<(RunPlan, usize), String> {
+    let preset = load_preset("quick").map_err(|error| error.to_string())?;
+    let settings = with_fields(&preset.settings, side.changes.iter().copied())
+        .map_err(|error| error.to_string())?;
+    Ok((RunPlan::new(&preset.name, side.seed, settings), side.threads))
+}
