@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::LAYOUT;
 use super::ga::GaSettings;
 use super::size::GenomeSize;
 use crate::check::{Invalid, within};
-use crate::evolve::archives::Descriptor;
+use crate::evolve::archives::{Descriptor, FIXED_LAYOUT};
 use crate::schema::{Section, SettingGroup, Walk, choice, number, whole};
 
 /// Settings of novelty search. Children are made as the genetic algorithm makes them.
@@ -88,11 +87,11 @@ impl SettingGroup for NoveltySettings {
         walk.setting(
             choice("first", "Told apart by")
                 .hint("The behaviour that tells snakes apart, beside where they end")
-                .fixed(LAYOUT),
+                .fixed(FIXED_LAYOUT),
             first,
         );
         walk.setting(
-            choice("second", "And by").hint("A second such behaviour").fixed(LAYOUT),
+            choice("second", "And by").hint("A second such behaviour").fixed(FIXED_LAYOUT),
             second,
         );
     }
