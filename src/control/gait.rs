@@ -1,7 +1,7 @@
 //! Periodic joint angles, followed by a servo.
 
 use super::{Controller, Observation, Senses};
-use crate::genome::{Gait, Wave};
+use crate::genome::controllers::{Gait, Wave};
 use crate::world::JointTorque;
 
 /// Pulls every joint towards the angle of a gait.

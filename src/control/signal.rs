@@ -1,7 +1,7 @@
 //! Torque signals, played back.
 
 use super::{Controller, Observation, Senses};
-use crate::genome::TorqueSignals;
+use crate::genome::controllers::TorqueSignals;
 use crate::world::JointTorque;
 
 /// Plays back torque signals: each point holds until the next takes effect, the last one to the end.
@@ -31,7 +31,7 @@ impl Controller for SignalPlayer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::JointSignals;
+    use crate::genome::controllers::JointSignals;
 
     #[test]
     fn a_point_holds_until_the_next_and_the_last_to_the_end() {

@@ -1,7 +1,7 @@
 //! Periodic torques.
 
 use super::{Controller, Observation, Senses};
-use crate::genome::Waves;
+use crate::genome::controllers::Waves;
 use crate::world::JointTorque;
 
 /// Follows waves of torque.

@@ -93,7 +93,8 @@ impl GenomeSpace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::{ControllerGenes, ControllerKind, TorqueSignals};
+    use crate::genome::controllers::TorqueSignals;
+    use crate::genome::{ControllerGenes, ControllerKind};
     use crate::rng::{Purpose, stream};
 
     const SHAPE: GenomeShape = GenomeShape { joints: 4, duration_s: 2.0 };

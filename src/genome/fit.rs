@@ -74,7 +74,8 @@ impl GenomeSpace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::{ControllerGenes, ControllerKind, Gait};
+    use crate::genome::controllers::Gait;
+    use crate::genome::{ControllerGenes, ControllerKind};
     use crate::rng::{Purpose, stream};
     use rand::RngExt;
 

@@ -4,7 +4,7 @@
 //! [`GenomeSpace`]; what it does to a body is decided in `score`, where it meets a trial.
 
 mod body;
-mod controllers;
+pub mod controllers;
 mod coordinates;
 mod features;
 mod fit;
@@ -15,10 +15,7 @@ mod space;
 mod wave_space;
 
 pub use body::BodyGenes;
-pub use controllers::{
-    ControllerGenes, Gait, Harmonic, JointCommands, JointSignals, JointWaves, TorqueSignals, Wave,
-    Waves,
-};
+pub use controllers::{ControllerGenes, JointCommands};
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;
 pub use kind::ControllerKind;

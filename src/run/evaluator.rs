@@ -2,15 +2,16 @@
 //!
 //! An evaluator cannot change a result. An evaluation depends on its genome and its trial only, and the experiment
 //! puts the results in the order of the individuals before the strategy sees them. Another evaluator, which sends
-//! its jobs to other processes or machines, implements [`Evaluator`] and is chosen where the command line is read.
+//! its jobs to other processes or machines, implements [`Evaluator`] and is registered in [`super::evaluators`].
 
 use std::fmt::Debug;
+use std::io;
 use std::num::NonZero;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::panics::caught;
 use super::run_control::{Cancelled, RunControl};
@@ -51,7 +52,7 @@ pub trait Evaluator: Debug + Send + Sync {
 /// The workers of an evaluator could not be started.
 #[derive(Debug, thiserror::Error)]
 #[error("threads: cannot be started: {0}")]
-pub struct WorkersError(#[from] ThreadPoolBuildError);
+pub struct WorkersError(#[from] io::Error);
 
 /// Allowed numbers of worker threads.
 pub const THREADS_RANGE: RangeInclusive<usize> = 1..=1024;
@@ -82,7 +83,8 @@ impl LocalPool {
         let pool = ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|index| format!("evolution-{index}"))
-            .build()?;
+            .build()
+            .map_err(io::Error::other)?;
         Ok(Self(pool))
     }
 

@@ -5,6 +5,7 @@ mod background_task;
 pub mod bench;
 pub mod compare;
 mod evaluator;
+pub mod evaluators;
 mod experiment;
 pub mod headless;
 mod library_reader;

@@ -3,10 +3,12 @@
 mod imports;
 mod tokens;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use imports::import_graph;
+use imports::{circles, import_graph};
+use tokens::tokens;
 
 fn source() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("src")
@@ -168,6 +170,56 @@ fn every_wing_of_the_studio_uses_only_lower_wings() {
             assert!(is_lower, "src/{path} uses src/{target}, which is not in a lower wing");
         }
     }
+}
+
+/// Maximum number of files that depend on each other in a circle.
+const LARGEST_CIRCLE: usize = 4;
+
+#[test]
+fn no_circle_of_imports_has_more_than_four_files() {
+    let circles = circles(&import_graph(&files()));
+    let too_large: Vec<_> = circles.iter().filter(|circle| circle.len() > LARGEST_CIRCLE).collect();
+    assert!(too_large.is_empty(), "files below src/ that import each other: {too_large:#?}");
+}
+
+/// The types that a text defines, without associated types and those that only a macro names.
+fn type_names(text: &str) -> Vec<String> {
+    let tokens = tokens(text);
+    let mut depth = 0;
+    let mut names = Vec::new();
+    for (index, token) in tokens.iter().enumerate() {
+        let next = tokens.get(index + 1).map_or("", String::as_str);
+        match token.as_str() {
+            "{" => depth += 1,
+            "}" => depth -= 1,
+            "struct" | "enum" | "trait" | "union" if next.starts_with(char::is_alphabetic) => {
+                names.push(next.to_owned());
+            }
+            // Deeper ones are associated types.
+            "type" if depth == 0 => names.push(next.to_owned()),
+            _ => (),
+        }
+    }
+    names
+}
+
+#[test]
+fn associated_types_and_types_named_by_a_macro_have_no_name_of_their_own() {
+    let text = "struct A; trait B { type Item; } impl B for A { type Item = u8; }\n\
+                type C = u8; macro_rules! d { ($e:ident) => { enum $e {} } } fn f() { struct G; }";
+    assert_eq!(type_names(text), ["A", "B", "C", "G"]);
+}
+
+#[test]
+fn no_two_types_share_a_name() {
+    let mut homes: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for (path, text) in files() {
+        for name in type_names(&text) {
+            homes.entry(name).or_default().push(path.clone());
+        }
+    }
+    homes.retain(|_, paths| paths.len() > 1);
+    assert!(homes.is_empty(), "types below src/ that share a name: {homes:#?}");
 }
 
 /// Words that may be used only in certain modules: word, modules, reason.

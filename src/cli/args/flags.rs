@@ -7,6 +7,7 @@ use clap::Parser;
 use super::compare::CompareArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
+use crate::run::evaluators::EVALUATORS;
 use crate::score::Fitness;
 
 /// A five-block snake evolves until it climbs a staircase.
@@ -63,6 +64,16 @@ pub struct Args {
     /// Worker threads [default: all cores; with a window, all but one]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) threads: Option<String>,
+    // There is nothing to choose while there is only one.
+    #[arg(
+        long,
+        global = true,
+        value_name = "NAME",
+        help_heading = RUN,
+        help = evaluator_help(),
+        hide = EVALUATORS.len() == 1
+    )]
+    pub(super) evaluator: Option<String>,
     /// Folder for the files that this run writes: champions, tables, pictures
     #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
     pub(super) out: Option<PathBuf>,
@@ -152,4 +163,11 @@ pub enum Subcommand {
 fn fitness_help() -> String {
     let names: Vec<String> = Fitness::ALL.iter().map(ToString::to_string).collect();
     format!("The fitness that is maximised: {}", names.join(", "))
+}
+
+/// Lists every evaluator.
+fn evaluator_help() -> String {
+    let rows: Vec<String> =
+        EVALUATORS.iter().map(|row| format!("{}, {}", row.name, row.words)).collect();
+    format!("Where genomes are evaluated: {} [default: {}]", rows.join("; "), EVALUATORS[0].name)
 }

@@ -185,6 +185,12 @@ mod tests {
         }
     }
 
+    #[test]
+    fn an_unknown_evaluator_is_refused_with_the_names_of_all() {
+        let refusal = args_of("--evaluator nosuch").evaluator().expect_err("refused").to_string();
+        assert!(refusal.starts_with("evaluator is \"nosuch\"; allowed: threads"), "{refusal}");
+    }
+
     #[cfg(feature = "studio")]
     #[test]
     fn a_theme_is_light_or_dark_if_it_is_given() {

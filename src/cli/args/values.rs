@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::flags::Args;
 use crate::check::{Invalid, within};
 use crate::cli::error::CliError;
+use crate::run::evaluators::EVALUATORS;
 use crate::run::headless::HeadlessError;
-use crate::run::{Evaluator, LocalPool, THREADS_RANGE, available_cores};
+use crate::run::{Evaluator, THREADS_RANGE, available_cores};
 #[cfg(feature = "studio")]
 use crate::save::PreferencesFile;
 #[cfg(feature = "studio")]
@@ -30,11 +31,6 @@ pub fn size(flag: &str, text: &str, least: (u32, u32), most: u32) -> Result<(u32
     Ok((width, height))
 }
 
-/// The evaluator of all modes of the program.
-fn evaluator_of(workers: usize) -> Result<Arc<dyn Evaluator>, CliError> {
-    Ok(Arc::new(LocalPool::new(workers).map_err(HeadlessError::from)?))
-}
-
 impl Args {
     /// The seed of the run.
     pub fn seed(&self) -> Result<u64, CliError> {
@@ -50,13 +46,23 @@ impl Args {
 
     /// The evaluator without a window.
     pub fn evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
-        evaluator_of(self.threads()?)
+        self.evaluator_of(self.threads()?)
     }
 
     /// The evaluator beside a window, which leaves one core free for it.
     #[cfg(feature = "studio")]
     pub fn studio_evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
-        evaluator_of(self.threads_or(available_cores().saturating_sub(1).max(1))?)
+        self.evaluator_of(self.threads_or(available_cores().saturating_sub(1).max(1))?)
+    }
+
+    /// The evaluator that is named, else the default.
+    fn evaluator_of(&self, workers: usize) -> Result<Arc<dyn Evaluator>, CliError> {
+        let name = self.evaluator.as_deref().unwrap_or(EVALUATORS[0].name);
+        let row = EVALUATORS.iter().find(|row| row.name == name).ok_or_else(|| {
+            let names: Vec<&str> = EVALUATORS.iter().map(|row| row.name).collect();
+            Invalid::new("evaluator", format!("{name:?}"), names.join(", "))
+        })?;
+        Ok((row.start)(workers).map_err(HeadlessError::from)?)
     }
 
     fn threads_or(&self, default: usize) -> Result<usize, CliError> {

@@ -7,3 +7,7 @@ mod front;
 pub use descriptor::Descriptor;
 pub use elites::{Addition, Archive, Elite};
 pub use front::{Front, FrontMember};
+
+/// Why a run keeps the axes of its archive.
+pub const FIXED_LAYOUT: &str =
+    "Takes effect with the next run, because it determines the layout of the archive.";

@@ -2,10 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::LAYOUT;
 use super::size::{GenomeSize, LARGEST_SAMPLE, LARGEST_STATE_GENES};
 use crate::check::Invalid;
-use crate::evolve::archives::Descriptor;
+use crate::evolve::archives::{Descriptor, FIXED_LAYOUT};
 use crate::schema::{Section, SettingGroup, Walk, choice, number, whole};
 
 /// Settings of MAP-Elites.
@@ -67,20 +66,20 @@ impl SettingGroup for MapElitesSettings {
         walk.setting(
             choice("x", "Archive columns")
                 .hint("Behaviour that distinguishes the columns of the archive")
-                .fixed(LAYOUT),
+                .fixed(FIXED_LAYOUT),
             x,
         );
         walk.setting(
             choice("y", "Archive rows")
                 .hint("Behaviour that distinguishes the rows of the archive")
-                .fixed(LAYOUT),
+                .fixed(FIXED_LAYOUT),
             y,
         );
         walk.setting(
             whole("cells", "Columns and rows", 2..=100)
                 .hint("Number of columns and of rows of the archive. More distinguish finer differences")
                 .slider(2.0, 50.0)
-                .fixed(LAYOUT),
+                .fixed(FIXED_LAYOUT),
             cells,
         );
         walk.setting(

@@ -226,10 +226,6 @@ impl EvolutionSettings {
     }
 }
 
-/// Why a run keeps the axes of its archive.
-const LAYOUT: &str =
-    "Takes effect with the next run, because it determines the layout of the archive.";
-
 impl Settings {
     /// Checks every field against its range, and that a generation fits into memory.
     ///

@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::LAYOUT;
 use super::ga::GaSettings;
 use super::size::GenomeSize;
 use crate::check::{Invalid, within};
-use crate::evolve::archives::Descriptor;
+use crate::evolve::archives::{Descriptor, FIXED_LAYOUT};
 use crate::schema::{Section, SettingGroup, Walk, choice, number, whole};
 
 /// Settings of novelty search. Children are made as the genetic algorithm makes them.
@@ -88,13 +87,13 @@ impl SettingGroup for NoveltySettings {
         walk.setting(
             choice("first", "First behaviour")
                 .hint("Behaviour that distinguishes snakes, in addition to their final position")
-                .fixed(LAYOUT),
+                .fixed(FIXED_LAYOUT),
             first,
         );
         walk.setting(
             choice("second", "Second behaviour")
                 .hint("A second behaviour that distinguishes snakes")
-                .fixed(LAYOUT),
+                .fixed(FIXED_LAYOUT),
             second,
         );
     }

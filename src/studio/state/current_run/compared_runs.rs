@@ -12,14 +12,14 @@ pub(crate) struct ComparedRuns {
     listing: Option<BackgroundTask<Vec<RunSummary>>>,
     /// All runs in the saves folder; `None` until listed.
     runs: Option<Vec<RunSummary>>,
-    compared: Vec<ComparedRun>,
+    compared: Vec<ComparedCurve>,
     /// Incremented with every change.
     version: u64,
 }
 
-/// A run that is compared with the current one.
+/// The learning curve of another run, drawn over that of the current one.
 #[derive(Debug)]
-pub(crate) struct ComparedRun {
+pub(crate) struct ComparedCurve {
     /// Its folder.
     pub folder: PathBuf,
     reading: Option<BackgroundTask<Result<Other, String>>>,
@@ -65,7 +65,7 @@ impl ComparedRuns {
         });
         let reading = reading.map_err(|error| format!("The run cannot be read: {error}"))?;
         let folder = folder.to_owned();
-        self.compared.push(ComparedRun { folder, reading: Some(reading), read: None });
+        self.compared.push(ComparedCurve { folder, reading: Some(reading), read: None });
         Ok(())
     }
 
@@ -90,7 +90,7 @@ impl ComparedRuns {
     }
 
     /// The runs compared with the current one.
-    pub fn compared(&self) -> &[ComparedRun] {
+    pub fn compared(&self) -> &[ComparedCurve] {
         &self.compared
     }
 
