@@ -96,10 +96,16 @@ impl Walk<'_> {
         self.state.fixed = Some(reason);
     }
 
-    /// Visits a field under its row.
-    pub fn setting<T: SettingField>(&mut self, row: SettingRow<T>, field: &mut T) {
+    /// Visits a field under its row. `name` is the name of the field.
+    pub fn setting<T: SettingField>(
+        &mut self,
+        name: &'static str,
+        row: SettingRow<T>,
+        field: &mut T,
+    ) {
         let State { section, is_used, fixed } = self.state;
-        let setting = row.setting;
+        let is_used = is_used && row.is_used;
+        let setting = Setting { name, ..row.setting };
         let live = match fixed {
             Some(reason) => Err(reason),
             None if !is_used => Err(UNUSED),

@@ -1,54 +1,70 @@
 //! Settings of MAP-Elites.
 
-use serde::{Deserialize, Serialize};
-
 use super::LAYOUT;
 use super::size::{GenomeSize, LARGEST_SAMPLE, LARGEST_STATE_GENES};
 use crate::check::Invalid;
 use crate::evolve::archives::Descriptor;
-use crate::schema::{Section, SettingGroup, Walk, choice, number, whole};
+use crate::schema::{Choices, choice, number, setting_group, whole};
 
-/// Settings of MAP-Elites.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MapElitesSettings {
-    /// Descriptor of the columns of the archive.
-    pub x: Descriptor,
-    /// Descriptor of its rows.
-    pub y: Descriptor,
-    /// Number of columns and of rows.
-    pub cells: u32,
-    /// Standard deviation of the steps of the Gaussian emitter, as a share of each gene's range.
-    pub step: f32,
-    /// Standard deviation of its steps along the line to another elite, as a share of that line.
-    pub line: f32,
-    /// Share of each generation that the CMA-ES emitter makes.
-    pub cma_share: f32,
-    /// Step at which the CMA-ES emitter begins around an elite.
-    pub cma_step: f32,
-}
+setting_group! {
+    /// Settings of MAP-Elites.
+    pub struct MapElitesSettings in "MAP-Elites":
+        "Keeps the best of every kind of behaviour in a map, and breeds from all of them."
+    {
+        /// Descriptor of the columns of the archive.
+        x: Descriptor = Descriptor::BodyHeight,
+            choice("Columns of the map")
+                .hint("The behaviour that the columns of the map tell apart")
+                .fixed(LAYOUT);
 
-impl Default for MapElitesSettings {
-    fn default() -> Self {
-        Self {
-            x: Descriptor::BodyHeight,
-            y: Descriptor::EnergyPerMetre,
-            cells: 16,
-            step: 0.03,
-            line: 0.2,
-            cma_share: 0.5,
-            cma_step: 0.1,
+        /// Descriptor of its rows.
+        y: Descriptor = Descriptor::EnergyPerMetre,
+            choice("Rows of the map")
+                .hint("The behaviour that the rows of the map tell apart")
+                .fixed(LAYOUT);
+
+        /// Number of columns and of rows.
+        cells: u32 = 16,
+            whole("Columns and rows", 2..=100)
+                .hint("Number of columns, and of rows. More keep finer differences apart")
+                .slider(2.0, 50.0)
+                .fixed(LAYOUT);
+
+        /// Standard deviation of the steps of the Gaussian emitter, as a share of each gene's range.
+        step: f32 = 0.03,
+            number("Step of mutation", 0.0..=1.0)
+                .hint("Spread of random steps from an elite, as a share of each gene's range")
+                .slider(0.0, 0.3);
+
+        /// Standard deviation of its steps along the line to another elite, as a share of that line.
+        line: f32 = 0.2,
+            number("Step towards another elite", 0.0..=2.0)
+                .hint("Spread of steps along the line between two elites, in lengths of that line")
+                .slider(0.0, 1.0);
+
+        /// Share of each generation that the CMA-ES emitter makes.
+        cma_share: f32 = 0.5,
+            number("Share made by CMA-ES", 0.0..=1.0)
+                .hint("Share of each generation that is bred by CMA-ES around an elite")
+                .slider(0.0, 1.0);
+
+        /// Step at which the CMA-ES emitter begins around an elite.
+        cma_step: f32 = 0.1,
+            number("Step of that CMA-ES", 1.0e-6..=1.0)
+                .hint("Its first spread around the elite, as a share of each gene's range")
+                .slider(0.001, 1.0)
+                .logarithmic_from(0.001);
+    }
+
+    fn check_together(&self) -> Result<(), Invalid> {
+        if self.x != self.y {
+            return Ok(());
         }
+        Err(Invalid::new("y", self.y.choice().name, "another descriptor than that of x"))
     }
 }
 
 impl MapElitesSettings {
-    /// The section of these settings.
-    pub const SECTION: Section = Section {
-        title: "MAP-Elites",
-        about: "Keeps the best of every kind of behaviour in a map, and breeds from all of them.",
-    };
-
     /// Checks that a generation and the archive fit into memory.
     pub(super) fn check_size(&self, population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
         let genes = size.coordinates();
@@ -57,63 +73,5 @@ impl MapElitesSettings {
         let cells = self.cells * self.cells;
         let field = "evolution.map_elites.cells (squared)";
         size.check_count(field, cells, genes, LARGEST_STATE_GENES)
-    }
-}
-
-impl SettingGroup for MapElitesSettings {
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { x, y, cells, step, line, cma_share, cma_step } = self;
-        walk.section(Self::SECTION);
-        walk.setting(
-            choice("x", "Columns of the map")
-                .hint("The behaviour that the columns of the map tell apart")
-                .fixed(LAYOUT),
-            x,
-        );
-        walk.setting(
-            choice("y", "Rows of the map")
-                .hint("The behaviour that the rows of the map tell apart")
-                .fixed(LAYOUT),
-            y,
-        );
-        walk.setting(
-            whole("cells", "Columns and rows", 2..=100)
-                .hint("Number of columns, and of rows. More keep finer differences apart")
-                .slider(2.0, 50.0)
-                .fixed(LAYOUT),
-            cells,
-        );
-        walk.setting(
-            number("step", "Step of mutation", 0.0..=1.0)
-                .hint("Spread of random steps from an elite, as a share of each gene's range")
-                .slider(0.0, 0.3),
-            step,
-        );
-        walk.setting(
-            number("line", "Step towards another elite", 0.0..=2.0)
-                .hint("Spread of steps along the line between two elites, in lengths of that line")
-                .slider(0.0, 1.0),
-            line,
-        );
-        walk.setting(
-            number("cma_share", "Share made by CMA-ES", 0.0..=1.0)
-                .hint("Share of each generation that is bred by CMA-ES around an elite")
-                .slider(0.0, 1.0),
-            cma_share,
-        );
-        walk.setting(
-            number("cma_step", "Step of that CMA-ES", 1.0e-6..=1.0)
-                .hint("Its first spread around the elite, as a share of each gene's range")
-                .slider(0.001, 1.0)
-                .logarithmic_from(0.001),
-            cma_step,
-        );
-    }
-
-    fn check_together(&self) -> Result<(), Invalid> {
-        if self.x != self.y {
-            return Ok(());
-        }
-        Err(Invalid::new("y", self.y.name(), "another descriptor than that of x"))
     }
 }

@@ -1,99 +1,60 @@
 //! Settings of novelty search.
 
-use serde::{Deserialize, Serialize};
-
 use super::LAYOUT;
 use super::ga::GaSettings;
 use super::size::GenomeSize;
 use crate::check::{Invalid, within};
 use crate::evolve::archives::Descriptor;
-use crate::schema::{Section, SettingGroup, Walk, choice, number, whole};
+use crate::schema::{choice, number, setting_group, whole};
 
-/// Settings of novelty search. Children are made as the genetic algorithm makes them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NoveltySettings {
-    /// Weight of novelty: 1 is pure novelty search, 0 is the genetic algorithm.
-    pub weight: f32,
-    /// Number of nearest neighbours whose mean distance is the novelty.
-    pub neighbours: u32,
-    /// Number of individuals of each generation, chosen at random, that enter the archive.
-    pub remembered: u32,
-    /// Maximum size of the archive. When it is full, new behaviours replace random others.
-    pub archive_limit: u32,
-    /// First descriptor of behaviours, beside the final position.
-    pub first: Descriptor,
-    /// Second descriptor.
-    pub second: Descriptor,
-}
+setting_group! {
+    /// Settings of novelty search. Children are made as the genetic algorithm makes them.
+    pub struct NoveltySettings in "Novelty search":
+        "Rewards new behaviour. Children are made by the settings of the genetic algorithm."
+    {
+        /// Weight of novelty: 1 is pure novelty search, 0 is the genetic algorithm.
+        weight: f32 = 0.5,
+            number("Weight of novelty", 0.0..=1.0)
+                .hint("1 is pure novelty search, 0 only looks at fitness")
+                .slider(0.0, 1.0);
 
-impl Default for NoveltySettings {
-    fn default() -> Self {
-        Self {
-            weight: 0.5,
-            neighbours: 15,
-            remembered: 6,
-            archive_limit: 2000,
-            first: Descriptor::BodyHeight,
-            second: Descriptor::ContactDuty,
-        }
+        /// Number of nearest neighbours whose mean distance is the novelty.
+        neighbours: u32 = 15,
+            whole("Neighbours", 1..=1000)
+                .hint("Novelty is the mean distance to this many of the most similar snakes")
+                .slider(1.0, 50.0);
+
+        /// Number of individuals of each generation, chosen at random, that enter the archive.
+        remembered: u32 = 6,
+            whole("Remembered of each generation", 0..=1000)
+                .hint("Number of snakes, chosen at random, that later ones are compared with")
+                .slider(0.0, 50.0);
+
+        /// Maximum size of the archive. When it is full, new behaviours replace random others.
+        archive_limit: u32 = 2000,
+            // Each individual is compared with all of them.
+            whole("Memory size", 1..=20_000)
+                .hint("Beyond that, new ones take the places of others")
+                .slider(100.0, 20_000.0)
+                .logarithmic_from(100.0);
+
+        /// First descriptor of behaviours, beside the final position.
+        first: Descriptor = Descriptor::BodyHeight,
+            choice("Told apart by")
+                .hint("The behaviour that tells snakes apart, beside where they end")
+                .fixed(LAYOUT);
+
+        /// Second descriptor.
+        second: Descriptor = Descriptor::ContactDuty,
+            choice("And by").hint("A second such behaviour").fixed(LAYOUT);
     }
 }
 
 impl NoveltySettings {
-    /// The section of these settings.
-    pub const SECTION: Section = Section {
-        title: "Novelty search",
-        about: "Rewards new behaviour. Children are made by the settings of the genetic algorithm.",
-    };
-
     /// Checks that a generation fits into memory and can be compared.
     pub(super) fn check_size(population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
         GaSettings::check_size(population, size)?;
         // Each individual is compared with all others, and with the archive.
         within("evolution.population", population, 1..=10_000)
-    }
-}
-
-impl SettingGroup for NoveltySettings {
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { weight, neighbours, remembered, archive_limit, first, second } = self;
-        walk.section(Self::SECTION);
-        walk.setting(
-            number("weight", "Weight of novelty", 0.0..=1.0)
-                .hint("1 is pure novelty search, 0 only looks at fitness")
-                .slider(0.0, 1.0),
-            weight,
-        );
-        walk.setting(
-            whole("neighbours", "Neighbours", 1..=1000)
-                .hint("Novelty is the mean distance to this many of the most similar snakes")
-                .slider(1.0, 50.0),
-            neighbours,
-        );
-        walk.setting(
-            whole("remembered", "Remembered of each generation", 0..=1000)
-                .hint("Number of snakes, chosen at random, that later ones are compared with")
-                .slider(0.0, 50.0),
-            remembered,
-        );
-        // Each individual is compared with all of them.
-        walk.setting(
-            whole("archive_limit", "Memory size", 1..=20_000)
-                .hint("Beyond that, new ones take the places of others")
-                .slider(100.0, 20_000.0)
-                .logarithmic_from(100.0),
-            archive_limit,
-        );
-        walk.setting(
-            choice("first", "Told apart by")
-                .hint("The behaviour that tells snakes apart, beside where they end")
-                .fixed(LAYOUT),
-            first,
-        );
-        walk.setting(
-            choice("second", "And by").hint("A second such behaviour").fixed(LAYOUT),
-            second,
-        );
     }
 }
