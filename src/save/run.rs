@@ -42,7 +42,7 @@ use crate::score::{Evaluation, Recording};
 const MAX_CRASHED: usize = 30;
 
 /// The saved progress of a run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SavedProgress {
     /// Its changes, the earliest first. If finished generations were lost, some changes may be in the future.
     pub changes: Vec<SettingChange>,
@@ -124,7 +124,7 @@ impl RunFolder {
         }
         let progress = match earlier {
             ExistingRun::Keep => SavedProgress::read(path, plan)?,
-            ExistingRun::Discard => SavedProgress::none(),
+            ExistingRun::Discard => SavedProgress::default(),
         };
         let folder = Self {
             path: path.to_owned(),
@@ -295,17 +295,6 @@ fn discard(path: &Path) -> Result<(), SaveError> {
 }
 
 impl SavedProgress {
-    fn none() -> Self {
-        Self {
-            changes: Vec::new(),
-            records: Vec::new(),
-            champions: Vec::new(),
-            knowledge: None,
-            evaluations: Vec::new(),
-            lineage: Vec::new(),
-        }
-    }
-
     /// Reads the progress of a run from its folder.
     pub fn read(folder: &Path, plan: &RunPlan) -> Result<Self, SaveError> {
         let changes = read_changes(folder, plan)?;

@@ -25,7 +25,7 @@ pub use setting::{
 };
 pub use table::markdown;
 pub use value::{SettingField, SettingValue};
-pub use walk::{ListedSetting, Section, SettingGroup, SettingPlace, SettingVisitor, Walk, walk};
+pub use walk::{ListedSetting, Section, SettingGroup, SettingVisitor, Walk, walk};
 
 /// Whether a value is the default of its type.
 ///
