@@ -4,8 +4,7 @@ use super::kind::ControllerKind;
 use super::wave_space::WaveSpace;
 use crate::check::{Invalid, within};
 use crate::schema::{
-    Choice, Choices, Section, SettingGroup, Walk, choice, list_of_numbers, number, setting_group,
-    settings,
+    Section, SettingGroup, Walk, choice, list_of_numbers, number, setting_group, settings,
 };
 
 setting_group! {
@@ -113,17 +112,6 @@ impl SettingGroup for GenomeSpace {
     fn check_together(&self) -> Result<(), Invalid> {
         let densities = self.density_min_kg_m3..=*DENSITY_RANGE_KG_M3.end();
         within("density_max_kg_m3", self.density_max_kg_m3, densities)
-    }
-}
-
-impl Choices for ControllerKind {
-    const OPTIONS: &'static [Self] = &Self::ALL;
-
-    fn choice(self) -> Choice {
-        let mut letters = self.words().chars();
-        let first = letters.next().map(|letter| letter.to_uppercase().to_string());
-        let sentence = format!("{}{}.", first.unwrap_or_default(), letters.as_str());
-        Choice::new(self.name(), self.title(), sentence)
     }
 }
 

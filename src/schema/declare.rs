@@ -92,4 +92,41 @@ macro_rules! choices {
     };
 }
 
-pub(crate) use {choices, setting_group, settings};
+/// Gives a kind with a row of facts, `info()`, the names in that row: as methods, as its text, and as
+/// [`Choices`](super::Choices) in the order of `ALL`.
+macro_rules! named_by_info {
+    ($kind:ident) => {
+        impl $kind {
+            /// The name in files; flags may write - for _.
+            pub fn name(self) -> &'static str {
+                self.info().name
+            }
+
+            /// The name at the head of a list or a chart.
+            pub fn title(self) -> &'static str {
+                self.info().title
+            }
+
+            /// A sentence about it.
+            pub fn words(self) -> &'static str {
+                self.info().words
+            }
+        }
+
+        impl std::fmt::Display for $kind {
+            fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.write_str(self.name())
+            }
+        }
+
+        impl $crate::schema::Choices for $kind {
+            const OPTIONS: &'static [Self] = &Self::ALL;
+
+            fn choice(self) -> $crate::schema::Choice {
+                $crate::schema::Choice::new(self.name(), self.title(), self.words())
+            }
+        }
+    };
+}
+
+pub(crate) use {choices, named_by_info, setting_group, settings};

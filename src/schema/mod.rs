@@ -17,7 +17,7 @@ mod walk;
 
 pub use access::{check, find, list, set_text};
 pub use choice::{Choice, Choices};
-pub(crate) use declare::{choices, setting_group, settings};
+pub(crate) use declare::{choices, named_by_info, setting_group, settings};
 pub use per_part::PerPart;
 pub use setting::{NumberRange, Parts, Setting, SettingKind, SettingRow};
 pub use setting::{

@@ -7,6 +7,7 @@ use clap::Parser;
 use super::compare::CompareArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
+use crate::schema::Choices;
 use crate::score::Fitness;
 
 /// A five-block snake evolves until it climbs a staircase.
@@ -150,6 +151,5 @@ pub enum Subcommand {
 
 /// Lists every fitness, so that the help follows the code.
 fn fitness_help() -> String {
-    let names: Vec<String> = Fitness::ALL.iter().map(ToString::to_string).collect();
-    format!("The fitness that is maximised: {}", names.join(", "))
+    format!("The fitness that is maximised: {}", Fitness::names().join(", "))
 }

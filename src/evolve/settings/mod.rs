@@ -19,12 +19,11 @@ pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
 pub use strategy_kind::StrategyInfo;
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 use crate::check::Invalid;
 use crate::genome::{GenomeSpace, LARGEST_GENOME_TORQUES};
 use crate::schema::{
-    self, Choice, Choices, Section, SettingGroup, Walk, choice, setting_group, settings, whole,
+    self, Section, SettingGroup, Walk, choice, named_by_info, setting_group, settings, whole,
 };
 use crate::score::Trial;
 use strategy_kind::strategy_kinds;
@@ -130,28 +129,7 @@ strategy_kinds! {
     };
 }
 
-impl StrategyKind {
-    /// The name in files; flags may write - for _.
-    pub fn name(self) -> &'static str {
-        self.info().name
-    }
-
-    /// The name at the head of a list or a chart.
-    pub fn title(self) -> &'static str {
-        self.info().title
-    }
-
-    /// A sentence about how it searches.
-    pub fn words(self) -> &'static str {
-        self.info().words
-    }
-}
-
-impl fmt::Display for StrategyKind {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.name())
-    }
-}
+named_by_info!(StrategyKind);
 
 impl SettingGroup for EvolutionSettings {
     fn walk(&mut self, walk: &mut Walk<'_>) {
@@ -184,14 +162,6 @@ impl SettingGroup for EvolutionSettings {
             walk.used_if(used.contains(&name));
             walk.group(name, group);
         }
-    }
-}
-
-impl Choices for StrategyKind {
-    const OPTIONS: &'static [Self] = &Self::ALL;
-
-    fn choice(self) -> Choice {
-        Choice::new(self.name(), self.title(), self.words())
     }
 }
 
