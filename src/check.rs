@@ -50,8 +50,12 @@ pub fn name(field: &str, value: &str) -> Result<(), Invalid> {
     if (1..=40).contains(&value.len()) && value.chars().all(plain) {
         return Ok(());
     }
-    let start: String = value.chars().take(60).collect();
-    Err(Invalid::new(field, format!("{start:?}"), "1 to 40 of a-z, 0-9 and -"))
+    Err(Invalid::new(field, quoted(value), "1 to 40 of a-z, 0-9 and -"))
+}
+
+/// A text from outside in an error: quoted, at most 60 characters, without control characters.
+pub fn quoted(text: &str) -> String {
+    format!("{:?}", text.chars().take(60).collect::<String>())
 }
 
 #[cfg(test)]

@@ -17,35 +17,26 @@ use crate::save::{
     Comparison, MAX_COMPARED_RUNS, load_comparison, run_name, settings_fingerprint,
     store_comparison, store_csv, store_picture,
 };
+use crate::schema::Choices;
 
 /// The kinds that a flag's list names, in their usual order and each once.
-fn kinds<K: Copy + PartialEq, const N: usize>(
-    flag: &str,
-    text: &str,
-    all: [K; N],
-    name: fn(K) -> &'static str,
-) -> Result<Vec<K>, Invalid> {
+fn kinds<K: Choices + PartialEq>(flag: &str, text: &str) -> Result<Vec<K>, Invalid> {
     if text == "all" {
-        return Ok(all.to_vec());
+        return Ok(K::OPTIONS.to_vec());
     }
     let named = |word: &str| {
-        let word = word.trim().replace('-', "_");
-        all.into_iter().find(|kind| name(*kind) == word).ok_or_else(|| {
-            let names: Vec<&str> = all.iter().map(|kind| name(*kind)).collect();
-            Invalid::new(flag, format!("{word:?}"), format!("all, {}", names.join(", ")))
-        })
+        K::named(flag, word.trim())
+            .map_err(|error| Invalid { allowed: format!("all, {}", error.allowed), ..error })
     };
     let named: Vec<K> = text.split(',').map(named).collect::<Result<_, _>>()?;
-    Ok(all.into_iter().filter(|kind| named.contains(kind)).collect())
+    Ok(K::OPTIONS.iter().copied().filter(|kind| named.contains(kind)).collect())
 }
 
 /// Performs the runs that the result's file does not have yet, and prints the result.
 pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     let (preset, settings) = args.settings()?;
-    let strategies =
-        kinds("strategies", &compared.strategies, StrategyKind::ALL, StrategyKind::name)?;
-    let controllers =
-        kinds("controllers", &compared.controllers, ControllerKind::ALL, ControllerKind::name)?;
+    let strategies: Vec<StrategyKind> = kinds("strategies", &compared.strategies)?;
+    let controllers: Vec<ControllerKind> = kinds("controllers", &compared.controllers)?;
     within("seeds", compared.seeds, 1..=10_000)?;
     let first_seed = args.seed()?;
     let last_seed = first_seed.checked_add(compared.seeds - 1).ok_or_else(|| {
@@ -144,8 +135,8 @@ mod tests {
 
     #[test]
     fn a_list_of_names_is_read_and_an_unknown_one_refused() {
-        let read = |text| kinds("strategies", text, StrategyKind::ALL, StrategyKind::name);
-        assert_eq!(read("all").expect("all"), StrategyKind::ALL);
+        let read = |text| kinds::<StrategyKind>("strategies", text);
+        assert_eq!(read("all").expect("all"), StrategyKind::OPTIONS);
         let some = read("map_elites, cma-es,cma_es").expect("known");
         assert_eq!(some, [StrategyKind::CmaEs, StrategyKind::MapElites]);
         let error = read("ga,annealing").expect_err("refused").to_string();

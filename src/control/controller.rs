@@ -8,8 +8,10 @@ use crate::world::JointTorque;
 /// It may keep state between steps. The state is part of a clone: keyframes and replays go on with the bits of
 /// the original.
 pub trait Controller: Send + Sync {
-    /// The senses it needs, the same in every step.
-    fn needs(&self) -> Senses;
+    /// The senses it needs, the same in every step; none unless it says so.
+    fn needs(&self) -> Senses {
+        Senses::default()
+    }
 
     /// Writes the torques of the step that begins, one per joint from the head. They are clamped to the joints'
     /// limits later.

@@ -1,6 +1,6 @@
 //! Torque signals, played back.
 
-use super::{Controller, Observation, Senses};
+use super::{Controller, Observation};
 use crate::genome::controllers::TorqueSignals;
 use crate::world::JointTorque;
 
@@ -9,10 +9,6 @@ use crate::world::JointTorque;
 pub struct SignalPlayer(pub TorqueSignals);
 
 impl Controller for SignalPlayer {
-    fn needs(&self) -> Senses {
-        Senses::default()
-    }
-
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         let points_per_step = f64::from(self.0.points_per_s) / f64::from(observation.steps_per_s);
         let point = (f64::from(observation.step) * points_per_step) as usize;

@@ -1,6 +1,6 @@
 //! Periodic torques.
 
-use super::{Controller, Observation, Senses};
+use super::{Controller, Observation};
 use crate::genome::controllers::Waves;
 use crate::world::JointTorque;
 
@@ -9,10 +9,6 @@ use crate::world::JointTorque;
 pub struct WavePlayer(pub Waves);
 
 impl Controller for WavePlayer {
-    fn needs(&self) -> Senses {
-        Senses::default()
-    }
-
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         let periods = observation.periods(self.0.frequency_hz);
         for (torque, joint) in torques.iter_mut().zip(&self.0.joints) {

@@ -3,7 +3,7 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::body::BodyGenes;
-use super::gene::GenomeShape;
+use super::gene::{GeneRange, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
 
@@ -13,10 +13,19 @@ impl GenomeSpace {
         Genome { body: BodyGenes::ZEROED, controller: self.controller.zeroed(self, shape) }
     }
 
+    /// Visits the genes of a genome that have a choice: one for each coordinate.
+    fn search_genes(&self, mut genome: Genome, mut visit: impl FnMut(GeneRange<'_>, f32)) {
+        genome.genes(self, &mut |gene, value| {
+            if !gene.range.is_point() {
+                visit(gene.range, *value);
+            }
+        });
+    }
+
     /// Number of coordinates of a genome: one per gene that has a choice.
     pub fn dimension(&self, shape: GenomeShape) -> usize {
         let mut count = 0;
-        self.zeroed(shape).genes(self, &mut |gene, _| count += usize::from(!gene.range.is_point()));
+        self.search_genes(self.zeroed(shape), |_, _| count += 1);
         count
     }
 
@@ -36,12 +45,8 @@ impl GenomeSpace {
     pub fn wrapped(&self, point: &[f64], shape: GenomeShape) -> Vec<f64> {
         let mut coordinates = point.iter();
         let mut wrapped = Vec::with_capacity(point.len());
-        self.zeroed(shape).genes(self, &mut |gene, _| {
-            if !gene.range.is_point()
-                && let Some(coordinate) = coordinates.next()
-            {
-                wrapped.push(gene.range.wrapped(*coordinate));
-            }
+        self.search_genes(self.zeroed(shape), |range, _| {
+            wrapped.extend(coordinates.next().map(|&coordinate| range.wrapped(coordinate)));
         });
         wrapped
     }
@@ -49,11 +54,7 @@ impl GenomeSpace {
     /// The coordinates of a genome in the unit cube: [`Self::genome_at`] returns the genome, except for rounding.
     pub fn point_of(&self, genome: &Genome) -> Vec<f64> {
         let mut point = Vec::new();
-        genome.clone().genes(self, &mut |gene, value| {
-            if !gene.range.is_point() {
-                point.push(gene.range.coordinate(*value));
-            }
-        });
+        self.search_genes(genome.clone(), |range, value| point.push(range.coordinate(value)));
         point
     }
 
@@ -61,11 +62,7 @@ impl GenomeSpace {
     /// last bit if it came from a point itself, otherwise except for rounding.
     pub fn exact_point_of(&self, genome: &Genome) -> Vec<f64> {
         let mut point = Vec::new();
-        genome.clone().genes(self, &mut |gene, value| {
-            if !gene.range.is_point() {
-                point.push(gene.range.exact_coordinate(*value));
-            }
-        });
+        self.search_genes(genome.clone(), |range, value| point.push(range.exact_coordinate(value)));
         point
     }
 

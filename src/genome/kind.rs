@@ -1,7 +1,6 @@
 //! The kinds of controllers, by name only; `controllers` registers the genes of each kind.
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// A kind of controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -19,10 +18,4 @@ pub enum ControllerKind {
 impl ControllerKind {
     /// All kinds, the report's first.
     pub const ALL: [Self; 3] = [Self::Signal, Self::Wave, Self::Gait];
-}
-
-impl fmt::Display for ControllerKind {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.name())
-    }
 }

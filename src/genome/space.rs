@@ -1,50 +1,33 @@
 //! The space genomes are drawn from: the range of every gene.
 
-use serde::{Deserialize, Serialize};
-
 use super::kind::ControllerKind;
 use super::wave_space::WaveSpace;
 use crate::check::{Invalid, within};
-use crate::schema::{Choice, Choices, Section, SettingGroup, Walk};
-use crate::schema::{choice, list_of_numbers, number};
+use crate::schema::{
+    Section, SettingGroup, Walk, choice, list_of_numbers, number, setting_group, settings,
+};
 
-/// Ranges and lists that every genome is drawn from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GenomeSpace {
-    /// The kind of controller that drives the joints.
-    pub controller: ControllerKind,
-    /// Ranges of periodic controllers.
-    pub wave: WaveSpace,
-    /// A torque, of a signal or a wave, stays within plus and minus this, in N·m. The report has 1000.
-    pub torque_range_nm: f32,
-    /// Greatest difference between neighbouring points of a random signal, in N·m. The report has 1000.
-    pub torque_step_nm: f32,
-    /// Torque points that take effect per simulated second. The report found that it matters.
-    pub points_per_s: f32,
-    /// The bend limits that random genomes choose from, in radians. The report has 0.6, 0.8, 1.0, 1.8.
-    pub bend_limits_rad: Vec<f32>,
-    /// The twist limits that random genomes choose from, in radians. The report has 0, 0.9, 1.2, 1.5.
-    pub twist_limits_rad: Vec<f32>,
-    /// Least density of the material, in kg/m³.
-    pub density_min_kg_m3: f32,
-    /// Greatest density of the material, in kg/m³.
-    pub density_max_kg_m3: f32,
-}
-
-impl Default for GenomeSpace {
-    fn default() -> Self {
-        Self {
-            controller: ControllerKind::Signal,
-            wave: WaveSpace::default(),
-            torque_range_nm: 1000.0,
-            torque_step_nm: 1000.0,
-            points_per_s: 10.0,
-            bend_limits_rad: vec![0.6, 0.8, 1.0, 1.8],
-            twist_limits_rad: vec![0.0, 0.9, 1.2, 1.5],
-            density_min_kg_m3: 2.0,
-            density_max_kg_m3: 2.5,
-        }
+setting_group! {
+    /// Ranges and lists that every genome is drawn from.
+    pub struct GenomeSpace {
+        /// The kind of controller that drives the joints.
+        controller: ControllerKind = ControllerKind::Signal;
+        /// Ranges of periodic controllers.
+        wave: WaveSpace = WaveSpace::default();
+        /// A torque, of a signal or a wave, stays within plus and minus this, in N·m. The report has 1000.
+        torque_range_nm: f32 = 1000.0;
+        /// Greatest difference between neighbouring points of a random signal, in N·m. The report has 1000.
+        torque_step_nm: f32 = 1000.0;
+        /// Torque points that take effect per simulated second. The report found that it matters.
+        points_per_s: f32 = 10.0;
+        /// The bend limits that random genomes choose from, in radians. The report has 0.6, 0.8, 1.0, 1.8.
+        bend_limits_rad: Vec<f32> = vec![0.6, 0.8, 1.0, 1.8];
+        /// The twist limits that random genomes choose from, in radians. The report has 0, 0.9, 1.2, 1.5.
+        twist_limits_rad: Vec<f32> = vec![0.0, 0.9, 1.2, 1.5];
+        /// Least density of the material, in kg/m³.
+        density_min_kg_m3: f32 = 2.0;
+        /// Greatest density of the material, in kg/m³.
+        density_max_kg_m3: f32 = 2.5;
     }
 }
 
@@ -76,76 +59,54 @@ impl SettingGroup for GenomeSpace {
             density_max_kg_m3,
         } = self;
         walk.section(Self::CONTROLLER);
-        walk.setting(
-            choice("controller", "Controller").hint("How the genome drives the joints"),
-            controller,
-        );
-        walk.section(Self::TORQUES);
+        settings! { walk, controller: choice("Controller").hint("How the genome drives the joints"); }
+        walk.section(Section {
+            title: "Torques",
+            about: "Range of the torques, and how random signals vary within it.",
+        });
         let kind = *controller;
-        walk.used_if(kind.uses("torque_range_nm"));
-        walk.setting(
-            number("torque_range_nm", "Torque range", 0.001..=1.0e6)
+        settings! { walk,
+            torque_range_nm: number("Torque range", 0.001..=1.0e6)
                 .unit("N·m")
                 .hint("Torques of signals and waves stay between minus and plus this value")
-                .slider(1.0, 2000.0),
-            torque_range_nm,
-        );
-        walk.used_if(kind.uses("torque_step_nm"));
-        walk.setting(
-            number("torque_step_nm", "Torque step", 0.0..=1.0e6)
+                .slider(1.0, 2000.0)
+                .used_if(kind.uses("torque_range_nm"));
+            torque_step_nm: number("Torque step", 0.0..=1.0e6)
                 .unit("N·m")
                 .hint("Maximum change between adjacent points of a random signal")
-                .slider(0.0, 2000.0),
-            torque_step_nm,
-        );
-        walk.used_if(kind.uses("points_per_s"));
-        walk.setting(
-            number("points_per_s", "Points per second", POINTS_PER_S_RANGE)
+                .slider(0.0, 2000.0)
+                .used_if(kind.uses("torque_step_nm"));
+            points_per_s: number("Points per second", POINTS_PER_S_RANGE)
                 .hint("How often a signal's torque changes. One to three points per second move a snake; many cancel out")
                 .slider(0.5, 60.0)
-                .logarithmic_from(0.5),
-            points_per_s,
-        );
+                .logarithmic_from(0.5)
+                .used_if(kind.uses("points_per_s"));
+        }
         walk.used_if(kind.uses("wave.harmonics"));
         walk.group("wave", wave);
-        walk.section(Self::NEWBORNS);
+        walk.section(Section {
+            title: "Random snakes",
+            about: "Where joint limits and densities of snakes come from, unless they have fixed values.",
+        });
         walk.used_if(true);
-        walk.setting(
-            list_of_numbers(
-                "bend_limits_rad",
-                "Bend limits to choose from",
-                0.0..=LARGEST_LIMIT_RAD,
-            )
-            .unit("rad")
-            .hint("Each random snake gets one of these. A single number applies to all"),
-            bend_limits_rad,
-        );
-        walk.setting(
-            list_of_numbers(
-                "twist_limits_rad",
-                "Twist limits to choose from",
-                0.0..=LARGEST_LIMIT_RAD,
-            )
-            .unit("rad")
-            .hint("Each random snake gets one of these. 0 locks the twist"),
-            twist_limits_rad,
-        );
-        walk.setting(
-            number("density_min_kg_m3", "Minimum density", DENSITY_RANGE_KG_M3)
+        settings! { walk,
+            bend_limits_rad: list_of_numbers("Bend limits to choose from", 0.0..=LARGEST_LIMIT_RAD)
+                .unit("rad")
+                .hint("Each random snake gets one of these. A single number applies to all");
+            twist_limits_rad: list_of_numbers("Twist limits to choose from", 0.0..=LARGEST_LIMIT_RAD)
+                .unit("rad")
+                .hint("Each random snake gets one of these. 0 locks the twist");
+            density_min_kg_m3: number("Minimum density", DENSITY_RANGE_KG_M3)
                 .unit("kg/m³")
                 .hint("Lightest material that a snake may have")
                 .slider(0.1, 50.0)
-                .logarithmic_from(0.1),
-            density_min_kg_m3,
-        );
-        walk.setting(
-            number("density_max_kg_m3", "Maximum density", DENSITY_RANGE_KG_M3)
+                .logarithmic_from(0.1);
+            density_max_kg_m3: number("Maximum density", DENSITY_RANGE_KG_M3)
                 .unit("kg/m³")
                 .hint("Heaviest material that a snake may have")
                 .slider(0.1, 50.0)
-                .logarithmic_from(0.1),
-            density_max_kg_m3,
-        );
+                .logarithmic_from(0.1);
+        }
     }
 
     fn check_together(&self) -> Result<(), Invalid> {
@@ -154,32 +115,10 @@ impl SettingGroup for GenomeSpace {
     }
 }
 
-impl Choices for ControllerKind {
-    const OPTIONS: &'static [Self] = &Self::ALL;
-
-    fn choice(self) -> Choice {
-        let mut letters = self.words().chars();
-        let first = letters.next().map(|letter| letter.to_uppercase().to_string());
-        let sentence = format!("{}{}.", first.unwrap_or_default(), letters.as_str());
-        Choice::new(self.name(), self.title(), sentence)
-    }
-}
-
 impl GenomeSpace {
     /// The section of the controller's kind.
     pub const CONTROLLER: Section =
         Section { title: "Controller", about: "How genes become torques." };
-    /// The section of torques.
-    pub const TORQUES: Section = Section {
-        title: "Torques",
-        about: "Range of the torques, and how random signals vary within it.",
-    };
-    /// The section of limits and densities.
-    pub const NEWBORNS: Section = Section {
-        title: "Random snakes",
-        about: "Where joint limits and densities of snakes come from, unless they have fixed values.",
-    };
-
     /// How many points a signal needs to last `duration_s`.
     pub fn points(&self, duration_s: f32) -> usize {
         libm::ceilf(duration_s * self.points_per_s).max(1.0) as usize

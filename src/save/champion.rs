@@ -81,8 +81,7 @@ pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveErr
     Header::check(path, text, KIND, FORMAT)?;
     let file: ChampionV5 = parse(path, text)?;
     let engine = file.engine;
-    let (champion, recording) =
-        file.into_parts().map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    let (champion, recording) = file.into_parts().map_err(SaveError::invalid(path))?;
     Ok(LoadedChampion { champion, engine, recording })
 }
 

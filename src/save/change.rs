@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::log::{parse_log, read_log_bytes};
+use super::plan::load_plan;
 use crate::check::within;
 use crate::evolve::{MOST_CHANGES, RunPlan, SettingChange};
 
@@ -34,6 +35,14 @@ pub fn read_changes(folder: &Path, plan: &RunPlan) -> Result<Vec<SettingChange>,
     parse_changes(&path, &read_log_bytes(&path)?, plan)
 }
 
+/// Reads the plan of the run in a folder, after all its changes.
+pub fn load_changed_plan(folder: &Path) -> Result<RunPlan, SaveError> {
+    let plan = load_plan(folder)?;
+    let changes = read_changes(folder, &plan)?;
+    let changed = plan.in_generation(u32::MAX, &changes);
+    changed.map_err(SaveError::invalid(&folder.join(CHANGES_FILE)))
+}
+
 /// Parses the changes of the run that began with `plan`; `path` is the file's name in errors.
 ///
 /// # Errors
@@ -50,7 +59,7 @@ pub fn parse_changes(
         .collect();
     let checked = within("changes", changes.len(), 0..=MOST_CHANGES)
         .and_then(|()| plan.in_generation(u32::MAX, &changes));
-    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    checked.map_err(SaveError::invalid(path))?;
     Ok(changes)
 }
 

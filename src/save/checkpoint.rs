@@ -12,7 +12,7 @@ use super::run_name::fingerprint;
 use super::v5::RecordedV5;
 use super::{GenerationRecord, SaveError};
 use crate::ENGINE_VERSION;
-use crate::check::{Invalid, within};
+use crate::check::{Invalid, quoted, within};
 use crate::evolve::{Front, FrontMember, RunPlan, StrategyState, resume};
 use crate::genome::Genome;
 
@@ -118,8 +118,7 @@ pub fn load_checkpoint(
     plan: &RunPlan,
 ) -> Result<SearchState, SaveError> {
     let path = checkpoint_path(folder, generation);
-    let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
-    refuse_link(&path).map_err(unreadable)?;
+    refuse_link(&path).map_err(SaveError::unreadable(&path))?;
     let text = text_of(&path, read_bytes(&path, LARGEST_MIB)?)?;
     let (found, run_hash, state) = parse_checkpoint(&path, &text, plan)?;
     let checked = within("generation", found, generation..=generation).and_then(|()| {
@@ -150,11 +149,10 @@ pub fn parse_checkpoint(
         check_engine(engine)?;
         let expected = fingerprint(plan);
         if of != expected {
-            let of: String = of.chars().take(40).collect();
             let allowed = format!(
                 "{expected}, the fingerprint of the seed and settings in run.ron: one of the files was edited"
             );
-            return Err(Invalid::new("plan", format!("{of:?}"), allowed));
+            return Err(Invalid::new("plan", quoted(&of), allowed));
         }
         let run_hash = hash_of("run_hash", &run_hash)?;
         // A state that can be resumed is valid.
@@ -162,7 +160,7 @@ pub fn parse_checkpoint(
         let front = read_front(front, plan)?;
         Ok((generation, run_hash, SearchState { strategy, front }))
     };
-    read().map_err(|source| SaveError::Invalid { path: path.to_owned(), source })
+    read().map_err(SaveError::invalid(path))
 }
 
 fn read_front(members: Vec<FrontMemberV3>, plan: &RunPlan) -> Result<Front, Invalid> {

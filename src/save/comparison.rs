@@ -130,8 +130,7 @@ pub fn load_comparison(path: &Path) -> Result<Comparison, SaveError> {
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
     Header::check(path, &text, KIND, FORMAT)?;
     let comparison: Comparison = parse(path, &text)?;
-    let checked = comparison.check();
-    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    comparison.check().map_err(SaveError::invalid(path))?;
     Ok(comparison)
 }
 

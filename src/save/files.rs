@@ -8,7 +8,7 @@ use ron::ser::PrettyConfig;
 use serde::{Deserialize, Serialize};
 use tempfile::{NamedTempFile, PersistError};
 
-use crate::check::Invalid;
+use crate::check::{Invalid, quoted};
 
 /// An error with a file. Each message is one line that starts with the file's name.
 #[derive(Debug, thiserror::Error)]
@@ -97,6 +97,23 @@ pub enum SaveError {
     },
 }
 
+impl SaveError {
+    /// The error that a file or folder cannot be read, from the system's reason.
+    pub fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> Self + Copy {
+        move |source| Self::Unreadable { path: path.to_owned(), source }
+    }
+
+    /// The error that a file or folder cannot be written, from the system's reason.
+    pub fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> Self + Copy {
+        move |source| Self::Unwritable { path: path.to_owned(), source }
+    }
+
+    /// The error that a value in a file is not allowed, from the value and what is allowed.
+    pub fn invalid(path: &Path) -> impl Fn(Invalid) -> Self + Copy {
+        move |source| Self::Invalid { path: path.to_owned(), source }
+    }
+}
+
 /// The largest file that is read, in MiB; files that this program writes stay below.
 pub const LARGEST_FILE_MIB: u64 = 10;
 
@@ -108,7 +125,7 @@ pub fn read_text(path: &Path) -> Result<String, SaveError> {
 /// Reads a regular file of at most `limit_mib`. A device might never end, and a pipe might block for ever: both are
 /// refused.
 pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
-    let unreadable = |source| SaveError::Unreadable { path: path.to_owned(), source };
+    let unreadable = SaveError::unreadable(path);
     let limit = limit_mib * 1024 * 1024;
     let about = fs::metadata(path).map_err(unreadable)?;
     if !about.is_file() {
@@ -168,10 +185,7 @@ pub fn single_line(text: &str) -> String {
 pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
     let digits = text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let hash = u64::from_str_radix(text, 16).ok().filter(|_| digits);
-    hash.ok_or_else(|| {
-        let start: String = text.chars().take(40).collect();
-        Invalid::new(field, format!("{start:?}"), "16 hexadecimal digits")
-    })
+    hash.ok_or_else(|| Invalid::new(field, quoted(text), "16 hexadecimal digits"))
 }
 
 /// The part of a file that states its kind and format; the rest is skipped.
@@ -193,9 +207,8 @@ impl Header {
     ) -> Result<(), SaveError> {
         let Self { kind, format } = parse(path, text)?;
         if kind != expected {
-            let path = path.to_owned();
-            let start: String = kind.chars().take(60).collect();
-            return Err(SaveError::Foreign { path, found: format!("{start:?}"), expected });
+            let (path, found) = (path.to_owned(), quoted(&kind));
+            return Err(SaveError::Foreign { path, found, expected });
         }
         check_format(path, format, supported)
     }
@@ -258,7 +271,7 @@ fn unwritable(path: &Path, error: std::io::Error) -> SaveError {
 
 /// The numbers N for which a folder has a file `<prefix>N.ron`, in no particular order.
 pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
-    let unreadable = |source| SaveError::Unreadable { path: folder.to_owned(), source };
+    let unreadable = SaveError::unreadable(folder);
     let mut numbers = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let file = entry.map_err(unreadable)?.file_name();

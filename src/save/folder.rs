@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use directories::ProjectDirs;
 
-use super::change::read_changes;
+use super::change::load_changed_plan;
 use super::files::{numbered, prepare_folder, refuse_link};
-use super::plan::load_plan;
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
 use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
@@ -82,9 +81,7 @@ impl SavesFolder {
         let mut folders: Vec<PathBuf> = folders.map(|entry| entry.path()).collect();
         folders.sort();
         let summary = |folder: PathBuf| {
-            let begun = load_plan(&folder).ok()?;
-            let changes = read_changes(&folder, &begun).ok()?;
-            let plan = begun.in_generation(u32::MAX, &changes).ok()?;
+            let plan = load_changed_plan(&folder).ok()?;
             let finished = count_records(&folder).ok()?;
             let evolution = &plan.settings.evolution;
             let mut is_stopped = finished < evolution.generations;
@@ -163,7 +160,7 @@ pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> 
 /// There is none, or it is damaged.
 pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion, SaveError> {
     let path = folder.join(champion_file_name(generation));
-    refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
+    refuse_link(&path).map_err(SaveError::unreadable(&path))?;
     load_champion(&path)
 }
 

@@ -119,7 +119,7 @@ pub fn parse_lineage(
         Ok(())
     };
     let checked = records.iter().try_for_each(&mut check);
-    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    checked.map_err(SaveError::invalid(path))?;
     Ok(records)
 }
 

@@ -24,7 +24,7 @@ impl Lock {
     /// Another program holds the lock, and the error names it; or the file cannot be written.
     pub fn take(folder: &Path, owner: &str) -> Result<Self, SaveError> {
         let path = folder.join(LOCK_FILE);
-        let unwritable = |source| SaveError::Unwritable { path: path.clone(), source };
+        let unwritable = SaveError::unwritable(&path);
         refuse_link(&path).map_err(unwritable)?;
         let mut options = OpenOptions::new();
         // Not truncated: a program that does not get the lock must not erase the owner's name.

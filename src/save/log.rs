@@ -30,7 +30,7 @@ const SUM_DIGITS: usize = 16;
 impl Log {
     /// Opens a log to continue after its first `kept` lines, which must be complete; creates it if there is none.
     pub fn open(path: &Path, kept: usize) -> Result<Self, SaveError> {
-        let unwritable = |source| SaveError::Unwritable { path: path.to_owned(), source };
+        let unwritable = SaveError::unwritable(path);
         refuse_link(path).map_err(unwritable)?;
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).create(true).truncate(false).open(path);
@@ -57,7 +57,7 @@ impl Log {
     }
 
     fn write(&mut self, entry: &impl Serialize, to_disk: bool) -> Result<(), SaveError> {
-        let unwritable = |source| SaveError::Unwritable { path: self.path.clone(), source };
+        let unwritable = SaveError::unwritable(&self.path);
         let line = line_of(entry).map_err(|error| unwritable(std::io::Error::other(error)))?;
         let end = self.end + line.len() as u64;
         if end > LARGEST_FILE_MIB * 1024 * 1024 {
@@ -82,7 +82,7 @@ impl Log {
 /// # Errors
 /// The file is unreadable or too large.
 pub fn read_log_bytes(path: &Path) -> Result<Vec<u8>, SaveError> {
-    refuse_link(path).map_err(|source| SaveError::Unreadable { path: path.to_owned(), source })?;
+    refuse_link(path).map_err(SaveError::unreadable(path))?;
     if path.exists() { read_bytes(path, LARGEST_FILE_MIB) } else { Ok(Vec::new()) }
 }
 

@@ -88,9 +88,8 @@ pub fn check_own_name(name: &str) -> Result<(), Invalid> {
 }
 
 fn read_own(path: &Path, name: &str) -> Result<Preset, SaveError> {
-    let invalid = |source| SaveError::Invalid { path: path.to_owned(), source };
-    check_own_name(name).map_err(invalid)?;
-    refuse_link(path).map_err(|source| SaveError::Unreadable { path: path.to_owned(), source })?;
+    check_own_name(name).map_err(SaveError::invalid(path))?;
+    refuse_link(path).map_err(SaveError::unreadable(path))?;
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
     let preset = parse_preset(path, &text)?;
     // The file's name counts: in a copied file the preset still has the old name.

@@ -35,10 +35,7 @@ pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
         encoder.write_header()?.write_image_data(&picture.rgb)?;
         Ok(bytes)
     };
-    let bytes = encode().map_err(|error| SaveError::Unwritable {
-        path: path.to_owned(),
-        source: std::io::Error::other(error),
-    })?;
+    let bytes = encode().map_err(std::io::Error::other).map_err(SaveError::unwritable(path))?;
     write_whole(path, &bytes)
 }
 
@@ -60,10 +57,7 @@ pub fn store_csv(path: &Path, records: &[Vec<String>]) -> Result<(), SaveError> 
         records.iter().try_for_each(|record| writer.write_record(record))?;
         writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()).into())
     };
-    let bytes = encode().map_err(|error| SaveError::Unwritable {
-        path: path.to_owned(),
-        source: std::io::Error::other(error),
-    })?;
+    let bytes = encode().map_err(std::io::Error::other).map_err(SaveError::unwritable(path))?;
     write_whole(path, &bytes)
 }
 

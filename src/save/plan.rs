@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::SaveError;
 use super::files::{Header, parse, read_text, refuse_link, store_ron};
 use crate::ENGINE_VERSION;
-use crate::check::{Invalid, name};
+use crate::check::{Invalid, name, quoted};
 use crate::evolve::{Founder, RunPlan, Settings};
 use crate::genome::Genome;
 
@@ -45,8 +45,7 @@ pub fn load_plan(folder: &Path) -> Result<RunPlan, SaveError> {
         let source = std::io::Error::other("it contains no run.ron; give a run's folder");
         return Err(SaveError::Unreadable { path: folder.to_owned(), source });
     }
-    let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
-    refuse_link(&path).map_err(unreadable)?;
+    refuse_link(&path).map_err(SaveError::unreadable(&path))?;
     parse_plan(&path, &read_text(&path)?)
 }
 
@@ -57,7 +56,7 @@ pub fn load_plan(folder: &Path) -> Result<RunPlan, SaveError> {
 pub fn parse_plan(path: &Path, text: &str) -> Result<RunPlan, SaveError> {
     Header::check(path, text, KIND, FORMAT)?;
     let file: RunV4 = parse(path, text)?;
-    plan_of(file).map_err(|source| SaveError::Invalid { path: path.to_owned(), source })
+    plan_of(file).map_err(SaveError::invalid(path))
 }
 
 fn plan_of(file: RunV4) -> Result<RunPlan, Invalid> {
@@ -69,9 +68,8 @@ fn plan_of(file: RunV4) -> Result<RunPlan, Invalid> {
     let Some(FounderV4 { name, genome }) = founder else { return Ok(plan) };
     let founder = Founder::new(&name, genome);
     if founder.name() != name {
-        let start: String = name.chars().take(60).collect();
         let allowed = "up to 40 letters, digits, spaces and any of - _ . ,";
-        return Err(Invalid::new("founder.name", format!("{start:?}"), allowed));
+        return Err(Invalid::new("founder.name", quoted(&name), allowed));
     }
     plan.starting_from(founder)
 }

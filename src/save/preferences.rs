@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::files::{Header, parse, prepare_folder, read_text, store_ron};
-use crate::check::{Invalid, within};
+use crate::check::{Invalid, quoted, within};
 
 const KIND: &str = "snakes-and-stairs preferences";
 const FORMAT: u32 = 1;
@@ -66,8 +66,7 @@ impl Preferences {
     /// A field is out of its range.
     pub fn check(&self) -> Result<(), Invalid> {
         if !["light", "dark"].contains(&self.theme.as_str()) {
-            let start: String = self.theme.chars().take(40).collect();
-            return Err(Invalid::new("theme", format!("{start:?}"), "light, dark"));
+            return Err(Invalid::new("theme", quoted(&self.theme), "light, dark"));
         }
         within("ui_scale", self.ui_scale, UI_SCALES[0]..=UI_SCALES[UI_SCALES.len() - 1])?;
         if let Some((width, height)) = self.window_size {
@@ -119,9 +118,7 @@ impl PreferencesFile {
         let text = read_text(path)?;
         Header::check(path, &text, KIND, FORMAT)?;
         let PreferencesContents { preferences, .. } = parse(path, &text)?;
-        preferences
-            .check()
-            .map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+        preferences.check().map_err(SaveError::invalid(path))?;
         Ok(Some(preferences))
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::SaveError;
 use super::files::{check_format, parse, pretty, read_text, store_ron, write_new};
-use crate::check::{self, Invalid, within};
+use crate::check::{self, Invalid, quoted, within};
 use crate::evolve::Settings;
 
 /// Named and described settings.
@@ -116,15 +116,11 @@ pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
         /// Champions and runs have one, presets have none.
         kind: Option<String>,
     }
-    let invalid = |source| SaveError::Invalid { path: path.to_owned(), source };
+    let invalid = SaveError::invalid(path);
     let PresetHeader { format, kind } = parse(path, text)?;
     if let Some(kind) = kind {
-        let start: String = kind.chars().take(60).collect();
-        return Err(invalid(Invalid::new(
-            "kind",
-            format!("{start:?}"),
-            "none; this file is not a preset",
-        )));
+        let allowed = "none; this file is not a preset";
+        return Err(invalid(Invalid::new("kind", quoted(&kind), allowed)));
     }
     check_format(path, format, FORMAT)?;
     let PresetFile { name, about, settings, .. } = parse(path, text)?;

@@ -5,10 +5,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::SaveError;
-use super::change::{CHANGES_FILE, read_changes};
+use super::change::load_changed_plan;
 use super::files::{hash_of, refuse_link};
 use super::log::{parse_log, read_log_bytes};
-use super::plan::load_plan;
 use super::run_name::fingerprint;
 use super::v5::RecordedV5;
 use crate::check::{Invalid, within};
@@ -101,16 +100,9 @@ pub fn read_records(folder: &Path, plan: &RunPlan) -> Result<Vec<GenerationRecor
 /// # Errors
 /// The folder contains no run, another engine recorded it, or a file is damaged.
 pub fn load_log(folder: &Path) -> Result<(RunPlan, Vec<GenerationRecord>), SaveError> {
-    let plan = load_plan(folder)?;
-    let changes = read_changes(folder, &plan)?;
-    // Reading the changes has already checked this.
-    let changed = plan
-        .in_generation(u32::MAX, &changes)
-        .map_err(|source| SaveError::Invalid { path: folder.join(CHANGES_FILE), source })?;
-    let path = folder.join(LOG_FILE);
-    refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
-    let records = read_records(folder, &changed)?;
-    Ok((changed, records))
+    let plan = load_changed_plan(folder)?;
+    let records = read_records(folder, &plan)?;
+    Ok((plan, records))
 }
 
 /// Parses finished generations; `path` is the log's name in errors, and `plan` is the plan after all changes.
@@ -149,7 +141,7 @@ pub fn parse_records(
         hash_of("hash", &record.hash).map(drop)
     };
     let checked = records.iter().zip(1..).try_for_each(check);
-    checked.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })?;
+    checked.map_err(SaveError::invalid(path))?;
     Ok(records)
 }
 
@@ -161,7 +153,7 @@ pub fn read_evaluations(
     plan: &RunPlan,
 ) -> Result<Vec<(u32, Evaluation)>, SaveError> {
     let path = folder.join(EVALUATIONS_FILE);
-    refuse_link(&path).map_err(|source| SaveError::Unreadable { path: path.clone(), source })?;
+    refuse_link(&path).map_err(SaveError::unreadable(&path))?;
     let Ok(bytes) = read_log_bytes(&path) else { return Ok(Vec::new()) };
     Ok(parse_evaluations(&path, &bytes, generation, plan).unwrap_or_default())
 }
@@ -189,5 +181,5 @@ pub fn parse_evaluations(
         Ok((individual, Evaluation { disqualified, ..recorded.evaluation()? }))
     };
     let read = records.into_iter().map(read).collect::<Result<_, Invalid>>();
-    read.map_err(|source| SaveError::Invalid { path: path.to_owned(), source })
+    read.map_err(SaveError::invalid(path))
 }

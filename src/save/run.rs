@@ -34,7 +34,6 @@ use super::plan::{RUN_FILE, load_plan, store_plan};
 use super::record::{EVALUATIONS_FILE, EvaluationRecord, LOG_FILE, read_evaluations, read_records};
 use super::run_name::fingerprint;
 use super::{GenerationRecord, SaveError};
-use crate::check::Invalid;
 use crate::evolve::{Champion, RunPlan, SettingChange};
 use crate::score::{Evaluation, Recording};
 
@@ -42,7 +41,7 @@ use crate::score::{Evaluation, Recording};
 const MAX_CRASHED: usize = 30;
 
 /// The saved progress of a run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SavedProgress {
     /// Its changes, the earliest first. If finished generations were lost, some changes may be in the future.
     pub changes: Vec<SettingChange>,
@@ -106,8 +105,7 @@ impl RunFolder {
         let lock = Lock::take(path, owner)?;
         remove_unfinished(path);
         let file = path.join(RUN_FILE);
-        let unreadable = |source| SaveError::Unreadable { path: file.clone(), source };
-        refuse_link(&file).map_err(unreadable)?;
+        refuse_link(&file).map_err(SaveError::unreadable(&file))?;
         // A run that starts over replaces the plan without reading it.
         if file.exists() && earlier == ExistingRun::Keep {
             let stored = load_plan(path)?;
@@ -124,7 +122,7 @@ impl RunFolder {
         }
         let progress = match earlier {
             ExistingRun::Keep => SavedProgress::read(path, plan)?,
-            ExistingRun::Discard => SavedProgress::none(),
+            ExistingRun::Discard => SavedProgress::default(),
         };
         let folder = Self {
             path: path.to_owned(),
@@ -245,8 +243,9 @@ impl RunFolder {
 
     /// Fingerprint of the run's plan in a generation.
     fn fingerprint(&self, generation: u32) -> Result<String, SaveError> {
-        let path = || self.path.join(CHANGES_FILE);
-        Ok(fingerprint(&in_generation(&self.plan, generation, &self.changes, path)?))
+        let plan = self.plan.in_generation(generation, &self.changes);
+        let plan = plan.map_err(SaveError::invalid(&self.path.join(CHANGES_FILE)))?;
+        Ok(fingerprint(&plan))
     }
 
     /// Saves a genome on which the program panicked, for debugging.
@@ -256,7 +255,7 @@ impl RunFolder {
     pub fn keep_crashed(&self, crashed: &Champion) -> Result<PathBuf, SaveError> {
         let origin = &crashed.origin;
         let name = format!("crashed-{}-{}.ron", origin.generation, origin.individual);
-        let unwritable = |source| SaveError::Unwritable { path: self.path.clone(), source };
+        let unwritable = SaveError::unwritable(&self.path);
         let entries = fs::read_dir(&self.path).map_err(unwritable)?.flatten();
         let is_crash = |name: &OsStr| name.to_string_lossy().starts_with("crashed-");
         if entries.filter(|entry| is_crash(&entry.file_name())).count() >= MAX_CRASHED {
@@ -273,17 +272,6 @@ impl RunFolder {
     }
 }
 
-/// The plan of a run in a generation; `path` is the name of the changes' file in errors.
-fn in_generation(
-    plan: &RunPlan,
-    generation: u32,
-    changes: &[SettingChange],
-    path: impl FnOnce() -> PathBuf,
-) -> Result<RunPlan, SaveError> {
-    let invalid = |source: Invalid| SaveError::Invalid { path: path(), source };
-    plan.in_generation(generation, changes).map_err(invalid)
-}
-
 /// Removes a file of an earlier run, if it exists.
 fn discard(path: &Path) -> Result<(), SaveError> {
     match fs::remove_file(path) {
@@ -295,22 +283,14 @@ fn discard(path: &Path) -> Result<(), SaveError> {
 }
 
 impl SavedProgress {
-    fn none() -> Self {
-        Self {
-            changes: Vec::new(),
-            records: Vec::new(),
-            champions: Vec::new(),
-            knowledge: None,
-            evaluations: Vec::new(),
-            lineage: Vec::new(),
-        }
-    }
-
     /// Reads the progress of a run from its folder.
     pub fn read(folder: &Path, plan: &RunPlan) -> Result<Self, SaveError> {
         let changes = read_changes(folder, plan)?;
-        let plan_in =
-            |generation| in_generation(plan, generation, &changes, || folder.join(CHANGES_FILE));
+        let changes_file = folder.join(CHANGES_FILE);
+        let plan_in = |generation| {
+            let plan = plan.in_generation(generation, &changes);
+            plan.map_err(SaveError::invalid(&changes_file))
+        };
         let mut records = read_records(folder, &plan_in(u32::MAX)?)?;
         let known = checkpoints(folder)?;
         let latest = known.into_iter().filter(|&of| of as usize <= records.len()).max();
@@ -318,8 +298,7 @@ impl SavedProgress {
         let knowledge = latest.map(|of| load_checkpoint(folder, of, &records, &plan_in(of)?));
         let champion = |record: &GenerationRecord| {
             let path = folder.join(champion_file_name(record.generation));
-            let unreadable = |source| SaveError::Unreadable { path: path.clone(), source };
-            refuse_link(&path).map_err(unreadable)?;
+            refuse_link(&path).map_err(SaveError::unreadable(&path))?;
             if record.statistics.is_none() || !path.exists() {
                 return Ok(None);
             }

@@ -1,17 +1,15 @@
 //! Settings by name: listing, checking, finding, setting.
 
 use super::value::SettingField;
-use super::walk::{ListedSetting, SettingGroup, SettingPlace, SettingVisitor, walk};
+use super::walk::{ListedSetting, SettingGroup, SettingVisitor, walk};
 use crate::check::Invalid;
 
 /// All settings with their rows and values, in the order of their structs.
 pub fn list(group: &(impl SettingGroup + Clone)) -> Vec<ListedSetting> {
     struct Listing(Vec<ListedSetting>);
     impl SettingVisitor for Listing {
-        fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField) {
-            let SettingPlace { path, section, setting, is_used, fixed, live } = *place;
-            let (path, value) = (path.to_owned(), field.value());
-            self.0.push(ListedSetting { path, section, setting, value, is_used, fixed, live });
+        fn setting(&mut self, listed: ListedSetting, _: &mut dyn SettingField) {
+            self.0.push(listed);
         }
     }
     let mut listing = Listing(Vec::new());
@@ -26,9 +24,9 @@ pub fn list(group: &(impl SettingGroup + Clone)) -> Vec<ListedSetting> {
 pub fn check(group: &(impl SettingGroup + Clone)) -> Result<(), Invalid> {
     struct Checking(Result<(), Invalid>);
     impl SettingVisitor for Checking {
-        fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField) {
+        fn setting(&mut self, listed: ListedSetting, _: &mut dyn SettingField) {
             if self.0.is_ok() {
-                self.0 = place.setting.check(place.path, &field.value());
+                self.0 = listed.setting.check(&listed.path, &listed.value);
             }
         }
 
@@ -56,12 +54,12 @@ pub fn set_text(group: &mut dyn SettingGroup, path: &str, text: &str) -> Result<
         done: Option<Result<(), Invalid>>,
     }
     impl SettingVisitor for Setter<'_> {
-        fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField) {
-            if place.path == self.path {
-                let value = place.setting.parse(self.text);
+        fn setting(&mut self, listed: ListedSetting, field: &mut dyn SettingField) {
+            if listed.path == self.path {
+                let value = listed.setting.parse(self.text);
                 let is_set = value.is_some_and(|value| field.set(value));
                 let text = format!("{:?}", self.text);
-                let refused = || Invalid::new(place.path, text, place.setting.allowed());
+                let refused = || Invalid::new(self.path, text, listed.setting.allowed());
                 self.done = Some(is_set.then_some(()).ok_or_else(refused));
             }
         }

@@ -1,5 +1,7 @@
 //! Settings that are one of some names.
 
+use crate::check::Invalid;
+
 /// One of the names that a setting may have.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
@@ -25,6 +27,22 @@ pub trait Choices: Copy + 'static {
 
     /// The name of a value, its title and its sentence.
     fn choice(self) -> Choice;
+
+    /// All names.
+    fn names() -> Vec<&'static str> {
+        Self::OPTIONS.iter().map(|option| option.choice().name).collect()
+    }
+
+    /// The value with this name; a flag may write - for _.
+    ///
+    /// # Errors
+    /// There is none; `field` is what the error calls the value.
+    fn named(field: &str, text: &str) -> Result<Self, Invalid> {
+        let name = text.replace('-', "_");
+        let named = Self::OPTIONS.iter().find(|option| option.choice().name == name);
+        let unknown = || Invalid::new(field, format!("{text:?}"), Self::names().join(", "));
+        named.copied().ok_or_else(unknown)
+    }
 
     /// All names with their titles and sentences.
     fn choices() -> Vec<Choice> {

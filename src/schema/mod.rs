@@ -8,6 +8,7 @@
 
 mod access;
 mod choice;
+mod declare;
 mod per_part;
 mod setting;
 mod table;
@@ -16,6 +17,7 @@ mod walk;
 
 pub use access::{check, find, list, set_text};
 pub use choice::{Choice, Choices};
+pub(crate) use declare::{choices, named_by_info, setting_group, settings};
 pub use per_part::PerPart;
 pub use setting::{NumberRange, Parts, Setting, SettingKind, SettingRow};
 pub use setting::{
@@ -23,7 +25,7 @@ pub use setting::{
 };
 pub use table::markdown;
 pub use value::{SettingField, SettingValue};
-pub use walk::{ListedSetting, Section, SettingGroup, SettingPlace, SettingVisitor, Walk, walk};
+pub use walk::{ListedSetting, Section, SettingGroup, SettingVisitor, Walk, walk};
 
 /// Whether a value is the default of its type.
 ///

@@ -83,12 +83,13 @@ impl Parts {
 #[derive(Debug, Clone, Copy)]
 pub struct SettingRow<T> {
     pub(super) setting: Setting,
+    pub(super) is_used: bool,
     field: PhantomData<fn(&mut T)>,
 }
 
-fn row<T>(name: &'static str, label: &'static str, kind: SettingKind) -> SettingRow<T> {
-    let setting = Setting { name, label, unit: "", hint: "", kind, fixed: None };
-    SettingRow { setting, field: PhantomData }
+fn row<T>(label: &'static str, kind: SettingKind) -> SettingRow<T> {
+    let setting = Setting { name: "", label, unit: "", hint: "", kind, fixed: None };
+    SettingRow { setting, is_used: true, field: PhantomData }
 }
 
 fn numbers(least: f32, most: f32) -> NumberRange {
@@ -108,37 +109,27 @@ fn numbers_in(range: RangeInclusive<f32>) -> NumberRange {
 }
 
 /// A number.
-pub fn number(
-    name: &'static str,
-    label: &'static str,
-    range: RangeInclusive<f32>,
-) -> SettingRow<f32> {
-    row(name, label, SettingKind::Number(numbers_in(range)))
+pub fn number(label: &'static str, range: RangeInclusive<f32>) -> SettingRow<f32> {
+    row(label, SettingKind::Number(numbers_in(range)))
 }
 
 /// A whole number. Its greatest value is at most 2^24, up to which a slider's numbers are exact.
-pub fn whole(
-    name: &'static str,
-    label: &'static str,
-    range: RangeInclusive<u32>,
-) -> SettingRow<u32> {
+pub fn whole(label: &'static str, range: RangeInclusive<u32>) -> SettingRow<u32> {
     let range = numbers(*range.start() as f32, *range.end() as f32);
-    row(name, label, SettingKind::Number(NumberRange { is_whole: true, ..range }))
+    row(label, SettingKind::Number(NumberRange { is_whole: true, ..range }))
 }
 
 /// A number for all parts of the snake, or one for each.
 pub fn per_part(
-    name: &'static str,
     label: &'static str,
     range: RangeInclusive<f32>,
     parts: Parts,
 ) -> SettingRow<PerPart> {
-    row(name, label, SettingKind::Number(NumberRange { parts, ..numbers_in(range) }))
+    row(label, SettingKind::Number(NumberRange { parts, ..numbers_in(range) }))
 }
 
 /// The same, or no value: then each genome has its own. A panel begins with the value `begins_with`.
 pub fn optional_per_part(
-    name: &'static str,
     label: &'static str,
     range: RangeInclusive<f32>,
     parts: Parts,
@@ -146,34 +137,30 @@ pub fn optional_per_part(
 ) -> SettingRow<Option<PerPart>> {
     let begins_with = Some(begins_with);
     let range = NumberRange { parts, begins_with, ..numbers_in(range) };
-    row(name, label, SettingKind::Number(range))
+    row(label, SettingKind::Number(range))
 }
 
 /// A list of 1 to [`LONGEST_LIST`] numbers.
-pub fn list_of_numbers(
-    name: &'static str,
-    label: &'static str,
-    range: RangeInclusive<f32>,
-) -> SettingRow<Vec<f32>> {
-    row(name, label, SettingKind::List(numbers_in(range)))
+pub fn list_of_numbers(label: &'static str, range: RangeInclusive<f32>) -> SettingRow<Vec<f32>> {
+    row(label, SettingKind::List(numbers_in(range)))
 }
 
 /// The most numbers in a list.
 const LONGEST_LIST: usize = 100;
 
 /// One of some names.
-pub fn choice<T: Choices>(name: &'static str, label: &'static str) -> SettingRow<T> {
-    row(name, label, SettingKind::Choice(T::choices))
+pub fn choice<T: Choices>(label: &'static str) -> SettingRow<T> {
+    row(label, SettingKind::Choice(T::choices))
 }
 
 /// On or off.
-pub fn switch(name: &'static str, label: &'static str) -> SettingRow<bool> {
-    row(name, label, SettingKind::Switch)
+pub fn switch(label: &'static str) -> SettingRow<bool> {
+    row(label, SettingKind::Switch)
 }
 
 /// A group of settings that is not there; `how` says how to make it.
-pub fn absent(name: &'static str, label: &'static str, how: &'static str) -> SettingRow<()> {
-    row(name, label, SettingKind::Absent(how))
+pub fn absent(label: &'static str, how: &'static str) -> SettingRow<()> {
+    row(label, SettingKind::Absent(how))
 }
 
 impl<T> SettingRow<T> {
@@ -202,6 +189,12 @@ impl<T> SettingRow<T> {
         if let SettingKind::Number(range) = &mut self.setting.kind {
             range.logarithmic_from = Some(value);
         }
+        self
+    }
+
+    /// Whether it has an effect beside what is chosen elsewhere.
+    pub fn used_if(mut self, is_used: bool) -> Self {
+        self.is_used = is_used;
         self
     }
 

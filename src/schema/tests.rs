@@ -43,18 +43,15 @@ impl SettingGroup for Wheels {
         let each = Parts::Limbs(self.count as usize);
         let Self { count, radius_m, widths_m, grip, angles_rad, is_driven, tyre, axle } = self;
         walk.section(Section { title: "Wheels", about: "What it rolls on." });
-        walk.setting(whole("count", "Wheels", 2..=6).hint("How many there are"), count);
-        walk.setting(
-            number("radius_m", "Radius", 0.1..=2.0).unit("m").hint("Half of its height"),
-            radius_m,
-        );
-        walk.setting(per_part("widths_m", "Width", 0.1..=1.0, each).unit("m"), widths_m);
-        walk.setting(optional_per_part("grip", "Grip", 0.0..=9.0, each, 1.0), grip);
-        walk.used_if(*is_driven);
-        walk.setting(list_of_numbers("angles_rad", "Angles", 0.0..=3.0), angles_rad);
-        walk.used_if(true);
-        walk.setting(switch("is_driven", "Driven").fixed("It is built in."), is_driven);
-        walk.setting(choice("tyre", "Tyre"), tyre);
+        settings! { walk,
+            count: whole("Wheels", 2..=6).hint("How many there are");
+            radius_m: number("Radius", 0.1..=2.0).unit("m").hint("Half of its height");
+            widths_m: per_part("Width", 0.1..=1.0, each).unit("m");
+            grip: optional_per_part("Grip", 0.0..=9.0, each, 1.0);
+            angles_rad: list_of_numbers("Angles", 0.0..=3.0).used_if(*is_driven);
+            is_driven: switch("Driven").fixed("It is built in.");
+            tyre: choice("Tyre");
+        }
         walk.fixed("The frame cannot change.");
         walk.group("axle", axle);
     }
@@ -64,8 +61,10 @@ impl SettingGroup for Axle {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let Self { least_m, most_m } = self;
         walk.section(Section { title: "Axle", about: "What joins the wheels." });
-        walk.setting(number("least_m", "Least", 0.0..=5.0).unit("m"), least_m);
-        walk.setting(number("most_m", "Most", 0.0..=5.0).unit("m"), most_m);
+        settings! { walk,
+            least_m: number("Least", 0.0..=5.0).unit("m");
+            most_m: number("Most", 0.0..=5.0).unit("m");
+        }
     }
 
     fn check_together(&self) -> Result<(), Invalid> {

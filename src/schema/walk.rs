@@ -27,15 +27,17 @@ pub trait SettingGroup {
     }
 }
 
-/// Where in the settings a row is, and what holds there.
-#[derive(Debug, Clone, Copy)]
-pub struct SettingPlace<'a> {
+/// A setting with its value, and what holds there.
+#[derive(Debug, Clone)]
+pub struct ListedSetting {
     /// The full dotted name, from the struct at which the walk began.
-    pub path: &'a str,
+    pub path: String,
     /// The section that shows it.
     pub section: Section,
     /// Its row.
     pub setting: Setting,
+    /// Its value.
+    pub value: SettingValue,
     /// Whether the chosen strategy, or the chosen controller, uses it.
     pub is_used: bool,
     /// Why no run that goes on takes a change, as a sentence; none: a run that uses it does.
@@ -46,8 +48,8 @@ pub struct SettingPlace<'a> {
 
 /// Visits settings one after the other.
 pub trait SettingVisitor {
-    /// Visits a setting.
-    fn setting(&mut self, place: &SettingPlace<'_>, field: &mut dyn SettingField);
+    /// Visits a setting and its field.
+    fn setting(&mut self, listed: ListedSetting, field: &mut dyn SettingField);
 
     /// Leaves a group whose dotted name is `path`, after all its settings.
     fn leave(&mut self, _path: &str, _group: &dyn SettingGroup) {}
@@ -96,10 +98,16 @@ impl Walk<'_> {
         self.state.fixed = Some(reason);
     }
 
-    /// Visits a field under its row.
-    pub fn setting<T: SettingField>(&mut self, row: SettingRow<T>, field: &mut T) {
+    /// Visits a field under its row. `name` is the name of the field.
+    pub fn setting<T: SettingField>(
+        &mut self,
+        name: &'static str,
+        row: SettingRow<T>,
+        field: &mut T,
+    ) {
         let State { section, is_used, fixed } = self.state;
-        let setting = row.setting;
+        let is_used = is_used && row.is_used;
+        let setting = Setting { name, ..row.setting };
         let live = match fixed {
             Some(reason) => Err(reason),
             None if !is_used => Err(UNUSED),
@@ -107,8 +115,9 @@ impl Walk<'_> {
         };
         let length = self.enter(setting.name);
         let fixed = fixed.or(setting.fixed);
-        let place = SettingPlace { path: &self.path, section, setting, is_used, fixed, live };
-        self.visitor.setting(&place, field);
+        let (path, value) = (self.path.clone(), field.value());
+        let listed = ListedSetting { path, section, setting, value, is_used, fixed, live };
+        self.visitor.setting(listed, field);
         self.path.truncate(length);
     }
 
@@ -131,23 +140,4 @@ impl Walk<'_> {
         self.path.push_str(name);
         length
     }
-}
-
-/// A setting with its value, as the list of all settings has it.
-#[derive(Debug, Clone)]
-pub struct ListedSetting {
-    /// The full dotted name.
-    pub path: String,
-    /// The section that shows it.
-    pub section: Section,
-    /// Its row.
-    pub setting: Setting,
-    /// Its value.
-    pub value: SettingValue,
-    /// Whether the chosen strategy, or the chosen controller, uses it.
-    pub is_used: bool,
-    /// Why no run that goes on takes a change, as a sentence; none: a run that uses it does.
-    pub fixed: Option<&'static str>,
-    /// Whether this run takes a change while it goes on; if not, a sentence that says why.
-    pub live: Result<(), &'static str>,
 }

@@ -1,63 +1,43 @@
 //! Settings of the snake's body: its limbs, its joints, its skin.
 
-use serde::{Deserialize, Serialize};
-
 use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD};
-use crate::schema::{Parts, PerPart, Section, SettingGroup, Walk};
-use crate::schema::{number, optional_per_part, per_part, whole};
+use crate::schema::{
+    Parts, PerPart, Section, SettingGroup, Walk, number, optional_per_part, per_part,
+    setting_group, settings, whole,
+};
 use crate::world::{BodyPlan, JointPlan, LimbPlan, Skin};
 
-/// The properties of the snake that do not evolve. Sizes have one value per limb, the rest one per joint, from
-/// the head, or one value for all.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AgentSettings {
-    /// Number of limbs. The report has five.
-    pub limbs: u32,
-    /// Width of the limbs across x, in metres.
-    pub limb_width_m: PerPart,
-    /// Length of the limbs along y, in metres.
-    pub limb_length_m: PerPart,
-    /// Height of the limbs, in metres.
-    pub limb_height_m: PerPart,
-    /// Density of the limbs, in kg/m³. None: it is each genome's own, and evolves.
-    pub density_kg_m3: Option<PerPart>,
-    /// Largest bend of the joints to either side, in radians. None: each genome's own.
-    pub bend_limit_rad: Option<PerPart>,
-    /// Largest twist of the joints to either side, in radians. None: each genome's own.
-    pub twist_limit_rad: Option<PerPart>,
-    /// Largest torque on the joints' bend axes, in N·m.
-    pub max_bend_torque_nm: PerPart,
-    /// Largest torque on the joints' twist axes, in N·m.
-    pub max_twist_torque_nm: PerPart,
-    /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic, and where a
-    /// child ends up says nothing about its parent.
-    pub joint_damping_nms_per_rad: PerPart,
-    /// Constraint force mixing of the joints, in m/s per N: 0 is rigid, larger is softer.
-    pub joint_cfm_m_s_per_n: PerPart,
-    /// Share of a limb's angular velocity lost per second, in 1/s.
-    pub angular_damping_per_s: f32,
-    /// The material of the limbs.
-    pub skin: Skin,
-}
-
-impl Default for AgentSettings {
-    fn default() -> Self {
-        Self {
-            limbs: 5,
-            limb_width_m: 1.0.into(),
-            limb_length_m: 2.0.into(),
-            limb_height_m: 1.0.into(),
-            density_kg_m3: None,
-            bend_limit_rad: None,
-            twist_limit_rad: None,
-            max_bend_torque_nm: 1000.0.into(),
-            max_twist_torque_nm: 1000.0.into(),
-            joint_damping_nms_per_rad: 30.0.into(),
-            joint_cfm_m_s_per_n: 0.0.into(),
-            angular_damping_per_s: 2.0,
-            skin: Skin::default(),
-        }
+setting_group! {
+    /// The properties of the snake that do not evolve. Sizes have one value per limb, the rest one per joint, from
+    /// the head, or one value for all.
+    pub struct AgentSettings {
+        /// Number of limbs. The report has five.
+        limbs: u32 = 5;
+        /// Width of the limbs across x, in metres.
+        limb_width_m: PerPart = 1.0.into();
+        /// Length of the limbs along y, in metres.
+        limb_length_m: PerPart = 2.0.into();
+        /// Height of the limbs, in metres.
+        limb_height_m: PerPart = 1.0.into();
+        /// Density of the limbs, in kg/m³. None: it is each genome's own, and evolves.
+        density_kg_m3: Option<PerPart> = None;
+        /// Largest bend of the joints to either side, in radians. None: each genome's own.
+        bend_limit_rad: Option<PerPart> = None;
+        /// Largest twist of the joints to either side, in radians. None: each genome's own.
+        twist_limit_rad: Option<PerPart> = None;
+        /// Largest torque on the joints' bend axes, in N·m.
+        max_bend_torque_nm: PerPart = 1000.0.into();
+        /// Largest torque on the joints' twist axes, in N·m.
+        max_twist_torque_nm: PerPart = 1000.0.into();
+        /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic, and where a
+        /// child ends up says nothing about its parent.
+        joint_damping_nms_per_rad: PerPart = 30.0.into();
+        /// Constraint force mixing of the joints, in m/s per N: 0 is rigid, larger is softer.
+        joint_cfm_m_s_per_n: PerPart = 0.0.into();
+        /// Share of a limb's angular velocity lost per second, in 1/s.
+        angular_damping_per_s: f32 = 2.0;
+        /// The material of the limbs.
+        skin: Skin = Skin::default();
     }
 }
 
@@ -80,131 +60,91 @@ impl SettingGroup for AgentSettings {
             angular_damping_per_s,
             skin,
         } = self;
-        walk.section(Self::SKIN);
+        walk.section(Section { title: "Skin", about: "Material of the snake's blocks." });
         walk.group("skin", skin);
-        walk.section(Self::BODY);
-        // Two limbs make a joint; with more than twelve the snake is longer than the arena.
-        walk.setting(
-            whole("limbs", "Limbs", 2..=12)
+        walk.section(Section { title: "Body", about: "Number, size and weight of the blocks." });
+        settings! { walk,
+            // Two limbs make a joint; with more than twelve the snake is longer than the arena.
+            limbs: whole("Limbs", 2..=12)
                 .hint("Number of blocks in a row. Genomes for a different number do not fit")
-                .slider(2.0, 12.0),
-            limbs,
-        );
-        // From a finger to a bus: the engine's tolerances are made for sizes around a metre.
-        walk.setting(
-            per_part("limb_width_m", "Limb width", 0.1..=10.0, each_limb)
+                .slider(2.0, 12.0);
+            // From a finger to a bus: the engine's tolerances are made for sizes around a metre.
+            limb_width_m: per_part("Limb width", 0.1..=10.0, each_limb)
                 .unit("m")
                 .hint("Size of a block across the stairs. Wide blocks do not roll over")
-                .slider(0.2, 3.0),
-            limb_width_m,
-        );
-        walk.setting(
-            per_part("limb_length_m", "Limb length", 0.1..=10.0, each_limb)
+                .slider(0.2, 3.0);
+            limb_length_m: per_part("Limb length", 0.1..=10.0, each_limb)
                 .unit("m")
                 .hint("Size of a block along the snake. Long blocks reach further and bend less")
-                .slider(0.2, 5.0),
-            limb_length_m,
-        );
-        walk.setting(
-            per_part("limb_height_m", "Limb height", 0.1..=10.0, each_limb)
+                .slider(0.2, 5.0);
+            limb_height_m: per_part("Limb height", 0.1..=10.0, each_limb)
                 .unit("m")
                 .hint("Size of a block upwards. Tall blocks reach the next step more easily")
-                .slider(0.2, 3.0),
-            limb_height_m,
-        );
-        walk.setting(
-            optional_per_part("density_kg_m3", "Density", DENSITY_RANGE_KG_M3, each_limb, 2.2)
+                .slider(0.2, 3.0);
+            density_kg_m3: optional_per_part("Density", DENSITY_RANGE_KG_M3, each_limb, 2.2)
                 .unit("kg/m³")
                 .hint(
                     "Mass per volume of the blocks. Heavy snakes press harder and need more torque. \
                      Without a value, each snake has its own, which evolves",
                 )
                 .slider(0.1, 50.0)
-                .logarithmic_from(0.1),
-            density_kg_m3,
-        );
-        // At 1000 a spin is gone within a millisecond, as in tar.
-        walk.setting(
-            number("angular_damping_per_s", "Angular damping", 0.0..=1000.0)
+                .logarithmic_from(0.1);
+            // At 1000 a spin is gone within a millisecond, as in tar.
+            angular_damping_per_s: number("Angular damping", 0.0..=1000.0)
                 .unit("1/s")
                 .hint("Rate at which a block loses its spin, as in thick air")
                 .slider(0.0, 500.0)
-                .logarithmic_from(0.1),
-            angular_damping_per_s,
-        );
-        walk.section(Self::JOINTS);
+                .logarithmic_from(0.1);
+        }
+        walk.section(Section {
+            title: "Joints",
+            about: "Range, strength and resistance of the joints.",
+        });
         let limits = 0.0..=LARGEST_LIMIT_RAD;
-        walk.setting(
-            optional_per_part("bend_limit_rad", "Bend limit", limits.clone(), each_joint, 1.0)
+        settings! { walk,
+            bend_limit_rad: optional_per_part("Bend limit", limits.clone(), each_joint, 1.0)
                 .unit("rad")
                 .hint(
                     "Maximum bend to either side, like snapping a stick. Without a value, each snake has its own, \
                      drawn from a list",
                 )
-                .slider(0.0, 3.0),
-            bend_limit_rad,
-        );
-        walk.setting(
-            optional_per_part("twist_limit_rad", "Twist limit", limits, each_joint, 1.0)
+                .slider(0.0, 3.0);
+            twist_limit_rad: optional_per_part("Twist limit", limits, each_joint, 1.0)
                 .unit("rad")
                 .hint(
                     "Maximum twist to either side, like wringing a sponge. Without a value, each snake has its own, \
                      drawn from a list",
                 )
-                .slider(0.0, 3.0),
-            twist_limit_rad,
-        );
-        // A thousand times the report's torque; more would only disqualify.
-        walk.setting(
-            per_part("max_bend_torque_nm", "Maximum bend torque", 0.0..=1.0e6, each_joint)
+                .slider(0.0, 3.0);
+            // A thousand times the report's torque; more would only disqualify.
+            max_bend_torque_nm: per_part("Maximum bend torque", 0.0..=1.0e6, each_joint)
                 .unit("N·m")
-                .hint(
-                    "How strongly a joint can bend. Larger torques from the controller are cut off",
-                )
-                .slider(0.0, 2000.0),
-            max_bend_torque_nm,
-        );
-        walk.setting(
-            per_part("max_twist_torque_nm", "Maximum twist torque", 0.0..=1.0e6, each_joint)
+                .hint("How strongly a joint can bend. Larger torques from the controller are cut off")
+                .slider(0.0, 2000.0);
+            max_twist_torque_nm: per_part("Maximum twist torque", 0.0..=1.0e6, each_joint)
                 .unit("N·m")
                 .hint("How strongly a joint can twist. Larger torques from the controller are cut off")
-                .slider(0.0, 2000.0),
-            max_twist_torque_nm,
-        );
-        // At 1e5 a torque of 1000 N·m turns a joint by half a degree a second.
-        walk.setting(
-            per_part("joint_damping_nms_per_rad", "Joint damping", 0.0..=1.0e5, each_joint)
+                .slider(0.0, 2000.0);
+            // At 1e5 a torque of 1000 N·m turns a joint by half a degree a second.
+            joint_damping_nms_per_rad: per_part("Joint damping", 0.0..=1.0e5, each_joint)
                 .unit("N·m·s/rad")
                 .hint(
                     "Resistance of a joint to turning. Without it, motion is chaotic and children hardly resemble \
                      their parents",
                 )
                 .slider(0.0, 500.0)
-                .logarithmic_from(1.0),
-            joint_damping_nms_per_rad,
-        );
-        // At 0.1 m/s per N a report's snake comes apart under its own weight.
-        walk.setting(
-            per_part("joint_cfm_m_s_per_n", "Joint softness (CFM)", 0.0..=0.1, each_joint)
+                .logarithmic_from(1.0);
+            // At 0.1 m/s per N a report's snake comes apart under its own weight.
+            joint_cfm_m_s_per_n: per_part("Joint softness (CFM)", 0.0..=0.1, each_joint)
                 .unit("m/s per N")
                 .hint("0 is rigid; larger values let the joints give way under load")
                 .slider(0.0, 0.1)
-                .logarithmic_from(1.0e-6),
-            joint_cfm_m_s_per_n,
-        );
+                .logarithmic_from(1.0e-6);
+        }
     }
 }
 
 impl AgentSettings {
-    /// The section of the limbs.
-    pub const BODY: Section =
-        Section { title: "Body", about: "Number, size and weight of the blocks." };
-    /// The section of the joints.
-    pub const JOINTS: Section =
-        Section { title: "Joints", about: "Range, strength and resistance of the joints." };
-    /// The section of the skin.
-    pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
-
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {
         self.limbs.saturating_sub(1) as usize

@@ -1,68 +1,53 @@
 //! The fitness measures: what a trial rewards.
 
-use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::str::FromStr;
 
-use crate::check::Invalid;
-use crate::schema::{Choice, Choices};
+use crate::schema::{Choices, choices};
 use crate::world::{BodyPlan, Pose, Stairs};
 
 /// Allowed range of a fitness in a file. Even with the highest cost of energy a fitness lies within it.
 pub const FITNESS_RANGE: std::ops::RangeInclusive<f32> = -1.0e15..=1.0e15;
 
-/// The measure by which a rollout is scored. The report chose the first and considered the next three.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Fitness {
-    /// y of the middle limb's centre at the end, in m. The report's choice. Rewards wrongly: flying past
-    /// the stairs at their side, and being in mid-leap at the end.
-    #[default]
-    Centre,
-    /// y of the head's centre at the end, in m. Rewards wrongly: stretching the neck, or throwing the
-    /// head forward, instead of going anywhere.
-    Head,
-    /// y of the centre of mass at the end, in m. Rewards wrongly: the same as the centre; and a curled snake
-    /// scores less than a straight one that did not get further.
-    CentreOfMass,
-    /// z of the middle limb's centre at the end, in m. Rewards wrongly: jumping, and rearing on the spot.
-    Height,
-    /// The furthest y that the middle limb's centre had at any time, in m. Rewards wrongly: a leap that
-    /// falls back; where the snake ends does not count.
-    FurthestY,
-    /// Number of steps climbed at the end: the middle limb's centre is past the riser, over the tread,
-    /// and within the width. Rewards nothing before the first step: all snakes that have not reached it
-    /// are equal, and evolution searches blindly at first.
-    StepsClimbed,
-    /// y of the middle limb's centre at the end, in m, as far as it is on the stairs. Beside, inside or behind
-    /// them it counts only up to the first riser; on the landing it counts up to where the whole snake stands
-    /// there. Rewards wrongly: being in mid-leap over the stairs at the end.
-    Climb,
+choices! {
+    /// The measure by which a rollout is scored, in metres but for the count of steps. The report chose the first and
+    /// considered the next three.
+    #[derive(Default)]
+    pub enum Fitness {
+        #[default]
+        Centre = "centre", "Centre, y",
+            "The y of the middle block at the end.\n\
+             Unintended rewards: Passing beside the stairs, and being caught in mid-leap at the end.";
+        Head = "head", "Head, y",
+            "The y of the head at the end.\n\
+             Unintended rewards: Stretching or throwing the head forward.";
+        /// A curled snake scores less than a straight one that did not get further.
+        CentreOfMass = "centre_of_mass", "Centre of mass, y",
+            "The y of the centre of mass at the end.\n\
+             Unintended rewards: The same as with the centre; a curled snake scores less.";
+        Height = "height", "Height",
+            "The height of the middle block at the end.\n\
+             Unintended rewards: Jumping and rearing on the spot.";
+        /// Where the snake ends does not count.
+        FurthestY = "furthest_y", "Furthest y",
+            "The furthest y of the middle block at any time.\n\
+             Unintended rewards: A leap that falls back.";
+        /// A step is climbed if the middle limb's centre is past the riser, over the tread, and within the width. All
+        /// snakes that have not reached the first step are equal.
+        StepsClimbed = "steps_climbed", "Steps climbed",
+            "The steps climbed at the end.\n\
+             Unintended rewards: Nothing before the first step, so the search starts blindly.";
+        /// Beside, inside or behind the stairs y counts only up to the first riser; on the landing it counts up to where
+        /// the whole snake stands there.
+        Climb = "climb", "Climb: y on the stairs",
+            "The y of the middle block at the end, as far as it is on the stairs.\n\
+             Unintended rewards: Being caught in mid-leap over the stairs at the end.";
+    }
 }
 
 impl Fitness {
-    /// All measures, the default first.
-    pub const ALL: [Self; 7] = [
-        Self::Centre,
-        Self::Head,
-        Self::CentreOfMass,
-        Self::Height,
-        Self::FurthestY,
-        Self::StepsClimbed,
-        Self::Climb,
-    ];
-
     /// The name in flags and files.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Centre => "centre",
-            Self::Climb => "climb",
-            Self::Head => "head",
-            Self::CentreOfMass => "centre_of_mass",
-            Self::Height => "height",
-            Self::FurthestY => "furthest_y",
-            Self::StepsClimbed => "steps_climbed",
-        }
+        self.choice().name
     }
 
     /// A short description, to follow "fitness: ".
@@ -78,19 +63,6 @@ impl Fitness {
         }
     }
 
-    /// Unwanted behaviour that the measure rewards, in a sentence.
-    pub fn rewards_wrongly(self) -> &'static str {
-        match self {
-            Self::Centre => "Passing beside the stairs, and being caught in mid-leap at the end.",
-            Self::Climb => "Being caught in mid-leap over the stairs at the end.",
-            Self::Head => "Stretching or throwing the head forward.",
-            Self::CentreOfMass => "The same as with the centre; a curled snake scores less.",
-            Self::Height => "Jumping and rearing on the spot.",
-            Self::FurthestY => "A leap that falls back.",
-            Self::StepsClimbed => "Nothing before the first step, so the search starts blindly.",
-        }
-    }
-
     /// Whether the measure is a position on the y axis.
     pub fn is_along_y(self) -> bool {
         !matches!(self, Self::Height | Self::StepsClimbed)
@@ -102,40 +74,9 @@ impl Fitness {
     }
 }
 
-impl Choices for Fitness {
-    const OPTIONS: &'static [Self] = &Self::ALL;
-
-    fn choice(self) -> Choice {
-        let title = match self {
-            Self::Centre => "Centre, y",
-            Self::Head => "Head, y",
-            Self::CentreOfMass => "Centre of mass, y",
-            Self::Height => "Height",
-            Self::FurthestY => "Furthest y",
-            Self::StepsClimbed => "Steps climbed",
-            Self::Climb => "Climb: y on the stairs",
-        };
-        let about =
-            format!("The {}.\nUnintended rewards: {}", self.words(), self.rewards_wrongly());
-        Choice::new(self.name(), title, about)
-    }
-}
-
 impl fmt::Display for Fitness {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.name())
-    }
-}
-
-impl FromStr for Fitness {
-    type Err = Invalid;
-
-    fn from_str(text: &str) -> Result<Self, Invalid> {
-        let name = text.replace('-', "_");
-        Self::ALL.into_iter().find(|fitness| fitness.name() == name).ok_or_else(|| {
-            let names: Vec<&str> = Self::ALL.iter().map(|fitness| fitness.name()).collect();
-            Invalid::new("fitness", format!("{text:?}"), names.join(", "))
-        })
     }
 }
 
@@ -222,13 +163,14 @@ mod tests {
 
     #[test]
     fn each_name_parses_to_its_fitness() {
-        for fitness in Fitness::ALL {
-            assert_eq!(fitness.name().parse(), Ok(fitness));
+        for &fitness in Fitness::OPTIONS {
+            assert_eq!(Fitness::named("fitness", fitness.name()), Ok(fitness));
             let text = serde_json::to_string(&fitness).expect("serialisable");
             assert_eq!(text, format!("\"{fitness}\""));
         }
-        assert_eq!("centre-of-mass".parse(), Ok(Fitness::CentreOfMass), "as flags spell it");
-        let error = "speed".parse::<Fitness>().unwrap_err().to_string();
+        let flag = Fitness::named("fitness", "centre-of-mass");
+        assert_eq!(flag, Ok(Fitness::CentreOfMass), "as flags spell it");
+        let error = Fitness::named("fitness", "speed").unwrap_err().to_string();
         assert!(error.starts_with("fitness is \"speed\"; allowed: centre, head,"), "{error}");
     }
 }

@@ -1,71 +1,47 @@
 //! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
+use crate::check::Invalid;
+use crate::schema::{self, number, setting_group};
+use crate::world::WorldPlan;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
 
-use crate::check::Invalid;
-use crate::schema::{self, SettingGroup, Walk, number};
-use crate::world::WorldPlan;
-
-/// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PerturbationRange {
-    /// Relative change of the friction of stairs and ground.
-    pub friction: f32,
-    /// Relative change of the height of the steps.
-    pub rise: f32,
-    /// Relative change of the density of the limbs.
-    pub density: f32,
-    /// Shift of the start, along and across, in metres.
-    pub start_m: f32,
-    /// Turn of the snake at the start, in degrees.
-    pub turn_deg: f32,
-}
-
-impl Default for PerturbationRange {
-    fn default() -> Self {
-        Self { friction: 0.2, rise: 0.1, density: 0.0, start_m: 0.2, turn_deg: 5.0 }
-    }
-}
-
-impl SettingGroup for PerturbationRange {
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { friction, rise, density, start_m, turn_deg } = self;
-        // No factor may become zero or negative.
-        walk.setting(
-            number("friction", "Friction variation", 0.0..=0.9)
+setting_group! {
+    /// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal one.
+    #[derive(Copy)]
+    pub struct PerturbationRange {
+        /// Relative change of the friction of stairs and ground.
+        friction: f32 = 0.2,
+            // No factor may become zero or negative.
+            number("Friction variation", 0.0..=0.9)
                 .hint("Maximum relative change of friction: 0.2 is 20 % up or down")
-                .slider(0.0, 0.9),
-            friction,
-        );
-        walk.setting(
-            number("rise", "Rise variation", 0.0..=0.9)
+                .slider(0.0, 0.9);
+
+        /// Relative change of the height of the steps.
+        rise: f32 = 0.1,
+            number("Rise variation", 0.0..=0.9)
                 .hint("Maximum relative change of the steps' height: 0.1 is 10 % up or down")
-                .slider(0.0, 0.9),
-            rise,
-        );
-        walk.setting(
-            number("density", "Density variation", 0.0..=0.9)
+                .slider(0.0, 0.9);
+
+        /// Relative change of the density of the limbs.
+        density: f32 = 0.0,
+            number("Density variation", 0.0..=0.9)
                 .hint("Maximum relative change of the limbs' density")
-                .slider(0.0, 0.9),
-            density,
-        );
-        walk.setting(
-            number("start_m", "Start variation", 0.0..=5.0)
+                .slider(0.0, 0.9);
+
+        /// Shift of the start, along and across, in metres.
+        start_m: f32 = 0.2,
+            number("Start variation", 0.0..=5.0)
                 .unit("m")
                 .hint("Maximum shift of the start, along and across the stairs")
-                .slider(0.0, 2.0),
-            start_m,
-        );
-        walk.setting(
-            number("turn_deg", "Start direction variation", 0.0..=180.0)
+                .slider(0.0, 2.0);
+
+        /// Turn of the snake at the start, in degrees.
+        turn_deg: f32 = 5.0,
+            number("Start direction variation", 0.0..=180.0)
                 .unit("°")
                 .hint("Maximum turn of the snake at the start, to either side")
-                .slider(0.0, 45.0),
-            turn_deg,
-        );
+                .slider(0.0, 45.0);
     }
 }
 

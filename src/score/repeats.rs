@@ -1,74 +1,44 @@
 //! Several trials per evaluation, all but the first perturbed, which rewards robust gaits.
 
-use serde::{Deserialize, Serialize};
-
 use super::PerturbationRange;
-use crate::schema::{Choice, Choices, Section, SettingGroup, Walk, choice, whole};
+use crate::schema::{Section, SettingGroup, Walk, choice, choices, setting_group, settings, whole};
 
-/// Number of trials per evaluation, and how they differ.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Repeats {
-    /// Trials per evaluation. The first is the nominal one, the others are perturbed.
-    pub trials: u32,
-    /// Fitness of the evaluation, made from those of its trials.
-    pub counts: RepeatAggregate,
-    /// Maximum perturbation of the other trials.
-    pub off: PerturbationRange,
-}
-
-/// How the fitness of an evaluation is made from those of its trials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RepeatAggregate {
-    /// Their mean.
-    #[default]
-    Mean,
-    /// The lowest of them.
-    Worst,
-}
-
-impl Default for Repeats {
-    fn default() -> Self {
-        Self { trials: 1, counts: RepeatAggregate::Mean, off: PerturbationRange::default() }
+setting_group! {
+    /// Number of trials per evaluation, and how they differ.
+    pub struct Repeats {
+        /// Trials per evaluation. The first is the nominal one, the others are perturbed.
+        trials: u32 = 1;
+        /// Fitness of the evaluation, made from those of its trials.
+        counts: RepeatAggregate = RepeatAggregate::Mean;
+        /// Maximum perturbation of the other trials.
+        off: PerturbationRange = PerturbationRange::default();
     }
 }
 
-impl Repeats {
-    /// The section of these settings.
-    pub const SECTION: Section = Section {
-        title: "Repeated trials",
-        about: "Several slightly different trials per snake favour robust motion.",
-    };
+choices! {
+    /// How the fitness of an evaluation is made from those of its trials.
+    pub enum RepeatAggregate {
+        Mean = "mean", "Mean", "All trials count equally.";
+        Worst = "worst", "Worst", "A snake is as good as its worst trial.";
+    }
 }
 
 impl SettingGroup for Repeats {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let Self { trials, counts, off } = self;
-        walk.section(Self::SECTION);
-        // A hundred trials of 15 s are a second and a half.
-        walk.setting(
-            whole("trials", "Trials per snake", 1..=100)
+        walk.section(Section {
+            title: "Repeated trials",
+            about: "Several slightly different trials per snake favour robust motion.",
+        });
+        settings! { walk,
+            // A hundred trials of 15 s are a second and a half.
+            trials: whole("Trials per snake", 1..=100)
                 .hint("The first is exact, the others vary by the values below. Each trial takes additional time")
-                .slider(1.0, 10.0),
-            trials,
-        );
-        walk.setting(
-            choice("counts", "Combined score").hint("How the results of the trials are combined"),
-            counts,
-        );
-        walk.group("off", off);
-    }
-}
-
-impl Choices for RepeatAggregate {
-    const OPTIONS: &'static [Self] = &[Self::Mean, Self::Worst];
-
-    fn choice(self) -> Choice {
-        match self {
-            Self::Mean => Choice::new("mean", "Mean", "All trials count equally."),
-            Self::Worst => Choice::new("worst", "Worst", "A snake is as good as its worst trial."),
+                .slider(1.0, 10.0);
+            counts: choice("Combined score")
+                .hint("How the results of the trials are combined");
         }
+        walk.group("off", off);
     }
 }
 

@@ -1,57 +1,39 @@
 //! The conditions of an evaluation: everything outside the genome.
 
-use serde::{Deserialize, Serialize};
-
 use super::{AgentSettings, Fitness, Repeats};
 use crate::check::Invalid;
 use crate::genome::{Genome, GenomeShape};
-use crate::schema::{self, Section, SettingGroup, Walk, absent, choice, number};
+use crate::schema::{
+    self, Section, SettingGroup, Walk, absent, choice, number, setting_group, settings,
+};
 use crate::world::{HealthLimits, PhysicsSettings, Stairs, Surface, WorldPlan};
 
-/// Place, duration, surfaces, body, and measure of fitness.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Trial {
-    /// Length of the simulation, in simulated seconds.
-    pub duration_s: f32,
-    /// Position of the snake's centre on the y axis at the start, in metres. The report's first
-    /// generation, which does not move, stands at -7.23.
-    pub start_y_m: f32,
-    /// Step length, substeps, gravity.
-    pub physics: PhysicsSettings,
-    /// The staircase.
-    pub stairs: Stairs,
-    /// The material of the stairs, and of the ground if `ground` is `None`.
-    pub surface: Surface,
-    /// The material of the ground, if it differs from that of the stairs.
-    pub ground: Option<Surface>,
-    /// The properties of the snake that do not evolve.
-    pub agent: AgentSettings,
-    /// The measure of fitness.
-    pub fitness: Fitness,
-    /// Cost of energy, in units of the fitness per kJ; it is subtracted from the fitness.
-    pub energy_cost_per_kj: f32,
-    /// The number of trials per evaluation, and their perturbations.
-    pub repeats: Repeats,
-    /// Limits beyond which the snake is disqualified.
-    pub health: HealthLimits,
-}
-
-impl Default for Trial {
-    fn default() -> Self {
-        Self {
-            duration_s: 5.0,
-            start_y_m: -7.23,
-            physics: PhysicsSettings::default(),
-            stairs: Stairs::default(),
-            surface: Surface::default(),
-            ground: None,
-            agent: AgentSettings::default(),
-            fitness: Fitness::default(),
-            energy_cost_per_kj: 0.0,
-            repeats: Repeats::default(),
-            health: HealthLimits::default(),
-        }
+setting_group! {
+    /// Place, duration, surfaces, body, and measure of fitness.
+    pub struct Trial {
+        /// Length of the simulation, in simulated seconds.
+        duration_s: f32 = 5.0;
+        /// Position of the snake's centre on the y axis at the start, in metres. The report's first
+        /// generation, which does not move, stands at -7.23.
+        start_y_m: f32 = -7.23;
+        /// Step length, substeps, gravity.
+        physics: PhysicsSettings = PhysicsSettings::default();
+        /// The staircase.
+        stairs: Stairs = Stairs::default();
+        /// The material of the stairs, and of the ground if `ground` is `None`.
+        surface: Surface = Surface::default();
+        /// The material of the ground, if it differs from that of the stairs.
+        ground: Option<Surface> = None;
+        /// The properties of the snake that do not evolve.
+        agent: AgentSettings = AgentSettings::default();
+        /// The measure of fitness.
+        fitness: Fitness = Fitness::default();
+        /// Cost of energy, in units of the fitness per kJ; it is subtracted from the fitness.
+        energy_cost_per_kj: f32 = 0.0;
+        /// The number of trials per evaluation, and their perturbations.
+        repeats: Repeats = Repeats::default();
+        /// Limits beyond which the snake is disqualified.
+        health: HealthLimits = HealthLimits::default();
     }
 }
 
@@ -76,44 +58,40 @@ impl SettingGroup for Trial {
         match ground {
             Some(ground) => walk.group("ground", ground),
             None => walk.setting(
-                absent("ground", "Ground", "none, or set ground.friction and its like")
+                "ground",
+                absent("Ground", "none, or set ground.friction and its like")
                     .hint("Without its own surface, the ground has that of the stairs"),
                 &mut (),
             ),
         }
         walk.group("agent", agent);
         walk.group("stairs", stairs);
-        walk.section(Self::TIME);
-        // Ten minutes are a third of a second to compute; longer genomes make unreadable saves.
-        walk.setting(
-            number("duration_s", "Duration", 0.1..=600.0)
+        walk.section(Section {
+            title: "Time and start",
+            about: "Duration of a trial, and where the snake starts.",
+        });
+        settings! { walk,
+            // Ten minutes are a third of a second to compute; longer genomes make unreadable saves.
+            duration_s: number("Duration", 0.1..=600.0)
                 .unit("s")
                 .hint("Simulated time of a trial. Longer trials take longer to evaluate")
-                .slider(1.0, 30.0),
-            duration_s,
-        );
-        walk.setting(
-            number("start_y_m", "Start at y", -100.0..=100.0)
+                .slider(1.0, 30.0);
+            start_y_m: number("Start at y", -100.0..=100.0)
                 .unit("m")
                 .hint("Initial position of the snake's middle. The stairs are at larger y")
-                .slider(-20.0, 10.0),
-            start_y_m,
-        );
+                .slider(-20.0, 10.0);
+        }
         walk.group("physics", physics);
         walk.section(Self::REWARD);
-        walk.setting(
-            choice("fitness", "Fitness").hint("Quantity that evolution maximises"),
-            fitness,
-        );
-        // At 1000 a joule costs a metre.
-        walk.setting(
-            number("energy_cost_per_kj", "Energy cost", 0.0..=1000.0)
+        settings! { walk,
+            fitness: choice("Fitness").hint("Quantity that evolution maximises");
+            // At 1000 a joule costs a metre.
+            energy_cost_per_kj: number("Energy cost", 0.0..=1000.0)
                 .unit("per kJ")
                 .hint("Subtracted from the fitness for each kJ that the joints use")
                 .slider(0.0, 10.0)
-                .logarithmic_from(0.01),
-            energy_cost_per_kj,
-        );
+                .logarithmic_from(0.01);
+        }
         walk.group("repeats", repeats);
         walk.group("health", health);
     }
@@ -128,11 +106,6 @@ impl Trial {
     /// The section of the material of the ground.
     pub const GROUND: Section =
         Section { title: "Ground", about: "Material of the ground before the stairs." };
-    /// The section of duration and start.
-    pub const TIME: Section = Section {
-        title: "Time and start",
-        about: "Duration of a trial, and where the snake starts.",
-    };
     /// The section of the reward.
     pub const REWARD: Section = Section { title: "Reward", about: "What evolution maximises." };
 

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::schema::{Section, SettingGroup, Walk, number};
+use crate::schema::{number, setting_group};
 
 /// Reason for which an agent was disqualified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -36,69 +36,39 @@ impl Disqualification {
     }
 }
 
-/// The tolerances beyond which an agent is disqualified.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct HealthLimits {
-    /// Largest distance between the two anchors of a joint, in metres. A tenth of a block's
-    /// width by default: a gap that can be seen.
-    pub joint_drift_m: f32,
-    /// Largest speed of a limb's centre, in m/s. A fall from the landing ends at 10 m/s, so 25
-    /// is out of reach for anything but an explosion.
-    pub speed_m_s: f32,
-    /// Largest |x| of a limb's centre, in metres.
-    pub arena_half_width_m: f32,
-    /// Extent of the arena behind the origin of the y axis, in metres: a limb's least y is minus this.
-    pub arena_back_m: f32,
-}
-
-impl Default for HealthLimits {
-    fn default() -> Self {
-        Self { joint_drift_m: 0.1, speed_m_s: 25.0, arena_half_width_m: 12.0, arena_back_m: 30.0 }
-    }
-}
-
-impl HealthLimits {
-    /// The section of these settings.
-    pub const SECTION: Section = Section {
-        title: "Disqualification",
-        about: "A snake that breaks the physics instead of climbing is disqualified.",
-    };
-}
-
-impl SettingGroup for HealthLimits {
-    /// Each range goes from the error that the solver itself leaves to a value that limits nothing.
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { joint_drift_m, speed_m_s, arena_half_width_m, arena_back_m } = self;
-        walk.section(Self::SECTION);
-        walk.setting(
-            number("joint_drift_m", "Joint gap", 0.001..=10.0)
+setting_group! {
+    /// The tolerances beyond which an agent is disqualified. Each range goes from the error that the solver itself
+    /// leaves to a value that limits nothing.
+    pub struct HealthLimits in "Disqualification": "A snake that breaks the physics instead of climbing is disqualified." {
+        /// Largest distance between the two anchors of a joint, in metres. A tenth of a block's
+        /// width by default: a gap that can be seen.
+        joint_drift_m: f32 = 0.1,
+            number("Joint gap", 0.001..=10.0)
                 .unit("m")
                 .hint("A snake is disqualified if a joint comes apart by more than this")
                 .slider(0.01, 1.0)
-                .logarithmic_from(0.01),
-            joint_drift_m,
-        );
-        walk.setting(
-            number("speed_m_s", "Speed limit", 1.0..=1000.0)
+                .logarithmic_from(0.01);
+
+        /// Largest speed of a limb's centre, in m/s. A fall from the landing ends at 10 m/s, so 25
+        /// is out of reach for anything but an explosion.
+        speed_m_s: f32 = 25.0,
+            number("Speed limit", 1.0..=1000.0)
                 .unit("m/s")
                 .hint("A snake is disqualified if a limb is faster than this, which only an unstable simulation reaches")
-                .slider(1.0, 100.0),
-            speed_m_s,
-        );
-        walk.setting(
-            number("arena_half_width_m", "Arena to the side", 1.0..=1000.0)
+                .slider(1.0, 100.0);
+
+        /// Largest |x| of a limb's centre, in metres.
+        arena_half_width_m: f32 = 12.0,
+            number("Arena to the side", 1.0..=1000.0)
                 .unit("m")
                 .hint("A snake is disqualified if it is further from the middle than this")
-                .slider(2.0, 50.0),
-            arena_half_width_m,
-        );
-        walk.setting(
-            number("arena_back_m", "Arena to the rear", 1.0..=1000.0)
+                .slider(2.0, 50.0);
+
+        /// Extent of the arena behind the origin of the y axis, in metres: a limb's least y is minus this.
+        arena_back_m: f32 = 30.0,
+            number("Arena to the rear", 1.0..=1000.0)
                 .unit("m")
                 .hint("A snake is disqualified if the y of a limb is below minus this value")
-                .slider(5.0, 100.0),
-            arena_back_m,
-        );
+                .slider(5.0, 100.0);
     }
 }

@@ -1,39 +1,56 @@
 //! The staircase: its shape, and the meaning of a position on it.
 
-use serde::{Deserialize, Serialize};
+use crate::schema::{number, setting_group, whole};
 
-use crate::schema::{Section, SettingGroup, Walk, number, whole};
+setting_group! {
+    /// A straight staircase that rises towards +y, with a landing behind its last step.
+    pub struct Stairs in "Stairs": "Shape and position of the staircase." {
+        /// Number of steps. The report has ten.
+        steps: u32 = 10,
+            // A hundred steps are far more than any snake climbs, and still quick.
+            whole("Steps", 0..=100)
+                .hint("Number of steps; 0 gives flat ground")
+                .slider(0.0, 20.0);
 
-/// A straight staircase that rises towards +y, with a landing behind its last step.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Stairs {
-    /// Number of steps. The report has ten.
-    pub steps: u32,
-    /// Height of one step, in metres. The report has 0.5.
-    pub rise_m: f32,
-    /// Depth of one step along y, in metres. From Table 1 of the report: one step per 2 m.
-    pub tread_m: f32,
-    /// Width across x, in metres. The report has 5.
-    pub width_m: f32,
-    /// Position of the first riser on the y axis, in metres. From Table 1: the snake, 10 m long,
-    /// touches the stairs with its centre at -2, so the riser is at 3.
-    pub first_riser_y_m: f32,
-    /// Depth of the landing behind the last tread, in metres. Long enough by default that the
-    /// whole snake (10 m) stands on it.
-    pub landing_m: f32,
-}
+        /// Height of one step, in metres. The report has 0.5.
+        rise_m: f32 = 0.5,
+            // From a doorsill to a wall. Below a centimetre the engine's tolerances are as high as the step.
+            number("Rise", 0.01..=5.0)
+                .unit("m")
+                .hint("Height of a step")
+                .slider(0.05, 2.0);
 
-impl Default for Stairs {
-    fn default() -> Self {
-        Self {
-            steps: 10,
-            rise_m: 0.5,
-            tread_m: 2.0,
-            width_m: 5.0,
-            first_riser_y_m: 3.0,
-            landing_m: 14.0,
-        }
+        /// Depth of one step along y, in metres. From Table 1 of the report: one step per 2 m.
+        tread_m: f32 = 2.0,
+            number("Tread", 0.1..=20.0)
+                .unit("m")
+                .hint("Depth of a step. A deep tread gives the snake more room")
+                .slider(0.2, 5.0);
+
+        /// Width across x, in metres. The report has 5.
+        width_m: f32 = 5.0,
+            // From a block's own width to a hall's.
+            number("Width", 1.0..=100.0)
+                .unit("m")
+                .hint("Width of the stairs. A snake that drifts sideways falls off narrow stairs")
+                .slider(1.0, 20.0);
+
+        /// Position of the first riser on the y axis, in metres. From Table 1: the snake, 10 m long,
+        /// touches the stairs with its centre at -2, so the riser is at 3.
+        first_riser_y_m: f32 = 3.0,
+            // Within a hundred metres floats still resolve a hundredth of a millimetre.
+            number("First riser at y", -100.0..=100.0)
+                .unit("m")
+                .hint("Position at which the stairs begin")
+                .slider(0.0, 20.0);
+
+        /// Depth of the landing behind the last tread, in metres. Long enough by default that the
+        /// whole snake (10 m) stands on it.
+        landing_m: f32 = 14.0,
+            number("Landing", 0.0..=100.0)
+                .unit("m")
+                .hint("Depth of the landing behind the last step")
+                .slider(0.0, 60.0);
     }
 }
 
@@ -46,63 +63,7 @@ pub struct StairBox {
     pub max_m: [f32; 3],
 }
 
-impl SettingGroup for Stairs {
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { steps, rise_m, tread_m, width_m, first_riser_y_m, landing_m } = self;
-        walk.section(Self::SECTION);
-        // A hundred steps are far more than any snake climbs, and still quick.
-        walk.setting(
-            whole("steps", "Steps", 0..=100)
-                .hint("Number of steps; 0 gives flat ground")
-                .slider(0.0, 20.0),
-            steps,
-        );
-        // From a doorsill to a wall. Below a centimetre the engine's tolerances are as high as the step.
-        walk.setting(
-            number("rise_m", "Rise", 0.01..=5.0)
-                .unit("m")
-                .hint("Height of a step")
-                .slider(0.05, 2.0),
-            rise_m,
-        );
-        walk.setting(
-            number("tread_m", "Tread", 0.1..=20.0)
-                .unit("m")
-                .hint("Depth of a step. A deep tread gives the snake more room")
-                .slider(0.2, 5.0),
-            tread_m,
-        );
-        // From a block's own width to a hall's.
-        walk.setting(
-            number("width_m", "Width", 1.0..=100.0)
-                .unit("m")
-                .hint("Width of the stairs. A snake that drifts sideways falls off narrow stairs")
-                .slider(1.0, 20.0),
-            width_m,
-        );
-        // Within a hundred metres floats still resolve a hundredth of a millimetre.
-        walk.setting(
-            number("first_riser_y_m", "First riser at y", -100.0..=100.0)
-                .unit("m")
-                .hint("Position at which the stairs begin")
-                .slider(0.0, 20.0),
-            first_riser_y_m,
-        );
-        walk.setting(
-            number("landing_m", "Landing", 0.0..=100.0)
-                .unit("m")
-                .hint("Depth of the landing behind the last step")
-                .slider(0.0, 60.0),
-            landing_m,
-        );
-    }
-}
-
 impl Stairs {
-    /// The section of these settings.
-    pub const SECTION: Section =
-        Section { title: "Stairs", about: "Shape and position of the staircase." };
-
     /// Position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {
         self.first_riser_y_m + index as f32 * self.tread_m

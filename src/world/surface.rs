@@ -1,169 +1,99 @@
 //! The materials of the surfaces and of the snake's skin, and how they combine in a contact.
 
-use serde::{Deserialize, Serialize};
+use crate::schema::{number, setting_group};
 
-use crate::schema::{SettingGroup, Walk, number};
+setting_group! {
+    /// The material of the ground or the stairs: the seven parameters of the report. By default it is hard, and nothing
+    /// slips or bounces on it.
+    pub struct Surface {
+        /// Coulomb coefficient: the largest tangential force over the normal force.
+        friction: f32 = 1.0,
+            // From ice without any friction to beyond the 150 of the report's engine manual.
+            number("Friction", 0.0..=1000.0)
+                .hint("Grip: largest sideways force divided by the force pressing down. 0 is no grip, 1 normal, 5 like glue")
+                .slider(0.0, 5.0);
 
-/// The material of the ground or the stairs: the seven parameters of the report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Surface {
-    /// Coulomb coefficient: the largest tangential force over the normal force.
-    pub friction: f32,
-    /// Restitution, from 0 (no bounce) to 1 (all of the speed comes back).
-    pub bounce: f32,
-    /// Least incoming normal speed for a bounce, in m/s. Slower impacts do not bounce.
-    pub bounce_velocity_m_s: f32,
-    /// Error reduction parameter: the share of a penetration that is corrected in one physics step.
-    pub soft_erp: f32,
-    /// Constraint force mixing, in m/s per N (ODE's unit, s/kg): 0 is hard, larger is softer. See
-    /// [`spring`] for the physical meaning.
-    pub soft_cfm_m_s_per_n: f32,
-    /// Force-dependent slip, in m/s per N: under a tangential force F inside the friction cone a
-    /// contact creeps at slip times F.
-    pub slip_m_s_per_n: f32,
-    /// While a limb touches the surface, its linear and angular velocity lose this share per second,
-    /// in 1/s: a factor of 1 - dampen · step in each step.
-    pub dampen_per_s: f32,
-}
-
-impl Default for Surface {
-    /// Hard ground on which nothing slips or bounces.
-    fn default() -> Self {
-        Self {
-            friction: 1.0,
-            bounce: 0.0,
-            bounce_velocity_m_s: 0.0,
-            soft_erp: 0.25,
-            soft_cfm_m_s_per_n: 0.0,
-            slip_m_s_per_n: 0.0,
-            dampen_per_s: 0.0,
-        }
-    }
-}
-
-impl SettingGroup for Surface {
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self {
-            friction,
-            bounce,
-            bounce_velocity_m_s,
-            soft_erp,
-            soft_cfm_m_s_per_n,
-            slip_m_s_per_n,
-            dampen_per_s,
-        } = self;
-        // From ice without any friction to beyond the 150 of the report's engine manual.
-        walk.setting(
-            number("friction", "Friction", 0.0..=1000.0)
-                .hint(
-                    "Grip: largest sideways force divided by the force pressing down. 0 is no grip, 1 normal, 5 like glue",
-                )
-                .slider(0.0, 5.0),
-            friction,
-        );
-        // More than 1 would create energy.
-        walk.setting(
-            number("bounce", "Bounce", 0.0..=1.0)
+        /// Restitution, from 0 (no bounce) to 1 (all of the speed comes back).
+        bounce: f32 = 0.0,
+            // More than 1 would create energy.
+            number("Bounce", 0.0..=1.0)
                 .hint("How much speed is kept after an impact: 0 does not bounce, 1 bounces back to full height")
-                .slider(0.0, 1.0),
-            bounce,
-        );
-        // Up to the speed at which an agent is disqualified by default, and beyond.
-        walk.setting(
-            number("bounce_velocity_m_s", "Bounce velocity", 0.0..=1000.0)
+                .slider(0.0, 1.0);
+
+        /// Least incoming normal speed for a bounce, in m/s. Slower impacts do not bounce.
+        bounce_velocity_m_s: f32 = 0.0,
+            // Up to the speed at which an agent is disqualified by default, and beyond.
+            number("Bounce velocity", 0.0..=1000.0)
                 .unit("m/s")
-                .hint(
-                    "Impacts slower than this do not bounce, so that a snake at rest stays at rest",
-                )
-                .slider(0.0, 10.0),
-            bounce_velocity_m_s,
-        );
-        // At 0 nothing would ever be pushed out again and the snake would sink through the ground.
-        walk.setting(
-            number("soft_erp", "Springiness (ERP)", 0.01..=1.0)
+                .hint("Impacts slower than this do not bounce, so that a snake at rest stays at rest")
+                .slider(0.0, 10.0);
+
+        /// Error reduction parameter: the share of a penetration that is corrected in one physics step.
+        soft_erp: f32 = 0.25,
+            // At 0 nothing would ever be pushed out again and the snake would sink through the ground.
+            number("Springiness (ERP)", 0.01..=1.0)
                 .hint("How quickly a soft surface springs back: share of a dent that is corrected per physics step")
-                .slider(0.01, 1.0),
-            soft_erp,
-        );
-        // At 1 m/s per N the snake's own weight pushes it through a step in less than a second.
-        walk.setting(
-            number("soft_cfm_m_s_per_n", "Softness (CFM)", 0.0..=1.0)
+                .slider(0.01, 1.0);
+
+        /// Constraint force mixing, in m/s per N (ODE's unit, s/kg): 0 is hard, larger is softer. See
+        /// [`spring`] for the physical meaning.
+        soft_cfm_m_s_per_n: f32 = 0.0,
+            // At 1 m/s per N the snake's own weight pushes it through a step in less than a second.
+            number("Softness (CFM)", 0.0..=1.0)
                 .unit("m/s per N")
                 .hint("0 is hard; larger values let the snake sink in deeper")
                 .slider(0.0, 1.0)
-                .logarithmic_from(1.0e-5),
-            soft_cfm_m_s_per_n,
-        );
-        // At 10 m/s per N a limb's own weight is too much for the surface's hold.
-        walk.setting(
-            number("slip_m_s_per_n", "Creep (slip)", 0.0..=10.0)
+                .logarithmic_from(1.0e-5);
+
+        /// Force-dependent slip, in m/s per N: under a tangential force F inside the friction cone a
+        /// contact creeps at slip times F.
+        slip_m_s_per_n: f32 = 0.0,
+            // At 10 m/s per N a limb's own weight is too much for the surface's hold.
+            number("Creep (slip)", 0.0..=10.0)
                 .unit("m/s per N")
                 .hint("How fast a limb creeps under a force that friction would otherwise hold, as on oil")
                 .slider(0.0, 1.0)
-                .logarithmic_from(1.0e-4),
-            slip_m_s_per_n,
-        );
-        // At 20 1/s and the longest step (1/20 s) everything stops at once; more would turn it around.
-        walk.setting(
-            number("dampen_per_s", "Damping", 0.0..=20.0)
+                .logarithmic_from(1.0e-4);
+
+        /// While a limb touches the surface, its linear and angular velocity lose this share per second,
+        /// in 1/s: a factor of 1 - dampen · step in each step.
+        dampen_per_s: f32 = 0.0,
+            // At 20 1/s and the longest step (1/20 s) everything stops at once; more would turn it around.
+            number("Damping", 0.0..=20.0)
                 .unit("1/s")
                 .hint("Share of its speed that a limb loses per second while it touches the surface, as in mud")
-                .slider(0.0, 20.0),
-            dampen_per_s,
-        );
+                .slider(0.0, 20.0);
     }
 }
 
-/// The snake's own material. The default is neutral: a contact then has the numbers of the surface.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Skin {
-    /// Multiplies the surface's friction.
-    pub friction: f32,
-    /// Restitution, from 0 to 1.
-    pub bounce: f32,
-    /// Error reduction parameter, as [`Surface::soft_erp`]. Matters where the skin is soft.
-    pub soft_erp: f32,
-    /// Constraint force mixing, in m/s per N, as [`Surface::soft_cfm_m_s_per_n`].
-    pub soft_cfm_m_s_per_n: f32,
-}
-
-impl Default for Skin {
-    fn default() -> Self {
-        Self { friction: 1.0, bounce: 0.0, soft_erp: 0.25, soft_cfm_m_s_per_n: 0.0 }
-    }
-}
-
-impl SettingGroup for Skin {
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { friction, bounce, soft_erp, soft_cfm_m_s_per_n } = self;
-        walk.setting(
-            number("friction", "Skin friction", 0.0..=1000.0)
+setting_group! {
+    /// The snake's own material. The default is neutral: a contact then has the numbers of the surface.
+    pub struct Skin {
+        /// Multiplies the surface's friction.
+        friction: f32 = 1.0,
+            number("Skin friction", 0.0..=1000.0)
                 .hint("Factor for the friction of everything that the snake touches. 1 changes nothing")
-                .slider(0.0, 5.0),
-            friction,
-        );
-        walk.setting(
-            number("bounce", "Skin bounce", 0.0..=1.0)
+                .slider(0.0, 5.0);
+
+        /// Restitution, from 0 to 1.
+        bounce: f32 = 0.0,
+            number("Skin bounce", 0.0..=1.0)
                 .hint("How much speed is kept after an impact. The larger value of skin and surface counts")
-                .slider(0.0, 1.0),
-            bounce,
-        );
-        walk.setting(
-            number("soft_erp", "Skin springiness (ERP)", 0.01..=1.0)
+                .slider(0.0, 1.0);
+
+        /// Error reduction parameter, as [`Surface::soft_erp`]. Matters where the skin is soft.
+        soft_erp: f32 = 0.25,
+            number("Skin springiness (ERP)", 0.01..=1.0)
                 .hint("How quickly a soft skin springs back: share of a dent that is corrected per physics step")
-                .slider(0.01, 1.0),
-            soft_erp,
-        );
-        walk.setting(
-            number("soft_cfm_m_s_per_n", "Skin softness (CFM)", 0.0..=1.0)
+                .slider(0.01, 1.0);
+
+        /// Constraint force mixing, in m/s per N, as [`Surface::soft_cfm_m_s_per_n`].
+        soft_cfm_m_s_per_n: f32 = 0.0,
+            number("Skin softness (CFM)", 0.0..=1.0)
                 .unit("m/s per N")
                 .hint("0 is hard; larger values make the blocks softer")
                 .slider(0.0, 1.0)
-                .logarithmic_from(1.0e-5),
-            soft_cfm_m_s_per_n,
-        );
+                .logarithmic_from(1.0e-5);
     }
 }
 

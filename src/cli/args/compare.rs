@@ -2,6 +2,7 @@
 
 use crate::evolve::StrategyKind;
 use crate::genome::ControllerKind;
+use crate::schema::Choices;
 
 /// The flags of `snakes compare`.
 #[derive(Debug, clap::Args)]
@@ -19,11 +20,9 @@ pub struct CompareArgs {
 }
 
 fn strategies_help() -> String {
-    let names: Vec<&str> = StrategyKind::ALL.iter().map(|kind| kind.name()).collect();
-    format!("Strategies: all, or a list of {}", names.join(", "))
+    format!("Strategies: all, or a list of {}", StrategyKind::names().join(", "))
 }
 
 fn controllers_help() -> String {
-    let names: Vec<&str> = ControllerKind::ALL.iter().map(|kind| kind.name()).collect();
-    format!("Controllers: all, or a list of {}", names.join(", "))
+    format!("Controllers: all, or a list of {}", ControllerKind::names().join(", "))
 }

@@ -8,6 +8,7 @@ use super::compare::CompareArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
 use crate::run::evaluators::EVALUATORS;
+use crate::schema::Choices;
 use crate::score::Fitness;
 
 /// A five-block snake evolves until it climbs a staircase.
@@ -161,8 +162,7 @@ pub enum Subcommand {
 
 /// Lists every fitness, so that the help follows the code.
 fn fitness_help() -> String {
-    let names: Vec<String> = Fitness::ALL.iter().map(ToString::to_string).collect();
-    format!("The fitness that is maximised: {}", names.join(", "))
+    format!("The fitness that is maximised: {}", Fitness::names().join(", "))
 }
 
 /// Lists every evaluator.

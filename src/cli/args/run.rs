@@ -11,6 +11,8 @@ use crate::run::RunSource;
 use crate::save::{
     DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, shipped_presets,
 };
+use crate::schema::Choices;
+use crate::score::Fitness;
 
 const WHOLE: &str = "a whole number from 0 up";
 
@@ -97,7 +99,7 @@ impl Args {
             settings.trial.duration_s = number("duration", text, "a number")?;
         }
         if let Some(text) = &self.fitness {
-            settings.trial.fitness = text.parse()?;
+            settings.trial.fitness = Fitness::named("fitness", text)?;
         }
         let mut changes = Vec::new();
         for text in &self.set {

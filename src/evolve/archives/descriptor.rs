@@ -1,71 +1,23 @@
 //! Descriptors: numbers that distinguish kinds of behaviour.
 
-use serde::{Deserialize, Serialize};
-
-use crate::schema::{Choice, Choices};
+use crate::schema::{Choices, choices};
 use crate::score::Evaluation;
 
-/// A number that describes how an agent moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Descriptor {
-    /// Mean height of the limbs above the surface below the middle one.
-    BodyHeight,
-    /// Mean distance from the middle of the stairs.
-    Sideways,
-    /// Energy per metre of progress.
-    EnergyPerMetre,
-    /// Share of limbs that touch something.
-    ContactDuty,
-    /// Frequency of the motion.
-    Frequency,
-}
-
-impl Choices for Descriptor {
-    const OPTIONS: &'static [Self] = &Self::ALL;
-
-    fn choice(self) -> Choice {
-        let about = match self {
-            Self::BodyHeight => "Mean height of the snake over the treads.",
-            Self::Sideways => "Mean distance from the middle of the stairs.",
-            Self::EnergyPerMetre => "Energy used per metre forward.",
-            Self::ContactDuty => "Mean share of limbs that touch something.",
-            Self::Frequency => "How often the motion repeats per second.",
-        };
-        Choice::new(self.name(), self.label(), about)
+choices! {
+    /// A number that describes how an agent moves.
+    pub enum Descriptor {
+        BodyHeight = "body_height", "Height over the treads (m)", "Mean height of the snake over the treads.";
+        Sideways = "sideways", "Distance from the middle (m)", "Mean distance from the middle of the stairs.";
+        EnergyPerMetre = "energy_per_metre", "Energy per metre (J/m)", "Energy used per metre forward.";
+        ContactDuty = "contact_duty", "Share of limbs in contact", "Mean share of limbs that touch something.";
+        Frequency = "frequency", "Gait frequency (Hz)", "How often the motion repeats per second.";
     }
 }
 
 impl Descriptor {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::BodyHeight,
-        Self::Sideways,
-        Self::EnergyPerMetre,
-        Self::ContactDuty,
-        Self::Frequency,
-    ];
-
-    /// The name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::BodyHeight => "body_height",
-            Self::Sideways => "sideways",
-            Self::EnergyPerMetre => "energy_per_metre",
-            Self::ContactDuty => "contact_duty",
-            Self::Frequency => "frequency",
-        }
-    }
-
     /// The label of its axis, with the unit.
     pub fn label(self) -> &'static str {
-        match self {
-            Self::BodyHeight => "Height over the treads (m)",
-            Self::Sideways => "Distance from the middle (m)",
-            Self::EnergyPerMetre => "Energy per metre (J/m)",
-            Self::ContactDuty => "Share of limbs in contact",
-            Self::Frequency => "Gait frequency (Hz)",
-        }
+        self.choice().title
     }
 
     /// The values at both ends of its axis. Values beyond belong to the outermost cells.

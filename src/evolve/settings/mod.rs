@@ -19,11 +19,12 @@ pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
 pub use strategy_kind::StrategyInfo;
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 use crate::check::Invalid;
 use crate::genome::{GenomeSpace, LARGEST_GENOME_TORQUES};
-use crate::schema::{self, Choice, Choices, Section, SettingGroup, Walk, choice, whole};
+use crate::schema::{
+    self, Section, SettingGroup, Walk, choice, named_by_info, setting_group, settings, whole,
+};
 use crate::score::Trial;
 use strategy_kind::strategy_kinds;
 
@@ -39,28 +40,28 @@ pub struct Settings {
     pub evolution: EvolutionSettings,
 }
 
-/// The search: the strategy, its length, and the settings of all strategies.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct EvolutionSettings {
-    /// The strategy.
-    pub strategy: StrategyKind,
-    /// Individuals per generation. The report simulated 500 to 1000. CMA-ES with restarts
-    /// begins with this size and has larger generations later.
-    pub population: u32,
-    /// Generations in a run. The report has six. Population times generations is the
-    /// budget of evaluations; a strategy with larger generations has fewer of them.
-    pub generations: u32,
-    /// The report's method.
-    pub halving: HalvingSettings,
-    /// The genetic algorithm, which also makes the children of novelty search.
-    pub ga: GaSettings,
-    /// CMA-ES.
-    pub cma_es: CmaEsSettings,
-    /// MAP-Elites.
-    pub map_elites: MapElitesSettings,
-    /// Novelty search.
-    pub novelty: NoveltySettings,
+setting_group! {
+    /// The search: the strategy, its length, and the settings of all strategies.
+    pub struct EvolutionSettings {
+        /// The strategy.
+        strategy: StrategyKind = StrategyKind::Halving;
+        /// Individuals per generation. The report simulated 500 to 1000. CMA-ES with restarts
+        /// begins with this size and has larger generations later.
+        population: u32 = 500;
+        /// Generations in a run. The report has six. Population times generations is the
+        /// budget of evaluations; a strategy with larger generations has fewer of them.
+        generations: u32 = 6;
+        /// The report's method.
+        halving: HalvingSettings = HalvingSettings::default();
+        /// The genetic algorithm, which also makes the children of novelty search.
+        ga: GaSettings = GaSettings::default();
+        /// CMA-ES.
+        cma_es: CmaEsSettings = CmaEsSettings::default();
+        /// MAP-Elites.
+        map_elites: MapElitesSettings = MapElitesSettings::default();
+        /// Novelty search.
+        novelty: NoveltySettings = NoveltySettings::default();
+    }
 }
 
 strategy_kinds! {
@@ -128,66 +129,27 @@ strategy_kinds! {
     };
 }
 
-impl StrategyKind {
-    /// The name in files; flags may write - for _.
-    pub fn name(self) -> &'static str {
-        self.info().name
-    }
-
-    /// The name at the head of a list or a chart.
-    pub fn title(self) -> &'static str {
-        self.info().title
-    }
-
-    /// A sentence about how it searches.
-    pub fn words(self) -> &'static str {
-        self.info().words
-    }
-}
-
-impl fmt::Display for StrategyKind {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.name())
-    }
-}
-
-impl Default for EvolutionSettings {
-    fn default() -> Self {
-        Self {
-            strategy: StrategyKind::Halving,
-            population: 500,
-            generations: 6,
-            halving: HalvingSettings::default(),
-            ga: GaSettings::default(),
-            cma_es: CmaEsSettings::default(),
-            map_elites: MapElitesSettings::default(),
-            novelty: NoveltySettings::default(),
-        }
-    }
-}
+named_by_info!(StrategyKind);
 
 impl SettingGroup for EvolutionSettings {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let Self { strategy, population, generations, halving, ga, cma_es, map_elites, novelty } =
             self;
         walk.section(Self::RUN);
-        let row = whole("population", "Population", 1..=LARGEST_POPULATION)
+        let sizes = whole("Population", 1..=LARGEST_POPULATION)
             .hint("Number of snakes in a generation. More find better solutions, but take longer");
-        let row = if strategy.info().is_budget_driven { row.fixed(cma_es::LEARNED) } else { row };
-        walk.setting(row, population);
-        walk.setting(
-            whole("generations", "Generations", 1..=10_000).hint(
-                "Number of generations in a run. Population times generations limits the evaluations",
-            ),
-            generations,
-        );
+        let is_learned = strategy.info().is_budget_driven;
+        settings! { walk,
+            population: if is_learned { sizes.fixed(cma_es::LEARNED) } else { sizes };
+            generations: whole("Generations", 1..=10_000)
+                .hint("Number of generations in a run. Population times generations limits the evaluations");
+        }
         walk.section(Self::STRATEGY);
-        walk.setting(
-            choice("strategy", "Strategy")
+        settings! { walk,
+            strategy: choice("Strategy")
                 .hint("Search algorithm")
-                .fixed("Takes effect with the next run, because another strategy cannot use the current state."),
-            strategy,
-        );
+                .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
+        }
         let used = strategy.info().settings;
         let groups: [(&str, &mut dyn SettingGroup); 5] = [
             ("halving", halving),
@@ -200,14 +162,6 @@ impl SettingGroup for EvolutionSettings {
             walk.used_if(used.contains(&name));
             walk.group(name, group);
         }
-    }
-}
-
-impl Choices for StrategyKind {
-    const OPTIONS: &'static [Self] = &Self::ALL;
-
-    fn choice(self) -> Choice {
-        Choice::new(self.name(), self.title(), self.words())
     }
 }
 

@@ -14,7 +14,7 @@ pub struct ControllerInfo {
     pub name: &'static str,
     /// The name at the head of a list or a chart.
     pub title: &'static str,
-    /// A description in a few words.
+    /// A sentence about it.
     pub words: &'static str,
     /// The settings below `genome` that only matter to some kinds, and matter to this one.
     pub settings: &'static [&'static str],

@@ -25,7 +25,7 @@ pub struct Gait {
 const INFO: ControllerInfo = ControllerInfo {
     name: "gait",
     title: "Gait",
-    words: "periodic joint angles, followed by a servo that senses the joint",
+    words: "Periodic joint angles, followed by a servo that senses the joint.",
     settings: &[
         "wave.frequency_min_hz",
         "wave.frequency_max_hz",

@@ -19,6 +19,7 @@ use super::gene::GenomeShape;
 use super::kind::ControllerKind;
 use super::space::GenomeSpace;
 use crate::check::Invalid;
+use crate::schema::named_by_info;
 use encoding::ControllerEncoding;
 
 /// Makes the enum of all kinds of genes from one line for each kind.
@@ -65,22 +66,9 @@ registry! {
     Gait(Gait),
 }
 
+named_by_info!(ControllerKind);
+
 impl ControllerKind {
-    /// The name in flags and files.
-    pub fn name(self) -> &'static str {
-        self.info().name
-    }
-
-    /// The name at the head of a list or a chart.
-    pub fn title(self) -> &'static str {
-        self.info().title
-    }
-
-    /// A description in a few words.
-    pub fn words(self) -> &'static str {
-        self.info().words
-    }
-
     /// Whether a setting below `genome`, by its path there, matters to this kind. Settings that no kind names
     /// matter to all.
     pub fn uses(self, setting: &str) -> bool {

@@ -55,7 +55,7 @@ impl TorqueSignals {
 const INFO: ControllerInfo = ControllerInfo {
     name: "signal",
     title: "Signal",
-    words: "free torque signals, point by point, as in the report",
+    words: "Free torque signals, point by point, as in the report.",
     settings: &["torque_range_nm", "torque_step_nm", "points_per_s"],
 };
 

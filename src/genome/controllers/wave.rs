@@ -184,7 +184,7 @@ impl Waves {
 const INFO: ControllerInfo = ControllerInfo {
     name: "wave",
     title: "Wave",
-    words: "periodic torques: a wave per joint axis, one frequency",
+    words: "Periodic torques: a wave per joint axis, one frequency.",
     settings: &[
         "torque_range_nm",
         "wave.frequency_min_hz",

@@ -3,324 +3,152 @@
 use super::VerifyError;
 use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::save::{load_preset, shipped_presets};
+use crate::schema::Choices;
 use crate::score::Fitness;
 
-/// A case: description, seed, population, generations, and changes to the preset `report`.
-type Case = (&'static str, u64, u32, u32, &'static [(&'static str, &'static str)]);
+/// A case: its description; seed, population and generations; and its changes to the preset `report`, as `--set` takes
+/// them.
+type Case = (&'static str, [u32; 3], &'static str);
 
 const CASES: &[Case] = &[
-    ("report, 3 generations of 40, seed 1", 1, 40, 3, &[]),
-    ("the same with seed 2", 2, 40, 3, &[]),
+    ("report, 3 generations of 40, seed 1", [1, 40, 3], ""),
+    ("the same with seed 2", [2, 40, 3], ""),
     (
         "120 steps a second, 8 substeps, moon gravity, 30 points a second",
-        1,
-        40,
-        3,
-        &[
-            ("steps_per_s", "120"),
-            ("substeps", "8"),
-            ("gravity_m_s2", "1.62"),
-            ("genome.points_per_s", "30"),
-        ],
+        [1, 40, 3],
+        "steps_per_s=120; substeps=8; gravity_m_s2=1.62; genome.points_per_s=30",
     ),
     (
         "bouncy ice, soft undamped joints, seven limbs",
-        1,
-        40,
-        3,
-        &[
-            ("surface.friction", "0.05"),
-            ("surface.bounce", "0.8"),
-            ("joint_damping_nms_per_rad", "0"),
-            ("joint_cfm_m_s_per_n", "0.0001"),
-            ("agent.limbs", "7"),
-        ],
+        [1, 40, 3],
+        "surface.friction=0.05; surface.bounce=0.8; joint_damping_nms_per_rad=0; joint_cfm_m_s_per_n=0.0001; \
+         agent.limbs=7",
     ),
     (
         "stairs that slip, a soft damping ground, a squishy snake of unlike parts, steps climbed",
-        1,
-        40,
-        3,
-        &[
-            ("surface.slip_m_s_per_n", "0.01"),
-            ("surface.bounce", "0.4"),
-            ("surface.bounce_velocity_m_s", "1"),
-            ("ground.soft_erp", "0.5"),
-            ("ground.soft_cfm_m_s_per_n", "0.003"),
-            ("ground.dampen_per_s", "0.5"),
-            ("trial.fitness", "steps_climbed"),
-            ("skin.soft_cfm_m_s_per_n", "0.001"),
-            ("limb_length_m", "[1, 2, 2, 2, 1.5]"),
-            ("agent.density_kg_m3", "[2, 2, 3, 2, 2]"),
-            ("agent.bend_limit_rad", "0.9"),
-        ],
+        [1, 40, 3],
+        "surface.slip_m_s_per_n=0.01; surface.bounce=0.4; surface.bounce_velocity_m_s=1; ground.soft_erp=0.5; \
+         ground.soft_cfm_m_s_per_n=0.003; ground.dampen_per_s=0.5; trial.fitness=steps_climbed; \
+         skin.soft_cfm_m_s_per_n=0.001; limb_length_m=[1, 2, 2, 2, 1.5]; agent.density_kg_m3=[2, 2, 3, 2, 2]; \
+         agent.bend_limit_rad=0.9",
     ),
-    ("bouncing stairs", 3, 6, 2, &[("surface.bounce", "0.5"), ("first_riser_y_m", "-1.5")]),
-    (
-        "springy stairs",
-        3,
-        6,
-        2,
-        &[("surface.bounce_velocity_m_s", "2"), ("first_riser_y_m", "-1.5")],
-    ),
+    ("bouncing stairs", [3, 6, 2], "surface.bounce=0.5; first_riser_y_m=-1.5"),
+    ("springy stairs", [3, 6, 2], "surface.bounce_velocity_m_s=2; first_riser_y_m=-1.5"),
     (
         "soft stairs",
-        3,
-        6,
-        2,
-        &[
-            ("surface.soft_cfm_m_s_per_n", "0.002"),
-            ("surface.soft_erp", "0.4"),
-            ("first_riser_y_m", "-1.5"),
-        ],
+        [3, 6, 2],
+        "surface.soft_cfm_m_s_per_n=0.002; surface.soft_erp=0.4; first_riser_y_m=-1.5",
     ),
-    (
-        "slipping stairs",
-        3,
-        6,
-        2,
-        &[("surface.slip_m_s_per_n", "0.005"), ("first_riser_y_m", "-1.5")],
-    ),
-    ("damping stairs", 3, 6, 2, &[("surface.dampen_per_s", "0.6"), ("first_riser_y_m", "-1.5")]),
-    ("ice on the ground only", 3, 6, 2, &[("ground.friction", "0.03"), ("ground.bounce", "0.2")]),
+    ("slipping stairs", [3, 6, 2], "surface.slip_m_s_per_n=0.005; first_riser_y_m=-1.5"),
+    ("damping stairs", [3, 6, 2], "surface.dampen_per_s=0.6; first_riser_y_m=-1.5"),
+    ("ice on the ground only", [3, 6, 2], "ground.friction=0.03; ground.bounce=0.2"),
     (
         "a slipping, springy ground",
-        3,
-        6,
-        2,
-        &[("ground.slip_m_s_per_n", "0.01"), ("ground.bounce_velocity_m_s", "1")],
+        [3, 6, 2],
+        "ground.slip_m_s_per_n=0.01; ground.bounce_velocity_m_s=1",
     ),
-    (
-        "a rubber skin",
-        3,
-        6,
-        2,
-        &[("skin.friction", "2"), ("skin.bounce", "0.6"), ("skin.soft_erp", "0.5")],
-    ),
-    ("a soft skin", 3, 6, 2, &[("skin.soft_cfm_m_s_per_n", "0.002")]),
-    ("two limbs", 3, 6, 2, &[("agent.limbs", "2")]),
-    ("three limbs, no stairs", 3, 6, 2, &[("agent.limbs", "3"), ("stairs.steps", "0")]),
-    ("twelve limbs, one step", 3, 6, 2, &[("agent.limbs", "12"), ("stairs.steps", "1")]),
+    ("a rubber skin", [3, 6, 2], "skin.friction=2; skin.bounce=0.6; skin.soft_erp=0.5"),
+    ("a soft skin", [3, 6, 2], "skin.soft_cfm_m_s_per_n=0.002"),
+    ("two limbs", [3, 6, 2], "agent.limbs=2"),
+    ("three limbs, no stairs", [3, 6, 2], "agent.limbs=3; stairs.steps=0"),
+    ("twelve limbs, one step", [3, 6, 2], "agent.limbs=12; stairs.steps=1"),
     (
         "a hundred low steps",
-        3,
-        6,
-        2,
-        &[
-            ("stairs.steps", "100"),
-            ("rise_m", "0.1"),
-            ("tread_m", "0.3"),
-            ("first_riser_y_m", "-2"),
-        ],
+        [3, 6, 2],
+        "stairs.steps=100; rise_m=0.1; tread_m=0.3; first_riser_y_m=-2",
     ),
     (
         "a short landing, a wide stair",
-        3,
-        6,
-        2,
-        &[
-            ("landing_m", "2"),
-            ("stairs.width_m", "9"),
-            ("stairs.steps", "1"),
-            ("first_riser_y_m", "-1.5"),
-        ],
+        [3, 6, 2],
+        "landing_m=2; stairs.width_m=9; stairs.steps=1; first_riser_y_m=-1.5",
     ),
     (
         "limbs of unlike size",
-        3,
-        6,
-        2,
-        &[("limb_width_m", "[1, 1.2, 1, 1, 0.8]"), ("limb_height_m", "[0.8, 1, 1, 1, 1.1]")],
+        [3, 6, 2],
+        "limb_width_m=[1, 1.2, 1, 1, 0.8]; limb_height_m=[0.8, 1, 1, 1, 1.1]",
     ),
     (
         "joints of unlike limits and torques",
-        3,
-        6,
-        2,
-        &[
-            ("agent.bend_limit_rad", "[0.5, 1, 1, 2.9]"),
-            ("agent.twist_limit_rad", "[1, 0, 1, 0.2]"),
-            ("max_bend_torque_nm", "[1000, 500, 1000, 100]"),
-            ("max_twist_torque_nm", "[300, 1000, 0, 1000]"),
-        ],
+        [3, 6, 2],
+        "agent.bend_limit_rad=[0.5, 1, 1, 2.9]; agent.twist_limit_rad=[1, 0, 1, 0.2]; \
+         max_bend_torque_nm=[1000, 500, 1000, 100]; max_twist_torque_nm=[300, 1000, 0, 1000]",
     ),
     (
         "joints of unlike damping and softness",
-        3,
-        6,
-        2,
-        &[
-            ("joint_damping_nms_per_rad", "[0, 30, 100, 10]"),
-            ("joint_cfm_m_s_per_n", "[0, 0.00001, 0.0001, 0]"),
-            ("angular_damping_per_s", "2"),
-        ],
+        [3, 6, 2],
+        "joint_damping_nms_per_rad=[0, 30, 100, 10]; joint_cfm_m_s_per_n=[0, 0.00001, 0.0001, 0]; \
+         angular_damping_per_s=2",
     ),
-    ("a density of its own for all", 3, 6, 2, &[("agent.density_kg_m3", "3")]),
+    ("a density of its own for all", [3, 6, 2], "agent.density_kg_m3=3"),
     (
         "a thousand steps a second, one substep",
-        3,
-        4,
-        1,
-        &[("steps_per_s", "1000"), ("substeps", "1"), ("trial.duration_s", "1")],
+        [3, 4, 1],
+        "steps_per_s=1000; substeps=1; trial.duration_s=1",
     ),
-    ("twenty steps a second", 3, 6, 2, &[("steps_per_s", "20"), ("substeps", "8")]),
-    ("from elsewhere, for longer", 3, 6, 2, &[("start_y_m", "2"), ("trial.duration_s", "6.03")]),
+    ("twenty steps a second", [3, 6, 2], "steps_per_s=20; substeps=8"),
+    ("from elsewhere, for longer", [3, 6, 2], "start_y_m=2; trial.duration_s=6.03"),
     (
         "narrow limits of health",
-        3,
-        20,
-        1,
-        &[
-            ("joint_drift_m", "0.01"),
-            ("speed_m_s", "8"),
-            ("arena_half_width_m", "2"),
-            ("arena_back_m", "13"),
-        ],
+        [3, 20, 1],
+        "joint_drift_m=0.01; speed_m_s=8; arena_half_width_m=2; arena_back_m=13",
     ),
     (
         "other genomes",
-        3,
-        6,
-        2,
-        &[
-            ("torque_range_nm", "400"),
-            ("torque_step_nm", "50"),
-            ("bend_limits_rad", "[0.3, 0.7]"),
-            ("twist_limits_rad", "[0.4]"),
-            ("density_max_kg_m3", "8"),
-            ("density_min_kg_m3", "1"),
-        ],
+        [3, 6, 2],
+        "torque_range_nm=400; torque_step_nm=50; bend_limits_rad=[0.3, 0.7]; twist_limits_rad=[0.4]; \
+         density_max_kg_m3=8; density_min_kg_m3=1",
     ),
     (
         "halving, one parent, five generations",
-        3,
-        8,
-        5,
-        &[("parents", "1"), ("mutation_range_nm", "300"), ("mutation_decay", "0.8")],
+        [3, 8, 5],
+        "parents=1; mutation_range_nm=300; mutation_decay=0.8",
     ),
-    (
-        "waves, halving",
-        3,
-        6,
-        3,
-        &[("controller", "wave"), ("harmonics", "2"), ("frequency_max_hz", "2")],
-    ),
-    ("gaits, halving", 3, 6, 3, &[("controller", "gait"), ("angle_range_rad", "1.2")]),
-    (
-        "gaits, genetic algorithm",
-        3,
-        12,
-        4,
-        &[("controller", "gait"), ("strategy", "ga"), ("frequency_min_hz", "0.5")],
-    ),
+    ("waves, halving", [3, 6, 3], "controller=wave; harmonics=2; frequency_max_hz=2"),
+    ("gaits, halving", [3, 6, 3], "controller=gait; angle_range_rad=1.2"),
+    ("gaits, genetic algorithm", [3, 12, 4], "controller=gait; strategy=ga; frequency_min_hz=0.5"),
     (
         "signals, genetic algorithm by rank",
-        3,
-        12,
-        4,
-        &[
-            ("strategy", "ga"),
-            ("selection", "rank"),
-            ("tournament", "2"),
-            ("crossover", "one_point"),
-            ("crossover_share", "0.9"),
-            ("mutation", "uniform"),
-            ("ga.step", "0.2"),
-            ("cooling", "0.8"),
-            ("elites", "1"),
-        ],
+        [3, 12, 4],
+        "strategy=ga; selection=rank; tournament=2; crossover=one_point; crossover_share=0.9; \
+         mutation=uniform; ga.step=0.2; cooling=0.8; elites=1",
     ),
     (
         "gaits, CMA-ES",
-        3,
-        8,
-        5,
-        &[
-            ("controller", "gait"),
-            ("strategy", "cma_es"),
-            ("cma_es.step", "0.2"),
-            ("newborns", "5"),
-            ("stiffness_min_nm_per_rad", "100"),
-            ("stiffness_max_nm_per_rad", "600"),
-            ("servo_damping_nms_per_rad", "10"),
-        ],
+        [3, 8, 5],
+        "controller=gait; strategy=cma_es; cma_es.step=0.2; newborns=5; stiffness_min_nm_per_rad=100; \
+         stiffness_max_nm_per_rad=600; servo_damping_nms_per_rad=10",
     ),
     (
         "short signals, CMA-ES without bad examples",
-        3,
-        8,
-        5,
-        &[
-            ("strategy", "cma_es"),
-            ("genome.points_per_s", "1"),
-            ("active", "false"),
-            ("restarts", "ipop"),
-        ],
+        [3, 8, 5],
+        "strategy=cma_es; genome.points_per_s=1; active=false; restarts=ipop",
     ),
-    ("long signals, CMA-ES", 3, 8, 5, &[("strategy", "cma_es"), ("restarts", "none")]),
-    (
-        "waves, MAP-Elites",
-        3,
-        20,
-        5,
-        &[("controller", "wave"), ("strategy", "map_elites"), ("map_elites.step", "0.1")],
-    ),
+    ("long signals, CMA-ES", [3, 8, 5], "strategy=cma_es; restarts=none"),
+    ("waves, MAP-Elites", [3, 20, 5], "controller=wave; strategy=map_elites; map_elites.step=0.1"),
     (
         "gaits, MAP-Elites with another archive",
-        3,
-        20,
-        5,
-        &[
-            ("controller", "gait"),
-            ("strategy", "map_elites"),
-            ("map_elites.x", "contact_duty"),
-            ("map_elites.y", "frequency"),
-            ("map_elites.cells", "5"),
-            ("map_elites.line", "0.5"),
-            ("cma_share", "0.3"),
-            ("cma_step", "0.3"),
-        ],
+        [3, 20, 5],
+        "controller=gait; strategy=map_elites; map_elites.x=contact_duty; map_elites.y=frequency; \
+         map_elites.cells=5; map_elites.line=0.5; cma_share=0.3; cma_step=0.3",
     ),
-    ("gaits, novelty", 3, 12, 4, &[("controller", "gait"), ("strategy", "novelty")]),
+    ("gaits, novelty", [3, 12, 4], "controller=gait; strategy=novelty"),
     (
         "waves, pure novelty",
-        3,
-        12,
-        4,
-        &[
-            ("controller", "wave"),
-            ("strategy", "novelty"),
-            ("novelty.weight", "1"),
-            ("neighbours", "3"),
-            ("remembered", "2"),
-            ("archive_limit", "5"),
-            ("novelty.first", "sideways"),
-            ("novelty.second", "energy_per_metre"),
-        ],
+        [3, 12, 4],
+        "controller=wave; strategy=novelty; novelty.weight=1; neighbours=3; remembered=2; archive_limit=5; \
+         novelty.first=sideways; novelty.second=energy_per_metre",
     ),
-    ("gaits, random", 3, 12, 2, &[("controller", "gait"), ("strategy", "random")]),
+    ("gaits, random", [3, 12, 2], "controller=gait; strategy=random"),
     (
         "the mean of three trials, less what energy costs",
-        3,
-        6,
-        2,
-        &[("controller", "gait"), ("repeats.trials", "3"), ("energy_cost_per_kj", "0.1")],
+        [3, 6, 2],
+        "controller=gait; repeats.trials=3; energy_cost_per_kj=0.1",
     ),
     (
         "the worst of three trials",
-        3,
-        6,
-        2,
-        &[
-            ("controller", "gait"),
-            ("repeats.trials", "3"),
-            ("counts", "worst"),
-            ("repeats.off.friction", "0.5"),
-            ("repeats.off.rise", "0.3"),
-            ("repeats.off.density", "0.3"),
-            ("repeats.off.start_m", "1"),
-            ("repeats.off.turn_deg", "20"),
-        ],
+        [3, 6, 2],
+        "controller=gait; repeats.trials=3; counts=worst; repeats.off.friction=0.5; repeats.off.rise=0.3; \
+         repeats.off.density=0.3; repeats.off.start_m=1; repeats.off.turn_deg=20",
     ),
 ];
 
@@ -333,14 +161,16 @@ pub(super) fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
     };
     let report = load_preset("report")?.settings;
     let mut plans = Vec::new();
-    for (what, seed, population, generations, changes) in CASES {
-        let mut settings = with_fields(&report, changes.iter().copied())?;
-        sized(&mut settings, *population, *generations);
+    for &(what, [seed, population, generations], changes) in CASES {
+        let changes = changes.split("; ").filter(|change| !change.is_empty());
+        let changes = changes.map(|change| change.split_once('=').unwrap_or((change, "")));
+        let mut settings = with_fields(&report, changes)?;
+        sized(&mut settings, population, generations);
         settings.check()?;
-        plans.push(((*what).to_owned(), RunPlan::new("verify", *seed, settings)));
+        plans.push((what.to_owned(), RunPlan::new("verify", seed.into(), settings)));
     }
     // Each has its own seed: presets that differ only in the size of their runs would compute the same bits.
-    for (fitness, seed) in Fitness::ALL.into_iter().zip(100..) {
+    for (fitness, seed) in Fitness::OPTIONS.iter().copied().zip(100..) {
         let mut settings = report.clone();
         settings.trial.fitness = fitness;
         sized(&mut settings, 6, 2);

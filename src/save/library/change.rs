@@ -86,8 +86,7 @@ pub fn rename(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
     let SavePlace::Champion(from) = place else {
         return Err(refused(place, "only a champion's file can be renamed"));
     };
-    let invalid = |source| SaveError::Invalid { path: from.clone(), source };
-    check_entry_name(name).map_err(invalid)?;
+    check_entry_name(name).map_err(SaveError::invalid(from))?;
     let to = from.with_file_name(format!("{name}.{ENDING}"));
     move_new(from, &to)?;
     Ok(FileStep::Renamed { from: from.clone(), to })
@@ -137,8 +136,7 @@ fn move_away(saves: &SavesFolder, path: &Path) -> Result<FileStep, SaveError> {
 
 /// Moves a file or folder into the hidden folder within `folder`.
 fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
-    let unreadable = |source| SaveError::Unreadable { path: path.to_owned(), source };
-    let is_folder = fs::symlink_metadata(path).map_err(unreadable)?.is_dir();
+    let is_folder = fs::symlink_metadata(path).map_err(SaveError::unreadable(path))?.is_dir();
     let lock = if is_folder { Some(Lock::take(path, "the library")?) } else { None };
     let bin = SavesFolder::within_run(folder, DELETED)?;
     // Tested once when the folder is created; later the move itself fails if it cannot be written.

@@ -130,7 +130,7 @@ pub fn text_of_shipped(name: &str) -> Result<&'static str, SaveError> {
 
 /// The text of a champion's file, unless it is a link.
 pub fn text_of_file(path: &Path) -> Result<String, SaveError> {
-    refuse_link(path).map_err(|source| SaveError::Unreadable { path: path.to_owned(), source })?;
+    refuse_link(path).map_err(SaveError::unreadable(path))?;
     read_text(path)
 }
 

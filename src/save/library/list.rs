@@ -66,7 +66,7 @@ pub struct LibraryEntry {
 /// The folder cannot be read.
 pub fn list(saves: &SavesFolder) -> Result<Vec<LibraryEntry>, SaveError> {
     let folder = saves.path();
-    let unreadable = |source| SaveError::Unreadable { path: folder.to_owned(), source };
+    let unreadable = SaveError::unreadable(folder);
     let mut entries = match fs::read_dir(folder) {
         // Entries that vanish meanwhile are left out.
         Ok(found) => found.flatten().filter_map(|found| entry_of(&found)).collect(),

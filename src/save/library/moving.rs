@@ -16,9 +16,8 @@ pub fn taken(path: &Path) -> SaveError {
 
 /// Moves a file or folder to a name that must not be taken.
 pub fn move_new(from: &Path, to: &Path) -> Result<(), SaveError> {
-    let unwritable = |source| SaveError::Unwritable { path: to.to_owned(), source };
-    let about = fs::symlink_metadata(from)
-        .map_err(|source| SaveError::Unreadable { path: from.to_owned(), source })?;
+    let unwritable = SaveError::unwritable(to);
+    let about = fs::symlink_metadata(from).map_err(SaveError::unreadable(from))?;
     if about.is_dir() {
         if to.symlink_metadata().is_ok() {
             return Err(taken(to));

@@ -71,8 +71,7 @@ fn export_run(run: &Path, to: &Path) -> Result<FileStep, SaveError> {
 /// # Errors
 /// The entry is unreadable, damaged, a link or of another kind; the run exists already; the copy cannot be written.
 pub fn import(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
-    let unreadable = |source| SaveError::Unreadable { path: from.to_owned(), source };
-    if fs::symlink_metadata(from).map_err(unreadable)?.is_dir() {
+    if fs::symlink_metadata(from).map_err(SaveError::unreadable(from))?.is_dir() {
         return import_run(saves, from);
     }
     let text = text_of_file(from)?;
@@ -113,19 +112,18 @@ fn copy_folder(from: &Path, into: &Path) -> Result<tempfile::TempDir, SaveError>
     builder.prefix(UNFINISHED);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    let unwritable = |source| SaveError::Unwritable { path: into.to_owned(), source };
-    let copy = builder.tempdir_in(into).map_err(unwritable)?;
+    let copy = builder.tempdir_in(into).map_err(SaveError::unwritable(into))?;
     copy_files(from, copy.path(), DEEPEST)?;
     Ok(copy)
 }
 
 fn copy_files(from: &Path, to: &Path, deeper: u32) -> Result<(), SaveError> {
-    let unreadable = |source| SaveError::Unreadable { path: from.to_owned(), source };
+    let unreadable = SaveError::unreadable(from);
     for found in fs::read_dir(from).map_err(unreadable)? {
         let found = found.map_err(unreadable)?;
         let (kind, name) = (found.file_type().map_err(unreadable)?, found.file_name());
         let copy: PathBuf = to.join(&name);
-        let unwritable = |source| SaveError::Unwritable { path: copy.clone(), source };
+        let unwritable = SaveError::unwritable(&copy);
         if name == LOCK_FILE || name.as_encoded_bytes().starts_with(b".") {
             continue;
         }
