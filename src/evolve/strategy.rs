@@ -56,8 +56,9 @@ pub trait Strategy: Send {
         Vec::new()
     }
 
-    /// Restores, after [`Self::resume`], what [`Self::parent_pool`] returned before: a state has the genes of the
-    /// parents, but not their ids. Ids that do not fit the state are ignored, and stay unknown.
+    /// Restores, after [`Self::resume`], the ids of parents, for a strategy whose state has only their genes. `_pool` has
+    /// those that [`Self::parent_pool`] returned before and that belong to the last generation, so a strategy with older
+    /// parents keeps ids in its state. Ids that do not fit the state are ignored, and stay unknown.
     fn restore_parents(&mut self, _pool: &[IndividualId]) {}
 
     /// The archive of elites, if it keeps one.

@@ -121,10 +121,9 @@ mod tests {
         };
         // A setting that has been added since acts only when it is set, and is not written down until then: its case
         // belongs to the next reference.
-        let written = ron::to_string(&report).expect("written");
-        let is_written = |path: &str| {
-            path.rsplit('.').next().is_some_and(|name| written.contains(&format!("{name}:")))
-        };
+        let written = serde_json::to_value(&report).expect("written");
+        let is_written =
+            |path: &str| written.pointer(&format!("/{}", path.replace('.', "/"))).is_some();
         let missing: Vec<&String> = unchanged
             .iter()
             .filter(|field| !changed(field) && is_written(&field.0))

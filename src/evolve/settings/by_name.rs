@@ -168,6 +168,18 @@ mod tests {
             settings.trial.ground = ground;
             let value = serde_json::to_value(&settings).expect("serializable");
             let mut names = serialized(&value, "");
+            // A setting that was added later is not written at its default. Its name is that of a field if reading
+            // accepts the name.
+            for (field, _) in fields(&settings) {
+                if !names.contains(&format!(".{field}")) {
+                    let mut value = value.clone();
+                    field.split('.').fold(&mut value, |value, name| &mut value[name]).take();
+                    let refusal = serde_json::from_value::<Settings>(value).err();
+                    let refusal = refusal.map(|error| error.to_string()).unwrap_or_default();
+                    assert!(!refusal.contains("unknown field"), "{field}: {refusal}");
+                    names.push(format!(".{field}"));
+                }
+            }
             names.sort();
             let listed = fields(&settings).into_iter().map(|(field, _)| format!(".{field}"));
             assert_eq!(listed.collect::<Vec<_>>(), names);
