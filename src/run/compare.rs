@@ -324,7 +324,7 @@ mod tests {
         let ga = &comparison.runs[1];
         assert_eq!(ga.run_hash, format!("{:016x}", experiment.run_hash()), "it is the run itself");
         assert_eq!(ga.curve.last().copied().flatten(), ga.best.map(|best| best.fitness));
-        assert_eq!(comparison.rows().len(), 6);
-        assert_eq!(comparison.text().lines().count(), 9);
+        assert_eq!(comparison.rows().len(), plans.len());
+        assert_eq!(comparison.text().lines().count(), plans.len() + 3);
     }
 }
