@@ -1,8 +1,7 @@
 //! Settings of novelty search.
 
 use super::LAYOUT;
-use super::ga::GaSettings;
-use super::size::GenomeSize;
+use super::size::{GenomeSize, LARGEST_STATE_GENES};
 use crate::check::{Invalid, within};
 use crate::evolve::archives::Descriptor;
 use crate::schema::{choice, number, setting_group, whole};
@@ -53,7 +52,7 @@ setting_group! {
 impl NoveltySettings {
     /// Checks that a generation fits into memory and can be compared.
     pub(super) fn check_size(population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
-        GaSettings::check_size(population, size)?;
+        size.check_population(population, LARGEST_STATE_GENES)?;
         // Each individual is compared with all others, and with the archive.
         within("evolution.population", population, 1..=10_000)
     }
