@@ -8,6 +8,7 @@ use std::error::Error;
 use std::ops::Range;
 use std::sync::OnceLock;
 
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
@@ -45,6 +46,11 @@ const FONT: &str = "sans-serif";
 const TITLE_PIXELS: u32 = 26;
 const TEXT_PIXELS: u32 = 18;
 
+/// The style of labels.
+fn text() -> TextStyle<'static> {
+    (FONT, TEXT_PIXELS).into_font().color(&INK)
+}
+
 /// Plots the means of all seeds over the generations, their mean with one standard deviation, and the report's means.
 ///
 /// # Errors
@@ -77,7 +83,7 @@ pub fn table1(table: &Table1, title: &str) -> Result<Picture, PlotError> {
             .light_line_style(WHITE)
             .bold_line_style(FAINT)
             .axis_style(INK)
-            .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
+            .label_style(text())
             .draw()?;
         for seed in &table.seeds {
             let line = (1..).map(f64::from).zip(&seed.means);
@@ -102,15 +108,20 @@ pub fn table1(table: &Table1, title: &str) -> Result<Picture, PlotError> {
             .draw_series(LineSeries::new(report, THEIRS.stroke_width(3)).point_size(4))?
             .label("the report's Table 1")
             .legend(sample(THEIRS));
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
-            .background_style(WHITE.mix(0.85))
-            .border_style(FAINT)
-            .label_font((FONT, TEXT_PIXELS).into_font().color(&INK))
-            .draw()?;
-        Ok(())
+        legend(&mut chart)
     })
+}
+
+/// Draws the names of a chart's series into its upper left corner.
+fn legend<'a, 'b: 'a>(chart: &mut Axes<'a, 'b>) -> Result<(), Box<dyn Error>> {
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE.mix(0.85))
+        .border_style(FAINT)
+        .label_font(text())
+        .draw()?;
+    Ok(())
 }
 
 /// Plots the commands to the bend axis of a champion's first joint, as in the report's Figure 4.
@@ -143,7 +154,7 @@ pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
             .light_line_style(WHITE)
             .bold_line_style(FAINT)
             .axis_style(INK)
-            .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
+            .label_style(text())
             .draw()?;
         chart.draw_series(LineSeries::new([(0.0, 0.0), (duration_s, 0.0)], INK.mix(0.4)))?;
         let line = LineSeries::new(points.clone(), OURS.stroke_width(2)).point_size(dot);
@@ -203,7 +214,7 @@ pub fn comparison(comparison: &Comparison) -> Result<Picture, PlotError> {
                 .light_line_style(WHITE)
                 .bold_line_style(FAINT)
                 .axis_style(INK)
-                .label_style((FONT, TEXT_PIXELS).into_font().color(&INK))
+                .label_style(text())
                 .draw()?;
             for (row, curve) in curves.iter().filter(|(row, _)| row.controller == *controller) {
                 let [red, green, blue] = row.strategy.info().color;
@@ -221,13 +232,7 @@ pub fn comparison(comparison: &Comparison) -> Result<Picture, PlotError> {
                     });
             }
             if column == 0 {
-                chart
-                    .configure_series_labels()
-                    .position(SeriesLabelPosition::UpperLeft)
-                    .background_style(WHITE.mix(0.85))
-                    .border_style(FAINT)
-                    .label_font((FONT, TEXT_PIXELS).into_font().color(&INK))
-                    .draw()?;
+                legend(&mut chart)?;
             }
         }
         Ok(())
@@ -297,6 +302,9 @@ fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let margin = ((most - least) * 0.06).max(0.5);
     least - margin..most + margin
 }
+
+type Axes<'a, 'b> =
+    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
 

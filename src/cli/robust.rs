@@ -13,6 +13,7 @@ use crate::run::headless::HeadlessError;
 use crate::run::progress_bar::with_bar;
 use crate::run::robust::{Robustness, Share, robustness};
 use crate::save::load_champion;
+use crate::schema;
 use crate::score::PerturbationRange;
 
 /// Runs a champion through perturbed trials and prints the shares.
@@ -23,7 +24,7 @@ pub fn robust(
     range: &PerturbationRange,
 ) -> Result<(), CliError> {
     within("trials", trials, 1..=1_000_000)?;
-    range.check()?;
+    schema::check(range)?;
     let champion = load_champion(file)?.champion;
     let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
     let (control, seed) = (cancel_on_interrupt(), args.seed()?);

@@ -3,14 +3,13 @@
 use std::error::Error;
 
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Area, Axis, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
-use super::{TEXT_PIXELS, TITLE_PIXELS, draw};
+use super::{Axes, TEXT_PIXELS, TITLE_PIXELS, draw, text};
 use crate::save::Picture;
 
 /// Size of every picture of a figure, in pixels.
@@ -98,7 +97,7 @@ pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
 
 /// Writes the legend from `top` down. Returns its lower end, in pixels.
 fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>> {
-    let text = (FONT, TEXT_PIXELS).into_font().color(&INK);
+    let text = text();
     let (mut x, mut y) = (MARGIN, top);
     let listed = figure.listed();
     for series in &listed {
@@ -145,14 +144,10 @@ fn color_of(role: Role) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-type Axes<'a, 'b> =
-    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-
 fn paint(
     area: &DrawingArea<BitMapBackend<'_>, Shift>,
     chart: &Chart,
 ) -> Result<(), Box<dyn Error>> {
-    let text = || (FONT, TEXT_PIXELS).into_font().color(&INK);
     let has_names = !chart.x.names.is_empty();
     let ends = |axis: &Axis| *axis.range.start()..*axis.range.end();
     let mut builder = ChartBuilder::on(area);

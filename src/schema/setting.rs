@@ -7,7 +7,7 @@ use super::value::SettingValue;
 use super::{Choice, Choices, PerPart};
 use crate::check::{Invalid, within};
 
-/// What the program knows of a setting, apart from its value.
+/// A setting: everything the program knows of it, apart from its value.
 #[derive(Debug, Clone, Copy)]
 pub struct Setting {
     /// The name of its field.
@@ -16,15 +16,15 @@ pub struct Setting {
     pub label: &'static str,
     /// Its unit; empty if it has none.
     pub unit: &'static str,
-    /// What it does to the snake or to the search.
+    /// Its effect on the snake or on the search.
     pub hint: &'static str,
-    /// What its values may be.
+    /// The type and range of its values.
     pub kind: SettingKind,
     /// Why it may not change during a run, as a sentence; none: it may.
     pub(super) fixed: Option<&'static str>,
 }
 
-/// What the values of a setting may be.
+/// The type and range of the values of a setting.
 #[derive(Debug, Clone, Copy)]
 pub enum SettingKind {
     /// A number; or, as the range says, one for each part of the snake, or none.
@@ -221,7 +221,7 @@ impl Setting {
         short.unwrap_or(name).replace('_', " ")
     }
 
-    /// What may be typed for one number or for the list; empty for a choice and a switch.
+    /// The texts for one number or for the list, in words; empty for a choice and a switch.
     pub fn range_in_words(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         match &self.kind {

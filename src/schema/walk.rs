@@ -27,7 +27,7 @@ pub trait SettingGroup {
     }
 }
 
-/// A setting with its value, and what holds there.
+/// A setting with its value, and whether it is used and may change.
 #[derive(Debug, Clone)]
 pub struct ListedSetting {
     /// The full dotted name, from the struct at which the walk began.
@@ -62,7 +62,7 @@ pub struct Walk<'a> {
     state: State,
 }
 
-/// What holds for the settings that come next, until the end of their group.
+/// State of a walk; it applies to the settings that come next, until the end of their group.
 #[derive(Clone, Copy)]
 struct State {
     section: Section,

@@ -1,7 +1,6 @@
 //! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
-use crate::check::Invalid;
-use crate::schema::{self, number, setting_group};
+use crate::schema::{number, setting_group};
 use crate::world::WorldPlan;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -46,14 +45,6 @@ setting_group! {
 }
 
 impl PerturbationRange {
-    /// Checks every field against its range.
-    ///
-    /// # Errors
-    /// The first that is out of range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        schema::check(self)
-    }
-
     /// Draws a perturbation.
     pub fn draw(&self, rng: &mut ChaCha8Rng) -> Perturbation {
         let mut draw = |range: f32| rng.random_range(-range..=range);
@@ -127,7 +118,7 @@ mod tests {
     #[test]
     fn a_range_that_allows_a_negative_factor_is_refused() {
         let range = PerturbationRange { friction: 1.5, ..PerturbationRange::default() };
-        let error = range.check().expect_err("refused").to_string();
+        let error = crate::schema::check(&range).expect_err("refused").to_string();
         assert_eq!(error, "friction is 1.5; allowed: 0 to 0.9");
     }
 }

@@ -43,10 +43,8 @@ setting_group! {
 impl CmaEsSettings {
     /// Checks that a generation fits into memory.
     pub(super) fn check_size(population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
-        let genes = size.coordinates();
-        size.check_generation(population, genes)?;
         within("evolution.population", population, 2..=LARGEST_POPULATION)?;
-        size.check_count("evolution.population", population, genes, LARGEST_SAMPLE)
+        size.check_population(population, LARGEST_SAMPLE)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Settings of the genetic algorithm.
 
-use super::size::{GenomeSize, LARGEST_POPULATION, LARGEST_STATE_GENES};
-use crate::check::Invalid;
+use super::size::LARGEST_POPULATION;
 use crate::schema::{choice, choices, number, setting_group, whole};
 
 setting_group! {
@@ -81,14 +80,5 @@ choices! {
         Gaussian = "gaussian", "Gaussian", "Mostly small steps, occasionally a large one.";
         /// Their standard deviation is that of the Gaussian ones.
         Uniform = "uniform", "Uniform", "Steps of any length up to a limit, all equally likely.";
-    }
-}
-
-impl GaSettings {
-    /// Checks that a generation and what is known of the one before fit into memory.
-    pub(super) fn check_size(population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
-        let genes = size.coordinates();
-        size.check_generation(population, genes)?;
-        size.check_count("evolution.population", population, genes, LARGEST_STATE_GENES)
     }
 }

@@ -1,6 +1,6 @@
 //! Settings of the report's method.
 
-use super::size::{GenomeSize, LARGEST_POPULATION, LARGEST_STATE_GENES};
+use super::size::{GenomeSize, LARGEST_GENERATION_GENES, LARGEST_POPULATION, LARGEST_STATE_GENES};
 use crate::check::Invalid;
 use crate::schema::{number, setting_group, whole};
 
@@ -36,8 +36,9 @@ impl HalvingSettings {
 
     /// Checks that a generation and its parents fit into memory.
     pub(super) fn check_size(&self, population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
-        size.check_generation(population, size.genes())?;
+        let genes = size.genes();
+        size.check_count("evolution.population", population, genes, LARGEST_GENERATION_GENES)?;
         let parents = self.parents.min(population);
-        size.check_count("evolution.halving.parents", parents, size.genes(), LARGEST_STATE_GENES)
+        size.check_count("evolution.halving.parents", parents, genes, LARGEST_STATE_GENES)
     }
 }

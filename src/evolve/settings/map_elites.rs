@@ -66,11 +66,9 @@ setting_group! {
 impl MapElitesSettings {
     /// Checks that a generation and the archive fit into memory.
     pub(super) fn check_size(&self, population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
-        let genes = size.coordinates();
-        size.check_generation(population, genes)?;
-        size.check_count("evolution.population", population, genes, LARGEST_SAMPLE)?;
+        size.check_population(population, LARGEST_SAMPLE)?;
         let cells = self.cells * self.cells;
         let field = "evolution.map_elites.cells (squared)";
-        size.check_count(field, cells, genes, LARGEST_STATE_GENES)
+        size.check_count(field, cells, size.coordinates(), LARGEST_STATE_GENES)
     }
 }

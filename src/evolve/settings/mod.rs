@@ -15,7 +15,7 @@ pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
 pub use halving::HalvingSettings;
 pub use map_elites::MapElitesSettings;
 pub use novelty::NoveltySettings;
-pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
+pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE, LARGEST_STATE_GENES};
 pub use strategy_kind::StrategyInfo;
 
 use serde::{Deserialize, Serialize};
@@ -84,7 +84,9 @@ strategy_kinds! {
         words: "Parents are selected, crossed and mutated; the mutation step evolves as well.",
         color: [0x00, 0x9e, 0x73],
         settings: &["ga"],
-        check_size: |evolution, size| GaSettings::check_size(evolution.population, size),
+        check_size: |evolution, size| {
+            size.check_population(evolution.population, LARGEST_STATE_GENES)
+        },
         ..StrategyInfo::PLAIN
     };
     /// Covariance matrix adaptation.

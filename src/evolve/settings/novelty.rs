@@ -1,7 +1,6 @@
 //! Settings of novelty search.
 
-use super::ga::GaSettings;
-use super::size::GenomeSize;
+use super::size::{GenomeSize, LARGEST_STATE_GENES};
 use crate::check::{Invalid, within};
 use crate::evolve::archives::{Descriptor, FIXED_LAYOUT};
 use crate::schema::{choice, number, setting_group, whole};
@@ -52,7 +51,7 @@ setting_group! {
 impl NoveltySettings {
     /// Checks that a generation fits into memory and can be compared.
     pub(super) fn check_size(population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
-        GaSettings::check_size(population, size)?;
+        size.check_population(population, LARGEST_STATE_GENES)?;
         // Each individual is compared with all others, and with the archive.
         within("evolution.population", population, 1..=10_000)
     }

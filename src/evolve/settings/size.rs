@@ -8,7 +8,7 @@ pub const LARGEST_POPULATION: u32 = 100_000;
 /// Maximum number of coordinates in all candidates of one iteration of CMA-ES: 64 MiB.
 pub const LARGEST_SAMPLE: usize = 1 << 23;
 /// Maximum number of genes in one generation: 25 million torque points take 100 MB.
-const LARGEST_GENERATION_GENES: usize = 25_000_000;
+pub const LARGEST_GENERATION_GENES: usize = 25_000_000;
 /// Maximum number of genes in the state of a strategy. A checkpoint writes each in 12 to 20 characters.
 pub const LARGEST_STATE_GENES: usize = 2_000_000;
 
@@ -39,12 +39,12 @@ impl GenomeSize<'_> {
         self.space.controller.uses("points_per_s")
     }
 
-    /// Checks that a generation of this many individuals fits into memory.
+    /// Checks that a generation of this many points has at most `limit` coordinates.
     ///
     /// # Errors
-    /// It has too many genes.
-    pub fn check_generation(&self, population: u32, genes_each: usize) -> Result<(), Invalid> {
-        self.check_count("evolution.population", population, genes_each, LARGEST_GENERATION_GENES)
+    /// It has more.
+    pub fn check_population(&self, population: u32, limit: usize) -> Result<(), Invalid> {
+        self.check_count("evolution.population", population, self.coordinates(), limit)
     }
 
     /// Checks that this many individuals have at most `limit` genes together.

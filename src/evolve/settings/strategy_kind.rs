@@ -1,5 +1,6 @@
 //! A row of the list of strategies: the facts about a strategy that need no search.
 
+use super::size::LARGEST_GENERATION_GENES;
 use super::{EvolutionSettings, GenomeSize};
 use crate::check::Invalid;
 
@@ -40,7 +41,7 @@ impl StrategyInfo {
         has_archive: false,
         compared_generations: None,
         check_size: |evolution, size| {
-            size.check_generation(evolution.population, size.coordinates())
+            size.check_population(evolution.population, LARGEST_GENERATION_GENES)
         },
     };
 }

@@ -22,24 +22,22 @@ pub struct Gait {
     pub waves: Waves,
 }
 
-const INFO: ControllerInfo = ControllerInfo {
-    name: "gait",
-    title: "Gait",
-    words: "Periodic joint angles, followed by a servo that senses the joint.",
-    settings: &[
-        "wave.frequency_min_hz",
-        "wave.frequency_max_hz",
-        "wave.harmonics",
-        "wave.angle_range_rad",
-        "wave.stiffness_min_nm_per_rad",
-        "wave.stiffness_max_nm_per_rad",
-        "wave.servo_damping_nms_per_rad",
-    ],
-};
-
 impl ControllerEncoding for Gait {
     fn info() -> &'static ControllerInfo {
-        &INFO
+        &ControllerInfo {
+            name: "gait",
+            title: "Gait",
+            words: "Periodic joint angles, followed by a servo that senses the joint.",
+            settings: &[
+                "wave.frequency_min_hz",
+                "wave.frequency_max_hz",
+                "wave.harmonics",
+                "wave.angle_range_rad",
+                "wave.stiffness_min_nm_per_rad",
+                "wave.stiffness_max_nm_per_rad",
+                "wave.servo_damping_nms_per_rad",
+            ],
+        }
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {

@@ -52,16 +52,14 @@ impl TorqueSignals {
     }
 }
 
-const INFO: ControllerInfo = ControllerInfo {
-    name: "signal",
-    title: "Signal",
-    words: "Free torque signals, point by point, as in the report.",
-    settings: &["torque_range_nm", "torque_step_nm", "points_per_s"],
-};
-
 impl ControllerEncoding for TorqueSignals {
     fn info() -> &'static ControllerInfo {
-        &INFO
+        &ControllerInfo {
+            name: "signal",
+            title: "Signal",
+            words: "Free torque signals, point by point, as in the report.",
+            settings: &["torque_range_nm", "torque_step_nm", "points_per_s"],
+        }
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {

@@ -181,21 +181,19 @@ impl Waves {
     }
 }
 
-const INFO: ControllerInfo = ControllerInfo {
-    name: "wave",
-    title: "Wave",
-    words: "Periodic torques: a wave per joint axis, one frequency.",
-    settings: &[
-        "torque_range_nm",
-        "wave.frequency_min_hz",
-        "wave.frequency_max_hz",
-        "wave.harmonics",
-    ],
-};
-
 impl ControllerEncoding for Waves {
     fn info() -> &'static ControllerInfo {
-        &INFO
+        &ControllerInfo {
+            name: "wave",
+            title: "Wave",
+            words: "Periodic torques: a wave per joint axis, one frequency.",
+            settings: &[
+                "torque_range_nm",
+                "wave.frequency_min_hz",
+                "wave.frequency_max_hz",
+                "wave.harmonics",
+            ],
+        }
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::candidate::{RankedCandidate, check_floats};
 use super::eigen::{PrincipalAxes, dot};
 use super::rates::{CovarianceShape, LearningRates};
-use super::termination::{HistoryWindows, StopCriteria, StopReason, ValueHistory};
+use super::termination::{HistoryWindows, StopReason, ValueHistory};
 use crate::check::{Invalid, within};
 use crate::evolve::settings::{LARGEST_POPULATION, LARGEST_SAMPLE};
 use crate::evolve::strategies::search::normal;
@@ -174,19 +174,30 @@ impl Cma {
         HistoryWindows::new(self.mean.len(), self.population, self.iteration)
     }
 
+    /// The reason of the first criterion that is met (appendix B.3 of the tutorial).
     fn reason_to_stop(&self) -> Option<StopReason> {
-        let progress = StopCriteria {
-            iteration: self.iteration,
-            mean: &self.mean,
-            initial_step: self.initial_step,
-            step: self.step,
-            covariance_path: &self.covariance_path,
-            variances: self.variances().collect(),
-            axes: self.axes(),
-            history: &self.history,
-            windows: self.windows(),
-        };
-        progress.reason_to_stop()
+        let (axes, windows) = (self.axes(), self.windows());
+        let variances: Vec<f64> = self.variances().collect();
+        let shortest = 1e-12 * self.initial_step;
+        let has_short_steps = variances.iter().all(|v| self.step * v.sqrt() < shortest)
+            && self.covariance_path.iter().all(|x| self.step * x.abs() < shortest);
+        let mut coordinates = self.mean.iter().zip(&variances);
+        let has_idle_coordinate = coordinates.any(|(&m, v)| m == m + 0.2 * self.step * v.sqrt());
+        let axis = axes.axis(self.iteration as usize);
+        let is_idle_axis = self.mean.iter().zip(axis).all(|(&m, x)| m == m + 0.1 * self.step * x);
+        let range = self.history.range(windows.short);
+        let close = |(low, high): (f64, f64)| high - low.min(self.history.worst) < 1e-12;
+        let criteria = [
+            (axes.condition() > 1e14, StopReason::Condition),
+            (range.is_some_and(|(low, high)| low == high), StopReason::EqualValues),
+            (range.is_some_and(close), StopReason::CloseValues),
+            (self.history.stagnates(windows.long), StopReason::Stagnation),
+            (has_short_steps, StopReason::ShortSteps),
+            (self.step * axes.longest() > 1e4 * self.initial_step, StopReason::LongSteps),
+            (has_idle_coordinate, StopReason::CoordinateWithoutEffect),
+            (is_idle_axis, StopReason::AxisWithoutEffect),
+        ];
+        criteria.into_iter().find(|(met, _)| *met).map(|(_, reason)| reason)
     }
 
     fn check_candidates(&self, ranked: &[RankedCandidate]) -> Result<(), Invalid> {

@@ -1,11 +1,11 @@
-//! When a run of CMA-ES ends: the criteria of the tutorial (arXiv:1604.00772v2, appendix B.3).
+//! Why a run of CMA-ES ends, and the values by which that is decided: the criteria of the tutorial (arXiv:1604.00772v2,
+//! appendix B.3).
 
 use std::collections::VecDeque;
 
 use serde::{Deserialize, Serialize};
 
 use super::candidate::{RankedCandidate, check_floats, finite};
-use super::eigen::PrincipalAxes;
 use crate::check::{Invalid, within};
 
 /// Maximum number of iterations that the criteria look back.
@@ -44,7 +44,7 @@ pub struct ValueHistory {
     /// The median value of the same iterations.
     median: VecDeque<f64>,
     /// The worst value of the latest iteration.
-    worst: f64,
+    pub worst: f64,
 }
 
 impl ValueHistory {
@@ -71,14 +71,14 @@ impl ValueHistory {
     }
 
     /// The smallest and the largest best value of the latest `window` iterations, if there are any.
-    fn range(&self, window: usize) -> Option<(f64, f64)> {
+    pub fn range(&self, window: usize) -> Option<(f64, f64)> {
         let skipped = self.best.len().checked_sub(window)?;
         let latest = self.best.iter().skip(skipped);
         Some(latest.fold((f64::MAX, f64::MIN), |(low, high), &x| (low.min(x), high.max(x))))
     }
 
     /// Whether the latest 30 % of `window` iterations were no better than the first 30 %.
-    fn stagnates(&self, window: usize) -> bool {
+    pub fn stagnates(&self, window: usize) -> bool {
         let Some(skipped) = self.best.len().checked_sub(window) else {
             return false;
         };
@@ -102,7 +102,7 @@ fn median<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub struct HistoryWindows {
     /// For the question whether values still differ.
-    short: usize,
+    pub short: usize,
     /// For the question whether the run stagnates: the latest 20 %, but not too few. It grows by at most one per
     /// iteration, so that nothing older has to be stored.
     pub long: usize,
@@ -115,61 +115,5 @@ impl HistoryWindows {
         let unit = (30 * dimension).div_ceil(population as usize);
         let long = (120 + unit).max(iteration as usize / 5);
         Self { short: (10 + unit).min(LONGEST_HISTORY), long: long.min(LONGEST_HISTORY) }
-    }
-}
-
-/// The criteria with everything that they depend on.
-pub struct StopCriteria<'a> {
-    /// Iterations that have been learned from.
-    pub iteration: u32,
-    /// The centre of the distribution.
-    pub mean: &'a [f64],
-    /// The first overall standard deviation.
-    pub initial_step: f64,
-    /// The current overall standard deviation.
-    pub step: f64,
-    /// The evolution path of the covariance.
-    pub covariance_path: &'a [f64],
-    /// The diagonal of the covariance.
-    pub variances: Vec<f64>,
-    /// The principal axes of the covariance.
-    pub axes: PrincipalAxes,
-    /// The values of the latest iterations.
-    pub history: &'a ValueHistory,
-    /// Numbers of iterations to look back.
-    pub windows: HistoryWindows,
-}
-
-impl StopCriteria<'_> {
-    /// The reason of the first criterion that is met.
-    pub fn reason_to_stop(&self) -> Option<StopReason> {
-        let axis = self.axes.axis(self.iteration as usize);
-        let range = self.history.range(self.windows.short);
-        let close = |(low, high): (f64, f64)| high - low.min(self.history.worst) < 1e-12;
-        let criteria = [
-            (self.axes.condition() > 1e14, StopReason::Condition),
-            (range.is_some_and(|(low, high)| low == high), StopReason::EqualValues),
-            (range.is_some_and(close), StopReason::CloseValues),
-            (self.history.stagnates(self.windows.long), StopReason::Stagnation),
-            (self.has_short_steps(), StopReason::ShortSteps),
-            (self.step * self.axes.longest() > 1e4 * self.initial_step, StopReason::LongSteps),
-            (self.has_idle_coordinate(), StopReason::CoordinateWithoutEffect),
-            (self.is_idle_axis(&axis), StopReason::AxisWithoutEffect),
-        ];
-        criteria.into_iter().find(|(met, _)| *met).map(|(_, reason)| reason)
-    }
-
-    fn has_short_steps(&self) -> bool {
-        let limit = 1e-12 * self.initial_step;
-        self.variances.iter().all(|variance| self.step * variance.sqrt() < limit)
-            && self.covariance_path.iter().all(|x| self.step * x.abs() < limit)
-    }
-
-    fn has_idle_coordinate(&self) -> bool {
-        self.mean.iter().zip(&self.variances).any(|(&m, v)| m == m + 0.2 * self.step * v.sqrt())
-    }
-
-    fn is_idle_axis(&self, axis: &[f64]) -> bool {
-        self.mean.iter().zip(axis).all(|(&m, x)| m == m + 0.1 * self.step * x)
     }
 }
