@@ -1,0 +1,251 @@
+//! Tests of the run panel.
+
+use super::*;
+use crate::evolve::{HalvingSettings, StrategyKind};
+use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::state::current_run::prepared_run as run;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+/// Commands sent after `act`.
+fn sent(run: &CurrentRun, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+    let mut panel = EvolutionPanel::default();
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(theme::PANEL_WIDTH, 1600.0))
+        .build_ui_state(|ui, commands| panel.ui(ui, run, commands), Vec::new());
+    act(&mut harness);
+    harness.run();
+    harness.state().clone()
+}
+
+#[test]
+fn each_button_sends_its_command() {
+    let run = run();
+    for (label, command) in [
+        ("Start", Command::Run(RunCommand::Start)),
+        ("One generation", Command::Run(RunCommand::SingleGeneration)),
+        ("Reset", Command::Run(RunCommand::Reset)),
+    ] {
+        assert_eq!(sent(&run, |harness| harness.get_by_label(label).click()), [command]);
+    }
+}
+
+#[test]
+fn the_first_button_pauses_a_running_run() {
+    let mut run = run();
+    run.start().expect("a thread");
+    assert_eq!(
+        sent(&run, |harness| harness.get_by_label("Pause").click()),
+        [Command::Run(RunCommand::Pause)]
+    );
+}
+
+#[test]
+fn the_founder_of_the_next_run_can_be_removed() {
+    let mut run = run();
+    let champion = crate::save::shipped_champion().expect("well formed").champion;
+    run.start_next_from(&champion, "climber").expect("it fits");
+    let commands = sent(&run, |harness| {
+        assert!(harness.query_by_label("Starts from \"climber\"").is_some());
+        harness.get_by_label("Start from scratch").click();
+    });
+    assert_eq!(commands, [Command::Plan(PlanCommand::ForgetFounder)]);
+}
+
+#[test]
+fn a_valid_seed_is_sent_on_enter_and_an_invalid_one_is_not() {
+    let run = run();
+    let type_seed = |text: &'static str| {
+        sent(&run, move |harness| {
+            harness.get_by_label("Seed").focus();
+            harness.run();
+            harness.get_by_label("Seed").type_text(text);
+            harness.run();
+            harness.key_press(egui::Key::Enter);
+            harness.run();
+        })
+    };
+    assert_eq!(
+        type_seed("23"),
+        [Command::Plan(PlanCommand::SetSeed(23))],
+        "in place of the 1 that was there"
+    );
+    assert_eq!(type_seed("x"), []);
+}
+
+#[test]
+fn reset_is_disabled_while_a_value_is_invalid() {
+    let run = run();
+    let sent = sent(&run, |harness| {
+        harness.get_by_label("Population").focus();
+        harness.run();
+        harness.get_by_label("Population").type_text("a");
+        harness.run();
+        assert!(
+            harness.query_by_label_contains("Population is \"a\"; allowed: 1 to").is_some()
+        );
+        harness.get_by_label("Reset").click();
+        harness.run();
+    });
+    assert_eq!(sent, []);
+}
+
+#[test]
+fn a_typed_seed_is_sent_before_the_command_of_a_button() {
+    let run = run();
+    let sent = sent(&run, |harness| {
+        harness.get_by_label("Seed").focus();
+        harness.run();
+        harness.get_by_label("Seed").type_text("9");
+        harness.run();
+        harness.get_by_label("Start").click();
+        harness.run();
+    });
+    assert_eq!(sent, [Command::Plan(PlanCommand::SetSeed(9)), Command::Run(RunCommand::Start)]);
+}
+
+/// Commands sent after clicks on these labels.
+fn clicked(run: &CurrentRun, labels: &[&str]) -> Vec<Command> {
+    sent(run, |harness| {
+        for label in labels {
+            match label.strip_prefix("list ") {
+                Some(list) => {
+                    let role = egui::accesskit::Role::ComboBox;
+                    harness.get_by_role_and_label(role, list).click();
+                }
+                None => harness.get_by_label(label).click(),
+            }
+            harness.run();
+        }
+    })
+}
+
+fn set(field: &str, text: &str) -> Command {
+    Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
+}
+
+#[test]
+fn every_strategy_and_controller_can_be_chosen() {
+    let run = run();
+    for kind in &StrategyKind::ALL[1..] {
+        let commands = clicked(&run, &["list Strategy", kind.title()]);
+        assert_eq!(commands, [set("evolution.strategy", kind.name())]);
+    }
+    for (title, name) in [("Wave", "wave"), ("Gait", "gait")] {
+        let commands = clicked(&run, &["list Controller", title]);
+        assert_eq!(commands, [set("genome.controller", name)]);
+    }
+}
+
+#[test]
+fn the_selected_strategy_shows_its_settings_and_the_others_are_reachable() {
+    let mut run = run();
+    let is_shown = |run: &CurrentRun, clicks: &[&str], label: &str| {
+        let mut is_shown = false;
+        sent(run, |harness| {
+            for click in clicks {
+                harness.get_by_label(click).click();
+                harness.run();
+            }
+            is_shown = harness.query_all_by_label(label).next().is_some();
+        });
+        is_shown
+    };
+    assert!(is_shown(&run, &[], "Mutation decay"));
+    assert!(!is_shown(&run, &[], "Tournament"));
+    assert!(is_shown(&run, &["Other strategies", "Genetic algorithm"], "Tournament"));
+    run.set_field("evolution.strategy", "cma_es").expect("allowed");
+    assert!(!is_shown(&run, &[], "Mutation decay"));
+    assert!(is_shown(&run, &[], "Random snakes first"));
+}
+
+#[test]
+fn typed_population_and_threads_are_sent() {
+    let run = run();
+    for (label, commands) in [
+        ("Population", Command::Plan(PlanCommand::SetPopulation(40))),
+        ("Generations", set("evolution.generations", "40")),
+        ("Threads", Command::Run(RunCommand::SetThreads(40))),
+    ] {
+        let sent = sent(&run, |harness| {
+            harness.get_by_label(label).focus();
+            harness.run();
+            harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+            harness.run();
+            harness.get_by_label(label).type_text("40");
+            harness.run();
+            harness.key_press(egui::Key::Enter);
+            harness.run();
+        });
+        assert_eq!(sent, [commands]);
+    }
+}
+
+#[test]
+fn a_button_switches_between_the_original_experiment_and_the_climb() {
+    let mut run = run();
+    assert_eq!(
+        clicked(&run, &["Standard climb"]),
+        [Command::Plan(PlanCommand::SetPreset("climb".to_owned()))]
+    );
+    run.set_preset("climb").expect("shipped");
+    assert_eq!(
+        clicked(&run, &["Original experiment"]),
+        [Command::Plan(PlanCommand::SetPreset("report".to_owned()))]
+    );
+}
+
+#[test]
+fn an_invalid_value_of_a_hidden_section_is_ignored() {
+    let mut run = run();
+    let mut sheet = Sheet::default();
+    let halving = HalvingSettings::SECTION;
+    let context = egui::Context::default();
+    let is_wrong = |run: &CurrentRun, sheet: &mut Sheet, is_drawn: bool| {
+        for _ in 0..3 {
+            drop(context.run_ui(egui::RawInput::default(), |ui| {
+                sheet.begin(ui, run);
+                if is_drawn {
+                    sheet.section(ui, run, halving, &mut Vec::new());
+                }
+            }));
+        }
+        sheet.has_problem()
+    };
+    assert!(!is_wrong(&run, &mut sheet, true));
+    sheet.keep_wrong("evolution.halving.parents", "x", "4");
+    assert!(is_wrong(&run, &mut sheet, true));
+    assert!(!is_wrong(&run, &mut sheet, false), "out of sight");
+    run.set_field("evolution.halving.parents", "5").expect("allowed");
+    assert!(!is_wrong(&run, &mut sheet, true), "out of date");
+}
+
+#[test]
+fn at_every_width_nothing_is_wider_than_the_panel() {
+    let run = run();
+    for width in [300.0, 459.0, 480.0, 900.0] {
+        let mut panel = EvolutionPanel::default();
+        let size = egui::vec2(width, 4000.0);
+        let mut harness = Harness::builder().with_size(size).build_ui_state(
+            |ui, commands| {
+                theme::apply(ui.ctx());
+                panel.ui(ui, &run, commands);
+            },
+            Vec::new(),
+        );
+        harness.run();
+        for title in ["Other strategies", "Torques", "Waves and gaits", "Random snakes"] {
+            harness.get_by_label(title).click();
+            harness.run();
+        }
+        for kind in &StrategyKind::ALL[1..5] {
+            harness.get_by_label(kind.title()).click();
+            harness.run();
+        }
+        assert_nothing_is_wider_than(&harness, width);
+        // Each section shows its settings.
+        for label in ["Cooling", "Initial step size", "Columns and rows", "Neighbours"] {
+            assert!(harness.query_all_by_label(label).next().is_some(), "{label}");
+        }
+    }
+}
