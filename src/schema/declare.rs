@@ -5,7 +5,7 @@
 /// If each default is followed by a row, the struct is a [`SettingGroup`](super::SettingGroup) whose walk has the same
 /// order. `in "title": "about"` makes its section; other methods of the group may follow the fields.
 ///
-/// ```ignore
+/// ```text
 /// setting_group! {
 ///     /// The size of a door.
 ///     pub struct Size in "Door": "How large the door is." {
