@@ -1,10 +1,20 @@
 //! Macros that declare settings: each with its documentation, its default and its row in one place.
 
-/// Declares a struct of settings, in the order of files, with their defaults:
-/// `pub struct Size { /** In metres. */ width_m: f32 = 1.0; }`.
+/// Declares a struct of settings, in the order of files, with their defaults.
 ///
 /// If each default is followed by a row, the struct is a [`SettingGroup`](super::SettingGroup) whose walk has the same
 /// order. `in "title": "about"` makes its section; other methods of the group may follow the fields.
+///
+/// ```text
+/// setting_group! {
+///     /// The size of a door.
+///     pub struct Size in "Door": "How large the door is." {
+///         /// Width, in metres.
+///         width_m: f32 = 1.0,
+///             number("Width", 0.5..=4.0).unit("m").hint("Narrow ones keep the wind out");
+///     }
+/// }
+/// ```
 macro_rules! setting_group {
     (
         $(#[$meta:meta])*

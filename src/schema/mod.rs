@@ -4,7 +4,8 @@
 //! name, unit, range or choices, label, hint, and whether it may change during a run. Everything else reads these
 //! rows: the checks, the list of all settings, `--set`, live changes, the panels and `docs/settings.md`.
 //!
-//! To add a setting, add a field to its struct and a row to its `walk`, which does not compile without it.
+//! To add a setting, add a field with its default and its row to the `setting_group!` of its struct, which does not
+//! compile without the row. Where the walk has another order than the files, the row stands in `walk`.
 
 mod access;
 mod choice;
