@@ -89,7 +89,7 @@ impl Album {
         studio.wait_for_title("showing saved champion");
         studio.open_panel("World");
         studio.drag_slider("Friction", 0.3);
-        studio.wait_for_title("what if");
+        studio.wait_for_title("what-if");
         studio.key("space");
         studio.wait_for_title(", stopped");
         studio.seek(0.5);

@@ -223,7 +223,8 @@ fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
         (
             "Original experiment",
             REPORT,
-            "Use the method and the world of the original report for the next run",
+            "Use the method and the world of the report \"Evolution of Artificial Creatures in Stair Climbing\" for \
+             the next run",
         )
     };
     if ui.small_button(label).on_hover_text(hint).clicked() {
@@ -419,8 +420,8 @@ mod tests {
             is_shown
         };
         assert!(is_shown(&run, &[], "Mutation decay"));
-        assert!(!is_shown(&run, &[], "Tournament"));
-        assert!(is_shown(&run, &["Other strategies", "Genetic algorithm"], "Tournament"));
+        assert!(!is_shown(&run, &[], "Tournament size"));
+        assert!(is_shown(&run, &["Other strategies", "Genetic algorithm"], "Tournament size"));
         run.set_field("evolution.strategy", "cma_es").expect("allowed");
         assert!(!is_shown(&run, &[], "Mutation decay"));
         assert!(is_shown(&run, &[], "Random snakes first"));
