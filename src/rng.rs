@@ -16,7 +16,7 @@ pub enum Purpose {
     Birth = 1,
     /// Varying a parent into a child.
     Mutation = 2,
-    /// Drawing the points of `snakes verify`; once, of the search that found the free numbers of `report`.
+    /// Drawing the points of `snakes verify`. The search for the settings of `report` once used it as well.
     Calibration = 3,
     /// Perturbing a trial to measure the robustness of a champion.
     Perturbation = 4,

@@ -171,7 +171,7 @@ impl RunRecorder {
         match self.folder.keep_crashed(&crash.individual) {
             Ok(path) => {
                 format!(
-                    "{what}; it counts as disqualified, its genome is saved to {}",
+                    "{what}; it counts as disqualified, and its genome is saved to {}",
                     path.display()
                 )
             }

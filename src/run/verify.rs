@@ -119,7 +119,7 @@ mod tests {
                 fields(&plan.settings).iter().any(|(p, v)| p == path && v != value)
             })
         };
-        // A setting that has been added since acts only when it is set, and is not written down until then: its case
+        // A setting that is newer than the reference is not written at its default, where it has no effect. Its case
         // belongs to the next reference.
         let written = serde_json::to_value(&report).expect("written");
         let is_written =

@@ -111,7 +111,7 @@ mod tests {
             (vec![change(2, "halving.parents", "0")], "evolution.halving.parents is 0; allowed: 1"),
             (
                 vec![change(2, "strategy", "ga")],
-                "a change during a run is \"evolution.strategy\"; allowed: Takes effect with the next run, because another strategy",
+                "changed setting is \"evolution.strategy\"; allowed: a setting that may change during a run (takes effect with the next run, because another strategy",
             ),
             (vec![change(2, "halving.parents", "7"); 2001], "changes is 2001; allowed: 0 to 2000"),
         ] {

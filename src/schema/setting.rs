@@ -20,14 +20,14 @@ pub struct Setting {
     pub hint: &'static str,
     /// The type and range of its values.
     pub kind: SettingKind,
-    /// Why it may not change during a run, as a sentence; none: it may.
+    /// Reason why it may not change during a run, as a sentence; none if it may.
     pub(super) fixed: Option<&'static str>,
 }
 
 /// The type and range of the values of a setting.
 #[derive(Debug, Clone, Copy)]
 pub enum SettingKind {
-    /// A number; or, as the range says, one for each part of the snake, or none.
+    /// A number; if the range allows it, also one for each part of the snake, or no value.
     Number(NumberRange),
     /// Several numbers.
     List(NumberRange),
@@ -35,11 +35,11 @@ pub enum SettingKind {
     Choice(fn() -> Vec<Choice>),
     /// On or off.
     Switch,
-    /// A group of settings that is not there; the text says how to make it.
+    /// An optional group of settings that is absent; the text says how to add it.
     Absent(&'static str),
 }
 
-/// Which numbers a setting may have.
+/// The numbers that a setting may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NumberRange {
     /// The least.
@@ -158,7 +158,7 @@ pub fn switch(label: &'static str) -> SettingRow<bool> {
     row(label, SettingKind::Switch)
 }
 
-/// A group of settings that is not there; `how` says how to make it.
+/// An optional group of settings that is absent; `how` says how to add it.
 pub fn absent(label: &'static str, how: &'static str) -> SettingRow<()> {
     row(label, SettingKind::Absent(how))
 }
@@ -170,7 +170,7 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// With a sentence, without its full stop, about what it does to the snake or to the search.
+    /// With a sentence, without its full stop, about its effect on the snake or on the search.
     pub fn hint(mut self, hint: &'static str) -> Self {
         self.setting.hint = hint;
         self
@@ -192,7 +192,7 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// Whether it has an effect beside what is chosen elsewhere.
+    /// Sets whether it has an effect, given the choices made elsewhere.
     pub fn used_if(mut self, is_used: bool) -> Self {
         self.is_used = is_used;
         self

@@ -1,4 +1,4 @@
-//! The settings as tables in Markdown: `docs/settings.md` holds what this writes.
+//! The settings as tables in Markdown, for `docs/settings.md`.
 
 use std::fmt::Write;
 

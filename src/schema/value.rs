@@ -106,7 +106,7 @@ impl SettingField for Option<PerPart> {
     }
 }
 
-/// The place of a group that is not there.
+/// Stands in for an absent group of settings.
 impl SettingField for () {
     fn value(&self) -> SettingValue {
         SettingValue::None

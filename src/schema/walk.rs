@@ -18,10 +18,10 @@ pub trait SettingGroup {
     /// Takes the walk to every field. Destructure `self` without `..`: a field without a row then does not compile.
     fn walk(&mut self, walk: &mut Walk<'_>);
 
-    /// Checks what the range of a single setting cannot say: values that depend on each other.
+    /// Checks values that depend on each other, which ranges of single settings cannot do.
     ///
     /// # Errors
-    /// The field, its value, and what is allowed beside the others.
+    /// The field, its value, and the values that are allowed together with the others.
     fn check_together(&self) -> Result<(), Invalid> {
         Ok(())
     }
@@ -40,9 +40,9 @@ pub struct ListedSetting {
     pub value: SettingValue,
     /// Whether the chosen strategy, or the chosen controller, uses it.
     pub is_used: bool,
-    /// Why no run that goes on takes a change, as a sentence; none: a run that uses it does.
+    /// Reason why it may not change during any run, as a sentence; none if it may in a run that uses it.
     pub fixed: Option<&'static str>,
-    /// Whether this run takes a change while it goes on; if not, a sentence that says why.
+    /// Whether it may change during this run; if not, the reason as a sentence.
     pub live: Result<(), &'static str>,
 }
 
@@ -70,7 +70,7 @@ struct State {
     fixed: Option<&'static str>,
 }
 
-/// Why a setting without an effect beside the others cannot change.
+/// Reason why a setting that the run does not use cannot change.
 const UNUSED: &str = "Takes effect with the next run, because the current run does not use it.";
 
 /// Takes a visitor to every setting of a group.
@@ -88,12 +88,12 @@ impl Walk<'_> {
         self.state.section = section;
     }
 
-    /// Says whether the next settings of this group have an effect beside what is chosen elsewhere.
+    /// Sets whether the next settings of this group have an effect, given the choices made elsewhere.
     pub fn used_if(&mut self, is_used: bool) {
         self.state.is_used = is_used;
     }
 
-    /// Says why no setting that comes next in this group may change during a run, as a sentence.
+    /// Sets the reason, as a sentence, why the next settings of this group may not change during a run.
     pub fn fixed(&mut self, reason: &'static str) {
         self.state.fixed = Some(reason);
     }

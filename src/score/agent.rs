@@ -66,7 +66,7 @@ impl SettingGroup for AgentSettings {
         settings! { walk,
             // Two limbs make a joint; with more than twelve the snake is longer than the arena.
             limbs: whole("Limbs", 2..=12)
-                .hint("Number of blocks in a row. Genomes for a different number do not fit")
+                .hint("Number of limbs (blocks) of the snake. Genomes for a different number do not fit")
                 .slider(2.0, 12.0);
             // From a finger to a bus: the engine's tolerances are made for sizes around a metre.
             limb_width_m: per_part("Limb width", 0.1..=10.0, each_limb)

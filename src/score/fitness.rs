@@ -35,11 +35,11 @@ choices! {
         /// snakes that have not reached the first step are equal.
         StepsClimbed = "steps_climbed", "Steps climbed",
             "The steps climbed at the end.\n\
-             Unintended rewards: Nothing before the first step, so the search starts blindly.";
+             Unintended rewards: None, but there is no reward before the first step, so the search starts blindly.";
         /// Beside, inside or behind the stairs y counts only up to the first riser; on the landing it counts up to where
         /// the whole snake stands there.
         Climb = "climb", "Climb: y on the stairs",
-            "The y of the middle block at the end, as far as it is on the stairs.\n\
+            "The y of the middle block at the end; beside the stairs only up to the first riser.\n\
              Unintended rewards: Being caught in mid-leap over the stairs at the end.";
     }
 }
@@ -54,7 +54,9 @@ impl Fitness {
     pub fn words(self) -> &'static str {
         match self {
             Self::Centre => "y of the middle block at the end",
-            Self::Climb => "y of the middle block at the end, as far as it is on the stairs",
+            Self::Climb => {
+                "y of the middle block at the end, beside the stairs only up to the first riser"
+            }
             Self::Head => "y of the head at the end",
             Self::CentreOfMass => "y of the centre of mass at the end",
             Self::Height => "height of the middle block at the end",

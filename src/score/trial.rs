@@ -59,8 +59,11 @@ impl SettingGroup for Trial {
             Some(ground) => walk.group("ground", ground),
             None => walk.setting(
                 "ground",
-                absent("Ground", "none, or set ground.friction and its like")
-                    .hint("Without its own surface, the ground has that of the stairs"),
+                absent(
+                    "Ground",
+                    "none; setting ground.friction, for example, gives it a surface of its own",
+                )
+                .hint("Without its own surface, the ground has that of the stairs"),
                 &mut (),
             ),
         }

@@ -12,7 +12,7 @@ pub enum StudioError {
     NoWindow(String),
     /// A picture could not be drawn.
     #[error(
-        "no picture can be drawn ({0}); drawing needs a graphics driver, a software one will do"
+        "no picture can be drawn ({0}); drawing needs a graphics driver; a software driver is enough"
     )]
     NoPicture(String),
     /// A champion cannot be built.

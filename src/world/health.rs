@@ -61,14 +61,16 @@ setting_group! {
         arena_half_width_m: f32 = 12.0,
             number("Arena to the side", 1.0..=1000.0)
                 .unit("m")
-                .hint("A snake is disqualified if it is further from the middle than this")
+                .hint(
+                    "A snake is disqualified if a limb is further from the middle of the stairs than this",
+                )
                 .slider(2.0, 50.0);
 
         /// Extent of the arena behind the origin of the y axis, in metres: a limb's least y is minus this.
         arena_back_m: f32 = 30.0,
             number("Arena to the rear", 1.0..=1000.0)
                 .unit("m")
-                .hint("A snake is disqualified if the y of a limb is below minus this value")
+                .hint("A snake is disqualified if a limb is further behind the origin (y = 0) than this")
                 .slider(5.0, 100.0);
     }
 }

@@ -29,7 +29,10 @@ impl SettingGroup for PhysicsSettings {
                 .hint("More steps are more accurate but take longer. A different number changes all motions")
                 .slider(20.0, 240.0);
             substeps: whole("Substeps per step", 1..=32)
-                .hint("How often contacts and joints are solved within a step. More are stiffer but take longer")
+                .hint(
+                    "How often contacts and joints are solved within a step. More substeps make them stiffer \
+                     but take longer",
+                )
                 .slider(1.0, 16.0);
         }
     }

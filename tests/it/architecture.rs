@@ -140,8 +140,8 @@ fn every_module_uses_only_those_before_it() {
     }
 }
 
-/// The wings of the studio, lowest level first: each may use only wings of lower levels, so those of one level do not
-/// use each other.
+/// The folders of the studio (its wings), lowest level first: each may use only folders of lower levels, so those of
+/// one level do not use each other.
 const WINGS: [&[&str]; 8] = [
     &["commands", "schedule", "error"],
     &["ui"],

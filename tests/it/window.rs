@@ -171,7 +171,7 @@ fn r_plays_from_the_start_and_f_stops_following() {
     studio.wait_for_title_without(", stopped");
     studio.picture_with(|picture| difference(&held, picture) > 1000);
     // Without following, the stairs do not move on the screen. The sky and the far ground at the top of the stage
-    // and the far ground at the top of the stage show it.
+    // show it.
     let far = |picture: &Picture| {
         let scene = picture.scene();
         picture.region(Area { bottom: scene.top + 30, ..scene })

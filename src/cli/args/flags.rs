@@ -78,7 +78,7 @@ pub struct Args {
     /// Folder for the files that this run writes: champions, tables, pictures
     #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
     pub(super) out: Option<PathBuf>,
-    /// Folder of saved champions [default: ./saves if it exists, else the platform's data folder]
+    /// Folder of saved champions and runs [default: ./saves if it exists, else the platform's data folder]
     #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
     pub(super) saves: Option<PathBuf>,
     /// Open the window with the result of `snakes compare`, a .ron file
@@ -143,7 +143,7 @@ pub enum Subcommand {
         #[arg(long, value_name = "N", default_value_t = 1)]
         first_seed: u64,
     },
-    /// Draw the champion of each generation of a run, and its torque signal, as PNG files; opens no window
+    /// Draw the champion of each generation of a run, and one torque signal, as PNG files; opens no window
     Figures {
         /// Folder of the run, as `snakes --no-render` prints it
         run: PathBuf,

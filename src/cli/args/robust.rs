@@ -5,19 +5,19 @@ use crate::score::PerturbationRange;
 /// How much the conditions of trials vary.
 #[derive(Debug, clap::Args)]
 pub struct PerturbationArgs {
-    /// Largest change of friction, as a share
+    /// Maximum relative change of friction: 0.2 is 20 % up or down
     #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().friction)]
     off_friction: f32,
-    /// Largest change of the steps' height, as a share
+    /// Maximum relative change of the steps' height
     #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().rise)]
     off_rise: f32,
-    /// Largest change of the limbs' density, as a share
+    /// Maximum relative change of the limbs' density
     #[arg(long, value_name = "SHARE", default_value_t = PerturbationRange::default().density)]
     off_density: f32,
-    /// Largest shift of the start, along and across the stairs, in metres
+    /// Maximum shift of the start, along and across the stairs, in metres
     #[arg(long, value_name = "M", default_value_t = PerturbationRange::default().start_m)]
     off_start: f32,
-    /// Largest turn of the snake at the start, in degrees
+    /// Maximum turn of the snake at the start, to either side, in degrees
     #[arg(long, value_name = "DEG", default_value_t = PerturbationRange::default().turn_deg)]
     off_turn: f32,
 }

@@ -192,8 +192,10 @@ fn allow(field: &str, value: &str, settings: &Settings) -> Result<(), Invalid> {
         return Err(Invalid::new(short(field), format!("{:?}", short(value)), allowed));
     }
     may_change_during_run(field, settings).map_err(|reason| {
-        let reason = reason.trim_end_matches('.');
-        Invalid::new("a change during a run", format!("{:?}", short(field)), reason)
+        let (first, rest) = reason.trim_end_matches('.').split_at(1);
+        let reason = format!("{}{rest}", first.to_lowercase());
+        let allowed = format!("a setting that may change during a run ({reason})");
+        Invalid::new("changed setting", format!("{:?}", short(field)), allowed)
     })
 }
 

@@ -14,7 +14,7 @@ setting_group! {
 
         /// Number of candidates in a tournament.
         tournament: u32 = 3,
-            whole("Tournament", 1..=1000)
+            whole("Tournament size", 1..=1000)
                 .hint("Number of snakes drawn at random, the best of which becomes a parent. Large values converge quickly")
                 .slider(1.0, 20.0);
 
@@ -36,7 +36,7 @@ setting_group! {
         /// Step of mutation of the first generation's children, as a share of each gene's range. Later it is
         /// inherited and mutates itself.
         step: f32 = 0.1,
-            number("Initial mutation size", 1.0e-4..=0.5)
+            number("Initial mutation step", 1.0e-4..=0.5)
                 .hint("As a share of each gene's range. Later generations inherit the step, which mutates as well")
                 .slider(0.001, 0.5)
                 .logarithmic_from(0.001)

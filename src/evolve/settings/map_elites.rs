@@ -25,7 +25,9 @@ setting_group! {
         /// Number of columns and of rows.
         cells: u32 = 16,
             whole("Columns and rows", 2..=100)
-                .hint("Number of columns and of rows of the archive. More distinguish finer differences")
+                .hint(
+                    "Number of columns and of rows of the archive. More cells distinguish finer differences",
+                )
                 .slider(2.0, 50.0)
                 .fixed(FIXED_LAYOUT);
 

@@ -90,7 +90,11 @@ impl Strategy for CmaEs {
             runs.check()?;
             resumed.search.check(runs.current().mean())?;
             if *runs.parameters() != resumed.parameters() {
-                return Err(Invalid::new("parameters", "others", "those of the run"));
+                return Err(Invalid::new(
+                    "parameters",
+                    "different from those of the run",
+                    "the parameters of the run",
+                ));
             }
             let most = u64::from(plan.settings.evolution.population) << 9;
             within("population", u64::from(runs.population()), 2..=most)?;

@@ -47,9 +47,10 @@ impl Experiment {
     ) -> Result<Option<SettingChange>, Invalid> {
         let next = self.finished + 1;
         if let Some(later) = self.ahead.iter().find(|change| change.generation > next) {
+            let later = later.generation;
             let allowed =
-                format!("no other change before generation {}, as before", later.generation);
-            return Err(Invalid::new("a change during a run", format!("{field:?}"), allowed));
+                format!("none before generation {later}, for which a change is already recorded");
+            return Err(Invalid::new("changed setting", format!("{field:?}"), allowed));
         }
         self.next_plan().proposed(next, field, text)
     }

@@ -1,6 +1,6 @@
 //! Points drawn from ranges: random streams, logarithms and exponentials decide bits, too.
 //!
-//! The ranges are those of the search that once found the free numbers of the preset `report`.
+//! The ranges are those of the search that once found the settings of the preset `report`.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

@@ -1,4 +1,4 @@
-//! The application: maps keys to commands and applies commands to all other wings.
+//! The application: maps keys to commands and applies commands to all other parts of the studio.
 
 pub mod accessibility;
 pub mod apply;

@@ -44,12 +44,12 @@ fn update(
             };
             let is_what_if = matches!(mode, StageMode::WhatIf { .. });
             let manner = match (lane.staged().is_changed(), lane.staged().recording()) {
-                _ if is_what_if => " and what if",
+                _ if is_what_if => " with a what-if copy",
                 (true, _) => " in another world",
                 (false, Some(_)) => " as recorded",
                 (false, None) => "",
             };
-            let disturbed = if lane.is_disturbed() { ", disturbed" } else { "" };
+            let disturbed = if lane.is_disturbed() { ", pulled" } else { "" };
             format!("{what}{manner}{disturbed}")
         }
     };

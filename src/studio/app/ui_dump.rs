@@ -24,26 +24,26 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-/// Writes one line per control, separated by tabs: role; left, top, right, bottom in logical pixels; label; value.
+/// Writes one line per control, separated by tabs: role; left, top, right, bottom in logical pixels; label; value. The
+/// first line has the number of the frame as its value, so that a script can wait for the frames after its input.
 fn describe(
     mut places: ResMut<UiDumpFile>,
     mut contexts: Query<(&mut EguiContext, &EguiOutput), With<PrimaryEguiContext>>,
     mut notices: ResMut<Notices>,
-    mut written: Local<String>,
+    mut frame: Local<u64>,
 ) {
     let Some(path) = &places.0 else { return };
     for (mut context, output) in &mut contexts {
         let context = context.get_mut();
         context.enable_accesskit();
         let Some(update) = &output.platform_output.accesskit_update else { continue };
-        let text = listed(&update.nodes, f64::from(context.zoom_factor()));
-        if text != *written {
-            if let Err(error) = store_text(path, &text) {
-                notices.problem(error.to_string());
-                places.0 = None;
-                return;
-            }
-            *written = text;
+        *frame += 1;
+        let controls = listed(&update.nodes, f64::from(context.zoom_factor()));
+        let text = format!("Frame\t0\t0\t0\t0\tFrame\t{}\n{controls}", *frame);
+        if let Err(error) = store_text(path, &text) {
+            notices.problem(error.to_string());
+            places.0 = None;
+            return;
         }
     }
 }

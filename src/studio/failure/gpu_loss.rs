@@ -56,8 +56,8 @@ fn restarts() -> u32 {
 fn report_restart(mut notices: ResMut<Notices>) {
     if restarts() > 0 {
         notices.problem(
-            "The graphics driver failed and the studio restarted. Evolution continues where it was; runs \
-             started later are listed under \"Resume a stopped run\"."
+            "The graphics driver failed and the studio restarted. The run with which it was opened continues; \
+             any other run is listed under \"Resume a stopped run\"."
                 .to_owned(),
         );
     }

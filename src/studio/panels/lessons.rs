@@ -141,7 +141,7 @@ fn runs(ui: &mut egui::Ui, runs: &[Found], is_busy: bool) {
         ui.horizontal(|ui| {
             ui.spinner();
             let done = runs.iter().map(|found| found.reports.len()).min().unwrap_or(0);
-            explain(ui, &format!("{done} generations finished"));
+            explain(ui, &format!("Generations finished: {done}"));
         });
     }
     table(ui, "runs", &["", "Best", "Disqualified", "Run hash"], |ui| {

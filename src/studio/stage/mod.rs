@@ -115,7 +115,7 @@ fn show_opening(
     let left_out = opening.0.len().saturating_sub(MAX_LANES);
     if left_out > 0 {
         notices.info(format!(
-            "The stage has room for {MAX_LANES} lanes; {left_out} more are in the list of champions."
+            "The stage has room for {MAX_LANES} snakes; {left_out} more are listed in the Champions panel."
         ));
     }
 }

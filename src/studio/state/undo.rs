@@ -321,7 +321,7 @@ mod tests {
         }
         assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("1"), plan("0.3")));
         assert_eq!(step(&mut history, UndoDirection::Back), None);
-        // Back to where it began it is none.
+        // A drag that ends at its initial value leaves no step.
         history.note(&set("0.8"), plan("1"), &plan("0.8"));
         history.note(&set("1"), plan("0.8"), &plan("1"));
         assert_eq!(history.next(UndoDirection::Back), None);

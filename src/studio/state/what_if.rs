@@ -124,7 +124,7 @@ mod tests {
         let ground = field("ground.friction", "1");
         let third = what_if(&mut run, &second.champions, &second.mode, &ground);
         let third = third.expect("allowed").expect("it matters");
-        assert_eq!(third.champions[1].label(), "own ground, rise 0.7 and 1 more");
+        assert_eq!(third.champions[1].label(), "separate ground, rise 0.7 and 1 more");
         assert_eq!(changed.trial().surface.friction, 0.3);
         assert_eq!(changed.trial().duration_s, original.trial().duration_s, "nothing else");
         let kept = kept(&second.champions, &second.mode).expect("kept");

@@ -26,7 +26,9 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
                 Some(was) if was.value == listed.value => None,
                 Some(_) => Some(format!("{name} {}", listed.value)),
                 // A new group is named as a whole.
-                None => Some(format!("own {}", listed.path.rsplit('.').nth(1).unwrap_or(&name))),
+                None => {
+                    Some(format!("separate {}", listed.path.rsplit('.').nth(1).unwrap_or(&name)))
+                }
             }
         })
         .collect();

@@ -8,7 +8,6 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::input::A_FRAME;
 use super::picture::Picture;
 use crate::program::{folder, snakes};
 
@@ -29,6 +28,8 @@ static SKIPPED: AtomicU32 = AtomicU32::new(0);
 /// Timeout. Software rendering on a busy machine draws a few frames per second.
 const PATIENCE: Duration = Duration::from_secs(120);
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
+/// Pause between two pictures that must be equal.
+const STILL_FOR: Duration = Duration::from_millis(700);
 /// Default window size: wide enough for all cards over the stage, small enough to draw quickly.
 const SIZE: (i32, i32) = (1000, 860);
 
@@ -234,7 +235,8 @@ impl Studio {
         let started = Instant::now();
         // A slow camera can look still for one frame, but not for three.
         while equal < 3 {
-            std::thread::sleep(A_FRAME);
+            std::thread::sleep(STILL_FOR);
+            self.wait_for_frames(2);
             let now = self.picture();
             equal = if before.scene_pixels() == now.scene_pixels() { equal + 1 } else { 0 };
             assert!(started.elapsed() < PATIENCE, "the picture never came to rest");

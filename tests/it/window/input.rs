@@ -4,33 +4,33 @@ use std::time::Duration;
 
 use super::display::Studio;
 
-/// Longer than a frame, because egui and Bevy must draw one between a press and the next move.
-pub const A_FRAME: Duration = Duration::from_millis(700);
-
-fn for_a_frame() {
-    std::thread::sleep(A_FRAME);
-}
+/// Frames until an input has its effect: the one that is being drawn, one that reads the input, and one that applies the
+/// commands.
+const FRAMES: u64 = 3;
 
 impl Studio {
+    /// Acts, and waits until the effect is drawn. Software rendering can take a second for a frame.
+    fn for_frames(&self, act: impl FnOnce()) {
+        let before = self.frame();
+        act();
+        self.wait(|| self.frame() >= before + FRAMES, || format!("{FRAMES} frames after {before}"));
+    }
+
     /// Presses and releases a key.
     pub fn key(&self, key: &str) {
-        self.xdotool(&["key", key]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["key", key]));
     }
 
     /// Acts while a key is held down.
     pub fn holding(&self, key: &str, act: impl FnOnce()) {
-        self.xdotool(&["keydown", key]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["keydown", key]));
         act();
-        self.xdotool(&["keyup", key]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["keyup", key]));
     }
 
     /// Types into the focused widget.
     pub fn type_text(&self, text: &str) {
-        self.xdotool(&["type", "--delay", "150", text]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["type", "--delay", "150", text]));
     }
 
     /// Replaces the text of the focused field.
@@ -43,16 +43,14 @@ impl Studio {
 
     /// Moves the pointer.
     pub fn move_to(&self, (x, y): (i32, i32)) {
-        self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]));
     }
 
     /// Clicks a point of the window.
     pub fn click_at(&self, at: (i32, i32)) {
         self.move_to(at);
         // Press and release at once, because egui treats a longer press differently.
-        self.xdotool(&["click", "1"]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["click", "1"]));
     }
 
     /// Clicks a point of the window twice.
@@ -61,8 +59,7 @@ impl Studio {
         self.xdotool(&["click", "1"]);
         // In separate frames, but close in time.
         std::thread::sleep(Duration::from_millis(250));
-        self.xdotool(&["click", "1"]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["click", "1"]));
     }
 
     /// Drags with a mouse button from one point of the window to another.
@@ -80,19 +77,16 @@ impl Studio {
     ) {
         let button = button.to_string();
         self.move_to(from);
-        self.xdotool(&["mousedown", &button]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["mousedown", &button]));
         self.move_to(to);
         then();
-        self.xdotool(&["mouseup", &button]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["mouseup", &button]));
     }
 
     /// Turns the wheel over a point of the window; up is away from the user.
     pub fn wheel(&self, is_up: bool, at: (i32, i32)) {
         self.move_to(at);
         let button = if is_up { "4" } else { "5" };
-        self.xdotool(&["click", "--repeat", "3", "--delay", "50", button]);
-        for_a_frame();
+        self.for_frames(|| self.xdotool(&["click", "--repeat", "3", "--delay", "50", button]));
     }
 }

@@ -1,7 +1,6 @@
 //! Finds controls in the window by name, with the list that the program itself writes.
 
 use super::display::Studio;
-use super::input::A_FRAME;
 
 /// A rectangle of the window, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,6 +63,18 @@ impl Place {
 }
 
 impl Studio {
+    /// Number of frames that the program has drawn.
+    pub fn frame(&self) -> u64 {
+        let frame = self.find(|place| place.role == "Frame");
+        frame.map_or(0, |place| place.value.parse().expect("a number"))
+    }
+
+    /// Waits for the next frames.
+    pub fn wait_for_frames(&self, count: u64) {
+        let last = self.frame() + count;
+        self.wait(|| self.frame() >= last, || format!("frame {last}"));
+    }
+
     /// All listed controls, including those that are scrolled out of sight.
     pub fn places(&self) -> Vec<Place> {
         // The file is written atomically and does not exist before the first frame.
@@ -88,7 +99,7 @@ impl Studio {
             // A widget that was just opened moves to its place in the next frame.
             let area = |place: Option<Place>| place.map(|place| place.area);
             let before = area(self.find(&is));
-            std::thread::sleep(A_FRAME / 2);
+            self.wait_for_frames(1);
             let now = self.find(&is);
             if before.is_some()
                 && area(now.clone()) == before

@@ -89,7 +89,7 @@ impl Album {
         studio.wait_for_title("showing saved champion");
         studio.open_panel("World");
         studio.drag_slider("Friction", 0.3);
-        studio.wait_for_title("what if");
+        studio.wait_for_title("what-if");
         studio.key("space");
         studio.wait_for_title(", stopped");
         studio.seek(0.5);
@@ -161,13 +161,13 @@ impl Album {
 }
 
 #[test]
-#[ignore = "takes minutes, and writes into the repository; for whoever has changed what is drawn"]
+#[ignore = "takes minutes, and writes into the repository; run it by hand after a change of what is drawn"]
 fn screenshots_of_the_stage() {
     let _skipped = Album::from_environment().stage();
 }
 
 #[test]
-#[ignore = "takes minutes, and writes into the repository; for whoever has changed what is drawn"]
+#[ignore = "takes minutes, and writes into the repository; run it by hand after a change of what is drawn"]
 fn screenshots_of_the_panels() {
     let _skipped = Album::from_environment().panels();
 }

@@ -78,15 +78,15 @@ fn a_changed_world_is_shown_beside_the_original_and_kept_or_discarded() {
     studio.pause_evolution();
     studio.open_panel("World");
     studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("showing saved champion and what if");
+    studio.wait_for_title("showing saved champion with a what-if copy");
     studio.click_label("Discard");
-    studio.wait_for_title_without("what if");
+    studio.wait_for_title_without("what-if");
     studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("showing saved champion and what if");
+    studio.wait_for_title("showing saved champion with a what-if copy");
     studio.click_label("Keep");
     studio.wait_for_title("showing saved champion in another world");
     studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("what if");
+    studio.wait_for_title("what-if");
     studio.key("Escape");
     studio.wait_for_title("showing saved champion in another world");
 }
@@ -106,10 +106,10 @@ fn clicking_a_limb_shows_its_numbers_and_dragging_disturbs_the_snake() {
     // Grab it while it is paused, and pull once it moves.
     studio.drag_and_hold(1, limb, (limb.0 - 60, limb.1 - 90), || {
         studio.key("space");
-        studio.wait_for_title(", disturbed");
+        studio.wait_for_title(", pulled");
     });
     studio.key("r");
-    studio.wait_for_title_without(", disturbed");
+    studio.wait_for_title_without(", pulled");
 }
 
 #[test]

@@ -255,13 +255,13 @@ fn refused_changes_leave_the_plan_as_it_was() {
             4,
             "strategy",
             "ga",
-            "a change during a run is \"evolution.strategy\"; allowed: Takes effect with the next run, because another strategy",
+            "changed setting is \"evolution.strategy\"; allowed: a setting that may change during a run (takes effect with the next run, because another strategy",
         ),
         (
             4,
             "ga.elites",
             "1",
-            "a change during a run is \"evolution.ga.elites\"; allowed: Takes effect with the next run, because the current run",
+            "changed setting is \"evolution.ga.elites\"; allowed: a setting that may change during a run (takes effect with the next run, because the current run",
         ),
     ] {
         let error = plan.change(&change(generation, field, value)).expect_err("refused");

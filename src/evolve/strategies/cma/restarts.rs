@@ -124,7 +124,7 @@ impl RestartedCma {
             return Err(Invalid::new(
                 "current",
                 "a run with other parameters",
-                "one with those of the state",
+                "a run with the parameters of the state",
             ));
         }
         Ok(())

@@ -128,7 +128,8 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
         for other in choices {
             let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
             let finished = other.finished;
-            let name = format!("{}, {finished} generations", title(&other.plan));
+            let all = other.plan.settings.evolution.generations;
+            let name = format!("{}, {finished} of {all} generations", title(&other.plan));
             let is_on = is_shown || others.compared().len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
             let hint = format!("Add this run to the chart: {}", other.folder.display());

@@ -18,7 +18,7 @@ const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Stage,
         title: "A snake that learned to climb",
-        text: "It has five blocks and four joints, and its joint torques evolved. Use the player below to \
+        text: "It has five blocks and four joints, and its movements evolved. Use the player below to \
                pause, move through time or change the speed. Drag to turn the camera; drag a limb to pull it.",
     },
     TourStep {

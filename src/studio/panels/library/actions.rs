@@ -90,7 +90,7 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
             refusal: single
                 .or(has_run.then_some("Runs cannot be renamed"))
                 .or(has_shipped
-                    .then_some("Built-in champions cannot be renamed; duplicate it first")),
+                    .then_some("A built-in champion cannot be renamed; duplicate it first")),
             act: LibraryActionKind::Rename(first.place().clone()),
         },
         LibraryAction {

@@ -15,7 +15,7 @@ use crate::studio::ui::theme;
 /// Name being edited.
 #[derive(Debug)]
 pub struct RenameField {
-    /// SavePlace of the renamed save.
+    /// Place of the renamed save.
     pub place: SavePlace,
     /// Text typed so far.
     pub text: String,

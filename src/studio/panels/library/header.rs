@@ -115,7 +115,7 @@ impl LibraryPanel {
 fn batch_progress(ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
     for (words, share) in library.under_way() {
         ui.horizontal(|ui| {
-            let hint = "Stop after the current file; files that are finished can be undone";
+            let hint = "Stop after the current file. Undo reverses the finished part";
             if ui.button("Cancel").on_hover_text(hint).clicked() {
                 send(commands, LibraryCommand::Cancel);
             }

@@ -84,8 +84,9 @@ pub(crate) fn leaderboard(
                 }
                 // A fixed width keeps the layout still while the values change.
                 let text = match (ranked.is_disqualified, ranked.landed_s) {
-                    _ if ranked.is_disturbed => "by hand".to_owned(),
-                    (true, _) => "out".to_owned(),
+                    _ if ranked.is_disturbed => "pulled".to_owned(),
+                    (true, _) if is_narrow => "out".to_owned(),
+                    (true, _) => "disqualified".to_owned(),
                     (false, Some(landed_s)) if is_narrow => format!("{landed_s:.2} s"),
                     (false, Some(landed_s)) => format!("landed {landed_s:.2} s"),
                     (false, None) => format!("{:.2} m", ranked.y_m),

@@ -63,7 +63,7 @@ impl TimelinePanel {
                 }
                 if lane.is_disturbed() {
                     let hint = "You pulled this snake, so its result does not count. Go back in time to undo it";
-                    let text = egui::RichText::new("disturbed by hand, not counted").color(theme::of(ui).problem);
+                    let text = egui::RichText::new("pulled with the mouse, not counted").color(theme::of(ui).problem);
                     ui.label(text).on_hover_text(hint);
                 }
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {

@@ -223,7 +223,8 @@ fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
         (
             "Original experiment",
             REPORT,
-            "Use the method and the world of the original report for the next run",
+            "Use the method and the world of the report \"Evolution of Artificial Creatures in Stair Climbing\" for \
+             the next run",
         )
     };
     if ui.small_button(label).on_hover_text(hint).clicked() {

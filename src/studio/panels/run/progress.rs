@@ -24,7 +24,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
             );
             (text, 1.0)
         }
-        RunStatus::Finished => (format!("Finished: {finished} generations"), 1.0),
+        RunStatus::Finished => (format!("Finished after generation {finished}"), 1.0),
         status => {
             let suffix = match status {
                 RunStatus::Ready => ", ready to start",
@@ -43,7 +43,8 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
         .on_hover_text("Snakes evaluated in the current generation");
     if let Some(hash) = run.run_hash() {
-        let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash on any computer";
+        let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
+                    on every computer with an x86-64 processor";
         let text = egui::RichText::new(format!("Run hash {hash:016x}"));
         ui.label(text.color(theme::of(ui).text_weak)).on_hover_text(hint);
     }

@@ -81,9 +81,7 @@ fn reset_is_disabled_while_a_value_is_invalid() {
         harness.run();
         harness.get_by_label("Population").type_text("a");
         harness.run();
-        assert!(
-            harness.query_by_label_contains("Population is \"a\"; allowed: 1 to").is_some()
-        );
+        assert!(harness.query_by_label_contains("Population is \"a\"; allowed: 1 to").is_some());
         harness.get_by_label("Reset").click();
         harness.run();
     });
@@ -152,8 +150,8 @@ fn the_selected_strategy_shows_its_settings_and_the_others_are_reachable() {
         is_shown
     };
     assert!(is_shown(&run, &[], "Mutation decay"));
-    assert!(!is_shown(&run, &[], "Tournament"));
-    assert!(is_shown(&run, &["Other strategies", "Genetic algorithm"], "Tournament"));
+    assert!(!is_shown(&run, &[], "Tournament size"));
+    assert!(is_shown(&run, &["Other strategies", "Genetic algorithm"], "Tournament size"));
     run.set_field("evolution.strategy", "cma_es").expect("allowed");
     assert!(!is_shown(&run, &[], "Mutation decay"));
     assert!(is_shown(&run, &[], "Random snakes first"));

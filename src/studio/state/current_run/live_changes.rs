@@ -100,8 +100,8 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Prepares the next run so that it descends from a champion, in the champion's own world. Genomes may be what
-    /// they could be, and what the champion is. A run that has not begun is replaced by it at once.
+    /// Prepares the next run so that it descends from a champion, in the champion's own world. The ranges of the
+    /// genome are widened to include the champion. A run that has not begun is replaced at once.
     pub fn start_next_from(&mut self, champion: &Champion, name: &str) -> Result<(), String> {
         let next = &self.plan_next;
         let settings = Settings {

@@ -216,9 +216,9 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         to_try: "Repeat the same run on one thread and on two threads. Then repeat it with the friction changed by \
                  a millionth.",
         look_for: "The hash of each run: sixteen digits that summarise every bit of every evaluation.",
-        answer: "The same seed and settings give the same hash, with any number of threads and on all common \
-                 computers. A change of a millionth gives another result, so a result can be trusted only if it can \
-                 be repeated exactly.",
+        answer: "The same seed and settings give the same hash, with any number of threads and on every \
+                 computer with an x86-64 processor. A change of a millionth gives another result, so a result can be \
+                 trusted only if it can be repeated exactly.",
         scenes: &[
             AS_FOUND,
             LessonScene::Runs {

@@ -26,15 +26,12 @@ fn outcome(sides: &[Side]) -> Vec<Found> {
 /// Final distance of the centre in each lane of a scene, in metres.
 fn ends_m(champion: &'static str, lanes: &[Side]) -> Vec<f32> {
     let champions = champions(champion, lanes).expect("they fit");
-    let evaluate =
-        |staged: &StagedChampion| evaluate(&staged.champion().genome, staged.trial());
+    let evaluate = |staged: &StagedChampion| evaluate(&staged.champion().genome, staged.trial());
     champions.iter().map(|staged| evaluate(staged).centre_y_m).collect()
 }
 
 fn lanes(lesson: usize, scene: usize) -> &'static [Side] {
-    let LessonScene::Lanes { lanes, .. } = &LESSONS[lesson].scenes[scene] else {
-        panic!("lanes")
-    };
+    let LessonScene::Lanes { lanes, .. } = &LESSONS[lesson].scenes[scene] else { panic!("lanes") };
     lanes
 }
 
@@ -116,8 +113,7 @@ fn after_a_lesson_stage_and_settings_are_as_they_were() {
     lessons.begin(1, &mut run, stage(Vec::new()), &mut history).expect("allowed");
     assert_eq!(*run.next_plan(), next, "the next lesson starts with the user's settings");
     run.set_field("surface.friction", "0.3").expect("allowed");
-    let back =
-        lessons.leave(&mut run, &mut history).expect("allowed").expect("the earlier stage");
+    let back = lessons.leave(&mut run, &mut history).expect("allowed").expect("the earlier stage");
     assert_eq!(*run.next_plan(), next);
     assert_eq!(back.mode, StageMode::Solo);
     assert_eq!(back.champions.len(), own.len());

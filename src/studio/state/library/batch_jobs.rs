@@ -238,7 +238,7 @@ impl Library {
             }
         };
         if cancelled > 0 {
-            said.push_str(&format!(" Cancelled: {cancelled} of {total} were left."));
+            said.push_str(&format!(" Cancelled: {cancelled} of {total} were not processed."));
         }
         if !said.is_empty() {
             notices.info(said.trim().to_owned());
