@@ -93,7 +93,7 @@ pub struct Args {
     /// File for window preferences, or "none" [default: a file in the platform's settings folder]
     #[arg(long, global = true, value_name = "FILE", help_heading = WINDOW)]
     pub(super) preferences: Option<PathBuf>,
-    /// Write the role, position and label of every widget to this file whenever they change, for automated tests
+    /// Write the role, position and label of every widget to this file in every frame, for automated tests
     #[arg(long, global = true, value_name = "FILE", hide_short_help = true, help_heading = WINDOW)]
     pub places: Option<PathBuf>,
     /// Close the window after this number of frames, and print how long each took
