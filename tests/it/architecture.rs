@@ -140,9 +140,9 @@ fn every_module_uses_only_those_before_it() {
     }
 }
 
-/// The folders of the studio (its wings), lowest level first: each may use only folders of lower levels, so those of
+/// The folders of the studio, lowest level first: each may use only folders of lower levels, so those of
 /// one level do not use each other.
-const WINGS: [&[&str]; 8] = [
+const STUDIO_LAYERS: [&[&str]; 8] = [
     &["commands", "schedule", "error"],
     &["ui"],
     &["stage"],
@@ -154,20 +154,20 @@ const WINGS: [&[&str]; 8] = [
 ];
 
 #[test]
-fn every_wing_of_the_studio_uses_only_lower_wings() {
-    let wing_of = |path: &str| {
+fn every_layer_of_the_studio_uses_only_lower_layers() {
+    let layer_of = |path: &str| {
         let below_studio = path.strip_prefix("studio/")?;
         below_studio.split(['/', '.']).next().map(str::to_owned)
     };
-    let level_of = |wing: &str| WINGS.iter().position(|level| level.contains(&wing));
+    let level_of = |layer: &str| STUDIO_LAYERS.iter().position(|level| level.contains(&layer));
     for (path, targets) in import_graph(&files()) {
-        let Some(wing) = wing_of(&path) else { continue };
-        let level = level_of(&wing);
-        assert!(level.is_some(), "src/{path} is in no wing of the studio");
+        let Some(layer) = layer_of(&path) else { continue };
+        let level = level_of(&layer);
+        assert!(level.is_some(), "src/{path} is in no layer of the studio");
         for target in targets {
-            let other = wing_of(&target).filter(|other| *other != wing);
+            let other = layer_of(&target).filter(|other| *other != layer);
             let is_lower = other.is_none_or(|other| level_of(&other) < level);
-            assert!(is_lower, "src/{path} uses src/{target}, which is not in a lower wing");
+            assert!(is_lower, "src/{path} uses src/{target}, which is not in a lower layer");
         }
     }
 }
@@ -223,7 +223,7 @@ fn no_two_types_share_a_name() {
 }
 
 /// Words that may be used only in certain modules: word, modules, reason.
-const HOMES: [(&str, &[&str], &str); 13] = [
+const RESTRICTED_WORDS: [(&str, &[&str], &str); 13] = [
     ("bevy", &["studio"], "the core builds without Bevy"),
     ("egui", &["studio"], "the core builds without egui"),
     ("rapier3d", &["world", "studio"], "only the world knows the physics engine"),
@@ -247,7 +247,7 @@ const HOMES: [(&str, &[&str], &str); 13] = [
 fn restricted_words_are_used_only_in_their_modules() {
     for (path, text) in files() {
         let module = path.split(['/', '.']).next().unwrap_or_default();
-        for (word, homes, reason) in HOMES {
+        for (word, homes, reason) in RESTRICTED_WORDS {
             if !homes.contains(&module) {
                 let found = code(&text).find(|line| line.contains(word));
                 assert_eq!(found, None, "{word} in src/{path}: {reason}");

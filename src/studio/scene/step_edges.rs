@@ -1,4 +1,4 @@
-//! Strips at the front edges of the steps (nosings). Those of the steps below the snake glow.
+//! Strips at the front edges of the steps. Those of the steps below the snake glow.
 
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
@@ -54,9 +54,9 @@ impl FromWorld for Strips {
 fn dress(theme: Res<Theme>, strips: Res<Strips>, mut materials: ResMut<Assets<StandardMaterial>>) {
     let palette = theme.palette();
     for (handle, color) in [
-        (&strips.dark, palette.nosing),
-        (&strips.lit, palette.nosing_lit),
-        (&strips.glow, palette.nosing_lit),
+        (&strips.dark, palette.step_edge),
+        (&strips.lit, palette.step_edge_lit),
+        (&strips.glow, palette.step_edge_lit),
     ] {
         if let Some(mut material) = materials.get_mut(handle) {
             material.base_color = color;
@@ -126,19 +126,19 @@ const GLOW_OPACITY: f32 = 0.65;
 fn light(
     lanes: Query<(&Lane, &Children)>,
     strips: Res<Strips>,
-    mut nosings: Query<(&mut StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
+    mut edges: Query<(&mut StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
 ) {
     for (lane, children) in &lanes {
         let middle = lane.drawn_poses().nth(lane.body().middle_limb());
         let stairs = &lane.trial().stairs;
         let climbed = middle.map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
-        let mut nosings = nosings.iter_many_mut(children);
-        while let Some((mut nosing, mut material, mut visibility)) = nosings.fetch_next() {
-            let is_lit = nosing.step < climbed;
-            if nosing.is_lit == is_lit {
+        let mut edges = edges.iter_many_mut(children);
+        while let Some((mut edge, mut material, mut visibility)) = edges.fetch_next() {
+            let is_lit = edge.step < climbed;
+            if edge.is_lit == is_lit {
                 continue;
             }
-            nosing.is_lit = is_lit;
+            edge.is_lit = is_lit;
             if material.0 == strips.glow {
                 *visibility = if is_lit { Visibility::Inherited } else { Visibility::Hidden };
             } else {

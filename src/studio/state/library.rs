@@ -44,7 +44,7 @@ pub(crate) struct Library {
     listings: u64,
     /// Incremented when a sort or search key changes.
     sortings: u64,
-    errands: Vec<BatchJobs>,
+    batches: Vec<BatchJobs>,
     /// Champions being read for the stage.
     loading: Option<BackgroundTask<Result<Show, String>>>,
     /// Result of `loading`, until it is shown.
@@ -76,7 +76,7 @@ impl Library {
             revision: 0,
             listings: 0,
             sortings: 0,
-            errands: Vec::new(),
+            batches: Vec::new(),
             loading: None,
             loaded: None,
             newest: (0, None),
@@ -264,7 +264,7 @@ mod tests {
 
         /// Waits until no batch operation is running.
         pub fn wait(&mut self) {
-            while !self.library.errands.is_empty() {
+            while !self.library.batches.is_empty() {
                 self.take_in();
             }
         }

@@ -20,7 +20,7 @@ pub fn thumbnail(painter: &egui::Painter, rect: Rect, of: &Thumbnail, palette: &
     for step in of.stairs_m.get(1..).unwrap_or_default().as_chunks::<2>().0 {
         let [[front_y_m, top_z_m], [back_y_m, _]] = *step;
         let corners = [[front_y_m, 0.0], [back_y_m, top_z_m]].map(|at| view.at(at));
-        let color = theme::flat(palette.nosing);
+        let color = theme::flat(palette.step_edge);
         painter.rect_filled(Rect::from_points(&corners), 0.0, color);
     }
     let way: Vec<Pos2> = of.way_m.iter().map(|at| view.at(*at)).collect();

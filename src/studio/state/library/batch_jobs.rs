@@ -88,8 +88,8 @@ impl Library {
         let share = |batch: &BackgroundTask<Vec<BatchOutcome>>| {
             batch.done() as f32 / batch.total().max(1) as f32
         };
-        let long = self.errands.iter().filter(|errand| errand.is_long());
-        long.map(move |errand| (errand.words(), share(&errand.batch)))
+        let long = self.batches.iter().filter(|job| job.is_long());
+        long.map(move |job| (job.words(), share(&job.batch)))
     }
 
     /// The reason why files cannot be changed now: a long batch is running, and steps are undone in order.
@@ -104,7 +104,7 @@ impl Library {
 
     /// Stops all batches after their current file. Finished files can be undone.
     pub(super) fn cancel(&self) {
-        self.errands.iter().for_each(|errand| errand.batch.cancel());
+        self.batches.iter().for_each(|job| job.batch.cancel());
     }
 
     /// Carries out an operation on several saves: now, or in the background if they are many.
@@ -144,7 +144,7 @@ impl Library {
         self.refuse_while_busy()?;
         let batch = BackgroundTask::for_each(things, act, leave)
             .map_err(|error| format!("{} saves could not be started: {error}", task.doing()))?;
-        self.errands.push(BatchJobs { task, batch });
+        self.batches.push(BatchJobs { task, batch });
         Ok(())
     }
 
@@ -186,9 +186,9 @@ impl Library {
 
     /// Takes in the batches that are finished.
     pub(super) fn take_in_batches(&mut self, history: &mut UndoHistory, notices: &mut Notices) {
-        for BatchJobs { task, batch } in std::mem::take(&mut self.errands) {
+        for BatchJobs { task, batch } in std::mem::take(&mut self.batches) {
             match batch.poll() {
-                None => self.errands.push(BatchJobs { task, batch }),
+                None => self.batches.push(BatchJobs { task, batch }),
                 Some(Ok(outcomes)) => self.finish(task, outcomes, history, notices),
                 Some(Err(problem)) => {
                     let doing = task.doing();

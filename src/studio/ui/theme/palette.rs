@@ -62,9 +62,9 @@ pub struct Palette {
     /// Even steps.
     pub stair_other: Color,
     /// Step edge.
-    pub nosing: Color,
+    pub step_edge: Color,
     /// Step edge while the step is climbed: the accent's hue, but too bright to be mistaken for a limb.
-    pub nosing_lit: Color,
+    pub step_edge_lit: Color,
     /// Veil for numbers on ground and risers.
     pub paint: Color,
     /// Stripes along limbs, and eyes.
@@ -111,8 +111,8 @@ pub const LIGHT: Palette = Palette {
     grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
     stair: Color::srgb(0.84, 0.81, 0.76),
     stair_other: Color::srgb(0.76, 0.73, 0.68),
-    nosing: Color::srgb(0.60, 0.57, 0.52),
-    nosing_lit: Color::srgb(0.05, 0.72, 1.0),
+    step_edge: Color::srgb(0.60, 0.57, 0.52),
+    step_edge_lit: Color::srgb(0.05, 0.72, 1.0),
     paint: Color::srgba(0.06, 0.12, 0.18, 0.62),
     white: Color::srgb(0.97, 0.96, 0.93),
     metal: Color::srgb(0.16, 0.17, 0.20),
@@ -150,8 +150,8 @@ pub const DARK: Palette = Palette {
     grid: Color::srgba(0.75, 0.85, 1.0, 0.08),
     stair: Color::srgb(0.47, 0.50, 0.56),
     stair_other: Color::srgb(0.40, 0.43, 0.49),
-    nosing: Color::srgb(0.30, 0.33, 0.38),
-    nosing_lit: Color::srgb(0.40, 0.80, 1.0),
+    step_edge: Color::srgb(0.30, 0.33, 0.38),
+    step_edge_lit: Color::srgb(0.40, 0.80, 1.0),
     paint: Color::srgba(0.85, 0.92, 1.0, 0.60),
     white: Color::srgb(0.93, 0.94, 0.96),
     metal: Color::srgb(0.10, 0.11, 0.13),
