@@ -110,7 +110,9 @@ fn origin(parents: Parents) -> String {
         Parents::None => "Created at random".to_owned(),
         Parents::One(parent) => format!("Child of {}", name(parent)),
         Parents::Two(first, second) => format!("Child of {}\nand {}", name(first), name(second)),
-        Parents::Distribution => "Drawn from the average that the search had learned".to_owned(),
+        Parents::Distribution => {
+            "Drawn at random around the average that the search had learned".to_owned()
+        }
         Parents::Unknown => "Parents unknown".to_owned(),
     }
 }
@@ -124,7 +126,8 @@ fn note_on_start(ancestry: &Ancestry) -> String {
             format!("The line starts in generation {generation} with a random snake.")
         }
         Parents::Distribution => {
-            "CMA-ES draws each snake from a shared average, so no snake has parents.".to_owned()
+            "CMA-ES draws each snake at random around a shared average, so no snake has parents."
+                .to_owned()
         }
         Parents::One(_) | Parents::Two(..) | Parents::Unknown => {
             format!("Ancestors before generation {generation} were not recorded.")

@@ -63,10 +63,10 @@ impl EvolutionPanel {
         } else {
             "Finish one generation, then pause (G)"
         };
-        let first_hint = if is_finished && !run.next_run_differs() {
-            "Start a run with the next seed (E)"
-        } else {
-            "Start or pause evolution in the background (E)"
+        let first_hint = match (is_finished, run.next_run_differs()) {
+            (true, false) => "Start a run with the next seed (E)",
+            (true, true) => "Start a run with the changed settings (E)",
+            (false, _) => "Start or pause evolution in the background (E)",
         };
         let reset = if is_wrong {
             "Correct the invalid value below first"

@@ -19,7 +19,7 @@ impl CurrentRun {
     /// Whether a setting, by its full dotted name, may change in the current run. The error is a sentence for a tooltip.
     pub(super) fn run_allows(&self, field: &str) -> Result<(), &'static str> {
         if !self.is_under_way() {
-            return Err("No run is in progress, so it takes effect with the next run.");
+            return Err("No run is in progress, so a change takes effect with the next run.");
         }
         may_change_during_run(field, self.settings())
     }
@@ -31,7 +31,7 @@ impl CurrentRun {
         }
         if !self.next_suits_run() {
             return Err(
-                "Takes effect with the next run, because its search settings already differ from those of the current run.",
+                "Takes effect with the next run, because other search settings of the next run already differ from those of the current run.",
             );
         }
         Ok(())

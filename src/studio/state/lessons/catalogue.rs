@@ -98,9 +98,10 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         to_try: "Open the World panel and drag Friction: a copy of the snake starts beside it with the new \
                  value. Or click one of these examples.",
         look_for: "How far each snake gets. The torques are the same in all lanes; only the ground differs.",
-        answer: "Too little grip slips; too much makes a block catch on the step edge and hold the others back. \
-                 A snake that evolved on one surface is fit for that surface and tolerates only small changes. \
-                 Therefore every property of a surface is a number here, and you see its effect at once.",
+        answer: "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
+                 holds the others back. A snake that evolved on one surface is fit for that surface and tolerates only small changes. \
+                 That is why the World panel lets you set every property of a surface as a number and see its effect \
+                 at once.",
         scenes: &[
             LessonScene::Lanes {
                 label: "Ice, original, glue",
@@ -190,7 +191,8 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                    snake. What happens after generation 6?",
         answer: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
                  generations can only refine. Not every seed shows this, because some runs are lucky early. You can \
-                 set the range and its decay in the Run panel; other strategies adapt their own.",
+                 set the range and its decay in the Run panel; some other strategies, such as CMA-ES, adapt \
+                 the size of their changes themselves.",
         scenes: &[
             AS_FOUND,
             LessonScene::Runs {
@@ -215,10 +217,11 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 were repeated only to discard outliers.",
         to_try: "Repeat the same run on one thread and on two threads. Then repeat it with the friction changed by \
                  a millionth.",
-        look_for: "The hash of each run: sixteen digits that summarise every bit of every evaluation.",
+        look_for: "The hash of each run: sixteen characters (0 to 9 and a to f) that summarise every bit of \
+                   every evaluation.",
         answer: "The same seed and settings give the same hash, with any number of threads and on every \
-                 computer with an x86-64 processor. A change of a millionth gives another result, so a result can be \
-                 trusted only if it can be repeated exactly.",
+                 computer with an x86-64 processor. Even a change of a millionth gives another result, so \
+                 only a result that can be repeated exactly can be checked.",
         scenes: &[
             AS_FOUND,
             LessonScene::Runs {
