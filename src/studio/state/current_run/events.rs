@@ -240,7 +240,7 @@ mod tests {
             other.settings.evolution.population = 5;
             run.set_next_plan_alone(other)?;
             run.set_field("halving.parents", "3")?;
-            let requested = run.requested_settings().evolution;
+            let requested = run.requested_settings().into_owned().evolution;
             assert_eq!((requested.population, requested.halving.parents), (6, 4));
             assert!(run.next_run_differs());
             Ok(())

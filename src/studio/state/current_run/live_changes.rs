@@ -1,5 +1,6 @@
 //! Changes of the current run's settings, and founders of the next run.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::{CurrentRun, RunStatus};
@@ -55,12 +56,16 @@ impl CurrentRun {
     }
 
     /// Settings of the current run once its pending changes are made.
-    pub(super) fn requested_settings(&self) -> Settings {
+    pub(super) fn requested_settings(&self) -> Cow<'_, Settings> {
+        // Panels ask for each of their rows in every frame, and changes are rarely pending.
+        if self.pending.is_empty() {
+            return Cow::Borrowed(&self.plan_now.settings);
+        }
         let change = |settings: Settings, (field, text): &(String, String)| {
             // A setting of an option that is no longer selected does not exist and can be skipped.
             with_field(&settings, field, text).unwrap_or(settings)
         };
-        self.pending.iter().fold(self.plan_now.settings.clone(), change)
+        Cow::Owned(self.pending.iter().fold(self.plan_now.settings.clone(), change))
     }
 
     /// Removes a pending change of a setting, by its full dotted name, because it was made or refused.

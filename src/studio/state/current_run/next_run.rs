@@ -35,7 +35,7 @@ impl CurrentRun {
         let of = |plan: &RunPlan| (plan.seed, plan.preset.clone());
         of(now) != of(next)
             || now.founder != next.founder
-            || self.requested_settings() != next.settings
+            || *self.requested_settings() != next.settings
     }
 
     /// Sets the seed of the next run. A run that has not started takes it at once.
@@ -102,7 +102,7 @@ impl CurrentRun {
         let (next, requested) = (&self.plan_next, self.requested_settings());
         let is_same_preset = next.preset == self.plan_now.preset;
         let is_same_search = next.settings.evolution == requested.evolution;
-        next.settings == requested || (is_same_preset && is_same_search)
+        next.settings == *requested || (is_same_preset && is_same_search)
     }
 
     /// Presets to choose from.
