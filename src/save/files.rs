@@ -30,7 +30,7 @@ pub enum SaveError {
         source: std::io::Error,
     },
     /// The file is larger than any that this program writes.
-    #[error("{}: size is over {limit_mib} MiB; allowed: up to {limit_mib} MiB", path.display())]
+    #[error("{}: the file is larger than {limit_mib} MiB, the largest that is read", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,

@@ -63,7 +63,7 @@ impl SettingGroup for Trial {
                     "Ground",
                     "none; setting ground.friction, for example, gives it a surface of its own",
                 )
-                .hint("Without its own surface, the ground has that of the stairs"),
+                .hint("Unless the ground is given its own surface, it uses the same one as the stairs"),
                 &mut (),
             ),
         }

@@ -215,7 +215,7 @@ fn a_champion_of_another_engine_is_shown_as_recorded_and_can_be_simulated() {
     let Some(studio) = Studio::open("recorded", &arguments) else { return };
     studio.wait_for_title("showing saved champion as recorded");
     studio.pause_evolution();
-    studio.click_label("Simulate here");
+    studio.click_label("Simulate again");
     studio.wait_for_title_without("as recorded");
     studio.click_label("As recorded");
     studio.wait_for_title("showing saved champion as recorded");

@@ -144,7 +144,7 @@ impl SettingGroup for EvolutionSettings {
         settings! { walk,
             population: if is_learned { sizes.fixed(cma_es::LEARNED) } else { sizes };
             generations: whole("Generations", 1..=10_000)
-                .hint("Number of generations in a run. Population times generations limits the evaluations");
+                .hint("Number of generations in a run. A run evaluates at most population × generations snakes");
         }
         walk.section(Self::STRATEGY);
         settings! { walk,

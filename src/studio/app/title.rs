@@ -29,7 +29,7 @@ fn update(
     let first = lanes.iter().min_by_key(|lane| lane.number());
     let shown = match (&*mode, first) {
         (_, None) => "nothing".to_owned(),
-        (StageMode::Race, _) => format!("a race of {}", lanes.iter().len()),
+        (StageMode::Race, _) => format!("a race of {} snakes", lanes.iter().len()),
         (mode, Some(lane)) => {
             let generation = lane.staged().generation();
             let what = match lane.staged().source() {

@@ -49,22 +49,24 @@ impl ChampionsPanel {
     ) {
         let ReportSummary { champions, best } = self.summary(reports);
         ui.horizontal(|ui| {
-            for (name, hint, is_on, command) in [
+            for (name, hint, is_on, needed, command) in [
                 (
                     "Race generations",
                     "Replay champions of several generations side by side (N)",
                     champions > 1,
+                    "two generations",
                     Command::Stage(StageCommand::RaceGenerations),
                 ),
                 (
                     "Race best 10",
                     "Replay the ten best snakes of the latest generation side by side (M)",
                     leaders(None) > 1,
+                    "a generation",
                     Command::Stage(StageCommand::RaceLeaders(None)),
                 ),
             ] {
                 let button = egui::Button::new(name);
-                let disabled_hint = "Nothing to race yet: finish a generation first";
+                let disabled_hint = format!("Nothing to race yet: finish {needed} first");
                 let response = ui.add_enabled(is_on, button).on_hover_text(hint);
                 if response.on_disabled_hover_text(disabled_hint).clicked() {
                     commands.push(command);

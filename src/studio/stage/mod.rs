@@ -198,7 +198,7 @@ fn differs_from_record(lane: &Lane) -> Option<String> {
 fn explain_other_engine(staged: &StagedChampion, notices: &mut Notices) {
     let Some(engine) = staged.other_engine() else { return };
     let text = if staged.recording().is_some() {
-        "Its recording is shown; \"Simulate here\" simulates it with this engine."
+        "Its recording is shown; \"Simulate again\" simulates it with this engine."
     } else {
         "It is simulated again, so its motion may differ."
     };

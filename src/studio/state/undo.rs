@@ -220,7 +220,7 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
         },
         Command::Run(RunCommand::Continue(_)) => {
             let RunPlan { preset, seed, .. } = after;
-            (CONTINUE, format!("the settings of {preset}, seed {seed}"))
+            (CONTINUE, format!("settings taken from {preset}, seed {seed}"))
         }
         _ => return None,
     };

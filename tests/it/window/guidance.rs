@@ -4,6 +4,8 @@ use super::display::Studio;
 
 #[test]
 fn a_complete_lesson_leaves_the_own_run_untouched() {
+    /// Words from the conclusion of the first lesson.
+    const ANSWER: &str = "holds the others back";
     let Some(studio) = Studio::open("lesson", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("World");
@@ -12,10 +14,10 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
     studio.open_panel("Lessons");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
-    assert!(studio.find(|place| place.label.contains("too much makes a block catch")).is_none());
+    assert!(studio.find(|place| place.label.contains(ANSWER)).is_none());
     studio.scroll_and_click("Button", "A little less, a little more");
     studio.place_with("friction 0.7");
-    studio.place_with("too much makes a block catch");
+    studio.place_with(ANSWER);
     studio.scroll_and_click("Button", "Back to my own run");
     studio.wait_for_title(&title);
     studio.open_panel("World");

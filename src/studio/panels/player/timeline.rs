@@ -57,7 +57,7 @@ impl TimelinePanel {
                 } else if staged.recording().is_some() {
                     let hint = "Simulate it with this version of the engine. The motion may differ from \
                                 the recording";
-                    if ui.button("Simulate here").on_hover_text(hint).clicked() {
+                    if ui.button("Simulate again").on_hover_text(hint).clicked() {
                         commands.push(Command::Stage(StageCommand::Simulate));
                     }
                 }

@@ -70,8 +70,10 @@ impl EvolutionPanel {
         };
         let reset = if is_wrong {
             "Correct the invalid value below first"
+        } else if run.next_run_differs() {
+            "Prepare a new run with the changed settings; the current run stays saved"
         } else {
-            "Start over with the current settings (saved champions are kept)"
+            "Discard this run's generations and prepare it again (saved champions are kept)"
         };
         ui.horizontal(|ui| {
             for (is_on, button, hint, command) in [
@@ -109,7 +111,11 @@ impl EvolutionPanel {
         founder(ui, run, commands);
         changes(ui, run);
         if run.next_run_differs() {
-            let hint = "These settings will be used by the next run. Press Reset to prepare it.";
+            let next = match run.status() {
+                RunStatus::Finished => "Press New run to start it.",
+                _ => "Press Reset to prepare it, then Start.",
+            };
+            let hint = format!("These settings will be used by the next run. {next}");
             ui.label(egui::RichText::new(hint).color(theme::of(ui).second));
         }
         self.strategy(ui, run, commands);

@@ -94,8 +94,10 @@ fn evaluations_left(run: &CurrentRun, done: u32) -> u64 {
 fn reasons_text(report: &GenerationReport) -> String {
     let mut reasons: Vec<_> = report.reasons.iter().collect();
     reasons.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
-    let reasons: Vec<String> =
-        reasons.into_iter().map(|(reason, count)| format!("{count}: {}", reason.words())).collect();
+    let reasons: Vec<String> = reasons
+        .into_iter()
+        .map(|(reason, count)| format!("{count} because {}", reason.words()))
+        .collect();
     if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join("; ")) }
 }
 
@@ -164,6 +166,9 @@ mod tests {
         assert_eq!(reasons_text(&report), "");
         report.reasons.insert(Disqualification::JointBroke, 2);
         report.reasons.insert(Disqualification::LeftArena, 7);
-        assert_eq!(reasons_text(&report), " (7: it left the arena; 2: a joint came apart)");
+        assert_eq!(
+            reasons_text(&report),
+            " (7 because it left the arena; 2 because a joint came apart)"
+        );
     }
 }

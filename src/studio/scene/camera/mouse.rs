@@ -147,7 +147,7 @@ fn drag(
     }
     if !held.is_pulling && lane.staged().recording().is_some() {
         notices
-            .info("A recording cannot be pulled; \"Simulate here\" makes it a simulation.".into());
+            .info("A recording cannot be pulled; \"Simulate again\" makes it a simulation.".into());
     }
     held.is_pulling = true;
     let Some(ray) = ray_at(cursor, *camera) else { return };

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 use super::CurrentRun;
-use super::live_changes::news_of;
+use super::live_changes::{news_of, refusal_in_words};
 use crate::evolve::Champion;
 use crate::run::{OpenedRun, RunEvent};
 use crate::save::ExistingRun;
@@ -99,7 +99,7 @@ fn take_in(
             }
             RunEvent::SettingNotChanged { field, reason } => {
                 run.settle_change(&field);
-                notices.problem(format!("{field} was not changed in the current run: {reason}"));
+                notices.problem(refusal_in_words(&field, &reason));
             }
             RunEvent::Explored(exploration) => run.explore(exploration),
             RunEvent::Generation(report) => {

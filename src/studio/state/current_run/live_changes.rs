@@ -9,7 +9,7 @@ use crate::evolve::{
     Champion, Founder, RunPlan, SettingChange, Settings, may_change_during_run, with_field,
 };
 use crate::run::THREADS_RANGE;
-use crate::schema::list;
+use crate::schema::{Setting, list};
 
 impl CurrentRun {
     /// Whether a run is in progress whose settings could change.
@@ -143,12 +143,27 @@ impl CurrentRun {
 /// Description of a change: "From generation 8: mutation range 50 N·m".
 pub(crate) fn news_of(change: &SettingChange) -> String {
     let SettingChange { generation, field, value } = change;
-    let all = list(&Settings::default());
-    let setting = all.iter().find(|listed| listed.path == *field).map(|listed| listed.setting);
-    let name = setting.map_or_else(|| field.clone(), |setting| setting.short_name());
-    let unit = setting.map(|setting| setting.unit).filter(|unit| !unit.is_empty());
+    let unit = setting_of(field).map(|setting| setting.unit).filter(|unit| !unit.is_empty());
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
-    format!("From generation {generation}: {name} {}{unit}", value.replace('_', " "))
+    let value = value.replace('_', " ");
+    format!("From generation {generation}: {} {value}{unit}", name_of(field))
+}
+
+/// Why a requested change was not made: "Population was not changed in the current run: ...".
+pub(super) fn refusal_in_words(field: &str, reason: &str) -> String {
+    let name = setting_of(field).map_or(field, |setting| setting.label);
+    format!("{name} was not changed in the current run: {reason}")
+}
+
+/// The name of the setting with this full dotted name, as it stands within a sentence.
+fn name_of(field: &str) -> String {
+    setting_of(field).map_or_else(|| field.to_owned(), |setting| setting.short_name())
+}
+
+/// The declaration of the setting with this full dotted name.
+fn setting_of(field: &str) -> Option<Setting> {
+    let all = list(&Settings::default());
+    all.into_iter().find(|listed| listed.path == field).map(|listed| listed.setting)
 }
 
 #[cfg(test)]
@@ -166,6 +181,8 @@ mod tests {
         let range = change("halving.mutation_range_nm", "50");
         assert_eq!(range, "From generation 8: mutation range 50 N·m");
         assert_eq!(change("ga.crossover", "one_point"), "From generation 8: crossover one point");
+        let refusal = refusal_in_words("evolution.halving.mutation_range_nm", "the run has ended");
+        assert_eq!(refusal, "Mutation range was not changed in the current run: the run has ended");
     }
 
     #[test]

@@ -180,7 +180,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         ],
     },
     Lesson {
-        title: "A range that halves",
+        title: "Mutations that shrink too fast",
         question: "Why did progress stop after six generations?",
         story: "Children differ from their parent by random changes within a mutation range. In the original \
                 experiment this range halved with each generation: 100, 50, 25 and so on. After six generations, \
@@ -210,7 +210,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         ],
     },
     Lesson {
-        title: "The same bits",
+        title: "Repeating a run exactly",
         question: "Why must a repeated run give exactly the same result?",
         story: "In the original experiment, the same forces gave different results from run to run and from computer \
                 to computer. Results could not be checked, work could not be shared between computers, and runs \
