@@ -24,6 +24,8 @@ pub(crate) struct Lane {
     number: usize,
     /// Offset of this lane's world along x, in metres.
     offset_x_m: f32,
+    /// Whether it stands in the place of another lane and is drawn translucent, without stairs of its own.
+    is_ghost: bool,
     replay: Replay,
     lookahead: Lookahead,
     /// For a recording: the step at which the snake first stood on the landing.
@@ -79,6 +81,7 @@ impl Lane {
             staged,
             number,
             offset_x_m: 0.0,
+            is_ghost: false,
             share: 1.0,
             readings: readings_of(&replay),
             replay,
@@ -92,6 +95,17 @@ impl Lane {
     pub fn at_x(mut self, offset_x_m: f32) -> Self {
         self.offset_x_m = offset_x_m;
         self
+    }
+
+    /// Makes it a ghost: drawn translucent in the place of another lane, without stairs of its own.
+    pub fn as_ghost(mut self) -> Self {
+        self.is_ghost = true;
+        self
+    }
+
+    /// Whether it is drawn as a ghost.
+    pub fn is_ghost(&self) -> bool {
+        self.is_ghost
     }
 
     /// The champion in this lane.

@@ -7,6 +7,7 @@ use bevy_egui::egui::accesskit::{Live, Role};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 use super::theme;
+use crate::studio::commands::Command;
 
 /// Displayed messages, the oldest first.
 #[derive(Resource, Debug, Default)]
@@ -15,33 +16,65 @@ pub(crate) struct Notices(Vec<Notice>);
 #[derive(Debug)]
 struct Notice {
     text: String,
+    /// Messages about the same subject replace each other.
+    subject: Option<&'static str>,
+    /// Buttons: their labels, and the commands that they send.
+    offers: Vec<(String, Command)>,
     is_problem: bool,
     shown_for: Duration,
 }
 
 /// Display time of news.
 const NEWS: Duration = Duration::from_secs(8);
-/// Display time of a problem, which takes longer to read.
+/// Display time of a problem, which takes longer to read, and of a message with a button, which takes time to reach.
 const PROBLEM: Duration = Duration::from_secs(16);
 /// Maximum number of messages. More would cover the stage; the oldest is removed.
 const MAX_NOTICES: usize = 4;
 
 impl Notice {
+    fn new(text: String) -> Self {
+        Self {
+            text,
+            subject: None,
+            offers: Vec::new(),
+            is_problem: false,
+            shown_for: Duration::ZERO,
+        }
+    }
+
     fn is_over(&self) -> bool {
-        self.shown_for >= if self.is_problem { PROBLEM } else { NEWS }
+        let takes_longer = self.is_problem || !self.offers.is_empty();
+        self.shown_for >= if takes_longer { PROBLEM } else { NEWS }
     }
 }
 
 impl Notices {
     /// Shows a message.
     pub fn info(&mut self, text: String) {
-        self.push(text, false);
+        self.push(Notice::new(text));
+    }
+
+    /// Shows a message that replaces earlier ones about the same subject.
+    pub fn update(&mut self, subject: &'static str, text: String) {
+        self.push(Notice { subject: Some(subject), ..Notice::new(text) });
+    }
+
+    /// Shows a message with buttons, which replaces earlier ones about the same subject. Each button has a label and
+    /// sends a command.
+    pub fn offer<const N: usize>(
+        &mut self,
+        subject: &'static str,
+        text: String,
+        offers: [(&str, Command); N],
+    ) {
+        let offers = offers.map(|(label, command)| (label.to_owned(), command)).into();
+        self.push(Notice { subject: Some(subject), offers, ..Notice::new(text) });
     }
 
     /// Shows and logs a problem.
     pub fn problem(&mut self, text: String) {
         error!("{text}");
-        self.push(text, true);
+        self.push(Notice { is_problem: true, ..Notice::new(text) });
     }
 
     /// Shows and logs a problem, if there is one.
@@ -61,10 +94,11 @@ impl Notices {
         self.0.last().map(|notice| notice.text.as_str())
     }
 
-    fn push(&mut self, text: String, is_problem: bool) {
+    fn push(&mut self, new: Notice) {
         // A repeated message replaces the earlier one and restarts its display time.
-        self.0.retain(|notice| notice.text != text);
-        self.0.push(Notice { text, is_problem, shown_for: Duration::ZERO });
+        let is_same = |notice: &Notice| new.subject.is_some() && notice.subject == new.subject;
+        self.0.retain(|notice| notice.text != new.text && !is_same(notice));
+        self.0.push(new);
         let surplus = self.0.len().saturating_sub(MAX_NOTICES);
         self.0.drain(..surplus);
     }
@@ -74,17 +108,24 @@ pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Notices>().add_systems(EguiPrimaryContextPass, draw);
 }
 
-fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time<Real>>) -> Result {
+fn draw(
+    mut contexts: EguiContexts,
+    mut notices: ResMut<Notices>,
+    time: Res<Time<Real>>,
+    mut send: MessageWriter<Command>,
+) -> Result {
     notices.0.iter_mut().for_each(|notice| notice.shown_for += time.delta());
     notices.0.retain(|notice| !notice.is_over());
     let context = contexts.ctx_mut()?;
+    let mut taken = None;
     egui::Area::new(egui::Id::new("notices"))
         .anchor(egui::Align2::RIGHT_TOP, [-theme::GAP * 2.0, theme::NOTICES_TOP])
-        .interactable(false)
+        // Without a button, clicks reach the stage behind the messages.
+        .interactable(notices.0.iter().any(|notice| !notice.offers.is_empty()))
         .show(context, |ui| {
             ui.spacing_mut().item_spacing.y = theme::GAP;
             ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
-                for notice in notices.0.iter().rev() {
+                for (index, notice) in notices.0.iter().enumerate().rev() {
                     let palette = theme::of(ui);
                     let edge = if notice.is_problem { palette.problem } else { palette.accent };
                     palette.card(edge).show(ui, |ui| {
@@ -98,10 +139,23 @@ fn draw(mut contexts: EguiContexts, mut notices: ResMut<Notices>, time: Res<Time
                             node.set_role(Role::Status);
                             node.set_live(Live::Polite);
                         });
+                        if !notice.offers.is_empty() {
+                            ui.horizontal(|ui| {
+                                for (label, command) in &notice.offers {
+                                    if ui.button(label).clicked() {
+                                        taken = Some((index, command.clone()));
+                                    }
+                                }
+                            });
+                        }
                     });
                 }
             });
         });
+    if let Some((index, command)) = taken {
+        notices.0.remove(index);
+        send.write(command);
+    }
     Ok(())
 }
 
@@ -118,5 +172,17 @@ mod tests {
         notices.info("7".to_owned());
         let texts: Vec<&str> = notices.0.iter().map(|notice| notice.text.as_str()).collect();
         assert_eq!(texts, ["6", "8", "9", "7"]);
+    }
+
+    #[test]
+    fn a_message_replaces_the_earlier_one_about_its_subject() {
+        let mut notices = Notices::default();
+        notices.update("undo", "Deleted a save".to_owned());
+        notices.info("Something else".to_owned());
+        notices.offer("undo", "Restored".to_owned(), [("Redo", Command::Redo)]);
+        let texts: Vec<&str> = notices.0.iter().map(|notice| notice.text.as_str()).collect();
+        assert_eq!(texts, ["Something else", "Restored"]);
+        notices.0[1].shown_for = NEWS;
+        assert!(!notices.0[1].is_over(), "a button takes time to reach");
     }
 }
