@@ -50,7 +50,7 @@ pub fn name(field: &str, value: &str) -> Result<(), Invalid> {
     if (1..=40).contains(&value.len()) && value.chars().all(plain) {
         return Ok(());
     }
-    Err(Invalid::new(field, quoted(value), "1 to 40 of a-z, 0-9 and -"))
+    Err(Invalid::new(field, quoted(value), "1 to 40 characters, each a-z, 0-9 or -"))
 }
 
 /// A text from outside in an error: quoted, at most 60 characters, without control characters.

@@ -35,7 +35,7 @@ setting_group! {
         angle_range_rad: f32 = 1.0,
             number("Angle range", 0.0..=super::LARGEST_LIMIT_RAD)
                 .unit("rad")
-                .hint("Maximum amplitude of a gait's joint angles, and maximum offset to either side")
+                .hint("Maximum amplitude of a gait's joint angles, and maximum offset in either direction")
                 .slider(0.0, 3.0);
 
         /// Least stiffness of the servo, in N·m/rad.

@@ -185,7 +185,7 @@ impl Comparison {
             "landed",
             "evaluations to landing",
             "energy J/m",
-            "last mean"
+            "final mean"
         );
         for row in self.rows() {
             let show = |quartiles: Option<Quartiles>, digits: usize| match quartiles {
@@ -211,7 +211,8 @@ impl Comparison {
                     .map_or("-".to_owned(), |mean| format!("{:.2}", mean.median)),
             );
         }
-        text + "\nmedian [quartiles] over the seeds; a run that never lands counts as infinite evaluations\n"
+        text + "\nmedian [quartiles] over the seeds; a run that never reaches the landing counts as needing\n\
+         infinitely many evaluations; final mean: mean fitness of the last generation\n"
     }
 
     /// The records of the CSV file, the header first: one per run.
@@ -325,6 +326,6 @@ mod tests {
         assert_eq!(ga.run_hash, format!("{:016x}", experiment.run_hash()), "it is the run itself");
         assert_eq!(ga.curve.last().copied().flatten(), ga.best.map(|best| best.fitness));
         assert_eq!(comparison.rows().len(), plans.len());
-        assert_eq!(comparison.text().lines().count(), plans.len() + 3);
+        assert_eq!(comparison.text().lines().count(), plans.len() + 4);
     }
 }

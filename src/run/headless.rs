@@ -210,7 +210,7 @@ pub fn say(line: &str) {
 }
 
 const TABLE_HEAD: &str =
-    "generation     mean     best   median  std.dev.  disqualified  meaning of the mean";
+    "generation     mean     best   median  std.dev.  disqualified  mean in words";
 
 fn table_row(report: &GenerationReport) -> String {
     let generation = report.generation;
@@ -245,10 +245,10 @@ fn json_line(report: &GenerationReport) -> Value {
 /// A champion in one line.
 fn about(champion: &Champion) -> String {
     format!(
-        "{} (generation {}, individual {})",
+        "{} (generation {}, snake {})",
         champion.reached(),
         champion.origin.generation,
-        champion.origin.individual,
+        champion.origin.individual + 1,
     )
 }
 
@@ -301,6 +301,6 @@ mod tests {
             let end_of = |line: &str, word: &str| line.find(word).map(|at| at + word.len());
             assert_eq!(end_of(&row, number), end_of(TABLE_HEAD, column), "{row}\n{TABLE_HEAD}");
         }
-        assert_eq!(row.find("starting"), TABLE_HEAD.find("meaning"));
+        assert_eq!(row.find("starting"), TABLE_HEAD.find("mean in words"));
     }
 }

@@ -165,8 +165,10 @@ impl RunRecorder {
     fn record_crash(&self, crash: &Crash) -> String {
         let origin = &crash.individual.origin;
         let what = format!(
-            "the simulation of individual {} of generation {} failed ({})",
-            origin.individual, origin.generation, crash.message
+            "the simulation of snake {} of generation {} failed ({})",
+            origin.individual + 1,
+            origin.generation,
+            crash.message
         );
         match self.folder.keep_crashed(&crash.individual) {
             Ok(path) => {

@@ -61,7 +61,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
         return Ok(());
     }
     let engine = if loaded.is_of_this_engine() {
-        "the file was edited, or this machine computes other bits".to_owned()
+        "the file was edited, or this machine computes different results".to_owned()
     } else {
         format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
     };
@@ -82,7 +82,7 @@ fn effort_lines(effort: &Effort, health: &HealthLimits) -> String {
     format!(
         "energy      {:.1} J\n\
          top speed   {:.2} m/s of {} m/s\n\
-         joint drift {:.4} m of {} m\n\
+         joint gap   {:.4} m of {} m\n\
          sideways    {:.2} m of {} m",
         effort.energy_j,
         effort.top_speed_m_s,

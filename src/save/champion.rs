@@ -52,13 +52,13 @@ pub fn store_champion(
     }
     let origin = &champion.origin;
     let header = format!(
-        "// A champion of Snakes & Stairs: preset {}, seed {}, generation {}, individual {}.\n\
+        "// A champion of Snakes & Stairs: preset {}, seed {}, generation {}, snake {}.\n\
          // Fitness ({}): {}.\n\
          // Replay it exactly: snakes replay FILE (add --no-render to check it in a terminal)\n",
         origin.preset,
         origin.seed,
         origin.generation,
-        origin.individual,
+        origin.individual + 1,
         champion.trial.fitness.words(),
         champion.reached(),
     );

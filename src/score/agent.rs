@@ -105,14 +105,14 @@ impl SettingGroup for AgentSettings {
             bend_limit_rad: optional_per_part("Bend limit", limits.clone(), each_joint, 1.0)
                 .unit("rad")
                 .hint(
-                    "Maximum bend to either side, like snapping a stick. Without a value, each snake has its own, \
+                    "Maximum angle by which a joint bends up or down. Without a value, each snake has its own, \
                      drawn from a list",
                 )
                 .slider(0.0, 3.0);
             twist_limit_rad: optional_per_part("Twist limit", limits, each_joint, 1.0)
                 .unit("rad")
                 .hint(
-                    "Maximum twist to either side, like wringing a sponge. Without a value, each snake has its own, \
+                    "Maximum angle by which a joint twists about the snake's long axis, in either direction. Without a value, each snake has its own, \
                      drawn from a list",
                 )
                 .slider(0.0, 3.0);

@@ -39,7 +39,7 @@ choices! {
         /// Beside, inside or behind the stairs y counts only up to the first riser; on the landing it counts up to where
         /// the whole snake stands there.
         Climb = "climb", "Climb: y on the stairs",
-            "The y of the middle block at the end. Beside the stairs, only the way to the first riser counts.\n\
+            "The y of the middle block at the end. Beside the stairs, only the distance to the first riser counts.\n\
              Unintended rewards: Being caught in mid-leap over the stairs at the end.";
     }
 }
@@ -55,7 +55,7 @@ impl Fitness {
         match self {
             Self::Centre => "y of the middle block at the end",
             Self::Climb => {
-                "y of the middle block at the end (beside the stairs, only the way to the first riser counts)"
+                "y of the middle block at the end (beside the stairs, only the distance to the first riser counts)"
             }
             Self::Head => "y of the head at the end",
             Self::CentreOfMass => "y of the centre of mass at the end",

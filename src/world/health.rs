@@ -27,11 +27,11 @@ impl Disqualification {
     /// The reason in words, to follow "disqualified: ".
     pub fn words(self) -> &'static str {
         match self {
-            Self::NotFinite => "its state was not finite",
-            Self::JointBroke => "a joint came apart",
-            Self::TooFast => "it exceeded the speed limit",
-            Self::LeftArena => "it left the arena",
-            Self::Crashed => "its simulation failed",
+            Self::NotFinite => "invalid numbers in its simulation",
+            Self::JointBroke => "joint pulled apart",
+            Self::TooFast => "speed limit exceeded",
+            Self::LeftArena => "sideways or backward limit crossed",
+            Self::Crashed => "simulation failed",
         }
     }
 }

@@ -61,7 +61,7 @@ setting_group! {
             // At 20 1/s and the longest step (1/20 s) everything stops at once; more would turn it around.
             number("Damping", 0.0..=20.0)
                 .unit("1/s")
-                .hint("Share of its speed that a limb loses per second while it touches the surface, as in mud")
+                .hint("Rate at which a limb loses speed while it touches the surface, as in mud")
                 .slider(0.0, 20.0);
     }
 }

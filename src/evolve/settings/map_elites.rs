@@ -61,7 +61,7 @@ setting_group! {
         if self.x != self.y {
             return Ok(());
         }
-        Err(Invalid::new("y", self.y.choice().name, "a descriptor other than that of x"))
+        Err(Invalid::new("y", self.y.choice().name, "a behaviour other than that of the archive columns"))
     }
 }
 
@@ -69,8 +69,12 @@ impl MapElitesSettings {
     /// Checks that a generation and the archive fit into memory.
     pub(super) fn check_size(&self, population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
         size.check_population(population, LARGEST_SAMPLE)?;
-        let cells = self.cells * self.cells;
-        let field = "evolution.map_elites.cells (squared)";
-        size.check_count(field, cells, size.coordinates(), LARGEST_STATE_GENES)
+        let genes = size.coordinates().max(1);
+        let most = (LARGEST_STATE_GENES / genes).isqrt();
+        if self.cells as usize <= most {
+            return Ok(());
+        }
+        let allowed = format!("2 to {most} with {genes} genes in each cell");
+        Err(Invalid::new("evolution.map_elites.cells", self.cells, allowed))
     }
 }

@@ -187,7 +187,7 @@ fn differs_from_record(lane: &Lane) -> Option<String> {
     differs.then(|| {
         format!(
             "This replay differs from its record ({:.2} instead of {:.2}): the file was \
-             edited, or this machine computes other bits (see snakes verify).",
+             edited, or this machine computes different results (see snakes verify).",
             lane.evaluation().fitness,
             lane.staged().fitness(),
         )

@@ -44,7 +44,11 @@ pub(crate) fn front_plot(
     });
     let response = plot.response;
     response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "Front of distance and energy")
+        egui::WidgetInfo::labeled(
+            egui::WidgetType::Other,
+            true,
+            "Pareto front of distance and energy",
+        )
     });
     let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
     let distance = |point: &[f64; 2]| {
@@ -103,7 +107,7 @@ mod tests {
             Vec::new(),
         );
         harness.run();
-        let chart = harness.get_by_label("Front of distance and energy").rect();
+        let chart = harness.get_by_label("Pareto front of distance and energy").rect();
         let points: Vec<[f64; 2]> = front.members().map(place).collect();
         let (x, y) = ranges(&points).expect("points");
         let share = |value: f64, range: &RangeInclusive<f64>| {

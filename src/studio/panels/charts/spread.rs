@@ -106,13 +106,13 @@ fn disqualified(evaluations: &[Evaluation]) -> String {
     let count = |reason: D| evaluations.iter().filter(|of| of.disqualified == Some(reason)).count();
     let reasons: Vec<String> = (all.into_iter())
         .filter(|reason| count(*reason) > 0)
-        .map(|reason| format!("{} because {}", count(reason), reason.words()))
+        .map(|reason| format!("{}: {}", count(reason), reason.words()))
         .collect();
     let number: usize = all.into_iter().map(count).sum();
     if number == 0 {
         return format!("None of {} were disqualified.", evaluations.len());
     }
-    format!("{number} of {} were disqualified: {}.", evaluations.len(), reasons.join(", "))
+    format!("{number} of {} were disqualified: {}.", evaluations.len(), reasons.join("; "))
 }
 
 #[cfg(test)]
@@ -151,8 +151,8 @@ mod tests {
             evaluation(1.0, Some(Disqualification::TooFast)),
         ];
         let words = disqualified(&evaluations);
-        assert!(words.starts_with("3 of 4 were disqualified: 1 because a joint"), "{words}");
-        assert!(words.ends_with("2 because it exceeded the speed limit."), "{words}");
+        assert!(words.starts_with("3 of 4 were disqualified: 1: joint pulled apart; "), "{words}");
+        assert!(words.ends_with("2: speed limit exceeded."), "{words}");
         assert_eq!(disqualified(&evaluations[..1]), "None of 1 were disqualified.");
     }
 }

@@ -107,7 +107,7 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
         },
         LibraryAction {
             name: "Delete",
-            hint: "Move it to the folder .deleted of the saves; Ctrl Z restores it (Del)",
+            hint: "Move it to the .deleted folder inside the saves folder; Ctrl Z restores it (Del)",
             refusal: has_shipped.then_some("Built-in champions cannot be deleted").or_else(|| {
                 let goes_on = places.iter().any(|place| library.is_current(place));
                 goes_on.then_some("This is the current run; start another one first")

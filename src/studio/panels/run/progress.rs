@@ -94,10 +94,8 @@ fn evaluations_left(run: &CurrentRun, done: u32) -> u64 {
 fn reasons_text(report: &GenerationReport) -> String {
     let mut reasons: Vec<_> = report.reasons.iter().collect();
     reasons.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
-    let reasons: Vec<String> = reasons
-        .into_iter()
-        .map(|(reason, count)| format!("{count} because {}", reason.words()))
-        .collect();
+    let reasons: Vec<String> =
+        reasons.into_iter().map(|(reason, count)| format!("{count}: {}", reason.words())).collect();
     if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join("; ")) }
 }
 
@@ -168,7 +166,7 @@ mod tests {
         report.reasons.insert(Disqualification::LeftArena, 7);
         assert_eq!(
             reasons_text(&report),
-            " (7 because it left the arena; 2 because a joint came apart)"
+            " (7: sideways or backward limit crossed; 2: joint pulled apart)"
         );
     }
 }

@@ -91,7 +91,7 @@ fn name_field(
         let is_entered =
             field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let is_valid = problem.is_none() && !name.is_empty();
-        let hint = "Writes a file into the folder \"presets\" of the saves";
+        let hint = "Writes a file to the \"presets\" folder inside the saves folder";
         let save = ui.add_enabled(is_valid, egui::Button::new("Save")).on_hover_text(hint);
         is_saved = is_valid && (save.clicked() || is_entered);
     });
@@ -177,8 +177,8 @@ mod tests {
     fn an_invalid_name_is_refused_with_a_reason() {
         let long = "x".repeat(300);
         for (name, said) in [
-            ("a/b", "The name is \"a/b\"; allowed: 1 to 40 of a-z, 0-9 and -."),
-            (long.as_str(), "; allowed: 1 to 40 of a-z, 0-9 and -."),
+            ("a/b", "The name is \"a/b\"; allowed: 1 to 40 characters, each a-z, 0-9 or -."),
+            (long.as_str(), "; allowed: 1 to 40 characters, each a-z, 0-9 or -."),
             ("climb", "A preset named climb already exists"),
         ] {
             let run = prepared_run();

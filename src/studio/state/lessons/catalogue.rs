@@ -92,12 +92,12 @@ pub(crate) const LESSONS: [Lesson; 5] = [
     Lesson {
         title: "Friction: too little, and too much",
         question: "How much grip do stairs need?",
-        story: "In the original experiment, the ground was tuned by eye, which took a long time. On ice, a snake \
+        story: "In the original experiment, the surface was tuned by eye, which took a long time. On ice, a snake \
                 cannot push itself off. So is more grip always better? The stage shows the same snake on ice, on \
                 its own surface and on a surface like glue.",
         to_try: "Open the World panel and drag Friction: a copy of the snake starts beside it with the new \
                  value. Or click one of these examples.",
-        look_for: "How far each snake gets. The torques are the same in all lanes; only the ground differs.",
+        look_for: "How far each snake gets. The torques are the same in all lanes; only the surface differs.",
         answer: "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
                  holds the others back. A snake that evolved on one surface is fit for that surface and tolerates only small changes. \
                  That is why the World panel lets you set every property of a surface as a number and see its effect \
