@@ -35,6 +35,7 @@ use app::ui_dump::UiDumpFile;
 use failure::gpu_loss::Failure;
 use schedule::FrameSet;
 use stage::opening::{NamedChampion, OpeningChampions};
+use state::following::Following;
 use state::options::OpenedComparison;
 use state::run_context::RunContext;
 use workspace::Workspace;
@@ -55,6 +56,7 @@ const SHIPPED: &str = "climber (built-in)";
 /// # Errors
 /// See [`StudioError`].
 pub fn run(options: Options) -> Result<(), StudioError> {
+    let has_champions = !options.champions.is_empty();
     let mut saved: Vec<NamedChampion> =
         options.champions.clone().into_iter().map(NamedChampion::from).collect();
     if saved.is_empty() {
@@ -89,6 +91,8 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(UiDumpFile(options.places.clone()))
         .insert_resource(Workspace::new(tour_is_over))
         .insert_resource(OpeningChampions(saved))
+        // What the studio was opened with stays on the stage.
+        .insert_resource(if has_champions { Following::default() } else { Following::from_start() })
         .insert_resource(OpenedComparison(options.comparison.clone()))
         .insert_resource(engine)
         .insert_resource(failure)

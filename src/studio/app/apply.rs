@@ -83,7 +83,7 @@ fn apply(
                 }
                 lessons
                     .apply(command, &mut run, stage.on_show(), &mut history)
-                    .map(|show| stage.present(show))
+                    .map(|show| stage.present_for_now(show))
             }
             // A running batch operation is not in the history yet, and an earlier step would be the wrong one.
             Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),
@@ -168,6 +168,7 @@ mod tests {
     use crate::studio::stage::selection::Selection;
     use crate::studio::stage::{Show, StageMode};
     use crate::studio::state::current_run::prepared_run;
+    use crate::studio::state::following::Following;
     use crate::studio::ui::theme::Theme;
 
     /// An app that executes commands, with an empty stage.
@@ -190,6 +191,7 @@ mod tests {
             .init_resource::<CameraRig>()
             .init_resource::<Overlays>()
             .init_resource::<Selection>()
+            .init_resource::<Following>()
             .init_resource::<Workspace>()
             .init_resource::<Lessons>()
             .init_resource::<UndoHistory>()

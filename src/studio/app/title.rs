@@ -30,6 +30,9 @@ fn update(
     let shown = match (&*mode, first) {
         (_, None) => "nothing".to_owned(),
         (StageMode::Race, _) => format!("a race of {} snakes", lanes.iter().len()),
+        (StageMode::Generation { number, .. }, _) => {
+            format!("generation {number}, {} snakes", lanes.iter().len())
+        }
         (mode, Some(lane)) => {
             let generation = lane.staged().generation();
             let what = match lane.staged().source() {

@@ -53,7 +53,7 @@ pub(crate) struct Situation {
     pub is_running: bool,
     /// The stage shows a what-if.
     pub is_what_if: bool,
-    /// The stage shows a race.
+    /// The stage shows a race or a whole generation.
     pub is_race: bool,
     /// A modal view is open, or the panels are hidden.
     pub is_covered: bool,
@@ -127,6 +127,15 @@ pub(crate) const ACTIONS: &[Action] = &[
     ),
     action(Menu::Run, "Show the saved champion", &["0"], |_| {
         Some(Command::Stage(StageCommand::Show(Pick::Opened(0))))
+    }),
+    action(Menu::Run, "Follow evolution", &["W"], |_| {
+        Some(Command::Stage(StageCommand::ToggleFollowEvolution))
+    }),
+    action(Menu::Run, "Story: first, middle and latest generation", &["S"], |_| {
+        Some(Command::Stage(StageCommand::TellStory))
+    }),
+    action(Menu::Run, "Whole latest generation", &["I"], |_| {
+        Some(Command::Stage(StageCommand::ShowGeneration(None)))
     }),
     action(Menu::Run, "Race generations", &["N"], |_| {
         Some(Command::Stage(StageCommand::RaceGenerations))

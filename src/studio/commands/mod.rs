@@ -117,6 +117,12 @@ pub(super) enum StageCommand {
     Show(Pick),
     /// Add a lane with this individual, or remove its lane.
     Join(Pick),
+    /// Show all snakes of this generation at once, or of the latest one; the first generation is 1.
+    ShowGeneration(Option<u32>),
+    /// Show each better generation of the run from now on, or stop doing so.
+    ToggleFollowEvolution,
+    /// Show the first, the middle and the latest of the better generations in turn.
+    TellStory,
     /// Race the champions of the run's generations.
     RaceGenerations,
     /// Race the best of this generation, or of the latest one; the first generation is 1.

@@ -193,7 +193,7 @@ fn draw(
     if let Some(stage) = viewer.stage {
         let mut card_width = 0.0;
         if let Some(lane) = focused(&lanes, &data.on_stage) {
-            let theme = *data.theme;
+            let theme = (*data.theme, data.run.progress());
             let around =
                 around_stage(&context, stage, &data.on_stage, &lanes, lane, theme, &mut commands);
             card_width = around.board_width;

@@ -4,13 +4,14 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::commands::{Command, PlayerCommand, ViewCommand};
+use crate::studio::commands::{Command, PlayerCommand, StageCommand, ViewCommand};
 use crate::studio::scene::camera::{CameraRig, StageCamera};
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
+use crate::studio::state::following::Following;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::theme::Theme;
 
@@ -24,6 +25,7 @@ pub(crate) struct OnStage<'w, 's> {
     pub rig: Res<'w, CameraRig>,
     pub overlays: Res<'w, Overlays>,
     pub history: Res<'w, UndoHistory>,
+    pub following: Res<'w, Following>,
     pub smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
 }
 
@@ -42,6 +44,9 @@ impl OnStage<'_, '_> {
                 Some(self.smoothing.iter().any(|msaa| *msaa != Msaa::Off))
             }
             Command::View(ViewCommand::ToggleTheme) => Some(theme == Theme::Dark),
+            Command::Stage(StageCommand::ToggleFollowEvolution) => {
+                Some(self.following.follows_evolution())
+            }
             _ => None,
         }
     }

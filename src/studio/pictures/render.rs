@@ -10,8 +10,8 @@ use crate::studio::error::StudioError;
 use crate::studio::scene::camera::view::CameraView;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::lane::Lane;
-use crate::studio::stage::lanes;
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{StageMode, lanes};
 use crate::studio::ui::theme::Theme;
 
 /// The content and style of the picture.
@@ -51,7 +51,7 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     let saved = scene.champions.iter().enumerate();
     let champions =
         saved.map(|(index, (name, loaded))| StagedChampion::from_file(loaded, index, name));
-    let (mut lanes, problems) = lanes(champions.collect());
+    let (mut lanes, problems) = lanes(champions.collect(), &StageMode::Race);
     if let Some(problem) = problems.into_iter().next() {
         return Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned()));
     }

@@ -66,12 +66,22 @@ const ON_STEP: f32 = 1.0e-4;
 impl Lane {
     /// A lane at the start of a replay. The lookahead starts computing the rest at once.
     pub fn new(staged: StagedChampion, number: usize) -> Self {
-        let replay = Replay::of(&staged);
         let lookahead = match staged.recording() {
             // A recording needs no lookahead.
             Some(_) => Lookahead::default(),
             None => Lookahead::begin(&staged.champion().genome, staged.trial()),
         };
+        Self::with(staged, number, lookahead)
+    }
+
+    /// A ghost at the start of a replay: drawn translucent in the place of another lane, without stairs of its own.
+    /// Dozens of ghosts go without a lookahead, whose threads would take the processor from the run.
+    pub fn ghost(staged: StagedChampion, number: usize) -> Self {
+        Self { is_ghost: true, ..Self::with(staged, number, Lookahead::default()) }
+    }
+
+    fn with(staged: StagedChampion, number: usize, lookahead: Lookahead) -> Self {
+        let replay = Replay::of(&staged);
         Self {
             recorded_landing: replay.recorded_landing(&staged.trial().stairs),
             before: replay.poses().to_vec(),
@@ -94,12 +104,6 @@ impl Lane {
     /// Places the lane at this offset along x, in metres.
     pub fn at_x(mut self, offset_x_m: f32) -> Self {
         self.offset_x_m = offset_x_m;
-        self
-    }
-
-    /// Makes it a ghost: drawn translucent in the place of another lane, without stairs of its own.
-    pub fn as_ghost(mut self) -> Self {
-        self.is_ghost = true;
         self
     }
 
@@ -274,11 +278,11 @@ impl Lane {
         self.lookahead.wait();
     }
 
-    /// Brings the lane to a time, in simulated seconds.
+    /// Brings the lane to a time, in simulated seconds, or towards it by at most `most_steps` physics steps.
     ///
     /// # Errors
     /// Simulating panicked. The lane keeps its last state.
-    pub fn show(&mut self, time_s: f64, pull: Option<Pull>) -> Result<(), String> {
+    pub fn show(&mut self, time_s: f64, pull: Option<Pull>, most_steps: u32) -> Result<(), String> {
         if self.is_broken {
             return Ok(());
         }
@@ -301,12 +305,14 @@ impl Lane {
             return Ok(());
         }
         let result = caught(|| {
-            if jumps {
+            // A long distance is spread over several frames.
+            if jumps && known.is_none() {
+                self.jump(step.min(most_steps), None);
+            } else if jumps {
                 self.jump(step, known.as_deref());
             } else {
                 self.replay.pull(pull);
-                // A long distance is spread over several frames.
-                self.go_on(step.min(now + MAX_STEPS_PER_FRAME));
+                self.go_on(step.min(now + most_steps));
             }
         });
         self.readings = readings_of(&self.replay);

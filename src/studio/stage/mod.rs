@@ -43,10 +43,19 @@ pub(super) enum StageMode {
         /// Plan of the next run before the first change.
         before: Box<RunPlan>,
     },
+    /// Snakes of one generation on the same stairs: its best, and the others as ghosts.
+    Generation {
+        /// Number of the generation; the first is 1.
+        number: u32,
+        /// Number of snakes in the generation, of which the stage may show some.
+        size: u32,
+    },
 }
 
-/// Maximum number of lanes. More could neither be told apart nor simulated within a frame.
+/// Maximum number of lanes side by side. More could neither be told apart nor simulated within a frame.
 pub const MAX_LANES: usize = 10;
+/// Maximum number of snakes of a generation on the stage: a generation of 30 as a whole, and some of a larger one.
+pub const MAX_GENERATION: usize = 40;
 /// Distance between two lanes, in metres.
 const GAP_M: f32 = 1.0;
 
@@ -76,17 +85,20 @@ pub(super) fn end_s<'a>(lanes: impl IntoIterator<Item = &'a Lane>) -> f64 {
     lanes.into_iter().map(Lane::end_s).fold(0.0, f64::max)
 }
 
-/// Builds lanes for champions, the first one nearest to the default camera.
+/// Builds lanes for champions, the first one nearest to the default camera; in a generation all but the first are
+/// ghosts in its place.
 ///
 /// # Errors
 /// Each champion that cannot be shown, with the reason.
-pub(super) fn lanes(champions: Vec<StagedChampion>) -> (Vec<Lane>, Vec<String>) {
+pub(super) fn lanes(champions: Vec<StagedChampion>, mode: &StageMode) -> (Vec<Lane>, Vec<String>) {
+    let is_generation = matches!(mode, StageMode::Generation { .. });
     let mut problems = Vec::new();
-    let mut lanes = Vec::new();
+    let mut lanes: Vec<Lane> = Vec::new();
     for staged in champions {
         let name = staged.name().to_owned();
         let built = staged.check().map_err(|invalid| invalid.to_string()).and_then(|()| {
-            caught(|| Lane::new(staged, lanes.len()))
+            let build = if is_generation && !lanes.is_empty() { Lane::ghost } else { Lane::new };
+            caught(|| build(staged, lanes.len()))
                 .map_err(|message| format!("its simulation failed: {message}"))
         });
         match built {
@@ -95,7 +107,8 @@ pub(super) fn lanes(champions: Vec<StagedChampion>) -> (Vec<Lane>, Vec<String>) 
         }
     }
     let width_m = |lane: &Lane| lane.body().width_m().max(lane.trial().stairs.width_m);
-    let spacing_m = lanes.iter().map(width_m).fold(0.0, f32::max) + GAP_M;
+    let beside_m = lanes.iter().map(width_m).fold(0.0, f32::max) + GAP_M;
+    let spacing_m = if is_generation { 0.0 } else { beside_m };
     let middle = (lanes.len().saturating_sub(1)) as f32 / 2.0;
     let placed = lanes.into_iter().map(|lane| {
         let offset_m = (middle - lane.number() as f32) * spacing_m;
@@ -131,7 +144,7 @@ fn put_on_stage(
     // Only the last request of a frame would be visible.
     let Some(Show { champions, mode }) = requests.read().last().cloned() else { return };
     champions.iter().for_each(|staged| explain_other_engine(staged, &mut notices));
-    let (lanes, problems) = lanes(champions);
+    let (lanes, problems) = lanes(champions, &mode);
     problems.into_iter().for_each(|problem| notices.problem(problem));
     if lanes.is_empty() {
         // Keep the earlier lanes if none of the new ones can be built.
@@ -155,6 +168,8 @@ fn advance(
     time: Res<Time<Real>>,
     mut notices: ResMut<Notices>,
 ) {
+    // The lanes share a frame's steps.
+    let most_steps = MAX_STEPS_PER_FRAME / (lanes.iter().len() as u32).max(1);
     let (mut steps_per_s, mut end_s) = (0.0, 0.0_f64);
     for (_, lane) in &lanes {
         steps_per_s += lane.step_s().recip();
@@ -166,7 +181,7 @@ fn advance(
     playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
     for (entity, mut lane) in &mut lanes {
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
-        let failed = lane.show(playback.time_s(), pull).err();
+        let failed = lane.show(playback.time_s(), pull, most_steps).err();
         notices.problems(failed.map(|message| format!("The simulation failed: {message}")));
         lane.poll_lookahead();
         if lane.has_just_ended() {

@@ -248,7 +248,8 @@ fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
     let mut app = stage_of(vec![shipped(), unfit.clone()]);
     assert_eq!(app.world().resource::<Notices>().len(), 1);
     assert_eq!(*app.world().resource::<StageMode>(), StageMode::Solo);
-    let (lanes, problems) = lanes(vec![StagedChampion::from_file(&unfit, 0, "unfit")]);
+    let (lanes, problems) =
+        lanes(vec![StagedChampion::from_file(&unfit, 0, "unfit")], &StageMode::Solo);
     assert!(lanes.is_empty());
     let problem = &problems[0];
     for part in ["unfit cannot be shown", "joints is 4 joints", "allowed: 6"] {

@@ -4,6 +4,7 @@ mod compared_runs;
 mod events;
 mod individuals;
 mod live_changes;
+mod milestones;
 mod next_run;
 
 use std::collections::VecDeque;
@@ -21,6 +22,7 @@ use crate::studio::commands::RunCommand;
 use crate::studio::ui::notifications::Notices;
 
 use individuals::Ancestors;
+use milestones::Milestone;
 
 pub(crate) use compared_runs::{ComparedRuns, MOST_COMPARED};
 pub(crate) use live_changes::news_of;
@@ -59,6 +61,8 @@ pub(crate) struct CurrentRun {
     /// The previous run, which may still be stopping.
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
+    /// The generations that were better than all before them.
+    milestones: Vec<Milestone>,
     /// Results besides champions, after the first finished generation.
     exploration: Option<Box<Exploration>>,
     /// Individuals with descendants, by place; computed on first use.
@@ -103,6 +107,7 @@ impl CurrentRun {
             background: None,
             before: None,
             reports: Vec::new(),
+            milestones: Vec::new(),
             exploration: None,
             ancestors: OnceLock::new(),
             times_explored: 0,
@@ -342,6 +347,11 @@ impl CurrentRun {
     /// Lends stage and settings to a lesson, or takes them back. Meanwhile the current run ignores edits of settings.
     pub fn lend(&mut self, is_lent: bool) {
         self.is_lent = is_lent;
+    }
+
+    /// Whether a lesson has the stage and the settings.
+    pub fn is_lent(&self) -> bool {
+        self.is_lent
     }
 
     /// Whether the current run will pause after its current generation.

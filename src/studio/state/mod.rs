@@ -2,6 +2,7 @@
 
 pub mod chart_export;
 pub mod current_run;
+pub mod following;
 pub mod lessons;
 pub mod library;
 pub mod lineup;
@@ -18,5 +19,11 @@ use super::schedule::RESULTS_HZ;
 
 pub(super) fn plugin(app: &mut App) {
     app.insert_resource(Time::<Fixed>::from_hz(RESULTS_HZ));
-    app.add_plugins((undo::plugin, current_run::plugin, library::plugin, lessons::plugin));
+    app.add_plugins((
+        undo::plugin,
+        current_run::plugin,
+        following::plugin,
+        library::plugin,
+        lessons::plugin,
+    ));
 }

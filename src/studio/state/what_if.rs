@@ -28,7 +28,9 @@ pub(crate) fn what_if(
 ) -> Result<Option<Show>, String> {
     let before = match mode {
         StageMode::WhatIf { before } => before.clone(),
-        StageMode::Solo | StageMode::Race => Box::new(run.next_plan().clone()),
+        StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => {
+            Box::new(run.next_plan().clone())
+        }
     };
     match change {
         WorldChange::Fields(changes) => run.set_fields(changes)?,
@@ -40,7 +42,7 @@ pub(crate) fn what_if(
     // Changes accumulate.
     let so_far = match mode {
         StageMode::WhatIf { .. } => on_show.last().unwrap_or(original),
-        StageMode::Solo | StageMode::Race => original,
+        StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => original,
     };
     let next = run.next_settings();
     let trial = match change {

@@ -99,6 +99,8 @@ pub const GAP: f32 = 8.0;
 pub const HEADING_SIZE: f32 = 22.0;
 /// Size of a section's title, in points.
 pub const TITLE_SIZE: f32 = 15.0;
+/// Size of captions over the stage that are read from across a room, in points.
+pub const CAPTION_SIZE: f32 = 22.0;
 /// Width of a field for a number, in points.
 pub const FIELD_WIDTH: f32 = 64.0;
 /// Width of a combo box, in points.

@@ -36,7 +36,7 @@ impl Situation {
         Self {
             is_running: run.status() == RunStatus::Running,
             is_what_if: matches!(mode, StageMode::WhatIf { .. }),
-            is_race: *mode == StageMode::Race,
+            is_race: matches!(mode, StageMode::Race | StageMode::Generation { .. }),
             is_covered: workspace.modal().is_some() || workspace.is_bare,
             can_undo: history.next(UndoDirection::Back).is_some(),
             can_redo: history.next(UndoDirection::Forth).is_some(),

@@ -11,6 +11,7 @@ use crate::studio::stage::selection::Selection;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode, end_s};
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
 use crate::studio::state::undo::{PlanStep, UndoDirection, followed, stepped};
 use crate::studio::state::what_if::kept;
@@ -24,6 +25,7 @@ pub(crate) struct StageParams<'w, 's> {
     show: MessageWriter<'w, Show>,
     playback: ResMut<'w, Playback>,
     selection: ResMut<'w, Selection>,
+    following: ResMut<'w, Following>,
 }
 
 /// Shown when the user leaves a what-if without discarding the change.
@@ -52,8 +54,17 @@ impl StageParams<'_, '_> {
         Show { champions: self.champions(), mode: self.mode.clone() }
     }
 
-    /// Shows other champions from their start. A pause command later in the same frame applies to them.
+    /// Shows other champions from their start, which stay until the user chooses again. A pause command later in the
+    /// same frame applies to them.
     pub fn present(&mut self, show: Option<Show>) {
+        if show.is_some() {
+            self.following.stop();
+        }
+        self.present_for_now(show);
+    }
+
+    /// Shows other champions from their start, until evolution has something better to show.
+    pub fn present_for_now(&mut self, show: Option<Show>) {
         if let Some(show) = show {
             self.playback.restart();
             self.show.write(show);
@@ -80,7 +91,7 @@ impl StageParams<'_, '_> {
     /// Keeps the change of a what-if when a run starts, because that run uses it.
     pub fn settle(&mut self) {
         let kept = kept(&self.champions(), &self.mode);
-        self.present(kept);
+        self.present_for_now(kept);
     }
 
     /// Undoes or redoes a change of the plan, and updates the stage.
@@ -117,16 +128,40 @@ impl StageParams<'_, '_> {
             StageCommand::Show(pick) => champion_of(pick, run, opening).map(Show::solo),
             StageCommand::Join(pick) => {
                 let mut on_show = self.champions();
-                if matches!(*self.mode, StageMode::WhatIf { .. }) {
-                    // The two lanes of a what-if show one champion.
+                if matches!(*self.mode, StageMode::WhatIf { .. } | StageMode::Generation { .. }) {
+                    // The two lanes of a what-if show one champion, and a generation has no room beside it.
                     on_show.truncate(1);
                 }
                 let staged = champion_of(pick, run, opening);
                 staged.map(|staged| with_one_more(on_show, staged)).transpose()?.flatten()
             }
+            StageCommand::ShowGeneration(generation) => {
+                let latest = run.reports().last().map(|report| report.generation);
+                let number = generation.or(latest).ok_or("No generation is finished yet.")?;
+                let kept = run.whole_generation(number);
+                Some(kept.ok_or_else(|| {
+                    format!("All snakes of generation {number} were disqualified.")
+                })?)
+            }
+            StageCommand::ToggleFollowEvolution => {
+                if self.following.follows_evolution() {
+                    self.following.stop();
+                } else {
+                    self.following.follow_evolution();
+                }
+                None
+            }
+            StageCommand::TellStory => {
+                self.following.tell_story(run)?;
+                None
+            }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),
-            StageCommand::Single if *self.mode != StageMode::Race => None,
+            StageCommand::Single
+                if matches!(*self.mode, StageMode::Solo | StageMode::WhatIf { .. }) =>
+            {
+                None
+            }
             StageCommand::Single => {
                 self.champions().into_iter().nth(self.selection.lane).map(Show::solo)
             }

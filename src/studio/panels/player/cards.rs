@@ -4,6 +4,7 @@ use bevy::prelude::Msaa;
 use bevy_egui::egui;
 
 use super::camera_bar::view_bar;
+use super::generation_card::{generation_card, waiting_card};
 use super::leaderboard::leaderboard;
 use super::limb_card::limb_card;
 use crate::studio::commands::panel::PanelKind;
@@ -44,14 +45,14 @@ pub(crate) struct AroundStage {
     pub board_width: f32,
 }
 
-/// Draws the cards over the edges of the stage.
+/// Draws the cards over the edges of the stage. `progress` has the evaluated and all snakes of the current generation.
 pub(crate) fn around_stage(
     context: &egui::Context,
     stage: egui::Rect,
     on_stage: &OnStage,
     lanes: &[&Lane],
     focused: &Lane,
-    theme: theme::Theme,
+    (theme, progress): (theme::Theme, (u32, u32)),
     commands: &mut Vec<Command>,
 ) -> AroundStage {
     let stage = stage.shrink(theme::GAP * 1.5);
@@ -83,10 +84,19 @@ pub(crate) fn around_stage(
             frame.show(ui, |ui| {
                 let time_s = on_stage.playback.time_s();
                 let (mode, focus) = (&*on_stage.mode, focused.number());
+                if let (StageMode::Generation { .. }, Some(best)) = (mode, lanes.first()) {
+                    let following = &on_stage.following;
+                    return generation_card(ui, mode, following, best, lanes.len(), commands);
+                }
                 leaderboard(ui, lanes, mode, focus, time_s, is_narrow, commands);
             });
         });
         board_width = shown.response.rect.width() + theme::GAP * 1.5;
+    } else if on_stage.following.awaits_first() {
+        let place = card("waiting", egui::Align2::LEFT_BOTTOM, stage.left_bottom());
+        place.show(context, |ui| {
+            frame.show(ui, |ui| waiting_card(ui, progress, commands));
+        });
     }
     if let Some(limb) = on_stage.selection.limb {
         // The card ignores the pointer, because the snake may be behind it.

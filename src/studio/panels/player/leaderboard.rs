@@ -65,7 +65,8 @@ pub(crate) fn leaderboard(
         ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
     };
     match mode {
-        StageMode::Solo => return,
+        // A generation has a card of its own.
+        StageMode::Solo | StageMode::Generation { .. } => return,
         StageMode::Race => title(ui, "Race"),
         StageMode::WhatIf { .. } => title(ui, "What if"),
     }
@@ -119,7 +120,7 @@ pub(crate) fn leaderboard(
                     Command::Plan(PlanCommand::DropChange),
                 ),
             ],
-            StageMode::Solo | StageMode::Race => &[(
+            StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => &[(
                 "Leave race",
                 "Show only the selected snake (Esc)",
                 Command::Stage(StageCommand::Single),

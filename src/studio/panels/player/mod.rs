@@ -2,6 +2,7 @@
 
 pub mod camera_bar;
 pub mod cards;
+pub mod generation_card;
 pub mod leaderboard;
 pub mod limb_card;
 pub mod timeline;

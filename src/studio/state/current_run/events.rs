@@ -1,16 +1,13 @@
-//! Handles events of the background run and shows new best champions.
+//! Handles events of the background run.
 
 use bevy::prelude::*;
 
 use super::CurrentRun;
 use super::live_changes::{news_of, refusal_in_words};
-use crate::evolve::Champion;
 use crate::run::{OpenedRun, RunEvent};
 use crate::save::ExistingRun;
-use crate::studio::stage::lane::Lane;
-use crate::studio::stage::playback::Playback;
-use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{Show, StageMode};
+use crate::studio::commands::{Command, StageCommand};
+use crate::studio::state::following::Following;
 use crate::studio::ui::notifications::Notices;
 
 pub(super) fn plugin(app: &mut App) {
@@ -24,49 +21,12 @@ fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     }
 }
 
-/// Handles events of the background run. A champion that beats all earlier ones and the one on the stage replaces it,
-/// unless the user is looking at something.
-fn take_in(
-    mut run: ResMut<CurrentRun>,
-    mut notices: ResMut<Notices>,
-    mut show: MessageWriter<Show>,
-    lanes: Query<&Lane>,
-    (mode, mut playback): (Res<StageMode>, ResMut<Playback>),
-) {
+/// Handles events of the background run, and announces each generation that is better than all before it, unless the
+/// stage shows it anyway.
+fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, following: Res<Following>) {
     run.others.take_in();
     let Some(background) = &run.background else { return };
     let events: Vec<RunEvent> = std::iter::from_fn(|| background.poll()).collect();
-    // Most frames have no event; skip the search through all reports.
-    if events.is_empty() {
-        return;
-    }
-    // Fitness can only be compared within the same world.
-    let world = &run.settings().trial;
-    let rivals = lanes.iter().map(Lane::staged);
-    let rivals = rivals.filter(|staged| staged.champion().trial == *world);
-    let champions = run.reports.iter().filter_map(|report| report.champion.as_ref());
-    let known = champions.map(|champion| champion.evaluation.fitness);
-    let mut to_beat = rivals.map(StagedChampion::fitness).chain(known).fold(f32::MIN, f32::max);
-    // Pausing, several lanes, or another world mean that the user is looking at something.
-    let is_tried = |lane: &Lane| lane.staged().is_changed() && lane.trial() != world;
-    let is_looked_at =
-        run.is_lent || *mode != StageMode::Solo || lanes.iter().any(Lane::is_disturbed);
-    let is_held = is_looked_at || !playback.is_playing() || lanes.iter().any(is_tried);
-    let mut present = |champion: &Champion, number, notices: &mut Notices| {
-        if champion.evaluation.fitness <= to_beat {
-            return;
-        }
-        to_beat = champion.evaluation.fitness;
-        let staged = StagedChampion::from_run(champion, number);
-        if is_held {
-            notices.info(format!("New best of the run: {}", staged.caption()));
-        } else {
-            notices.info(format!("New on stage: {}", staged.caption()));
-            playback.restart();
-            show.write(Show::solo(staged));
-        }
-    };
-    let number = run.number;
     for event in events {
         match event {
             RunEvent::Opened(opened) => {
@@ -81,10 +41,9 @@ fn take_in(
                     notices
                         .info(format!("The run continues after generation {}.", last.generation));
                 }
-                let champions = behind.iter().filter_map(|report| report.champion.as_ref());
-                let fitness = |champion: &&Champion| champion.evaluation.fitness;
-                let best = champions.max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
-                best.into_iter().for_each(|best| present(best, number, &mut notices));
+                for report in &behind {
+                    run.note_milestone(report);
+                }
                 run.reports = behind;
             }
             RunEvent::Refused(problem) => {
@@ -103,8 +62,18 @@ fn take_in(
             }
             RunEvent::Explored(exploration) => run.explore(exploration),
             RunEvent::Generation(report) => {
-                let champion = report.champion.iter();
-                champion.for_each(|champion| present(champion, number, &mut notices));
+                let is_better = run.note_milestone(&report);
+                if let Some(champion) = report.champion.as_ref().filter(|_| is_better)
+                    && !following.follows_evolution()
+                {
+                    let generation = report.generation;
+                    let text = format!(
+                        "Generation {generation} is the best so far: {}",
+                        champion.reached()
+                    );
+                    let show = Command::Stage(StageCommand::ShowGeneration(Some(generation)));
+                    notices.offer("best", text, [("Show", show)]);
+                }
                 run.reports.push(*report);
             }
             RunEvent::Finished { run_hash } => {
@@ -156,9 +125,7 @@ mod tests {
         let mut app = App::new();
         app.insert_resource(CurrentRun::new(RunContext::new(&options)))
             .init_resource::<Notices>()
-            .init_resource::<StageMode>()
-            .init_resource::<Playback>()
-            .add_message::<Show>()
+            .init_resource::<Following>()
             .add_systems(Update, take_in);
         app
     }
@@ -203,10 +170,8 @@ mod tests {
                 )))
                 .insert_resource(prepared_run())
                 .init_resource::<Notices>()
-                .init_resource::<StageMode>()
-                .init_resource::<Playback>()
+                .init_resource::<Following>()
                 .init_resource::<Calls>()
-                .add_message::<Show>()
                 .add_plugins(plugin)
                 .add_systems(FixedUpdate, (|mut calls: ResMut<Calls>| calls.0 += 1).after(take_in));
             // The first update only starts the clock.

@@ -49,7 +49,7 @@ impl CurrentRun {
         Some(Champion { genome, trial: trial.clone(), evaluation, origin })
     }
 
-    fn origin(&self, generation: u32, individual: u32) -> Origin {
+    pub(super) fn origin(&self, generation: u32, individual: u32) -> Origin {
         Origin { preset: self.preset().to_owned(), seed: self.seed(), generation, individual }
     }
 

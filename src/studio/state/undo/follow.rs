@@ -25,7 +25,7 @@ pub(crate) fn followed(
         // A race has no lane to which a change belongs.
         StageMode::Race => return Ok(None),
         StageMode::WhatIf { before } => (first.clone(), Some(&**before), changed),
-        StageMode::Solo => (first.simulated(), None, first),
+        StageMode::Solo | StageMode::Generation { .. } => (first.simulated(), None, first),
     };
     let trial = taken_over(shown.trial(), original.trial(), begins, from, to)
         .map_err(|reason| unsuited(&reason))?;

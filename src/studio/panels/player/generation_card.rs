@@ -1,0 +1,77 @@
+//! Card of a generation on the stage: its number, its best result, and the buttons that choose what comes next.
+
+use bevy_egui::egui;
+
+use crate::studio::commands::{Command, PlayerCommand, StageCommand};
+use crate::studio::stage::StageMode;
+use crate::studio::stage::lane::Lane;
+use crate::studio::state::following::Following;
+use crate::studio::ui::theme;
+
+/// Draws the card of the generation on the stage. `best` is the lane of its best snake, `shown` the number of lanes.
+pub(crate) fn generation_card(
+    ui: &mut egui::Ui,
+    mode: &StageMode,
+    following: &Following,
+    best: &Lane,
+    shown: usize,
+    commands: &mut Vec<Command>,
+) {
+    let StageMode::Generation { number, size } = mode else { return };
+    let palette = theme::of(ui);
+    let (caption, detail) = captions(*number, *size, shown);
+    ui.label(egui::RichText::new(caption).size(theme::CAPTION_SIZE).strong());
+    ui.label(detail);
+    ui.label(format!("Best: {}", best.staged().champion().reached()));
+    if let Some((part, parts)) = following.story_part() {
+        let text = format!("Story, part {part} of {parts}");
+        ui.label(egui::RichText::new(text).color(palette.text_weak));
+    }
+    ui.horizontal(|ui| {
+        let hint = "Show each better generation as soon as it is found (W)";
+        let mut follows = following.follows_evolution();
+        if ui.checkbox(&mut follows, "Follow evolution").on_hover_text(hint).clicked() {
+            commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
+        }
+        let hint = "Show only the best snake of this generation (Esc)";
+        if ui.button("Only the best").on_hover_text(hint).clicked() {
+            commands.push(Command::Stage(StageCommand::Single));
+        }
+    });
+}
+
+/// Caption of a generation, and the number of its snakes on the stage.
+fn captions(number: u32, size: u32, shown: usize) -> (String, String) {
+    let detail = if shown == size as usize {
+        format!("All {size} snakes at once")
+    } else {
+        format!("{shown} of {size} snakes, from the best to the worst")
+    };
+    (format!("Generation {number}"), detail)
+}
+
+/// Draws the card that stands on the stage until the first generation is evaluated: `done` of `all` snakes are.
+pub(crate) fn waiting_card(
+    ui: &mut egui::Ui,
+    (done, all): (u32, u32),
+    commands: &mut Vec<Command>,
+) {
+    ui.label(egui::RichText::new("Generation 1").size(theme::CAPTION_SIZE).strong());
+    ui.label(format!("{done} of {all} random snakes tried. They appear here in a moment."));
+    let hint = "Watch a snake of an earlier run that climbs the stairs (Space)";
+    if ui.button("Play the built-in champion instead").on_hover_text(hint).clicked() {
+        commands.push(Command::Player(PlayerCommand::Toggle));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_card_says_how_many_snakes_are_shown() {
+        let (caption, all) = captions(3, 30, 30);
+        assert_eq!((caption.as_str(), all.as_str()), ("Generation 3", "All 30 snakes at once"));
+        assert_eq!(captions(1, 100, 40).1, "40 of 100 snakes, from the best to the worst");
+    }
+}

@@ -1,0 +1,187 @@
+//! Shows the progress of evolution on the stage: each better generation of the current run, or its story.
+//!
+//! What the user chooses to watch stays until they choose again: every other command to the stage ends the following.
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+
+use super::current_run::{CurrentRun, RunStatus};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
+use crate::studio::stage::{Show, end_s};
+
+/// Decides which generation of the current run the stage shows.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Following {
+    plan: FollowPlan,
+    /// Whether the stage is held at its start until the first generation comes.
+    holds: bool,
+    /// Number of the run that is followed.
+    run: u32,
+    /// The generation on the stage.
+    shown: Option<u32>,
+    /// Real time for which it has been played.
+    shown_for: Duration,
+}
+
+/// What comes onto the stage next.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+enum FollowPlan {
+    /// What the user chose, until they choose again.
+    #[default]
+    Nothing,
+    /// Each generation that is better than all before it, until a snake lands.
+    Evolution,
+    /// These generations in turn; `next` is the index of the one that follows.
+    Story { generations: Vec<u32>, next: usize },
+}
+
+/// Least time for which a generation is played before a better one replaces it.
+const LEAST_SHOWN: Duration = Duration::from_secs(8);
+/// Time for which each part of a story is played, unless its snakes end earlier.
+const STORY_PART: Duration = Duration::from_secs(12);
+/// Maximum number of generations that a story shows: the first, the middle and the latest.
+const STORY_PARTS: usize = 3;
+
+impl Following {
+    /// Follows the first run from its first generation on. Until that comes, the stage is held.
+    pub fn from_start() -> Self {
+        Self { plan: FollowPlan::Evolution, holds: true, ..Self::default() }
+    }
+
+    /// Whether better generations come onto the stage by themselves.
+    pub fn follows_evolution(&self) -> bool {
+        self.plan == FollowPlan::Evolution
+    }
+
+    /// Whether the stage is held until the first generation comes.
+    pub fn awaits_first(&self) -> bool {
+        self.holds
+    }
+
+    /// The part of the story on the stage, from 1, and the number of parts.
+    pub fn story_part(&self) -> Option<(usize, usize)> {
+        match &self.plan {
+            FollowPlan::Story { generations, next } => Some((*next, generations.len())),
+            FollowPlan::Nothing | FollowPlan::Evolution => None,
+        }
+    }
+
+    /// Shows each better generation from now on, the latest of them at once.
+    pub fn follow_evolution(&mut self) {
+        (self.plan, self.shown) = (FollowPlan::Evolution, None);
+    }
+
+    /// Leaves on the stage what the user has chosen.
+    pub fn stop(&mut self) {
+        (self.plan, self.holds) = (FollowPlan::Nothing, false);
+    }
+
+    /// Shows the first, the middle and the latest of the better generations in turn.
+    ///
+    /// # Errors
+    /// There is no story yet, in a sentence.
+    pub fn tell_story(&mut self, run: &CurrentRun) -> Result<(), String> {
+        let milestones = run.milestones();
+        if milestones.len() < 2 {
+            return Err("There is no story yet: wait for a second, better generation.".to_owned());
+        }
+        let parts = STORY_PARTS.min(milestones.len());
+        let chosen = (0..parts).map(|part| part * (milestones.len() - 1) / (parts - 1));
+        let generations = chosen.map(|index| milestones[index].generation).collect();
+        (self.plan, self.holds) = (FollowPlan::Story { generations, next: 0 }, false);
+        Ok(())
+    }
+
+    /// The generation to show now, if it is time for another one. `is_over` says that the snakes on the stage have
+    /// ended.
+    fn due(&mut self, run: &CurrentRun, is_over: bool) -> Option<u32> {
+        match &mut self.plan {
+            FollowPlan::Nothing => None,
+            FollowPlan::Evolution => {
+                let latest = run.milestones().last()?;
+                let is_settled = self.shown.is_none() || is_over || self.shown_for >= LEAST_SHOWN;
+                if self.shown == Some(latest.generation) || !is_settled {
+                    return None;
+                }
+                if latest.is_landed {
+                    // The goal is reached. Better ones are announced, and their landing can be watched in peace.
+                    self.plan = FollowPlan::Nothing;
+                }
+                Some(latest.generation)
+            }
+            FollowPlan::Story { generations, next } => {
+                let is_first = *next == 0;
+                if !(is_first || is_over || self.shown_for >= STORY_PART) {
+                    return None;
+                }
+                let generation = generations.get(*next).copied();
+                match generation {
+                    Some(_) => *next += 1,
+                    None => self.plan = FollowPlan::Nothing,
+                }
+                generation
+            }
+        }
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Following>()
+        .add_systems(Startup, await_first)
+        .add_systems(Update, follow.in_set(FrameSet::TakeIn));
+}
+
+/// Lets the snake lie at the foot of the stairs until the first generation comes.
+fn await_first(following: Res<Following>, mut playback: ResMut<Playback>) {
+    if following.awaits_first() {
+        playback.hold_at(0.0);
+    }
+}
+
+/// Puts the generation that is due onto the stage.
+fn follow(
+    mut following: ResMut<Following>,
+    run: Res<CurrentRun>,
+    mut playback: ResMut<Playback>,
+    lanes: Query<&Lane>,
+    time: Res<Time<Real>>,
+    mut show: MessageWriter<Show>,
+) {
+    if run.is_lent() {
+        // A lesson has the stage.
+        return;
+    }
+    if following.run != run.number() {
+        // The user has begun another run, and wants to see it learn.
+        following.run = run.number();
+        following.follow_evolution();
+    }
+    if following.holds && (playback.is_playing() || run.status() != RunStatus::Running) {
+        // The user plays what is there, or nothing will come.
+        following.holds = false;
+        if !playback.is_playing() {
+            playback.restart();
+        }
+    }
+    if playback.is_playing() {
+        following.shown_for += time.delta();
+    } else if !following.holds {
+        // A paused stage is being looked at.
+        return;
+    }
+    if lanes.iter().any(Lane::is_disturbed) {
+        return;
+    }
+    let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(&lanes);
+    let Some(generation) = following.due(&run, is_over) else { return };
+    following.shown = Some(generation);
+    following.shown_for = Duration::ZERO;
+    following.holds = false;
+    if let Some(generation) = run.whole_generation(generation) {
+        playback.restart();
+        show.write(generation);
+    }
+}
