@@ -86,10 +86,14 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         _ => &[],
     };
     let comparison = args.comparison.as_deref().map(crate::save::load_comparison).transpose();
+    let (run, saves) = (args.run_source()?, args.saves_folder());
+    // Each start of the program begins another run, and offers the stopped one, unless the user names a run.
+    let names_run = args.names_run();
     let options = studio::Options {
-        run: args.run_source()?,
+        run: if names_run { run } else { run.with_unused_seed(&saves) },
+        offers_stopped_run: !names_run,
         evaluator: args.studio_evaluator()?,
-        saves: args.saves_folder(),
+        saves,
         champions: replay::named_champions(files)?,
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,

@@ -57,6 +57,16 @@ impl RunSource {
         Self { folder: saves.of_run(&plan), plan, earlier }
     }
 
+    /// The same run with the first seed, from its own on, of which `saves` has no run.
+    #[must_use]
+    pub fn with_unused_seed(self, saves: &SavesFolder) -> Self {
+        let mut plan = self.plan;
+        while saves.of_run(&plan).exists() {
+            plan.seed = plan.seed.wrapping_add(1);
+        }
+        Self::in_saves(saves, plan, self.earlier)
+    }
+
     /// The run in a folder, to continue it.
     ///
     /// # Errors

@@ -59,6 +59,12 @@ impl Args {
         Ok(RunSource::in_saves(&self.saves_folder(), plan, earlier))
     }
 
+    /// Whether the flags name a run that may exist: by its folder, seed or founder, or to begin it again.
+    #[cfg(feature = "studio")]
+    pub fn names_run(&self) -> bool {
+        self.resume.is_some() || self.seed.is_some() || self.from.is_some() || self.restart
+    }
+
     /// The run that begins from a saved champion. Its search is that of the named preset, else of the preset that the
     /// champion comes from; its world is that of the named preset, else the champion's own. The genome's ranges are
     /// widened to include the champion. The flags' values are put in last.

@@ -6,6 +6,7 @@ mod individuals;
 mod live_changes;
 mod milestones;
 mod next_run;
+mod stopped_run;
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -81,7 +82,7 @@ pub(crate) struct CurrentRun {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<CurrentRun>().add_plugins(events::plugin);
+    app.init_resource::<CurrentRun>().add_plugins((events::plugin, stopped_run::plugin));
 }
 
 impl FromWorld for CurrentRun {

@@ -16,6 +16,8 @@ use crate::studio::ui::theme::Theme;
 pub struct Options {
     /// The first run.
     pub run: RunSource,
+    /// Whether to offer the run that was stopped last; it is not offered to a user who named a run.
+    pub offers_stopped_run: bool,
     /// Evaluates the genomes of runs.
     pub evaluator: Arc<dyn Evaluator>,
     /// Where the next runs are saved.
@@ -42,6 +44,7 @@ impl Options {
     pub(crate) fn of_test(run: RunSource, saves: SavesFolder) -> Self {
         Self {
             run,
+            offers_stopped_run: false,
             evaluator: Arc::new(LocalPool::new(1).expect("threads")),
             saves,
             champions: Vec::new(),

@@ -18,6 +18,8 @@ pub(crate) struct RunContext {
     pub saves: SavesFolder,
     /// The run the studio opens with.
     pub first: RunSource,
+    /// Whether to offer the run that was stopped last.
+    pub offers_stopped_run: bool,
     /// Presets to choose from.
     pub presets: Arc<PresetList>,
     run_folder: RunInProgress,
@@ -29,6 +31,7 @@ impl RunContext {
             evaluator: Arc::clone(&options.evaluator),
             saves: options.saves.clone(),
             first: options.run.clone(),
+            offers_stopped_run: options.offers_stopped_run,
             presets: Arc::new(PresetList::read(&options.saves)),
             run_folder: RunInProgress::default(),
         }

@@ -21,6 +21,8 @@ struct Notice {
     /// Buttons: their labels, and the commands that they send.
     offers: Vec<(String, Command)>,
     is_problem: bool,
+    /// Display time.
+    lasts: Duration,
     shown_for: Duration,
 }
 
@@ -28,6 +30,8 @@ struct Notice {
 const NEWS: Duration = Duration::from_secs(8);
 /// Display time of a problem, which takes longer to read, and of a message with a button, which takes time to reach.
 const PROBLEM: Duration = Duration::from_secs(16);
+/// Display time of an offer that is not made again.
+const LASTING: Duration = Duration::from_secs(60);
 /// Maximum number of messages. More would cover the stage; the oldest is removed.
 const MAX_NOTICES: usize = 4;
 
@@ -38,13 +42,13 @@ impl Notice {
             subject: None,
             offers: Vec::new(),
             is_problem: false,
+            lasts: NEWS,
             shown_for: Duration::ZERO,
         }
     }
 
     fn is_over(&self) -> bool {
-        let takes_longer = self.is_problem || !self.offers.is_empty();
-        self.shown_for >= if takes_longer { PROBLEM } else { NEWS }
+        self.shown_for >= self.lasts
     }
 }
 
@@ -68,13 +72,19 @@ impl Notices {
         offers: [(&str, Command); N],
     ) {
         let offers = offers.map(|(label, command)| (label.to_owned(), command)).into();
-        self.push(Notice { subject: Some(subject), offers, ..Notice::new(text) });
+        self.push(Notice { subject: Some(subject), offers, lasts: PROBLEM, ..Notice::new(text) });
+    }
+
+    /// Shows a message with a button for a minute.
+    pub fn lasting_offer(&mut self, text: String, label: &str, command: Command) {
+        let offers = vec![(label.to_owned(), command)];
+        self.push(Notice { offers, lasts: LASTING, ..Notice::new(text) });
     }
 
     /// Shows and logs a problem.
     pub fn problem(&mut self, text: String) {
         error!("{text}");
-        self.push(Notice { is_problem: true, ..Notice::new(text) });
+        self.push(Notice { is_problem: true, lasts: PROBLEM, ..Notice::new(text) });
     }
 
     /// Shows and logs a problem, if there is one.

@@ -1,0 +1,106 @@
+//! Offers, once after the start, to resume the run that was stopped last.
+
+use std::fs;
+use std::path::Path;
+use std::time::SystemTime;
+
+use bevy::prelude::*;
+
+use super::CurrentRun;
+use crate::save::RunSummary;
+use crate::studio::commands::{Command, RunCommand};
+use crate::studio::state::run_context::RunContext;
+use crate::studio::ui::notifications::Notices;
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_systems(Startup, list).add_systems(FixedUpdate, offer);
+}
+
+/// Lists the runs, unless the user named one.
+fn list(mut run: ResMut<CurrentRun>, context: Res<RunContext>, mut notices: ResMut<Notices>) {
+    if context.offers_stopped_run {
+        notices.problems(run.list_runs().err());
+    }
+}
+
+/// Offers the run that was stopped last, once the runs are listed.
+fn offer(
+    run: Res<CurrentRun>,
+    context: Res<RunContext>,
+    mut notices: ResMut<Notices>,
+    mut is_done: Local<bool>,
+) {
+    if *is_done || !context.offers_stopped_run {
+        return;
+    }
+    let Some(stopped) = run.stopped() else { return };
+    *is_done = true;
+    let begun = stopped.filter(|run| run.finished > 0);
+    if let Some(latest) = begun.max_by_key(|run| saved_at(&run.folder)) {
+        let resume = Command::Run(RunCommand::Continue(latest.folder.clone()));
+        notices.lasting_offer(offer_text(latest), "Resume", resume);
+    }
+}
+
+/// Time of the last change of a run's log; the earliest time if it is unknown.
+fn saved_at(folder: &Path) -> SystemTime {
+    let log = fs::metadata(folder.join("log.jsonl"));
+    log.and_then(|log| log.modified()).unwrap_or(SystemTime::UNIX_EPOCH)
+}
+
+/// The run in a sentence: "climb, seed 1 stopped after generation 41 of 200."
+fn offer_text(run: &RunSummary) -> String {
+    let (plan, generations) = (&run.plan, run.plan.settings.evolution.generations);
+    format!(
+        "{}, seed {} stopped after generation {} of {generations}.",
+        plan.preset, plan.seed, run.finished
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::run::{LocalPool, RunControl, RunSource};
+    use crate::save::{ExistingRun, SavesFolder};
+    use crate::studio::state::options::Options;
+
+    #[test]
+    fn a_stopped_run_is_offered_by_name_and_place_after_the_start() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let mut settings = Settings::default();
+        settings.evolution.population = 4;
+        settings.evolution.generations = 3;
+        settings.trial.duration_s = 0.5;
+        let source = |seed| {
+            let plan = RunPlan::new("test", seed, settings.clone());
+            RunSource::in_saves(&saves, plan, ExistingRun::Keep)
+        };
+        let mut earlier = source(1).open("a test").expect("opened");
+        let pool = LocalPool::new(1).expect("threads");
+        let report = earlier.experiment.run_generation(&pool, &RunControl::default());
+        let report = report.expect("not cancelled");
+        earlier.recorder.record_generation(&earlier.experiment, &report).expect("kept");
+        drop(earlier);
+        assert_eq!(source(1).with_unused_seed(&saves).plan.seed, 2, "its own seed is used");
+
+        let options = Options { offers_stopped_run: true, ..Options::of_test(source(2), saves) };
+        let context = RunContext::new(&options);
+        let mut app = App::new();
+        app.insert_resource(CurrentRun::new(context.clone()))
+            .insert_resource(context)
+            .init_resource::<Notices>()
+            .add_systems(Startup, list)
+            .add_systems(Update, offer);
+        while app.world().resource::<CurrentRun>().others.runs().is_none() {
+            app.update();
+            app.world_mut().resource_mut::<CurrentRun>().others.take_in();
+        }
+        app.update();
+        app.update();
+        let notices = app.world().resource::<Notices>();
+        assert_eq!(notices.last(), Some("test, seed 1 stopped after generation 1 of 3."));
+        assert_eq!(notices.len(), 1);
+    }
+}
