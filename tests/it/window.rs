@@ -182,12 +182,40 @@ fn r_plays_from_the_start_and_f_stops_following() {
 }
 
 #[test]
-fn a_better_champion_is_shown_on_the_stage() {
-    // This seed's run finds a better one than the report's climber within four generations.
-    let arguments =
-        format!("replay {REPORTS_CLIMBER} --preset report --seed 5 --generations 4 --threads 2");
-    let Some(studio) = Studio::open("newcomer", &arguments) else { return };
+fn a_first_start_shows_the_first_generation_and_then_a_better_one() {
+    let Some(studio) = Studio::open_following("learns", "--preset quick --seed 3") else { return };
+    studio.wait_for_title("showing generation 1, ");
+    studio.place("Generation 1");
+    studio.place_with(" snakes at once");
+    studio.wait_for_title_without("showing generation 1, ");
     studio.wait_for_title("showing generation ");
+    studio.click_label("Only the best");
+    studio.wait_for_title_without(" snakes");
+}
+
+#[test]
+fn what_was_chosen_stays_and_a_better_generation_is_offered() {
+    let arguments = format!("replay {REPORTS_CLIMBER} --preset quick --seed 3 --generations 1000");
+    let Some(studio) = Studio::open("chosen", &arguments) else { return };
+    studio.wait_for_generations(2);
+    assert!(studio.title().ends_with("showing saved champion"), "{}", studio.title());
+    studio.click_label("Show it");
+    studio.wait_for_title("showing generation ");
+}
+
+#[test]
+fn a_second_start_begins_the_next_seed_and_offers_the_stopped_run() {
+    let folder = folder();
+    let arguments =
+        format!("--preset quick --generations 1000 --saves {}", folder.path().join("s").display());
+    let Some(studio) = Studio::open_following("first-start", &arguments) else { return };
+    studio.wait_for_title("seed 1 - 2 of 1000 generations");
+    drop(studio);
+    let studio = Studio::open_following("second-start", &arguments).expect("it opened before");
+    studio.wait_for_title("seed 2 - ");
+    studio.place_with("quick, seed 1 stopped after generation ");
+    studio.click_label("Resume");
+    studio.wait_for_title("seed 1 - ");
 }
 
 #[test]
@@ -251,7 +279,7 @@ fn a_killed_studio_continues_its_run_and_so_does_headless_mode() {
 #[test]
 fn studio_and_headless_run_refuse_each_others_folder_and_name_the_owner() {
     let folder = folder();
-    let arguments = format!("{ENDLESS} --saves {}", folder.path().join("saves").display());
+    let arguments = format!("{ENDLESS} --seed 1 --saves {}", folder.path().join("saves").display());
     let Some(studio) = Studio::open("locked", &arguments) else { return };
     studio.wait_for_title("running");
     let output = run(folder.path(), &format!("--no-render {arguments}"));

@@ -16,6 +16,8 @@ use crate::studio::stage::{Show, end_s};
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Following {
     plan: FollowPlan,
+    /// Whether the run was begun in this session and its first generation is still to be shown.
+    is_new: bool,
     /// Whether the stage is held at its start until the first generation comes.
     holds: bool,
     /// Number of the run that is followed.
@@ -48,7 +50,7 @@ const STORY_PARTS: usize = 3;
 impl Following {
     /// Follows the first run from its first generation on. Until that comes, the stage is held.
     pub fn from_start() -> Self {
-        Self { plan: FollowPlan::Evolution, holds: true, ..Self::default() }
+        Self { plan: FollowPlan::Evolution, is_new: true, holds: true, ..Self::default() }
     }
 
     /// Whether better generations come onto the stage by themselves.
@@ -71,7 +73,7 @@ impl Following {
 
     /// Shows each better generation from now on, the latest of them at once.
     pub fn follow_evolution(&mut self) {
-        (self.plan, self.shown) = (FollowPlan::Evolution, None);
+        (self.plan, self.shown, self.is_new) = (FollowPlan::Evolution, None, false);
     }
 
     /// Leaves on the stage what the user has chosen.
@@ -101,11 +103,15 @@ impl Following {
         match &mut self.plan {
             FollowPlan::Nothing => None,
             FollowPlan::Evolution => {
-                let latest = run.milestones().last()?;
+                let milestones = run.milestones();
+                // A run that begins is shown from its first generation on, however quickly better ones come.
+                let begins = milestones.iter().find(|first| self.is_new && first.is_whole());
+                let latest = begins.or(milestones.last())?;
                 let is_settled = self.shown.is_none() || is_over || self.shown_for >= LEAST_SHOWN;
                 if self.shown == Some(latest.generation) || !is_settled {
                     return None;
                 }
+                self.is_new = false;
                 if latest.is_landed {
                     // The goal is reached. Better ones are announced, and their landing can be watched in peace.
                     self.plan = FollowPlan::Nothing;
@@ -158,6 +164,7 @@ fn follow(
         // The user has begun another run, and wants to see it learn.
         following.run = run.number();
         following.follow_evolution();
+        following.is_new = true;
     }
     if following.holds && (playback.is_playing() || run.status() != RunStatus::Running) {
         // The user plays what is there, or nothing will come.
@@ -183,5 +190,55 @@ fn follow(
     if let Some(generation) = run.whole_generation(generation) {
         playback.restart();
         show.write(generation);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::state::current_run::{explored_run, prepared_run};
+
+    #[test]
+    fn a_new_run_is_shown_from_its_first_generation_and_then_from_the_latest() {
+        let run = explored_run();
+        let [first, .., last] = run.milestones() else { panic!("two better generations") };
+        let (first, last) = (first.generation, last.generation);
+        let mut following = Following::from_start();
+        assert_eq!(following.due(&prepared_run(), false), None, "nothing is finished");
+        assert_eq!(following.due(&run, false), Some(first));
+        (following.shown, following.shown_for) = (Some(first), Duration::ZERO);
+        assert_eq!(following.due(&run, false), None, "the first has only just come");
+        following.shown_for = LEAST_SHOWN;
+        assert_eq!(following.due(&run, false), Some(last));
+        (following.shown, following.shown_for) = (Some(last), LEAST_SHOWN);
+        assert_eq!(following.due(&run, true), None, "nothing better");
+        following.follow_evolution();
+        assert_eq!(following.due(&run, false), Some(last), "the user asked to see where it is");
+    }
+
+    #[test]
+    fn what_was_chosen_stays() {
+        let run = explored_run();
+        let mut following = Following::from_start();
+        following.stop();
+        assert_eq!(following.due(&run, true), None);
+        assert!(!following.awaits_first());
+    }
+
+    #[test]
+    fn a_story_shows_first_and_latest_in_turn_and_ends() {
+        let run = explored_run();
+        let mut following = Following::default();
+        assert!(following.tell_story(&prepared_run()).is_err());
+        following.tell_story(&run).expect("two better generations");
+        let parts = following.story_part().expect("a story").1;
+        let mut told = Vec::new();
+        for _ in 0..parts {
+            told.extend(following.due(&run, true));
+        }
+        assert_eq!(told.first(), run.milestones().first().map(|first| &first.generation));
+        assert_eq!(told.last(), run.milestones().last().map(|last| &last.generation));
+        assert_eq!(following.due(&run, true), None);
+        assert_eq!(following.story_part(), None, "it is over");
     }
 }

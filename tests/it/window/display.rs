@@ -30,6 +30,8 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 /// Pause between two pictures that must be equal.
 const STILL_FOR: Duration = Duration::from_millis(700);
+/// The champion on the stage of most tests.
+const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 /// Default window size: wide enough for all cards over the stage, small enough to draw quickly.
 const SIZE: (i32, i32) = (1000, 860);
 
@@ -71,8 +73,20 @@ impl Studio {
         Self::open_sized(test, arguments, SIZE)
     }
 
-    /// Opens the program in a window of this size. The tour is skipped unless the arguments name a preferences file.
+    /// Opens the program in a window of this size, with a champion on the stage, which stays there. The tour is skipped
+    /// unless the arguments name a preferences file.
     pub fn open_sized(test: &str, arguments: &str, size: (i32, i32)) -> Option<Self> {
+        let names_show = ["replay ", "--resume "].iter().any(|word| arguments.contains(word));
+        let show = if names_show { String::new() } else { format!("replay {CLIMBER} ") };
+        Self::open_plain(test, &format!("{show}{arguments}"), size)
+    }
+
+    /// Opens the program as a user does who names nothing to watch: it follows evolution.
+    pub fn open_following(test: &str, arguments: &str) -> Option<Self> {
+        Self::open_plain(test, arguments, SIZE)
+    }
+
+    fn open_plain(test: &str, arguments: &str, size: (i32, i32)) -> Option<Self> {
         if let Some(missing) = ["Xvfb", "xdotool"].into_iter().find(|tool| !is_installed(tool)) {
             skip(test, &format!("{missing} is not installed"));
             return None;

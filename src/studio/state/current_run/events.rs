@@ -72,7 +72,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, following:
                         champion.reached()
                     );
                     let show = Command::Stage(StageCommand::ShowGeneration(Some(generation)));
-                    notices.offer("best", text, [("Show", show)]);
+                    notices.offer("best", text, [("Show it", show)]);
                 }
                 run.reports.push(*report);
             }

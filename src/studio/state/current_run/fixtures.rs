@@ -26,9 +26,11 @@ pub fn explored_run() -> CurrentRun {
     let mut run = run_of(plan);
     for _ in 0..2 {
         let report = experiment.run_generation(&pool, &RunControl::default());
-        run.reports.push(report.expect("not cancelled"));
+        let report = report.expect("not cancelled");
+        run.explore(Box::new(Exploration::of(&experiment)));
+        run.note_milestone(&report);
+        run.reports.push(report);
     }
-    run.explore(Box::new(Exploration::of(&experiment)));
     run
 }
 

@@ -59,6 +59,13 @@ fn members(generation: &Generation) -> Arc<[Member]> {
     evenly(ranking.len(), MAX_GENERATION, MAX_GENERATION).map(member).collect()
 }
 
+impl Milestone {
+    /// Whether its snakes are kept, not only its best one.
+    pub fn is_whole(&self) -> bool {
+        !self.members.is_empty()
+    }
+}
+
 impl CurrentRun {
     /// The generations that were better than all before them, the first first.
     pub fn milestones(&self) -> &[Milestone] {
@@ -83,10 +90,10 @@ impl CurrentRun {
             size: report.evaluations,
         });
         // The first is the beginning of every story, so the second is thinned out.
-        let whole = self.milestones.iter().filter(|milestone| !milestone.members.is_empty());
+        let whole = self.milestones.iter().filter(|milestone| milestone.is_whole());
         if whole.count() > MAX_WHOLE
             && let Some(oldest) =
-                self.milestones.iter_mut().skip(1).find(|milestone| !milestone.members.is_empty())
+                self.milestones.iter_mut().skip(1).find(|milestone| milestone.is_whole())
         {
             oldest.members = Arc::default();
         }
@@ -97,7 +104,7 @@ impl CurrentRun {
     /// its snakes were disqualified.
     pub fn whole_generation(&self, number: u32) -> Option<Show> {
         let milestone = self.milestones.iter().find(|milestone| milestone.generation == number);
-        let (kept, size) = match milestone.filter(|milestone| !milestone.members.is_empty()) {
+        let (kept, size) = match milestone.filter(|milestone| milestone.is_whole()) {
             Some(milestone) => (Arc::clone(&milestone.members), milestone.size),
             None => {
                 let latest = self.exploration()?.generation.as_ref();
