@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::notes::notes_beside;
 use crate::check::Invalid;
 
 /// Maximum length of a name, in characters.
@@ -69,7 +70,10 @@ pub fn free_path(folder: &Path, name: &str, ending: Option<&str>) -> PathBuf {
         let name = shortened(name, &number);
         folder.join(ending.map_or(name.clone(), |ending| format!("{name}.{ending}")))
     };
-    let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
+    let is_free = |path: &Path| path.symlink_metadata().is_err();
+    // Notes that a removed file left behind belong to it.
+    let has_no_notes = |path: &PathBuf| ending.is_none() || is_free(&notes_beside(path));
+    let mut free = (1..=u32::MAX).map(path).filter(|path| is_free(path) && has_no_notes(path));
     free.next().unwrap_or_else(|| path(0))
 }
 
