@@ -37,7 +37,7 @@ fn read(
         }
         let situation = now.situation();
         let leaves = press.logical_key == Key::Escape && situation.is_covered;
-        let (is_typing, is_steering) = (area.has_text_cursor(), egui.wants_any_keyboard_input());
+        let (is_typing, is_steering) = (area.takes_letters(), egui.wants_any_keyboard_input());
         let is_taken = held.is_for_panel(&press.logical_key, is_typing, is_steering);
         if is_taken && !leaves {
             continue;

@@ -3,6 +3,8 @@
 use bevy::prelude::*;
 use bevy_egui::egui;
 
+use super::text_prompt;
+
 /// The part of the window that panels leave for the stage.
 #[derive(Resource)]
 pub(crate) struct StageArea {
@@ -56,9 +58,9 @@ impl StageArea {
             && !self.context.egui_is_using_pointer()
     }
 
-    /// Whether a text field has the keyboard focus.
-    pub fn has_text_cursor(&self) -> bool {
-        self.context.text_edit_focused()
+    /// Whether letters are typed into a text field: one has the focus, or a dialog waits for a text.
+    pub fn takes_letters(&self) -> bool {
+        self.context.text_edit_focused() || text_prompt::is_open(&self.context)
     }
 
     /// Width of the card at the lower left corner, as a fraction of the stage's width.
