@@ -2,9 +2,11 @@
 
 pub mod chart_export;
 pub mod current_run;
+pub mod files;
 pub mod lessons;
 pub mod library;
 pub mod lineup;
+pub mod new_file;
 pub mod options;
 pub mod plan_commands;
 pub mod run_context;
@@ -18,5 +20,11 @@ use super::schedule::RESULTS_HZ;
 
 pub(super) fn plugin(app: &mut App) {
     app.insert_resource(Time::<Fixed>::from_hz(RESULTS_HZ));
-    app.add_plugins((undo::plugin, current_run::plugin, library::plugin, lessons::plugin));
+    app.add_plugins((
+        undo::plugin,
+        current_run::plugin,
+        library::plugin,
+        files::plugin,
+        lessons::plugin,
+    ));
 }

@@ -88,7 +88,7 @@ impl CommandPalette {
                 let name = format!("{}: {}", entry.group, entry.name);
                 let key = egui::RichText::new(entry.key).color(palette.text_weak);
                 let button = egui::Button::selectable(index == self.chosen, name).right_text(key);
-                let row = ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)));
+                let row = ui.add(button.truncate().min_size(egui::vec2(ui.available_width(), 0.0)));
                 if row.clicked() {
                     taken = Some(entry.clone());
                 }
@@ -144,8 +144,8 @@ fn presets() -> Vec<(String, String)> {
 fn first_sentence(text: &str) -> String {
     let sentence = text.split_once(". ").map_or(text, |(first, _)| first);
     let line: Vec<&str> = sentence.split_whitespace().collect();
-    let short: String = line.join(" ").chars().take(60).collect();
-    short.trim_end_matches('.').to_owned()
+    // A longer line is cut where the palette ends.
+    line.join(" ").trim_end_matches('.').to_owned()
 }
 
 /// Entries that contain all typed words. Matches at the start of a word come first.

@@ -9,13 +9,16 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
 use crate::run::LibraryEvent;
-use crate::save::library::{EntryDetails, LibraryEntry, RunDetails, read_entry};
+use crate::save::library::{
+    EntryDetails, EntryNotes, EntryProblem, LibraryEntry, RunDetails, read_entry,
+};
 use crate::studio::commands::{PlanCommand, RunCommand};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 
 fn entry(place: SavePlace, day: u64) -> LibraryEntry {
-    LibraryEntry { place, bytes: 1, modified: Duration::from_secs(day * 86_400) }
+    let notes = Ok(EntryNotes::default());
+    LibraryEntry { place, bytes: 1, modified: Duration::from_secs(day * 86_400), notes }
 }
 
 fn file(name: &str) -> SavePlace {
@@ -50,7 +53,7 @@ fn stopped_run() -> EntryDetails {
 /// Library of two champions, a damaged file, a run and a built-in champion. The first is the newest.
 fn library() -> Library {
     let shipped = SavePlace::Shipped("fast");
-    let champion = read_entry(&shipped).map_err(|error| error.to_string());
+    let champion = read_entry(&shipped).map_err(EntryProblem::from);
     let run = SavePlace::Run(run_folder());
     let entries = vec![
         entry(shipped.clone(), 0),
@@ -64,7 +67,7 @@ fn library() -> Library {
         LibraryEvent::Read(shipped, champion.clone()),
         LibraryEvent::Read(file("alpha"), champion.clone()),
         LibraryEvent::Read(file("beta"), champion),
-        LibraryEvent::Read(file("broken"), Err("cut off at line 3".to_owned())),
+        LibraryEvent::Read(file("broken"), Err(EntryProblem::damaged("cut off at line 3"))),
         LibraryEvent::Read(run, Ok(stopped_run())),
         LibraryEvent::Done(1),
     ])
