@@ -5,7 +5,8 @@ use std::fs::{self, DirEntry};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, UNIX_EPOCH};
 
-use super::notes::{EntryNotes, NOTES_ENDING, notes_beside, read_notes};
+use super::name::{NOTES_ENDING, notes_beside};
+use super::notes::{EntryNotes, read_notes};
 use super::shipped::SHIPPED;
 use crate::save::plan::RUN_FILE;
 use crate::save::record::LOG_FILE;

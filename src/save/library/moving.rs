@@ -4,7 +4,7 @@ use std::fs::{self, OpenOptions};
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::notes::notes_beside;
+use super::name::notes_beside;
 use crate::check::Invalid;
 use crate::save::SaveError;
 

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use super::notes::notes_beside;
 use crate::check::Invalid;
 
 /// Maximum length of a name, in characters.
@@ -11,6 +10,14 @@ pub const MAX_NAME_CHARS: usize = 100;
 const MAX_NAME_BYTES: usize = 200;
 /// The extension of a champion's file.
 pub const ENDING: &str = "ron";
+
+/// The extension of the notes beside a champion's file. It is not that of champions, which the library lists.
+pub const NOTES_ENDING: &str = "about";
+
+/// The file of notes beside a champion's file.
+pub fn notes_beside(champion: &Path) -> PathBuf {
+    champion.with_extension(NOTES_ENDING)
+}
 
 /// Checks a name: it must neither lead out of its folder nor hide in it.
 ///

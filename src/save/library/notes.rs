@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::change::FileStep;
 use super::list::SavePlace;
-use super::name::MAX_NAME_CHARS;
+use super::name::{MAX_NAME_CHARS, notes_beside};
 use crate::check::{Invalid, quoted};
 use crate::save::SaveError;
 use crate::save::files::{Header, parse, read_bytes, refuse_link, store_ron, text_of};
@@ -19,8 +19,6 @@ const KIND: &str = "snakes-and-stairs notes";
 const FORMAT: u32 = 1;
 /// The file in a run's folder.
 const RUN_NOTES: &str = "about.ron";
-/// The extension of the file beside a champion. It is not that of champions, which the library lists.
-pub const NOTES_ENDING: &str = "about";
 /// Maximum length of notes, in characters: a page of text.
 pub const MAX_NOTES_CHARS: usize = 4000;
 /// Maximum size of the file, in MiB.
@@ -101,11 +99,6 @@ fn notes_path(place: &SavePlace) -> Option<PathBuf> {
         SavePlace::Champion(path) => Some(notes_beside(path)),
         SavePlace::Run(folder) => Some(folder.join(RUN_NOTES)),
     }
-}
-
-/// The file of notes beside a champion's file.
-pub fn notes_beside(champion: &Path) -> PathBuf {
-    champion.with_extension(NOTES_ENDING)
 }
 
 /// Reads the name and notes of an entry; empty ones if it has none.
