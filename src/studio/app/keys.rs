@@ -199,6 +199,17 @@ mod tests {
     }
 
     #[test]
+    fn letters_typed_for_a_name_are_no_commands() {
+        for text in "My ice: 1/2 GLOBAL".chars().map(String::from) {
+            assert!(NONE.is_for_panel(&character(&text), true, false), "{text}");
+            assert!(SHIFT.is_for_panel(&character(&text), true, false), "{text}");
+        }
+        for key in [Key::Space, Key::Escape, Key::Enter, Key::ArrowLeft, Key::Home] {
+            assert!(NONE.is_for_panel(&key, true, false), "{key:?}");
+        }
+    }
+
+    #[test]
     fn help_keys_work_in_lists_and_a_question_mark_can_be_typed() {
         let (help, letter) = (character("?"), character("n"));
         assert!(!SHIFT.is_for_panel(&help, false, true));

@@ -251,6 +251,8 @@ fn name_of(path: &Path) -> String {
 mod tests {
     use super::*;
     use crate::save::{shipped_champion, store_champion};
+    use crate::studio::commands::Command;
+    use crate::studio::commands::files::FileCommand;
     use crate::studio::commands::library::LibraryCommand;
     use crate::studio::state::undo::UndoDirection;
     use crate::studio::ui::notifications::Notices;
@@ -331,6 +333,7 @@ mod tests {
         assert_eq!(tried.next(), (Some("deleted 2 saves"), None));
         tried.step(UndoDirection::Back);
         assert_eq!(tried.notices.last(), Some("2 saves restored."));
+        assert_eq!(tried.notices.len(), 1, "it replaces the message about the change");
         assert_eq!(tried.own(), ["a", "b", "c"]);
         assert_eq!(tried.next(), (None, Some("deleted 2 saves")));
         tried.step(UndoDirection::Forth);
@@ -375,8 +378,15 @@ mod tests {
         let export = LibraryCommand::Export { places: vec![tried.place("a")], to: None };
         tried.apply(&export).expect("begun");
         tried.wait();
-        let copy = tried.folder.path().join("exports/a.ron");
+        let exports = tried.folder.path().join("exports");
+        let copy = exports.join("a.ron");
         assert!(copy.exists());
+        let offers = [
+            ("Open folder", FileCommand::OpenFolder(exports)),
+            ("Copy path", FileCommand::CopyPath(copy.clone())),
+        ];
+        let offers = offers.map(|(label, of)| (label.to_owned(), Command::File(of)));
+        assert_eq!(tried.notices.last_offers(), offers);
         tried.apply(&LibraryCommand::Import(vec![copy])).expect("begun");
         tried.wait();
         assert_eq!(tried.own(), ["a 2", "a"]);

@@ -74,3 +74,31 @@ impl StageArea {
         if size.x > 0.0 && size.y > 0.0 { size.x / size.y } else { 1.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use text_prompt::TextPrompt;
+
+    #[test]
+    fn letters_belong_to_an_open_prompt_even_if_no_widget_has_the_focus() {
+        let context = egui::Context::default();
+        let mut area = StageArea::default();
+        area.set(&context, egui::Rect::EVERYTHING, 0.0);
+        let mut prompt = TextPrompt::new("my-ice".to_owned());
+        let mut pass = |is_open: bool| {
+            let _ = context.run_ui(egui::RawInput::default(), |ui| {
+                if is_open {
+                    prompt.ui(ui, |ui, field| ui.add(field));
+                }
+            });
+        };
+        assert!(!area.takes_letters());
+        pass(true);
+        context.memory_mut(|memory| memory.stop_text_input());
+        assert!(area.takes_letters(), "a click beside the field took its focus");
+        pass(false);
+        pass(false);
+        assert!(!area.takes_letters(), "the dialog is closed");
+    }
+}
