@@ -8,14 +8,17 @@
 /// a socket there finds none, without a word. Says so in one line through `say`.
 #[cfg(target_os = "linux")]
 pub fn name_runtime_folder(say: impl FnOnce(&str)) {
+    use std::os::unix::fs::MetadataExt;
     use std::os::unix::process::CommandExt;
+    use std::path::Path;
 
-    let is_named = std::env::var_os(VARIABLE).is_some_and(|folder| !folder.is_empty());
-    let Ok(program) = std::env::current_exe() else { return };
-    if is_named {
+    if std::env::var_os(VARIABLE).is_some_and(|folder| !folder.is_empty()) {
         return;
     }
-    let folder = format!("/run/user/{}", nix::unistd::geteuid());
+    // A process belongs to the user who started it, and so does its entry among the processes.
+    let own = Path::new("/proc/self").metadata();
+    let (Ok(program), Ok(own)) = (std::env::current_exe(), own) else { return };
+    let folder = format!("/run/user/{}", own.uid());
     say(&format!("note: {VARIABLE} is not set, so {folder} is used"));
     let mut command = std::process::Command::new(program);
     // The process keeps its number. `exec` returns only on failure; then the errors are as harmless as before.
