@@ -1,5 +1,7 @@
 //! The errors of the command line.
 
+use std::path::PathBuf;
+
 use crate::check::Invalid;
 use crate::run::headless::HeadlessError;
 use crate::run::verify::VerifyError;
@@ -14,6 +16,14 @@ pub enum CliError {
     /// The arguments are right, but the work failed.
     #[error(transparent)]
     Headless(#[from] HeadlessError),
+    /// A folder to resume holds several runs, which were listed.
+    #[error("{}: holds {count} runs; give --resume the folder of one of them", folder.display())]
+    SeveralRuns {
+        /// The folder.
+        folder: PathBuf,
+        /// Number of runs in it.
+        count: usize,
+    },
     /// The golden trajectories could not be computed.
     #[error(transparent)]
     Verify(#[from] VerifyError),
@@ -50,7 +60,7 @@ impl CliError {
     /// 2 for wrong usage, 1 for failure.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) => 2,
+            Self::Usage(_) | Self::SeveralRuns { .. } => 2,
             _ => 1,
         }
     }

@@ -13,6 +13,7 @@ mod output;
 #[cfg(feature = "studio")]
 mod render;
 mod replay;
+mod resume;
 mod robust;
 mod table1;
 mod verify;
@@ -58,9 +59,15 @@ fn dispatch(args: Args) -> Result<(), CliError> {
             table1::table1(&args, *first_seed, *seeds)
         }
         #[cfg(feature = "studio")]
-        Some(Subcommand::Figures { run }) => figures::draw(&args, run),
+        Some(Subcommand::Figures { run }) => {
+            crate::studio::name_runtime_folder(|_| ());
+            figures::draw(&args, run)
+        }
         #[cfg(feature = "studio")]
-        Some(Subcommand::Render(wanted)) => render::draw(&args, wanted),
+        Some(Subcommand::Render(wanted)) => {
+            crate::studio::name_runtime_folder(|_| ());
+            render::draw(&args, wanted)
+        }
         #[cfg(not(feature = "studio"))]
         Some(Subcommand::Figures { .. } | Subcommand::Render(_)) => Err(CliError::NoStudio),
         Some(Subcommand::Replay { files }) if args.no_render => replay::replay(files, args.json),
@@ -81,6 +88,13 @@ fn evolve(args: &Args) -> Result<(), CliError> {
 #[cfg(feature = "studio")]
 fn open_studio(args: &Args) -> Result<(), CliError> {
     use crate::studio;
+    // Without a display, the only line is the error that follows.
+    let has_display = std::env::var_os("DISPLAY").is_some();
+    studio::name_runtime_folder(|note| {
+        if has_display {
+            say(note)
+        }
+    });
     let files = match &args.command {
         Some(Subcommand::Replay { files }) => &files[..],
         _ => &[],

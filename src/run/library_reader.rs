@@ -11,7 +11,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::panics::caught;
 use crate::save::SavesFolder;
-use crate::save::library::{EntryDetails, LibraryEntry, SavePlace, list, read_entry};
+use crate::save::library::{EntryDetails, EntryProblem, LibraryEntry, SavePlace, list, read_entry};
 
 /// News about the library.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ pub enum LibraryEvent {
     /// The folder cannot be read, and why.
     NotListed(String),
     /// Contents of an entry, or why it cannot be read.
-    Read(SavePlace, Result<EntryDetails, String>),
+    Read(SavePlace, Result<EntryDetails, EntryProblem>),
     /// All entries are read; the number of listings since the start.
     Done(u64),
 }
@@ -211,8 +211,9 @@ impl LibraryWorker {
         if let Some((_, is_read)) = self.known.get_mut(place) {
             *is_read = true;
         }
-        let read = caught(|| read_entry(place).map_err(|error| error.to_string()));
-        LibraryEvent::Read(place.clone(), read.unwrap_or_else(Err))
+        let read = caught(|| read_entry(place).map_err(EntryProblem::from));
+        let read = read.unwrap_or_else(|panic| Err(EntryProblem::damaged(&panic)));
+        LibraryEvent::Read(place.clone(), read)
     }
 }
 

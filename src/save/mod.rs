@@ -44,9 +44,9 @@ pub use files::names_in;
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use own_preset::{OwnPreset, check_own_name};
-pub use picture::{Picture, store_csv, store_picture, store_text};
+pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
-pub use preferences::{Preferences, PreferencesFile, UI_SCALES};
+pub use preferences::{MAX_RECENT, Preferences, PreferencesFile, UI_SCALES};
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
 };

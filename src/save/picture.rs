@@ -1,9 +1,13 @@
 //! Writes pictures as PNG, tables as CSV, and plain text.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use super::SaveError;
-use super::files::write_whole;
+use super::files::{read_bytes, write_whole};
+
+/// Maximum size of a picture that is read, in MiB: more than the largest window's.
+const LARGEST_PICTURE_MIB: u64 = 256;
 
 /// A picture of red, green and blue bytes, row by row from the top left pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,6 +41,24 @@ pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     };
     let bytes = encode().map_err(std::io::Error::other).map_err(SaveError::unwritable(path))?;
     write_whole(path, &bytes)
+}
+
+/// Reads a picture that [`store_picture`] wrote.
+///
+/// # Errors
+/// The file cannot be read, or is no such picture.
+pub fn load_picture(path: &Path) -> Result<Picture, SaveError> {
+    let bytes = read_bytes(path, LARGEST_PICTURE_MIB)?;
+    let decode = || -> Result<Picture, png::DecodingError> {
+        let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info()?;
+        let other = || std::io::Error::other("it is no picture of this program");
+        let mut rgb = vec![0; reader.output_buffer_size().ok_or_else(other)?];
+        let png::OutputInfo { width, height, color_type, bit_depth, .. } =
+            reader.next_frame(&mut rgb)?;
+        let is_own = (color_type, bit_depth) == (png::ColorType::Rgb, png::BitDepth::Eight);
+        if is_own { Ok(Picture { width, height, rgb }) } else { Err(other().into()) }
+    };
+    decode().map_err(std::io::Error::other).map_err(SaveError::unreadable(path))
 }
 
 /// Writes a text atomically.
@@ -73,12 +95,10 @@ mod tests {
         let mut picture = Picture::new(3, 2);
         picture.rgb.iter_mut().zip(0..).for_each(|(byte, value)| *byte = value);
         store_picture(&path, &picture).expect("written");
-        let file = std::io::BufReader::new(fs::File::open(&path).expect("there"));
-        let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
-        let mut rgb = vec![0; reader.output_buffer_size().expect("small")];
-        let info = reader.next_frame(&mut rgb).expect("a frame");
-        assert_eq!((info.width, info.height), (3, 2));
-        assert_eq!(rgb, picture.rgb);
+        assert_eq!(load_picture(&path).expect("a PNG"), picture);
+        fs::write(&path, "no picture").expect("written");
+        let refusal = load_picture(&path).expect_err("refused").to_string();
+        assert!(refusal.contains("a.png: cannot be read"), "{refusal}");
     }
 
     #[test]

@@ -16,6 +16,10 @@ const KIND: &str = "snakes-and-stairs preferences";
 const FORMAT: u32 = 1;
 /// The scales of the panels that the user can choose.
 pub const UI_SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
+/// Maximum number of files that were opened lately.
+pub const MAX_RECENT: usize = 10;
+/// Maximum length of a file's path, in bytes.
+const LONGEST_PATH: usize = 4096;
 /// Maximum length of the panels' layout, in bytes.
 const LONGEST_LAYOUT: usize = 100_000;
 
@@ -41,6 +45,8 @@ pub struct Preferences {
     pub smooth_edges: Option<bool>,
     /// Whether the tour was finished or skipped.
     pub tour_is_over: bool,
+    /// Paths of the files that were opened or imported lately, the latest first.
+    pub recent: Vec<String>,
 }
 
 impl Default for Preferences {
@@ -55,6 +61,7 @@ impl Default for Preferences {
             loops: true,
             smooth_edges: None,
             tour_is_over: false,
+            recent: Vec::new(),
         }
     }
 }
@@ -75,6 +82,10 @@ impl Preferences {
         }
         within("layout", self.layout.len(), 0..=LONGEST_LAYOUT)?;
         within("overlays", self.overlays.len(), 0..=20)?;
+        within("recent", self.recent.len(), 0..=MAX_RECENT)?;
+        for path in &self.recent {
+            within("recent", path.len(), 1..=LONGEST_PATH)?;
+        }
         within("speed", self.speed, 0.01..=100.0)
     }
 }

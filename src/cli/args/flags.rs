@@ -43,7 +43,7 @@ pub struct Args {
     /// Change a single setting, such as surface.friction=0.8 (see `snakes settings`); may be repeated
     #[arg(long, global = true, value_name = "FIELD=VALUE", help_heading = RUN)]
     pub(super) set: Vec<String>,
-    /// Continue the run in this folder after its last finished generation
+    /// Continue the run in this folder, or the only run in this folder of runs, after its last finished generation
     #[arg(
         long,
         global = true,

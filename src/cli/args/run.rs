@@ -6,6 +6,7 @@ use super::flags::{Args, Subcommand};
 use super::values::number;
 use crate::check::Invalid;
 use crate::cli::error::CliError;
+use crate::cli::resume::run_in;
 use crate::evolve::{Champion, Founder, RunPlan, Settings, with_fields};
 use crate::run::RunSource;
 use crate::save::{
@@ -46,7 +47,7 @@ impl Args {
     /// The run in the folder to resume, or the run that the flags describe.
     pub fn run_source(&self) -> Result<RunSource, CliError> {
         if let Some(folder) = &self.resume {
-            return Ok(RunSource::in_folder(folder)?);
+            return run_in(folder, self.json);
         }
         let plan = match &self.from {
             Some(file) => self.plan_from(file)?,

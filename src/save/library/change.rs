@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use super::details::{text_of_file, text_of_shipped};
 use super::list::SavePlace;
-use super::moving::move_new;
-use super::name::{ENDING, check_entry_name, free_path, shortened};
+use super::moving::{move_entry, taken};
+use super::name::{ENDING, check_entry_name, free_path, notes_beside, shortened};
+use super::notes::{EntryNotes, copy_notes, name_run, set_notes};
 use crate::check::Invalid;
 use crate::save::files::{prepare_folder, write_new};
 use crate::save::lock::Lock;
@@ -45,6 +46,13 @@ pub enum FileStep {
         /// Its path.
         path: PathBuf,
     },
+    /// It got another name of its own, or other notes.
+    Noted {
+        /// Its place, which stays the same.
+        place: SavePlace,
+        /// Name and notes before.
+        before: EntryNotes,
+    },
 }
 
 impl FileStep {
@@ -55,11 +63,12 @@ impl FileStep {
     pub fn undo(&self, saves: &SavesFolder) -> Result<Self, SaveError> {
         match self {
             Self::Renamed { from, to } => {
-                move_new(to, from)?;
+                move_entry(to, from)?;
                 Ok(Self::Renamed { from: to.clone(), to: from.clone() })
             }
             Self::Deleted { from, kept } => restore(kept, from),
             Self::Restored { to: path, .. } | Self::Added { path } => move_away(saves, path),
+            Self::Noted { place, before } => set_notes(place, before),
         }
     }
 
@@ -67,6 +76,7 @@ impl FileStep {
     pub fn place(&self) -> Option<SavePlace> {
         let path = match self {
             Self::Renamed { to, .. } | Self::Restored { to, .. } | Self::Added { path: to } => to,
+            Self::Noted { place, .. } => return Some(place.clone()),
             Self::Deleted { .. } => return None,
         };
         Some(if path.is_dir() {
@@ -77,18 +87,25 @@ impl FileStep {
     }
 }
 
-/// Renames a champion.
+/// Renames a champion's file, or gives a run a name of its own: its folder's name says which run it is, and stays.
 ///
 /// # Errors
-/// The name is not allowed or taken; the entry is a run, whose folder's name identifies it; the entry is part of the
-/// program; the file cannot be renamed.
+/// The name is not allowed or taken; the entry is part of the program; the file cannot be renamed or written.
 pub fn rename(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
-    let SavePlace::Champion(from) = place else {
-        return Err(refused(place, "only a champion's file can be renamed"));
+    let from = match place {
+        SavePlace::Champion(from) => from,
+        SavePlace::Run(_) => return name_run(place, name),
+        SavePlace::Shipped(_) => {
+            return Err(refused(place, "a champion's file or a run can be renamed"));
+        }
     };
     check_entry_name(name).map_err(SaveError::invalid(from))?;
     let to = from.with_file_name(format!("{name}.{ENDING}"));
-    move_new(from, &to)?;
+    // Notes that a removed file left behind belong to it.
+    if notes_beside(&to).symlink_metadata().is_ok() {
+        return Err(taken(&to));
+    }
+    move_entry(from, &to)?;
     Ok(FileStep::Renamed { from: from.clone(), to })
 }
 
@@ -111,6 +128,9 @@ pub fn duplicate(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, Sav
     let name = shortened(&place.name(), " copy");
     let path = free_path(saves.path(), &name, Some(ENDING));
     write_new(&path, text.as_bytes())?;
+    if let Some(from) = place.path() {
+        copy_notes(from, &path);
+    }
     Ok(FileStep::Added { path })
 }
 
@@ -149,9 +169,9 @@ fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
     if cfg!(windows) {
         // Windows cannot move a folder in which a file is open.
         drop(lock);
-        move_new(path, &kept)?;
+        move_entry(path, &kept)?;
     } else {
-        move_new(path, &kept)?;
+        move_entry(path, &kept)?;
         drop(lock);
     }
     Ok(FileStep::Deleted { from: path.to_owned(), kept })
@@ -163,12 +183,13 @@ fn restore(kept: &Path, wanted: &Path) -> Result<FileStep, SaveError> {
     let is_folder = kept.is_dir();
     let name = wanted.file_stem().filter(|_| !is_folder).or(wanted.file_name()).unwrap_or_default();
     let ending = wanted.extension().filter(|_| !is_folder).map(|ending| ending.to_string_lossy());
-    let to = if wanted.symlink_metadata().is_err() {
+    let is_free = |path: &Path| path.symlink_metadata().is_err();
+    let to = if is_free(wanted) && (is_folder || is_free(&notes_beside(wanted))) {
         wanted.to_owned()
     } else {
         free_path(folder, &name.to_string_lossy(), ending.as_deref())
     };
-    move_new(kept, &to)?;
+    move_entry(kept, &to)?;
     Ok(FileStep::Restored { wanted: wanted.to_owned(), to })
 }
 
@@ -227,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_cannot_be_renamed_and_shipped_champions_cannot_be_changed() {
+    fn runs_cannot_be_duplicated_and_shipped_champions_cannot_be_changed() {
         let (_folder, saves) = saves();
         let run = run_in(&saves, 1);
         let shipped = SavePlace::Shipped("fast");
@@ -235,10 +256,6 @@ mod tests {
             let message = result.expect_err("refused").to_string();
             assert!(message.contains(words), "{message}");
         };
-        says(
-            rename(&run, "other"),
-            "entry is a run; allowed: only a champion's file can be renamed",
-        );
         says(duplicate(&saves, &run), "only a champion's file can be duplicated");
         says(rename(&shipped, "other"), "entry is built-in");
         says(delete(&saves, &shipped), "a champion's file or a run's folder");

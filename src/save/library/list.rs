@@ -1,9 +1,12 @@
 //! Lists a folder of saves by names only.
 
+use std::collections::BTreeSet;
 use std::fs::{self, DirEntry};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, UNIX_EPOCH};
 
+use super::name::{NOTES_ENDING, notes_beside};
+use super::notes::{EntryNotes, read_notes};
 use super::shipped::SHIPPED;
 use crate::save::plan::RUN_FILE;
 use crate::save::record::LOG_FILE;
@@ -57,6 +60,8 @@ pub struct LibraryEntry {
     pub bytes: u64,
     /// Time of its last change since the beginning of 1970 (UTC); zero for a part of the program.
     pub modified: Duration,
+    /// The user's name and notes, or why they cannot be read.
+    pub notes: Result<EntryNotes, String>,
 }
 
 /// Lists the champions and runs in a folder of saves by name, and the champions that are part of the program unless a
@@ -69,7 +74,13 @@ pub fn list(saves: &SavesFolder) -> Result<Vec<LibraryEntry>, SaveError> {
     let unreadable = SaveError::unreadable(folder);
     let mut entries = match fs::read_dir(folder) {
         // Entries that vanish meanwhile are left out.
-        Ok(found) => found.flatten().filter_map(|found| entry_of(&found)).collect(),
+        Ok(found) => {
+            let found: Vec<DirEntry> = found.flatten().collect();
+            // Most champions have no notes; for those no file is looked for.
+            let is_notes = |path: &PathBuf| path.extension().is_some_and(|of| of == NOTES_ENDING);
+            let notes = found.iter().map(DirEntry::path).filter(is_notes).collect();
+            found.iter().filter_map(|found| entry_of(found, &notes)).collect()
+        }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
         Err(error) => return Err(unreadable(error)),
     };
@@ -77,6 +88,7 @@ pub fn list(saves: &SavesFolder) -> Result<Vec<LibraryEntry>, SaveError> {
         place: SavePlace::Shipped(name),
         bytes: text.len() as u64,
         modified: Duration::ZERO,
+        notes: Ok(EntryNotes::default()),
     });
     entries.extend(shipped.filter(|entry| {
         folder.join(format!("{}.ron", entry.place.name())).symlink_metadata().is_err()
@@ -86,7 +98,8 @@ pub fn list(saves: &SavesFolder) -> Result<Vec<LibraryEntry>, SaveError> {
 }
 
 /// The library entry of a file or folder, if it is one. Names that begin with a dot are hidden.
-fn entry_of(found: &DirEntry) -> Option<LibraryEntry> {
+/// `notes` are the files of champions' notes in the folder.
+fn entry_of(found: &DirEntry, notes: &BTreeSet<PathBuf>) -> Option<LibraryEntry> {
     let (name, path) = (found.file_name(), found.path());
     if name.as_encoded_bytes().starts_with(b".") {
         return None;
@@ -99,18 +112,23 @@ fn entry_of(found: &DirEntry) -> Option<LibraryEntry> {
         let log = path.join(LOG_FILE).symlink_metadata();
         let bytes = log.as_ref().map_or(0, fs::Metadata::len);
         let modified = log.map_or(Duration::ZERO, |log| modified(&log)).max(modified(&own));
-        return Some(LibraryEntry { place: SavePlace::Run(path), bytes, modified });
+        let place = SavePlace::Run(path);
+        let notes = notes_of(&place);
+        return Some(LibraryEntry { place, bytes, modified, notes });
     }
     if path.extension().is_none_or(|extension| extension != "ron") {
         return None;
     }
     // A link is listed as itself; reading it gives an error.
     let own = found.metadata().ok()?;
-    Some(LibraryEntry {
-        place: SavePlace::Champion(path),
-        bytes: own.len(),
-        modified: modified(&own),
-    })
+    let is_noted = notes.contains(&notes_beside(&path));
+    let place = SavePlace::Champion(path);
+    let notes = if is_noted { notes_of(&place) } else { Ok(EntryNotes::default()) };
+    Some(LibraryEntry { place, bytes: own.len(), modified: modified(&own), notes })
+}
+
+fn notes_of(place: &SavePlace) -> Result<EntryNotes, String> {
+    read_notes(place).map_err(|error| error.to_string())
 }
 
 /// Time of the last change, since the beginning of 1970.

@@ -1,9 +1,10 @@
-//! Moves files and folders without overwriting any.
+//! Moves files and folders without overwriting any, champions together with their notes.
 
 use std::fs::{self, OpenOptions};
 use std::io::ErrorKind;
 use std::path::Path;
 
+use super::name::notes_beside;
 use crate::check::Invalid;
 use crate::save::SaveError;
 
@@ -35,5 +36,20 @@ pub fn move_new(from: &Path, to: &Path) -> Result<(), SaveError> {
         // Remove the reservation, an empty file.
         let _ = fs::remove_file(to);
         unwritable(source)
+    })
+}
+
+/// Moves an entry: a run's folder, or a champion's file with the notes beside it. If the notes cannot be moved, neither
+/// is.
+pub fn move_entry(from: &Path, to: &Path) -> Result<(), SaveError> {
+    let is_folder = from.is_dir();
+    move_new(from, to)?;
+    let notes = notes_beside(from);
+    if is_folder || notes.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    move_new(&notes, &notes_beside(to)).inspect_err(|_| {
+        // The first error is the one to report.
+        let _ = move_new(to, from);
     })
 }

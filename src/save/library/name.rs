@@ -11,6 +11,14 @@ const MAX_NAME_BYTES: usize = 200;
 /// The extension of a champion's file.
 pub const ENDING: &str = "ron";
 
+/// The extension of the notes beside a champion's file. It is not that of champions, which the library lists.
+pub const NOTES_ENDING: &str = "about";
+
+/// The file of notes beside a champion's file.
+pub fn notes_beside(champion: &Path) -> PathBuf {
+    champion.with_extension(NOTES_ENDING)
+}
+
 /// Checks a name: it must neither lead out of its folder nor hide in it.
 ///
 /// # Errors
@@ -69,7 +77,10 @@ pub fn free_path(folder: &Path, name: &str, ending: Option<&str>) -> PathBuf {
         let name = shortened(name, &number);
         folder.join(ending.map_or(name.clone(), |ending| format!("{name}.{ending}")))
     };
-    let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
+    let is_free = |path: &Path| path.symlink_metadata().is_err();
+    // Notes that a removed file left behind belong to it.
+    let has_no_notes = |path: &PathBuf| ending.is_none() || is_free(&notes_beside(path));
+    let mut free = (1..=u32::MAX).map(path).filter(|path| is_free(path) && has_no_notes(path));
     free.next().unwrap_or_else(|| path(0))
 }
 

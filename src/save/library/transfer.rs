@@ -8,9 +8,10 @@ use super::details::{text_of_file, text_of_shipped};
 use super::list::SavePlace;
 use super::moving::{move_new, taken};
 use super::name::{ENDING, free_path, plain_name};
+use super::notes::copy_notes;
 use crate::save::files::{UNFINISHED, prepare_folder, read_bytes, write_new};
 use crate::save::lock::{LOCK_FILE, Lock};
-use crate::save::plan::load_plan;
+use crate::save::plan::{RUN_FILE, load_plan};
 use crate::save::{SaveError, SavedProgress, SavesFolder, parse_champion, run_name};
 
 /// Folder for exported copies within a folder of saves, unless another is given.
@@ -49,6 +50,9 @@ pub fn export(
         free_path(to, &place.name(), Some(ENDING))
     };
     write_new(&path, text.as_bytes())?;
+    if let Some(from) = place.path() {
+        copy_notes(from, &path);
+    }
     Ok(FileStep::Added { path })
 }
 
@@ -66,13 +70,28 @@ fn export_run(run: &Path, to: &Path) -> Result<FileStep, SaveError> {
     rename_copy(copied, &path)
 }
 
-/// Copies a champion or a run from anywhere into the folder of saves, after it has been read and checked completely.
+/// The entry at a path: a folder is a run, and so is the file `run.ron` in it, because dialogs for files choose no
+/// folders. Any other file is a champion.
+pub fn run_of_plan(path: &Path) -> SavePlace {
+    let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == RUN_FILE));
+    match folder {
+        // A name alone lies in the working directory.
+        Some(folder) if folder.as_os_str().is_empty() => SavePlace::Run(PathBuf::from(".")),
+        Some(folder) => SavePlace::Run(folder.to_owned()),
+        None if path.is_dir() && !path.is_symlink() => SavePlace::Run(path.to_owned()),
+        None => SavePlace::Champion(path.to_owned()),
+    }
+}
+
+/// Copies a champion or a run from anywhere into the folder of saves, after it has been read and checked completely. A
+/// run may be given as its file `run.ron`.
 ///
 /// # Errors
 /// The entry is unreadable, damaged, a link or of another kind; the run exists already; the copy cannot be written.
 pub fn import(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
-    if fs::symlink_metadata(from).map_err(SaveError::unreadable(from))?.is_dir() {
-        return import_run(saves, from);
+    fs::symlink_metadata(from).map_err(SaveError::unreadable(from))?;
+    if let SavePlace::Run(run) = run_of_plan(from) {
+        return import_run(saves, &run);
     }
     let text = text_of_file(from)?;
     parse_champion(from, &text)?;
@@ -80,6 +99,7 @@ pub fn import(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
     let name = from.file_stem().unwrap_or_default().to_string_lossy();
     let path = free_path(saves.path(), &plain_name(&name), Some(ENDING));
     write_new(&path, text.as_bytes())?;
+    copy_notes(from, &path);
     Ok(FileStep::Added { path })
 }
 
@@ -197,7 +217,8 @@ mod tests {
         let again = import(&saves, &copy).expect_err("it is there already").to_string();
         assert!(again.contains("not taken yet"), "{again}");
         let (_other, others) = super::super::fixtures::saves();
-        let step = import(&others, &copy).expect("imported");
+        // A dialog for files chooses the file.
+        let step = import(&others, &copy.join("run.ron")).expect("imported");
         let imported = step.place().expect("there");
         assert_eq!(imported.name(), run.name());
         assert_eq!(read_entry(&imported).expect("whole"), read_entry(&run).expect("whole"));

@@ -4,6 +4,7 @@ pub mod stage;
 
 use bevy::prelude::*;
 
+use crate::studio::commands::files::FileCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, RunCommand, WindowCommand};
@@ -12,10 +13,11 @@ use crate::studio::scene::view_commands::ViewParams;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::library::Library;
 use crate::studio::state::plan_commands::apply_to_plan;
-use crate::studio::state::undo::{UndoDirection, UndoHistory, UndoStep};
+use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
@@ -34,7 +36,7 @@ fn apply(
     (opening, mut exit): (Res<OpeningChampions>, MessageWriter<AppExit>),
     mut workspace: ResMut<Workspace>,
     mut lessons: ResMut<Lessons>,
-    mut library: ResMut<Library>,
+    (mut library, mut files): (ResMut<Library>, ResMut<Files>),
     mut stage: StageParams,
     mut view: ViewParams,
 ) {
@@ -77,6 +79,14 @@ fn apply(
             Command::Library(command) => library
                 .apply(command, &mut history, notices)
                 .map(|show| stage.present_others(show, notices)),
+            Command::File(command) => {
+                if *command == FileCommand::AskExport {
+                    workspace.open(PanelKind::Library);
+                }
+                files
+                    .apply(command, &mut library, &mut history, notices)
+                    .map(|show| stage.present_others(show, notices))
+            }
             Command::Lesson(command) => {
                 if matches!(command, LessonCommand::Begin(_)) {
                     workspace.open(PanelKind::Lessons);
@@ -94,7 +104,7 @@ fn apply(
                 };
                 match history.take(way) {
                     Some(UndoStep::Plan(step)) => {
-                        notices.info(step.message(way));
+                        notices.update(UNDO_SUBJECT, step.message(way));
                         history.complete(way, Some(UndoStep::Plan(step.clone())), None);
                         stage.step(&mut run, &step, way)
                     }
@@ -102,7 +112,7 @@ fn apply(
                         library.step(way, label, steps, &mut history, notices)
                     }
                     None => {
-                        notices.info(way.nothing().to_owned());
+                        notices.update(UNDO_SUBJECT, way.nothing().to_owned());
                         Ok(())
                     }
                 }
@@ -185,6 +195,7 @@ mod tests {
                 loaded,
             }]))
             .insert_resource(Library::new(crate::save::SavesFolder::find(None)))
+            .init_resource::<Files>()
             .init_resource::<Notices>()
             .init_resource::<StageMode>()
             .init_resource::<Playback>()
@@ -227,7 +238,8 @@ mod tests {
         assert_eq!(friction_after(&mut app, &[Command::Undo]), first);
         assert_eq!(friction_after(&mut app, &[Command::Undo]), first, "there is nothing more");
         assert_eq!(friction_after(&mut app, &[Command::Redo, Command::Redo]), 0.2);
-        assert_eq!(app.world().resource::<Notices>().len(), 4, "each said what it did");
+        let said = app.world().resource::<Notices>();
+        assert_eq!((said.len(), said.last()), (1, Some("Redone: friction 0.2")), "the latest");
     }
 
     #[test]

@@ -37,7 +37,7 @@ fn read(
         }
         let situation = now.situation();
         let leaves = press.logical_key == Key::Escape && situation.is_covered;
-        let (is_typing, is_steering) = (area.has_text_cursor(), egui.wants_any_keyboard_input());
+        let (is_typing, is_steering) = (area.takes_letters(), egui.wants_any_keyboard_input());
         let is_taken = held.is_for_panel(&press.logical_key, is_typing, is_steering);
         if is_taken && !leaves {
             continue;
@@ -196,6 +196,17 @@ mod tests {
         assert!(!CONTROL.is_command(&character("z")));
         assert!(CONTROL.is_command(&character("k")));
         assert!(!NONE.is_command(&character("k")));
+    }
+
+    #[test]
+    fn letters_typed_for_a_name_are_no_commands() {
+        for text in "My ice: 1/2 GLOBAL".chars().map(String::from) {
+            assert!(NONE.is_for_panel(&character(&text), true, false), "{text}");
+            assert!(SHIFT.is_for_panel(&character(&text), true, false), "{text}");
+        }
+        for key in [Key::Space, Key::Escape, Key::Enter, Key::ArrowLeft, Key::Home] {
+            assert!(NONE.is_for_panel(&key, true, false), "{key:?}");
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::studio::commands::overlay::Overlay;
 use crate::studio::scene::camera::StageCamera;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::playback::Playback;
+use crate::studio::state::files::{Files, RecentFiles};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
 use crate::studio::workspace::Workspace;
@@ -76,6 +77,7 @@ struct Chosen<'w, 's> {
     theme: Res<'w, Theme>,
     overlays: ResMut<'w, Overlays>,
     playback: ResMut<'w, Playback>,
+    files: ResMut<'w, Files>,
     smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
     window: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
 }
@@ -94,8 +96,9 @@ fn restore(
 ) {
     notices.problems(remembered.problem.take());
     remembered.was_smooth = chosen.is_smooth();
-    let Preferences { ui_scale, layout, overlays, speed, loops, smooth_edges, .. } =
+    let Preferences { ui_scale, layout, overlays, speed, loops, smooth_edges, recent, .. } =
         remembered.stored.clone();
+    chosen.files.recent = RecentFiles::from_texts(&recent);
     chosen.workspace.scale = ui_scale;
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
@@ -163,6 +166,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         loops: chosen.playback.loops(),
         smooth_edges: is_smooth.filter(|_| has_chosen),
         tour_is_over: chosen.workspace.tour_is_over,
+        recent: chosen.files.recent.to_texts(),
     };
     // A closing window can have size zero; ignore that.
     if now.check().is_ok() { now } else { before.clone() }
@@ -181,6 +185,7 @@ mod tests {
             .init_resource::<Theme>()
             .init_resource::<Overlays>()
             .init_resource::<Playback>()
+            .init_resource::<Files>()
             .init_resource::<Notices>()
             .init_resource::<Time<Real>>()
             .add_plugins(plugin);
@@ -198,12 +203,15 @@ mod tests {
         first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
         first.world_mut().resource_mut::<Playback>().set_speed(0.5);
         *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
+        let recent = RecentFiles::from_texts(&["/saves/mine.ron".to_owned()]);
+        first.world_mut().resource_mut::<Files>().recent = recent.clone();
         first.world_mut().write_message(AppExit::Success);
         first.update();
         let second = app(&file);
         assert_eq!(second.world().resource::<Workspace>().scale, 1.5);
         assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
+        assert_eq!(second.world().resource::<Files>().recent, recent);
         let chosen = second.world().resource::<StoredPreferences>().chosen().clone();
         assert!(chosen.theme == "dark" && chosen.tour_is_over);
     }

@@ -2,6 +2,7 @@
 //! they cannot disagree.
 
 use super::camera_mode::CameraMode;
+use super::files::{FileCommand, FileQuestion};
 use super::modal::Modal;
 use super::overlay::Overlay;
 use super::panel::PanelKind;
@@ -14,6 +15,8 @@ use super::{
 /// A menu, and a group in the list of shortcuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Menu {
+    /// Files, pictures, and the end of the program.
+    File,
     /// Evolution, and the choice of champions.
     Run,
     /// Undo and redo.
@@ -30,12 +33,13 @@ pub(crate) enum Menu {
 
 impl Menu {
     /// All menus, in the order of the menu bar.
-    pub const ALL: [Self; 6] =
-        [Self::Run, Self::Edit, Self::Stage, Self::View, Self::Panels, Self::Help];
+    pub const ALL: [Self; 7] =
+        [Self::File, Self::Run, Self::Edit, Self::Stage, Self::View, Self::Panels, Self::Help];
 
     /// Label.
     pub fn name(self) -> &'static str {
         match self {
+            Self::File => "File",
             Self::Run => "Run",
             Self::Edit => "Edit",
             Self::Stage => "Stage",
@@ -105,6 +109,24 @@ pub(crate) fn of_keys(keys: &str) -> Option<&'static Action> {
 
 /// All actions, grouped by menu.
 pub(crate) const ACTIONS: &[Action] = &[
+    action(Menu::File, "New run…", &["Ctrl N"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Run)))
+    }),
+    action(Menu::File, "Open…", &["Ctrl O"], |_| {
+        Some(Command::File(FileCommand::Ask(FileQuestion::Open)))
+    }),
+    action(Menu::File, "Import…", &["Ctrl I"], |_| {
+        Some(Command::File(FileCommand::Ask(FileQuestion::Import)))
+    }),
+    action(Menu::File, "Export…", &["Ctrl E"], |_| Some(Command::File(FileCommand::AskExport))),
+    action(Menu::File, "Show saves folder", &[], |_| Some(Command::File(FileCommand::ShowSaves))),
+    action(Menu::File, "Save picture of the stage", &["P"], |_| {
+        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)))
+    }),
+    action(Menu::File, "Save picture of the window", &["Shift P"], |_| {
+        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Window)))
+    }),
+    action(Menu::File, "Quit", &["Ctrl Q"], |_| Some(Command::Quit)),
     action(Menu::Run, "Start or pause evolution", &["E"], |now| {
         Some(if now.is_running {
             Command::Run(RunCommand::Pause)
@@ -143,7 +165,6 @@ pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::Run, "Race best 10 of the latest generation", &["M"], |_| {
         Some(Command::Stage(StageCommand::RaceLeaders(None)))
     }),
-    action(Menu::Run, "Quit", &["Ctrl Q"], |_| Some(Command::Quit)),
     action(Menu::Edit, "Undo", &["Ctrl Z"], |now| now.can_undo.then_some(Command::Undo)),
     action(Menu::Edit, "Redo", &["Ctrl Shift Z", "Ctrl Y"], |now| {
         now.can_redo.then_some(Command::Redo)
@@ -216,12 +237,6 @@ pub(crate) const ACTIONS: &[Action] = &[
     }),
     action(Menu::View, "Show only the stage", &["H"], |_| {
         Some(Command::Window(WindowCommand::TogglePanels))
-    }),
-    action(Menu::View, "Save picture of the stage", &["P"], |_| {
-        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)))
-    }),
-    action(Menu::View, "Save picture of the window", &["Shift P"], |_| {
-        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Window)))
     }),
     action(Menu::Panels, "Run", &["Ctrl 1"], |_| {
         Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Run)))

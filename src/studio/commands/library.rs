@@ -29,12 +29,19 @@ pub(crate) enum LibraryCommand {
         /// The generations that have a champion.
         generations: Vec<u32>,
     },
-    /// Rename a champion.
+    /// Rename a champion's file, or give a run a name of its own.
     Rename {
-        /// The champion.
+        /// The champion or run.
         place: SavePlace,
-        /// The new name.
+        /// The new name; of a run, empty for its folder's name.
         name: String,
+    },
+    /// Change the notes of an entry.
+    SetNotes {
+        /// The champion or run.
+        place: SavePlace,
+        /// The new notes; empty for none.
+        text: String,
     },
     /// Copy champions within the folder of saves.
     Duplicate(Vec<SavePlace>),

@@ -4,6 +4,7 @@
 pub mod actions;
 pub mod camera_mode;
 pub mod chart_export;
+pub mod files;
 pub mod library;
 pub mod modal;
 pub mod overlay;
@@ -19,6 +20,7 @@ use crate::save::library::SavePlace;
 
 use camera_mode::CameraMode;
 use chart_export::ChartExport;
+use files::FileCommand;
 use library::LibraryCommand;
 use modal::Modal;
 use overlay::Overlay;
@@ -43,6 +45,8 @@ pub(super) enum Command {
     Window(WindowCommand),
     /// To the library of saves.
     Library(LibraryCommand),
+    /// To the system's dialogs for files, its file manager and its clipboard.
+    File(FileCommand),
     /// To the lessons.
     Lesson(LessonCommand),
     /// Undo the latest change of the next run's plan or of the saves.

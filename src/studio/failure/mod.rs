@@ -2,6 +2,7 @@
 
 pub mod gpu_loss;
 pub mod panic_guard;
+pub mod runtime_folder;
 
 use bevy::prelude::*;
 

@@ -29,6 +29,7 @@ use super::stage::end_s;
 use super::stage::lane::Lane;
 use super::stage::opening::OpeningChampions;
 use super::state::current_run::CurrentRun;
+use super::state::files::Files;
 use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
 use super::state::options::OpenedComparison;
@@ -117,6 +118,7 @@ struct PanelData<'w, 's> {
     theme: Res<'w, theme::Theme>,
     lessons: Res<'w, Lessons>,
     saves: Res<'w, Library>,
+    files: Res<'w, Files>,
 }
 
 fn draw(
@@ -176,7 +178,8 @@ fn draw(
             |ui| {
                 let is_on = |command: &Command| data.on_stage.is_on(command, *data.theme);
                 let about = format!("{preset}, seed {seed}");
-                menu(ui, situation, &is_on, &about, viewer.commands);
+                let recent = &data.files.recent;
+                menu(ui, situation, &is_on, recent, &about, viewer.commands);
             },
         );
         let style = style(&root);

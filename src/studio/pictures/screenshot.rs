@@ -10,6 +10,7 @@ use crate::save::{Picture, store_picture};
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::{StageCamera, camera_components};
 use crate::studio::schedule::FrameSet;
+use crate::studio::state::new_file::offer_picture;
 use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
@@ -88,7 +89,10 @@ fn keep(captured: On<ScreenshotCaptured>, engine: Res<RunContext>, mut notices: 
         store_picture(&path, &picture).map(|()| path)
     });
     match kept {
-        Ok(path) => notices.info(format!("Picture saved to {}", path.display())),
+        Ok(path) => {
+            let text = format!("Picture saved to {}", path.display());
+            offer_picture(&mut notices, text, &path);
+        }
         Err(error) => notices.problem(error.to_string()),
     }
 }

@@ -15,11 +15,13 @@ use std::sync::{Arc, OnceLock};
 use bevy::prelude::*;
 
 use super::chart_export;
+use super::new_file::{offer_path, offer_picture};
 use super::run_context::RunContext;
 use crate::evolve::{Champion, RunPlan, Settings};
 use crate::run::{BackgroundRun, Exploration, GenerationReport, RunSource};
 use crate::save::{ExistingRun, RunSummary};
 use crate::studio::commands::RunCommand;
+use crate::studio::commands::chart_export::ChartFormat;
 use crate::studio::ui::notifications::Notices;
 
 use individuals::Ancestors;
@@ -246,7 +248,11 @@ impl CurrentRun {
             RunCommand::Compare(folder) => self.others.toggle(folder),
             RunCommand::ExportChart(chart) => {
                 let path = chart_export::export(&self.context.saves, chart)?;
-                notices.info(format!("Chart saved to {}", path.display()));
+                let text = format!("Chart saved to {}", path.display());
+                match chart.format {
+                    ChartFormat::Png => offer_picture(notices, text, &path),
+                    ChartFormat::Csv => offer_path(notices, "table", text, &path),
+                }
                 Ok(())
             }
         }

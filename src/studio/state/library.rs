@@ -17,6 +17,7 @@ use super::undo::{UndoHistory, UndoStep};
 use crate::run::{BackgroundTask, LibraryReader};
 use crate::save::SavesFolder;
 use crate::save::library::{FileStep, SavePlace};
+use crate::studio::commands::files::FileQuestion;
 use crate::studio::stage::Show;
 
 use batch_jobs::BatchJobs;
@@ -55,6 +56,10 @@ pub(crate) struct Library {
     current: Option<PathBuf>,
     /// Whether files are being dragged over the window.
     is_drop_near: bool,
+    /// Question that the panel asks because the system shows no dialog, with the reason, and a counter of those.
+    unanswered: (u64, Option<(FileQuestion, String)>),
+    /// Number of requests to export the selected entries.
+    export_requests: u64,
 }
 
 impl FromWorld for Library {
@@ -82,6 +87,8 @@ impl Library {
             newest: (0, None),
             current: None,
             is_drop_near: false,
+            unanswered: (0, None),
+            export_requests: 0,
         }
     }
 
@@ -139,6 +146,17 @@ impl Library {
         there.or(run.champions.last().copied())
     }
 
+    /// The name under which an entry is shown.
+    pub fn name_of(&self, place: &SavePlace) -> String {
+        self.item(place).map_or_else(|| place.name(), |item| item.name().to_owned())
+    }
+
+    /// The name that the user gave a run, if any.
+    fn own_name(&self, place: &SavePlace) -> Option<String> {
+        let notes = self.item(place)?.notes().ok()?;
+        (!notes.name.is_empty()).then(|| notes.name.clone())
+    }
+
     /// The entry created, renamed or restored last, and a counter of such changes.
     pub fn newest(&self) -> (u64, Option<&SavePlace>) {
         (self.newest.0, self.newest.1.as_ref())
@@ -152,6 +170,34 @@ impl Library {
     /// Whether files are being dragged over the window.
     pub fn is_drop_near(&self) -> bool {
         self.is_drop_near
+    }
+
+    /// Lets the panel ask for a path, because the system shows no dialog for `reason`.
+    pub fn ask_in_panel(&mut self, question: FileQuestion, reason: String) {
+        self.unanswered = (self.unanswered.0 + 1, Some((question, reason)));
+    }
+
+    /// The question that the panel asks, with the reason, and a counter of those.
+    pub fn unanswered(&self) -> (u64, Option<&(FileQuestion, String)>) {
+        (self.unanswered.0, self.unanswered.1.as_ref())
+    }
+
+    /// Lets the panel export the selected entries.
+    pub fn request_export(&mut self) {
+        self.export_requests += 1;
+    }
+
+    /// Number of requests to export the selected entries.
+    pub fn export_requests(&self) -> u64 {
+        self.export_requests
+    }
+
+    /// Creates the saves folder, if it does not exist yet.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn prepare_folder(&self) -> Result<(), String> {
+        self.saves.prepare().map_err(|error| error.to_string())
     }
 
     /// The saves folder.
@@ -205,6 +251,8 @@ fn name_of(path: &Path) -> String {
 mod tests {
     use super::*;
     use crate::save::{shipped_champion, store_champion};
+    use crate::studio::commands::Command;
+    use crate::studio::commands::files::FileCommand;
     use crate::studio::commands::library::LibraryCommand;
     use crate::studio::state::undo::UndoDirection;
     use crate::studio::ui::notifications::Notices;
@@ -285,6 +333,7 @@ mod tests {
         assert_eq!(tried.next(), (Some("deleted 2 saves"), None));
         tried.step(UndoDirection::Back);
         assert_eq!(tried.notices.last(), Some("2 saves restored."));
+        assert_eq!(tried.notices.len(), 1, "it replaces the message about the change");
         assert_eq!(tried.own(), ["a", "b", "c"]);
         assert_eq!(tried.next(), (None, Some("deleted 2 saves")));
         tried.step(UndoDirection::Forth);
@@ -329,12 +378,19 @@ mod tests {
         let export = LibraryCommand::Export { places: vec![tried.place("a")], to: None };
         tried.apply(&export).expect("begun");
         tried.wait();
-        let copy = tried.folder.path().join("exports/a.ron");
+        let exports = tried.folder.path().join("exports");
+        let copy = exports.join("a.ron");
         assert!(copy.exists());
+        let offers = [
+            ("Open folder", FileCommand::OpenFolder(exports)),
+            ("Copy path", FileCommand::CopyPath(copy.clone())),
+        ];
+        let offers = offers.map(|(label, of)| (label.to_owned(), Command::File(of)));
+        assert_eq!(tried.notices.last_offers(), offers);
         tried.apply(&LibraryCommand::Import(vec![copy])).expect("begun");
         tried.wait();
         assert_eq!(tried.own(), ["a 2", "a"]);
         assert_eq!(tried.next(), (Some("imported a 2"), None));
-        assert_eq!(tried.notices.len(), 2);
+        assert_eq!(tried.notices.len(), 1, "only the latest operation is reported");
     }
 }

@@ -3,9 +3,11 @@
 pub mod chart_export;
 pub mod current_run;
 pub mod following;
+pub mod files;
 pub mod lessons;
 pub mod library;
 pub mod lineup;
+pub mod new_file;
 pub mod options;
 pub mod plan_commands;
 pub mod run_context;
@@ -24,6 +26,7 @@ pub(super) fn plugin(app: &mut App) {
         current_run::plugin,
         following::plugin,
         library::plugin,
+        files::plugin,
         lessons::plugin,
     ));
 }

@@ -20,6 +20,9 @@ pub(crate) use follow::followed;
 /// Maximum number of steps that can be undone.
 const MAX_STEPS: usize = 200;
 
+/// Subject of messages about changes that can be undone: what was undone replaces the message about the change.
+pub(crate) const UNDO_SUBJECT: &str = "undo";
+
 /// Subject of the step that discards the changes of a what-if.
 const DISCARD: &str = "discard";
 

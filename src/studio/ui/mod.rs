@@ -4,6 +4,7 @@ pub mod icons;
 pub mod notifications;
 pub mod number_field;
 pub mod plot_axes;
+pub mod text_prompt;
 pub mod text_rows;
 pub mod theme;
 pub mod viewport;

@@ -104,6 +104,12 @@ impl Notices {
         self.0.last().map(|notice| notice.text.as_str())
     }
 
+    /// The buttons of the latest message.
+    #[cfg(test)]
+    pub fn last_offers(&self) -> &[(String, Command)] {
+        self.0.last().map_or(&[], |notice| &notice.offers)
+    }
+
     fn push(&mut self, new: Notice) {
         // A repeated message replaces the earlier one and restarts its display time.
         let is_same = |notice: &Notice| new.subject.is_some() && notice.subject == new.subject;

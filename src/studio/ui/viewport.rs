@@ -3,6 +3,8 @@
 use bevy::prelude::*;
 use bevy_egui::egui;
 
+use super::text_prompt;
+
 /// The part of the window that panels leave for the stage.
 #[derive(Resource)]
 pub(crate) struct StageArea {
@@ -56,9 +58,9 @@ impl StageArea {
             && !self.context.egui_is_using_pointer()
     }
 
-    /// Whether a text field has the keyboard focus.
-    pub fn has_text_cursor(&self) -> bool {
-        self.context.text_edit_focused()
+    /// Whether letters are typed into a text field: one has the focus, or a dialog waits for a text.
+    pub fn takes_letters(&self) -> bool {
+        self.context.text_edit_focused() || text_prompt::is_open(&self.context)
     }
 
     /// Width of the card at the lower left corner, as a fraction of the stage's width.
@@ -70,5 +72,33 @@ impl StageArea {
     pub fn aspect(&self) -> f32 {
         let size = self.rect.size();
         if size.x > 0.0 && size.y > 0.0 { size.x / size.y } else { 1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use text_prompt::TextPrompt;
+
+    #[test]
+    fn letters_belong_to_an_open_prompt_even_if_no_widget_has_the_focus() {
+        let context = egui::Context::default();
+        let mut area = StageArea::default();
+        area.set(&context, egui::Rect::EVERYTHING, 0.0);
+        let mut prompt = TextPrompt::new("my-ice".to_owned());
+        let mut pass = |is_open: bool| {
+            let _ = context.run_ui(egui::RawInput::default(), |ui| {
+                if is_open {
+                    prompt.ui(ui, |ui, field| ui.add(field));
+                }
+            });
+        };
+        assert!(!area.takes_letters());
+        pass(true);
+        context.memory_mut(|memory| memory.stop_text_input());
+        assert!(area.takes_letters(), "a click beside the field took its focus");
+        pass(false);
+        pass(false);
+        assert!(!area.takes_letters(), "the dialog is closed");
     }
 }

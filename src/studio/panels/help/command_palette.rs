@@ -88,7 +88,7 @@ impl CommandPalette {
                 let name = format!("{}: {}", entry.group, entry.name);
                 let key = egui::RichText::new(entry.key).color(palette.text_weak);
                 let button = egui::Button::selectable(index == self.chosen, name).right_text(key);
-                let row = ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)));
+                let row = ui.add(button.truncate().min_size(egui::vec2(ui.available_width(), 0.0)));
                 if row.clicked() {
                     taken = Some(entry.clone());
                 }
@@ -144,8 +144,8 @@ fn presets() -> Vec<(String, String)> {
 fn first_sentence(text: &str) -> String {
     let sentence = text.split_once(". ").map_or(text, |(first, _)| first);
     let line: Vec<&str> = sentence.split_whitespace().collect();
-    let short: String = line.join(" ").chars().take(60).collect();
-    short.trim_end_matches('.').to_owned()
+    // A longer line is cut where the palette ends.
+    line.join(" ").trim_end_matches('.').to_owned()
 }
 
 /// Entries that contain all typed words. Matches at the start of a word come first.
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
     use crate::studio::commands::{PlayerCommand, ViewCommand};
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use egui_kittest::kittest::{NodeT, Queryable};
 
     /// Commands sent after `typed` is entered and `act` is performed.
     fn sent(typed: &str, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
@@ -249,5 +249,33 @@ mod tests {
                 Command::Player(PlayerCommand::ToggleLoop)
             ]
         );
+    }
+
+    #[test]
+    fn lines_that_are_too_long_end_within_the_palette() {
+        let mut palette = CommandPalette::default();
+        let builder = Harness::builder().with_size(egui::vec2(400.0, 700.0));
+        let mut harness = builder.build_ui_state(
+            |ui, commands: &mut Vec<Command>| {
+                palette.ui(&ui.ctx().clone(), Situation::default(), &[], commands);
+            },
+            Vec::new(),
+        );
+        harness.run();
+        harness.get_by_label("Find a command").type_text("preset");
+        harness.run();
+        let field = harness.get_by_label("Find a command").rect();
+        let is_preset = |label: String| label.starts_with("Preset: ");
+        let rows: Vec<egui::Rect> = harness
+            .get_all_by(|node| node.label().is_some_and(is_preset))
+            .map(|row| row.rect())
+            .collect();
+        assert!(
+            rows.len() > 5 && rows.iter().all(|row| row.right() <= field.right() + 1.0),
+            "{rows:?}"
+        );
+        let labels = harness.get_all_by(|node| node.label().is_some_and(is_preset));
+        let longest = labels.filter_map(|row| row.accesskit_node().label()).max_by_key(String::len);
+        assert!(longest.is_some_and(|label| label.len() > 70), "nothing is cut beforehand");
     }
 }

@@ -1,18 +1,24 @@
 //! Menu bar: every action by name, with its shortcut.
 
+use std::path::Path;
+
 use bevy_egui::egui;
 use bevy_egui::egui::containers::menu::MenuBar;
 
+use crate::save::library::run_of_plan;
 use crate::studio::commands::Command;
 use crate::studio::commands::actions::{ACTIONS, Action, Menu, Situation};
+use crate::studio::commands::files::{FileCommand, FileQuestion};
+use crate::studio::state::files::RecentFiles;
 use crate::studio::ui::theme;
 
 /// Draws the menus and collects the user's commands. `is_on` says whether the setting that a command toggles is on.
-/// `about` is shown at the right end.
+/// `recent` are the files that were opened lately. `about` is shown at the right end.
 pub(crate) fn menu(
     ui: &mut egui::Ui,
     situation: Situation,
     is_on: &dyn Fn(&Command) -> Option<bool>,
+    recent: &RecentFiles,
     about: &str,
     commands: &mut Vec<Command>,
 ) {
@@ -25,6 +31,9 @@ pub(crate) fn menu(
                 ui.set_min_width(theme::MENU_WIDTH);
                 for action in ACTIONS.iter().filter(|action| action.menu == menu) {
                     entry(ui, action, situation, is_on, commands);
+                    if action.name == BEFORE_RECENT {
+                        open_recent(ui, recent, commands);
+                    }
                 }
             });
         }
@@ -33,6 +42,31 @@ pub(crate) fn menu(
             ui.add(egui::Label::new(text).truncate()).on_hover_text(about);
         });
     });
+}
+
+/// The action after which the files that were opened lately are listed.
+const BEFORE_RECENT: &str = "Open…";
+
+/// Draws the submenu of files that were opened lately: names, with whole paths as hints.
+fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles, commands: &mut Vec<Command>) {
+    ui.add_enabled_ui(recent.paths().len() > 0, |ui| {
+        ui.menu_button("Open recent", |ui| {
+            ui.set_min_width(theme::MENU_WIDTH);
+            for path in recent.paths() {
+                let button = egui::Button::new(short_name(path)).truncate();
+                if ui.add(button).on_hover_text(path.display().to_string()).clicked() {
+                    let paths = vec![path.to_owned()];
+                    commands.push(Command::File(FileCommand::Answer(FileQuestion::Open, paths)));
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+/// A file's name; for the plan of a run, the name of its folder.
+fn short_name(path: &Path) -> String {
+    run_of_plan(path).name()
 }
 
 fn entry(
@@ -67,7 +101,10 @@ mod tests {
     #[test]
     fn a_menu_entry_sends_its_command() {
         let mut harness = Harness::new_ui_state(
-            |ui, commands| menu(ui, Situation::default(), &|_| None, "climb, seed 1", commands),
+            |ui, commands| {
+                let recent = RecentFiles::default();
+                menu(ui, Situation::default(), &|_| None, &recent, "climb, seed 1", commands);
+            },
             Vec::new(),
         );
         harness.get_by_label("Run").click();
@@ -80,5 +117,36 @@ mod tests {
         harness.get_by_label_contains("Undo").click();
         harness.run();
         assert_eq!(harness.state().len(), 1, "there is nothing to undo");
+    }
+
+    #[test]
+    fn the_file_menu_asks_for_files_and_lists_those_opened_lately() {
+        let texts = ["/saves/mine.ron", "/runs/climb-seed1-be07eab1/run.ron"];
+        let recent = RecentFiles::from_texts(&texts.map(str::to_owned));
+        let mut harness = Harness::new_ui_state(
+            |ui, commands| menu(ui, Situation::default(), &|_| None, &recent, "", commands),
+            Vec::new(),
+        );
+        for (entry, command) in [
+            ("Import…", FileCommand::Ask(FileQuestion::Import)),
+            ("Export…", FileCommand::AskExport),
+            ("Show saves folder", FileCommand::ShowSaves),
+        ] {
+            harness.get_by_label("File").click();
+            harness.run();
+            harness.get_by_label_contains(entry).click();
+            harness.run();
+            assert_eq!(harness.state().last(), Some(&Command::File(command)), "{entry}");
+        }
+        for (name, path) in ["mine", "climb-seed1-be07eab1"].into_iter().zip(texts) {
+            harness.get_by_label("File").click();
+            harness.run();
+            harness.get_by_label_contains("Open recent").click();
+            harness.run();
+            harness.get_by_label(name).click();
+            harness.run();
+            let expected = FileCommand::Answer(FileQuestion::Open, vec![path.into()]);
+            assert_eq!(harness.state().last(), Some(&Command::File(expected)));
+        }
     }
 }

@@ -86,9 +86,12 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
     actions.extend([
         LibraryAction {
             name: "Rename",
-            hint: "Change the name (F2)",
+            hint: if has_run {
+                "Give it a name of your own; its folder keeps its name (F2)"
+            } else {
+                "Change the name (F2)"
+            },
             refusal: single
-                .or(has_run.then_some("Runs cannot be renamed"))
                 .or(has_shipped
                     .then_some("A built-in champion cannot be renamed; duplicate it first")),
             act: LibraryActionKind::Rename(first.place().clone()),

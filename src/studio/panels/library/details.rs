@@ -50,6 +50,10 @@ fn button(ui: &mut egui::Ui, action: &LibraryAction, is_small: bool) -> bool {
 pub fn details(ui: &mut egui::Ui, item: &LibraryItem) {
     picture(ui, item);
     ui.add(egui::Label::new(egui::RichText::new(item.name()).strong()).truncate());
+    let folder = item.place().name();
+    if item.name() != folder {
+        explain(ui, &format!("Folder {folder}"));
+    }
     if let Some(problem) = item.problem() {
         ui.add(egui::Label::new(egui::RichText::new(problem).color(theme::of(ui).problem)));
         return;

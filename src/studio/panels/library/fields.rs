@@ -1,4 +1,4 @@
-//! Text fields: the new name of a save, and the path for import or export.
+//! Text fields: the new name of a save, its notes, and the path for import or export.
 
 use std::path::PathBuf;
 
@@ -7,9 +7,14 @@ use bevy_egui::egui::Key as Press;
 
 use super::LibraryPanel;
 use super::actions::send;
-use crate::save::library::{SavePlace, check_entry_name};
+use crate::check::Invalid;
+use crate::save::library::{SavePlace, check_entry_name, check_notes, check_run_name};
 use crate::studio::commands::Command;
+use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
+use crate::studio::state::library::LibraryItem;
+use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
+use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
 /// Name being edited.
@@ -17,27 +22,50 @@ use crate::studio::ui::theme;
 pub struct RenameField {
     /// Place of the renamed save.
     pub place: SavePlace,
+    /// Name at first.
+    before: String,
+    prompt: TextPrompt,
+}
+
+/// Notes being edited.
+#[derive(Debug)]
+pub struct NotesField {
+    /// Place of the save.
+    place: SavePlace,
     /// Text typed so far.
-    pub text: String,
-    /// Whether the field has been focused.
-    pub has_had_focus: bool,
+    text: String,
+    /// Whether the command to keep it was sent.
+    is_sent: bool,
 }
 
 /// Path being typed.
 #[derive(Debug)]
 pub struct PathPrompt {
-    purpose: PathPurpose,
-    text: String,
-    has_had_focus: bool,
+    question: FileQuestion,
+    /// Reason why the system's dialog is not shown.
+    reason: Option<String>,
+    prompt: TextPrompt,
 }
 
-/// Purpose of a typed path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PathPurpose {
-    /// Target folder of an export.
-    Export,
-    /// File or folder to import.
-    Import,
+impl RenameField {
+    /// A field with the present name, which is selected.
+    pub fn new(item: &LibraryItem) -> Self {
+        let name = item.name().to_owned();
+        let prompt = TextPrompt::new(name.clone());
+        Self { place: item.place().clone(), before: name, prompt }
+    }
+
+    /// The problem with the name typed so far, as a message.
+    pub fn problem(&self) -> Option<String> {
+        let name = self.prompt.trimmed();
+        let checked = match self.place {
+            // Without a name of its own, a run is shown under that of its folder.
+            SavePlace::Run(_) if name.is_empty() => Ok(()),
+            SavePlace::Run(_) => check_run_name(name),
+            _ => check_entry_name(name),
+        };
+        checked.err().map(|Invalid { allowed, .. }| format!("The name must be {allowed}."))
+    }
 }
 
 impl LibraryPanel {
@@ -49,78 +77,137 @@ impl LibraryPanel {
         commands: &mut Vec<Command>,
     ) {
         let Some(renaming) = &mut self.renaming else { return };
-        let field = egui::TextEdit::singleline(&mut renaming.text);
-        let response = ui.put(rect, field);
+        let problem = renaming.problem();
+        let edge = problem.as_ref().map(|_| theme::of(ui).problem);
+        let (response, end) = renaming.prompt.ui(ui, |ui, field| {
+            let field =
+                field.margin(egui::Margin::symmetric(4, 0)).vertical_align(egui::Align::Center);
+            ui.put(rect, field)
+        });
         label(ui, &response, "New name");
-        if !renaming.has_had_focus {
-            response.request_focus();
-            renaming.has_had_focus = true;
+        if let Some(edge) = edge {
+            let stroke = egui::Stroke::new(1.5, edge);
+            ui.painter().rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
+        }
+        if end.is_none() && !response.lost_focus() {
             return;
         }
-        if !response.lost_focus() {
-            return;
-        }
-        let name = renaming.text.trim().to_owned();
-        let is_valid = check_entry_name(&name).is_ok();
-        if ui.input(|input| input.key_pressed(Press::Escape)) || name == renaming.place.name() {
-            self.renaming = None;
-        } else if is_valid {
+        let name = renaming.prompt.trimmed().to_owned();
+        let is_changed = name != renaming.before && end != Some(PromptEnd::Cancelled);
+        if is_changed && problem.is_none() {
             send(commands, LibraryCommand::Rename { place: renaming.place.clone(), name });
-            self.renaming = None;
-        } else if ui.input(|input| input.key_pressed(Press::Enter)) {
+        } else if is_changed && end == Some(PromptEnd::Accepted) {
             // The reason is shown below the list.
-            renaming.has_had_focus = false;
-            return;
-        } else {
-            self.renaming = None;
+            return renaming.prompt.ask_again();
         }
+        self.renaming = None;
         self.wants_keyboard = true;
     }
 
-    /// Opens the path field, or closes it if it is open for the same purpose.
-    pub(super) fn toggle_path_field(&mut self, purpose: PathPurpose, text: String) {
-        let is_open =
-            self.path_prompt.as_ref().is_some_and(|path_prompt| path_prompt.purpose == purpose);
-        self.path_prompt = (!is_open).then_some(PathPrompt { purpose, text, has_had_focus: false });
+    /// Draws the notes of a save, which are kept when the field is left. Escape restores them.
+    pub(super) fn notes(
+        &mut self,
+        ui: &mut egui::Ui,
+        item: &LibraryItem,
+        commands: &mut Vec<Command>,
+    ) {
+        if item.place().path().is_none() {
+            return;
+        }
+        let kept = match item.notes() {
+            Ok(notes) => notes.text.as_str(),
+            Err(problem) => {
+                let text = egui::RichText::new(format!("Its notes cannot be read. {problem}"));
+                ui.add(egui::Label::new(text.color(theme::of(ui).problem)).wrap());
+                return;
+            }
+        };
+        let edited = self.notes.take().map(|field| (field.text, field.is_sent));
+        let (mut text, mut is_sent) = edited.unwrap_or_else(|| (kept.to_owned(), false));
+        let field = egui::TextEdit::multiline(&mut text)
+            .hint_text("Notes")
+            .desired_rows(2)
+            .desired_width(f32::INFINITY)
+            .margin(egui::Margin::symmetric(8, 4));
+        let response = ui.add(field).on_hover_text("Your notes about this save");
+        label(ui, &response, "Notes");
+        let problem = check_notes(text.trim()).err();
+        if let Some(problem) = &problem {
+            ui.colored_label(theme::of(ui).problem, problem.to_string());
+        }
+        is_sent &= !response.changed();
+        let is_restored =
+            response.lost_focus() && ui.input(|input| input.key_pressed(Press::Escape));
+        let is_edited = text.trim() != kept.trim() && !is_restored;
+        if response.lost_focus() && is_edited && problem.is_none() {
+            let (place, text) = (item.place().clone(), text.clone());
+            send(commands, LibraryCommand::SetNotes { place, text });
+            is_sent = true;
+        }
+        // After the command, the text typed is shown until the new notes are read.
+        if response.has_focus() || is_edited {
+            self.notes = Some(NotesField { place: item.place().clone(), text, is_sent });
+        }
+    }
+
+    /// Keeps notes that were being edited when another save was selected: that may take the focus away without a frame
+    /// in between.
+    pub(super) fn keep_notes_of_others(
+        &mut self,
+        shown: Option<&LibraryItem>,
+        commands: &mut Vec<Command>,
+    ) {
+        let is_other = |field: &mut NotesField| Some(&field.place) != shown.map(LibraryItem::place);
+        if let Some(NotesField { place, text, is_sent: false }) = self.notes.take_if(is_other) {
+            send(commands, LibraryCommand::SetNotes { place, text });
+        }
+    }
+
+    /// Opens the field for a path, in place of the system's dialog.
+    pub(super) fn ask_for_path(
+        &mut self,
+        question: FileQuestion,
+        suggestion: String,
+        reason: Option<String>,
+    ) {
+        let prompt = TextPrompt::new(suggestion);
+        self.path_prompt = Some(PathPrompt { question, reason, prompt });
     }
 
     /// Draws the path field, if it is open.
     pub(super) fn path_field(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-        let Some(path_prompt) = &mut self.path_prompt else { return };
-        let (label, hint) = match path_prompt.purpose {
-            PathPurpose::Export => ("Export to", "Path of a folder; it is created if necessary"),
-            PathPurpose::Import => ("Import from", "Path of a champion file or a run folder"),
+        let Some(PathPrompt { question, reason, prompt }) = &mut self.path_prompt else { return };
+        let (label, hint) = match question {
+            FileQuestion::Open => ("Open", "Path of a champion file or a run folder"),
+            FileQuestion::Import => ("Import from", "Path of a champion file or a run folder"),
+            FileQuestion::Export(_) => {
+                ("Export to", "Path of a folder; it is created if necessary")
+            }
         };
+        if let Some(reason) = reason {
+            explain(ui, reason);
+        }
         let mut is_closed = false;
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let name = ui.label(label);
             // Leaves room for the two buttons.
             let width = ui.available_width() - theme::COLUMN_WIDTHS[2];
-            let field = egui::TextEdit::singleline(&mut path_prompt.text).desired_width(width);
-            let response = ui.add(field).labelled_by(name.id).on_hover_text(hint);
-            if !path_prompt.has_had_focus {
-                response.request_focus();
-                path_prompt.has_had_focus = true;
-            }
-            let is_entered =
-                response.lost_focus() && ui.input(|input| input.key_pressed(Press::Enter));
-            let has_text = !path_prompt.text.trim().is_empty();
+            let (_, end) = prompt.ui(ui, |ui, field| {
+                let response = ui.add(field.desired_width(width)).labelled_by(name.id);
+                response.on_hover_text(hint)
+            });
+            let has_text = !prompt.trimmed().is_empty();
             let ok = ui.add_enabled(has_text, egui::Button::new("OK").small());
-            if (is_entered || ok.clicked()) && has_text {
-                let path = PathBuf::from(path_prompt.text.trim());
-                let places = self.selection.places().cloned().collect();
-                send(
-                    commands,
-                    match path_prompt.purpose {
-                        PathPurpose::Export => LibraryCommand::Export { places, to: Some(path) },
-                        PathPurpose::Import => LibraryCommand::Import(vec![path]),
-                    },
-                );
+            let is_accepted = end == Some(PromptEnd::Accepted) || ok.clicked();
+            if is_accepted && has_text {
+                let paths = vec![PathBuf::from(prompt.trimmed())];
+                commands.push(Command::File(FileCommand::Answer(question.clone(), paths)));
                 is_closed = true;
+            } else if is_accepted {
+                prompt.ask_again();
             }
-            let is_cancelled =
-                response.lost_focus() && ui.input(|input| input.key_pressed(Press::Escape));
-            is_closed |= is_cancelled || ui.add(egui::Button::new("Cancel").small()).clicked();
+            is_closed |= end == Some(PromptEnd::Cancelled)
+                || ui.add(egui::Button::new("Cancel").small()).clicked();
         });
         if is_closed {
             self.path_prompt = None;

@@ -5,10 +5,11 @@ use bevy_egui::egui::{Key as Press, Sense};
 
 use super::LibraryPanel;
 use super::actions::send;
-use super::fields::{PathPurpose, label};
+use super::fields::label;
 use super::order::{SortKey, SortOrder};
 use super::row::column;
 use crate::studio::commands::Command;
+use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::undo_buttons::undo_buttons;
 use crate::studio::state::library::Library;
@@ -32,15 +33,16 @@ impl LibraryPanel {
                 send(commands, LibraryCommand::Refresh);
             }
             let import = egui::Button::new("Import").small();
-            let hint = "Copy a champion or a run into the library; you can also drop files onto the window";
+            let hint =
+                "Copy champions or a run into the library; you can also drop files onto the window";
             if ui.add(import).on_hover_text(hint).clicked() {
-                self.toggle_path_field(PathPurpose::Import, String::new());
+                commands.push(Command::File(FileCommand::Ask(FileQuestion::Import)));
             }
             undo_buttons(ui, history, commands);
         });
         batch_progress(ui, library, commands);
         let field = egui::TextEdit::singleline(&mut self.search)
-            .hint_text("Search name, preset, controller, \"damaged\"")
+            .hint_text("Search name, notes, preset, controller, \"damaged\"")
             .desired_width(f32::INFINITY)
             .margin(egui::Margin::symmetric(8, 4));
         let response = ui.add(field);

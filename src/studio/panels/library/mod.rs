@@ -19,8 +19,9 @@ use std::path::PathBuf;
 
 use bevy_egui::egui::{self, EventFilter, Sense, WidgetInfo, WidgetType};
 
-use crate::save::library::{EXPORTS, SavePlace, check_entry_name};
+use crate::save::library::{EXPORTS, SavePlace};
 use crate::studio::commands::Command;
+use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::{Library, LibraryItem};
 use crate::studio::state::undo::UndoHistory;
@@ -29,7 +30,7 @@ use crate::studio::ui::theme;
 use actions::send;
 
 use actions::{LibraryAction, LibraryActionKind, actions};
-use fields::{PathPrompt, PathPurpose, RenameField};
+use fields::{NotesField, PathPrompt, RenameField};
 use order::{SortOrder, SortedItems};
 use row::{RowStyle, name_rect, row};
 use selection::ChosenSaves;
@@ -45,8 +46,14 @@ pub(super) struct LibraryPanel {
     actions: (Option<(u64, u64)>, Vec<LibraryAction>),
     /// Name being edited.
     renaming: Option<RenameField>,
+    /// Notes being edited.
+    notes: Option<NotesField>,
     /// Path being typed.
     path_prompt: Option<PathPrompt>,
+    /// Number of questions that the system's dialogs left to this panel.
+    unanswered: u64,
+    /// Number of requests from elsewhere to export the selection.
+    export_requests: u64,
     /// Run whose champions are listed.
     listed_run: Option<PathBuf>,
     /// Visible unread places that were last sent to the loader.
@@ -106,6 +113,7 @@ impl LibraryPanel {
         let header =
             ui.scope(|ui| self.header(ui, library, history, commands)).response.rect.height();
         self.follow(library);
+        self.take_requests(library, commands);
         let now_s = ui.input(|input| input.time);
         self.order.update(library, &self.search, self.sort, now_s);
         self.list(ui, library, list_height, commands);
@@ -128,6 +136,27 @@ impl LibraryPanel {
             self.new_entries = count;
             self.selection.only(place);
             self.scroll_to = Some(place.clone());
+        }
+    }
+
+    /// Follows requests that come from the menu or the system's dialogs.
+    fn take_requests(&mut self, library: &Library, commands: &mut Vec<Command>) {
+        let (count, unanswered) = library.unanswered();
+        if let Some((question, reason)) = unanswered.filter(|_| count != self.unanswered) {
+            self.unanswered = count;
+            let exports = || library.folder().join(EXPORTS).to_string_lossy().into_owned();
+            let is_export = matches!(question, FileQuestion::Export(_));
+            let suggestion = if is_export { exports() } else { String::new() };
+            self.ask_for_path(question.clone(), suggestion, Some(reason.clone()));
+        }
+        if library.export_requests() != self.export_requests {
+            self.export_requests = library.export_requests();
+            if self.selection.places().len() == 0 {
+                let text = "Select what to export in the library first.".to_owned();
+                commands.push(Command::Notify(text));
+            } else {
+                self.act(Some(LibraryActionKind::Export), library, commands);
+            }
         }
     }
 
@@ -292,13 +321,12 @@ impl LibraryPanel {
             None => {}
             Some(LibraryActionKind::Send(command)) => commands.push(command),
             Some(LibraryActionKind::Rename(place)) => {
-                let text = place.name();
-                self.scroll_to = Some(place.clone());
-                self.renaming = Some(RenameField { place, text, has_had_focus: false });
+                self.renaming = library.item(&place).map(RenameField::new);
+                self.scroll_to = Some(place);
             }
             Some(LibraryActionKind::Export) => {
-                let exports = library.folder().join(EXPORTS).to_string_lossy().into_owned();
-                self.toggle_path_field(PathPurpose::Export, exports);
+                let places = self.selection.places().cloned().collect();
+                commands.push(Command::File(FileCommand::Ask(FileQuestion::Export(places))));
             }
             Some(LibraryActionKind::ShowChampions(run)) => {
                 let is_listed = self.listed_run.as_ref() == Some(&run);
@@ -319,16 +347,18 @@ impl LibraryPanel {
         let chosen = self.selection.places().len();
         let several = if chosen > 1 { format!(", {chosen} selected") } else { String::new() };
         explain(ui, &format!("{found}{reading}{several}"));
-        let name = self.renaming.as_ref().map(|renaming| check_entry_name(renaming.text.trim()));
-        if let Some(Err(problem)) = name {
-            ui.colored_label(theme::of(ui).problem, problem.to_string());
+        if let Some(problem) = self.renaming.as_ref().and_then(RenameField::problem) {
+            ui.colored_label(theme::of(ui).problem, problem);
         }
         self.update_actions(library);
         let wanted = details::buttons(ui, &self.actions.1);
         self.path_field(ui, commands);
         let only = self.selection.places().next().filter(|_| chosen == 1);
-        if let Some(item) = only.and_then(|place| library.item(place)) {
+        let only = only.and_then(|place| library.item(place));
+        self.keep_notes_of_others(only, commands);
+        if let Some(item) = only {
             details::details(ui, item);
+            self.notes(ui, item, commands);
             let is_listed = item.place().run() == self.listed_run.as_deref();
             if let Some(run) = item.run().filter(|_| is_listed) {
                 details::champions(ui, item.place(), run, commands);

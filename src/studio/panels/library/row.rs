@@ -75,8 +75,9 @@ pub fn name_rect(rect: Rect) -> Rect {
     if rect.width() >= theme::COLUMNS_WIDTH {
         return column(rect, SortKey::Name);
     }
+    // The field covers the name and the fitness, and leaves the second line free.
     let text = text_rect(rect);
-    text.with_max_y(rect.center().y + theme::GAP)
+    text.with_min_y(rect.top() + 1.0).with_max_y(rect.center().y)
 }
 
 fn text_rect(rect: Rect) -> Rect {
@@ -108,8 +109,8 @@ fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     let fitness = write(ui, above, Align::Max, &item.fitness_text(), palette.text, false);
     let name = above.with_max_x(above.right() - fitness - theme::GAP);
     write(ui, name, Align::Min, item.name(), palette.text, false);
-    if item.problem().is_some() {
-        write(ui, below, Align::Min, "damaged", problem_color(ui, style), true);
+    if let Some(words) = item.problem_words() {
+        write(ui, below, Align::Min, words, problem_color(ui, style), true);
         return;
     }
     let date = write(ui, below, Align::Max, &item.date_text(), weak, true);
@@ -122,9 +123,9 @@ fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     let palette = theme::of(ui);
     let weak = weak(ui, style);
     write(ui, column(rect, SortKey::Name), Align::Min, item.name(), palette.text, false);
-    if item.problem().is_some() {
+    if let Some(words) = item.problem_words() {
         let rest = column(rect, SortKey::Fitness).union(column(rect, SortKey::Generation));
-        write(ui, rest, Align::Min, "damaged", problem_color(ui, style), false);
+        write(ui, rest, Align::Min, words, problem_color(ui, style), false);
     }
     for (key, text, color) in [
         (SortKey::Fitness, item.fitness_text(), palette.text),

@@ -1,5 +1,7 @@
 //! Tests of the library panel without a window.
 
+mod fields;
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -9,13 +11,16 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
 use crate::run::LibraryEvent;
-use crate::save::library::{EntryDetails, LibraryEntry, RunDetails, read_entry};
+use crate::save::library::{
+    EntryDetails, EntryNotes, EntryProblem, LibraryEntry, RunDetails, read_entry,
+};
 use crate::studio::commands::{PlanCommand, RunCommand};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 
 fn entry(place: SavePlace, day: u64) -> LibraryEntry {
-    LibraryEntry { place, bytes: 1, modified: Duration::from_secs(day * 86_400) }
+    let notes = Ok(EntryNotes::default());
+    LibraryEntry { place, bytes: 1, modified: Duration::from_secs(day * 86_400), notes }
 }
 
 fn file(name: &str) -> SavePlace {
@@ -50,7 +55,7 @@ fn stopped_run() -> EntryDetails {
 /// Library of two champions, a damaged file, a run and a built-in champion. The first is the newest.
 fn library() -> Library {
     let shipped = SavePlace::Shipped("fast");
-    let champion = read_entry(&shipped).map_err(|error| error.to_string());
+    let champion = read_entry(&shipped).map_err(EntryProblem::from);
     let run = SavePlace::Run(run_folder());
     let entries = vec![
         entry(shipped.clone(), 0),
@@ -64,7 +69,7 @@ fn library() -> Library {
         LibraryEvent::Read(shipped, champion.clone()),
         LibraryEvent::Read(file("alpha"), champion.clone()),
         LibraryEvent::Read(file("beta"), champion),
-        LibraryEvent::Read(file("broken"), Err("cut off at line 3".to_owned())),
+        LibraryEvent::Read(file("broken"), Err(EntryProblem::damaged("cut off at line 3"))),
         LibraryEvent::Read(run, Ok(stopped_run())),
         LibraryEvent::Done(1),
     ])
@@ -152,7 +157,6 @@ fn impossible_actions_are_disabled() {
         ("broken", "Replay"),
         ("fast", "Delete"),
         ("fast", "Rename"),
-        ("climb-seed8-0123abcd", "Rename"),
         ("climb-seed8-0123abcd", "Duplicate"),
     ] {
         let found = sent(&library, |harness| {
@@ -241,37 +245,6 @@ fn every_mouse_action_has_a_key() {
 }
 
 #[test]
-fn a_name_is_edited_in_its_row_and_invalid_names_are_refused() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
-    select(&mut harness, "alpha");
-    press(&mut harness, Modifiers::NONE, Press::F2);
-    harness.get_by_label("New name").type_text("/x");
-    harness.run();
-    press(&mut harness, Modifiers::NONE, Press::Enter);
-    assert!(harness.query_by_label_contains("allowed: a name without slashes").is_some());
-    assert!(harness.state().is_empty());
-    for _ in 0.."/x".len() {
-        press(&mut harness, Modifiers::NONE, Press::Backspace);
-    }
-    harness.get_by_label("New name").type_text(" two");
-    harness.run();
-    press(&mut harness, Modifiers::NONE, Press::Enter);
-    let name = "alpha two".to_owned();
-    assert_eq!(
-        *harness.state(),
-        [Command::Library(LibraryCommand::Rename { place: file("alpha"), name })]
-    );
-    harness.state_mut().clear();
-    press(&mut harness, Modifiers::NONE, Press::F2);
-    harness.get_by_label("New name").type_text("no");
-    harness.run();
-    press(&mut harness, Modifiers::NONE, Press::Escape);
-    assert!(harness.state().is_empty(), "Escape leaves it as it was");
-    assert!(harness.query_by_label("New name").is_none());
-}
-
-#[test]
 fn the_search_shows_only_saves_that_match_all_words() {
     let library = library();
     let mut harness = harness(&library, [420.0, 800.0]);
@@ -297,18 +270,6 @@ fn a_click_on_a_column_sorts_and_a_second_click_reverses_the_order() {
     assert!(top(&harness, "beta") < top(&harness, "fast"));
     click(&mut harness, "Sort by name");
     assert!(top(&harness, "beta") > top(&harness, "fast"));
-}
-
-#[test]
-fn an_export_suggests_the_exports_folder() {
-    let library = library();
-    let found = sent(&library, |harness| {
-        select(harness, "alpha");
-        click(harness, "Export");
-        click(harness, "OK");
-    });
-    let to = Some(Path::new("saves").join("exports"));
-    assert_eq!(found, [LibraryCommand::Export { places: vec![file("alpha")], to }]);
 }
 
 #[test]

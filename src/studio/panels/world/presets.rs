@@ -5,6 +5,7 @@ use bevy_egui::egui;
 use crate::save::{PresetList, check_own_name};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
@@ -12,7 +13,7 @@ use crate::studio::ui::theme;
 #[derive(Debug, Default)]
 pub(crate) struct PresetChoice {
     /// Name of the preset to save, while it is typed.
-    name: Option<String>,
+    name: Option<TextPrompt>,
 }
 
 impl PresetChoice {
@@ -36,12 +37,13 @@ impl PresetChoice {
             let hint = "Save the settings of the next run under a name, to use them again later";
             let mut is_open = self.name.is_some();
             if ui.toggle_value(&mut is_open, "Save as preset…").on_hover_text(hint).changed() {
-                self.name = is_open.then(String::new);
+                let suggestion = || free_name(run.presets(), run.next_preset());
+                self.name = is_open.then(|| TextPrompt::new(suggestion()));
             }
         });
         if let Some(mut name) = self.name.take() {
-            let is_saved = name_field(ui, run.presets(), &mut name, commands);
-            self.name = (!is_saved).then_some(name);
+            let is_closed = name_field(ui, run.presets(), &mut name, commands);
+            self.name = (!is_closed).then_some(name);
         }
     }
 }
@@ -72,37 +74,54 @@ fn presets(ui: &mut egui::Ui, presets: &PresetList, chosen: &str, commands: &mut
     }
 }
 
-/// Draws the name field. Returns whether the preset was saved.
+/// Draws the name field. Returns whether it closes: the preset was saved, or Escape was pressed.
 fn name_field(
     ui: &mut egui::Ui,
     presets: &PresetList,
-    name: &mut String,
+    prompt: &mut TextPrompt,
     commands: &mut Vec<Command>,
 ) -> bool {
-    let problem = if name.is_empty() { None } else { problem_with(presets, name) };
     let mut is_saved = false;
-    ui.horizontal(|ui| {
+    let mut is_cancelled = false;
+    ui.horizontal_wrapped(|ui| {
         let label = ui.label("Name");
-        let field = egui::TextEdit::singleline(name)
-            .desired_width(theme::COMBO_WIDTH)
-            .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2))
-            .hint_text("my-preset");
-        let field = ui.add(field).labelled_by(label.id);
-        let is_entered =
-            field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-        let is_valid = problem.is_none() && !name.is_empty();
-        let hint = "Writes a file to the \"presets\" folder inside the saves folder";
+        let (_, end) = prompt.ui(ui, |ui, field| {
+            let field = field
+                .desired_width(theme::COMBO_WIDTH)
+                .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2))
+                .hint_text("my-preset");
+            ui.add(field).labelled_by(label.id)
+        });
+        let is_valid = !prompt.text.is_empty() && problem_with(presets, &prompt.text).is_none();
+        let hint = "Writes a file to the \"presets\" folder inside the saves folder (Enter)";
         let save = ui.add_enabled(is_valid, egui::Button::new("Save")).on_hover_text(hint);
-        is_saved = is_valid && (save.clicked() || is_entered);
+        is_saved = is_valid && (save.clicked() || end == Some(PromptEnd::Accepted));
+        is_cancelled = end == Some(PromptEnd::Cancelled)
+            || ui.button("Cancel").on_hover_text("Save no preset (Esc)").clicked();
+        if end == Some(PromptEnd::Accepted) && !is_valid {
+            prompt.ask_again();
+        }
     });
+    let problem = problem_with(presets, &prompt.text).filter(|_| !prompt.text.is_empty());
     if let Some(problem) = problem {
         let text = egui::RichText::new(problem).color(theme::of(ui).problem);
         ui.add(egui::Label::new(text).wrap());
     }
     if is_saved {
-        commands.push(Command::Plan(PlanCommand::StorePreset(name.clone())));
+        commands.push(Command::Plan(PlanCommand::StorePreset(prompt.text.clone())));
     }
-    is_saved
+    is_saved || is_cancelled
+}
+
+/// A free name for a copy of a preset: "my-ice", then "my-ice-2" and so on.
+fn free_name(presets: &PresetList, copied: &str) -> String {
+    let is_plain = |c: &char| c.is_ascii_lowercase() || c.is_ascii_digit() || *c == '-';
+    let plain: String = copied.chars().filter(is_plain).collect();
+    let own = if plain.is_empty() { "preset" } else { plain.trim_start_matches("my-") };
+    let start: String = format!("my-{own}").chars().take(36).collect();
+    let numbered = (2..1000).map(|number| format!("{start}-{number}"));
+    let mut names = std::iter::once(start.clone()).chain(numbered);
+    names.find(|name| problem_with(presets, name).is_none()).unwrap_or_default()
 }
 
 /// Problem with a name, as a message.
@@ -138,9 +157,8 @@ mod tests {
     fn type_name(panel: &mut Panel, name: &str) {
         panel.get_by_label("Save as preset…").click();
         panel.run();
-        panel.get_by_label("Name").focus();
-        panel.run();
-        panel.get_by_label("Name").type_text(name);
+        // The field has the focus, and its suggestion is selected.
+        panel.event(egui::Event::Text(name.to_owned()));
         panel.run();
     }
 
@@ -171,6 +189,40 @@ mod tests {
             [Command::Plan(PlanCommand::StorePreset("my-slope-2".to_owned()))]
         );
         assert!(panel.query_by_label("Name").is_none(), "done");
+    }
+
+    #[test]
+    fn the_name_field_suggests_a_free_name_that_enter_saves_and_escape_drops() {
+        let run = prepared_run();
+        for (key, saved) in [(egui::Key::Enter, true), (egui::Key::Escape, false)] {
+            let mut panel = panel(&run);
+            panel.get_by_label("Save as preset…").click();
+            panel.run();
+            assert!(panel.get_by_label("Name").is_focused());
+            let suggestion = free_name(run.presets(), run.next_preset());
+            assert!(suggestion.starts_with("my-"), "{suggestion}");
+            assert_eq!(panel.get_by_label("Name").value(), Some(suggestion.clone()));
+            panel.key_press(key);
+            panel.run();
+            let commands = [Command::Plan(PlanCommand::StorePreset(suggestion))];
+            assert_eq!(*panel.state(), commands[..usize::from(saved)]);
+            assert!(panel.query_by_label("Name").is_none(), "closed");
+        }
+    }
+
+    #[test]
+    fn a_suggested_name_is_allowed_and_free() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = crate::save::SavesFolder::find(Some(folder.path()));
+        let name = |copied: &str| free_name(&PresetList::read(&saves), copied);
+        assert_eq!((name("ice"), name("my-ice")), ("my-ice".to_owned(), "my-ice".to_owned()));
+        let ice = PresetList::read(&saves).find("ice").expect("whole").expect("shipped").clone();
+        let mine = crate::save::Preset { name: "my-ice".to_owned(), ..ice };
+        saves.store_own_preset(&mine).expect("written");
+        assert_eq!((name("ice"), name("my-ice")), ("my-ice-2".to_owned(), "my-ice-2".to_owned()));
+        for odd in ["", "Größe 1/2", &"x".repeat(90)] {
+            assert_eq!(check_own_name(&name(odd)), Ok(()), "{odd}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::Library;
 use super::batch_jobs::{BatchTask, DELETED, DUPLICATED, EXPORTED, IMPORTED};
 use super::load::{champion_of, generation_of};
 use crate::run::{BackgroundTask, LibraryReader};
-use crate::save::library::{SavePlace, delete, duplicate, export, import, rename};
+use crate::save::library::{SavePlace, delete, duplicate, export, import, rename, set_notes_text};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::stage::{MAX_LANES, Show};
 use crate::studio::state::lineup::evenly_chosen;
@@ -34,16 +34,22 @@ impl Library {
             LibraryCommand::Replay(place) => {
                 let (place, best) = (place.clone(), self.best_of(place));
                 let is_quick = place.run().is_none() || best.is_some();
-                return self.load(is_quick, move || champion_of(&place, best).map(Show::solo));
+                let name = self.own_name(&place);
+                return self.load(is_quick, move || {
+                    champion_of(&place, name.as_deref(), best).map(Show::solo)
+                });
             }
             LibraryCommand::Race(places) => {
                 let places = places.iter().take(MAX_LANES);
-                let racers: Vec<(SavePlace, Option<u32>)> =
-                    places.map(|place| (place.clone(), self.best_of(place))).collect();
+                let racers: Vec<(SavePlace, Option<String>, Option<u32>)> = places
+                    .map(|place| (place.clone(), self.own_name(place), self.best_of(place)))
+                    .collect();
                 let is_quick =
-                    racers.iter().all(|(place, best)| place.run().is_none() || best.is_some());
+                    racers.iter().all(|(place, _, best)| place.run().is_none() || best.is_some());
                 return self.load(is_quick, move || {
-                    let champions = racers.iter().map(|(place, best)| champion_of(place, *best));
+                    let champions = racers
+                        .iter()
+                        .map(|(place, name, best)| champion_of(place, name.as_deref(), *best));
                     Ok(Show::race(champions.collect::<Result<_, _>>()?))
                 });
             }
@@ -59,8 +65,15 @@ impl Library {
             }
             LibraryCommand::Rename { place, name } => {
                 self.refuse_while_busy()?;
+                let label = format!("renamed {}", self.name_of(place));
                 let step = rename(place, name.trim()).map_err(|error| error.to_string())?;
-                self.keep(format!("renamed {}", place.name()), vec![step], history);
+                self.keep(label, vec![step], history);
+            }
+            LibraryCommand::SetNotes { place, text } => {
+                self.refuse_while_busy()?;
+                let label = format!("notes of {}", self.name_of(place));
+                let step = set_notes_text(place, text.trim()).map_err(|error| error.to_string())?;
+                self.keep(label, vec![step], history);
             }
             LibraryCommand::Duplicate(places) => {
                 let (saves, task) = (self.saves.clone(), BatchTask::Act(DUPLICATED));

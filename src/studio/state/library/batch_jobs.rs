@@ -1,10 +1,13 @@
 //! Operations on the files of saves: a few at once within a frame, many or slow ones in the background.
 
+use std::path::Path;
+
 use super::{Library, name_of};
 use crate::run::BackgroundTask;
 use crate::save::SaveError;
 use crate::save::library::FileStep;
-use crate::studio::state::undo::{UndoDirection, UndoHistory, UndoStep};
+use crate::studio::state::new_file::offer_path;
+use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
 
 /// Maximum number of files that are deleted, copied or restored within a frame: each takes some milliseconds, because
@@ -178,7 +181,7 @@ impl Library {
         let said = format!("{} of {count}: {label}", task.doing());
         let begun = self.start_batch(task, steps, undo, |step| BatchOutcome::Cancelled(Some(step)));
         match begun {
-            Ok(()) => notices.info(said),
+            Ok(()) => notices.update(UNDO_SUBJECT, said),
             Err(_) => history.complete(way, None, Some(whole)),
         }
         begun
@@ -240,8 +243,17 @@ impl Library {
         if cancelled > 0 {
             said.push_str(&format!(" Cancelled: {cancelled} of {total} were not processed."));
         }
-        if !said.is_empty() {
-            notices.info(said.trim().to_owned());
+        let said = said.trim().to_owned();
+        let exported = match (&task, steps.first().and_then(FileStep::place)) {
+            (BatchTask::Act(verb), Some(place)) if *verb == EXPORTED => {
+                place.path().map(Path::to_owned)
+            }
+            _ => None,
+        };
+        match exported {
+            _ if said.is_empty() => {}
+            Some(path) => offer_path(notices, UNDO_SUBJECT, said, &path),
+            None => notices.update(UNDO_SUBJECT, said),
         }
         match task {
             BatchTask::Act(verb) => self.keep(listed_steps(verb, &steps), steps, history),

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use crate::genome::ControllerKind;
 use crate::save::library::{
-    ChampionDetails, EntryDetails, LibraryEntry, RunDetails, SavePlace, Thumbnail,
+    ChampionDetails, EntryDetails, EntryNotes, EntryProblem, LibraryEntry, RunDetails, SavePlace,
+    Thumbnail,
 };
 use crate::score::Fitness;
 
@@ -16,7 +17,7 @@ pub struct LibraryItem {
     awaited: Option<LibraryEntry>,
     name: String,
     /// Contents or read error.
-    read: Option<Result<EntryDetails, String>>,
+    read: Option<Result<EntryDetails, EntryProblem>>,
     /// Lower-case name, the sort key.
     sorted_as: String,
     /// Searchable words in lower case.
@@ -26,10 +27,8 @@ pub struct LibraryItem {
 impl LibraryItem {
     /// An entry that is not read yet.
     pub fn new(entry: LibraryEntry) -> Self {
-        let name = entry.place.name();
-        let sorted_as = name.to_lowercase();
-        let (awaited, words) = (None, String::new());
-        let mut item = Self { entry, awaited, name, read: None, words, sorted_as };
+        let (name, sorted_as, words) = Default::default();
+        let mut item = Self { entry, awaited: None, name, read: None, words, sorted_as };
         item.describe();
         item
     }
@@ -48,10 +47,10 @@ impl LibraryItem {
     }
 
     /// Stores the contents. Returns whether a sort or search key changed.
-    pub fn learn(&mut self, read: Result<EntryDetails, String>) -> bool {
+    pub fn learn(&mut self, read: Result<EntryDetails, EntryProblem>) -> bool {
         let date = self.entry.modified;
         let before = (date, self.fitness().map(f32::to_bits), self.generation());
-        // The words include the preset and "damaged".
+        // The words include the name, the preset and "damaged".
         let words = std::mem::take(&mut self.words);
         self.entry = self.awaited.take().unwrap_or_else(|| self.entry.clone());
         self.read = Some(read);
@@ -61,15 +60,21 @@ impl LibraryItem {
     }
 
     fn describe(&mut self) {
+        let folder = self.place().name();
+        let own = self.notes().map(|notes| notes.name.clone()).unwrap_or_default();
+        self.name = if own.is_empty() { folder.clone() } else { own };
+        self.sorted_as = self.name.to_lowercase();
         let kind = match self.place() {
             SavePlace::Shipped(_) => "champion built-in",
             SavePlace::Champion(_) => "champion",
             SavePlace::Run(_) => "run",
         };
         let mut words = vec![self.name.as_str(), kind];
-        if self.problem().is_some() {
-            words.push("damaged");
+        if self.name != folder {
+            words.push(&folder);
         }
+        words.extend(self.notes().ok().map(|notes| notes.text.as_str()));
+        words.extend(self.problem_words());
         words.extend(self.preset());
         words.extend(self.controller().map(ControllerKind::name));
         let method = self.run().and_then(|run| run.strategy);
@@ -87,7 +92,7 @@ impl LibraryItem {
         &self.entry.place
     }
 
-    /// Its name.
+    /// The name that the user gave it, or else that of its file or folder.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -109,7 +114,20 @@ impl LibraryItem {
 
     /// The read error, if any.
     pub fn problem(&self) -> Option<&str> {
-        self.read.as_ref()?.as_ref().err().map(String::as_str)
+        self.read.as_ref()?.as_ref().err().map(|problem| problem.message.as_str())
+    }
+
+    /// The read error in a few words, such as "damaged", if there is one.
+    pub fn problem_words(&self) -> Option<&'static str> {
+        self.read.as_ref()?.as_ref().err().map(|problem| problem.words)
+    }
+
+    /// The user's name and notes.
+    ///
+    /// # Errors
+    /// They cannot be read, and why.
+    pub fn notes(&self) -> Result<&EntryNotes, &str> {
+        self.entry.notes.as_ref().map_err(String::as_str)
     }
 
     /// The contents, if it is a champion.
@@ -187,8 +205,8 @@ impl LibraryItem {
 
     /// One-line description for screen readers.
     pub fn label(&self) -> String {
-        if let Some(problem) = self.problem() {
-            return format!("{}, damaged: {problem}", self.name);
+        if let Some((words, problem)) = self.problem_words().zip(self.problem()) {
+            return format!("{}, {words}: {problem}", self.name);
         }
         if !self.is_read() {
             return format!("{}, not read yet", self.name);
@@ -251,10 +269,11 @@ mod tests {
     fn the_search_finds_name_preset_controller_and_damage() {
         let item = |read: bool| {
             let place = SavePlace::Shipped("fast");
-            let details = read_entry(&place).map_err(|error| error.to_string());
-            let entry = LibraryEntry { place, bytes: 0, modified: Duration::ZERO };
+            let details = read_entry(&place).map_err(EntryProblem::from);
+            let notes = Ok(EntryNotes::default());
+            let entry = LibraryEntry { place, bytes: 0, modified: Duration::ZERO, notes };
             let mut item = LibraryItem::new(entry);
-            item.learn(if read { details } else { Err("cut off".to_owned()) });
+            item.learn(if read { details } else { Err(EntryProblem::damaged("cut off")) });
             item
         };
         let good = item(true);
@@ -267,5 +286,36 @@ mod tests {
         let bad = item(false);
         assert!(bad.has_all(&["damaged"]) && !bad.has_all(&["climb"]));
         assert_eq!(bad.label(), "fast, damaged: cut off");
+    }
+
+    #[test]
+    fn a_run_is_shown_sorted_and_found_under_its_own_name_and_notes() {
+        let entry = |name: &str, text: &str| LibraryEntry {
+            place: SavePlace::Run("saves/climb-seed1-be07eab1".into()),
+            bytes: 0,
+            modified: Duration::ZERO,
+            notes: Ok(EntryNotes { name: name.to_owned(), text: text.to_owned() }),
+        };
+        let mut item = LibraryItem::new(entry("", ""));
+        assert_eq!(item.name(), "climb-seed1-be07eab1");
+        item.learn(Err(EntryProblem::damaged("cut off")));
+        item.follow(entry("Icy One", "slips at step 3"));
+        assert!(item.learn(Err(EntryProblem::damaged("cut off"))), "it is sorted again");
+        assert_eq!((item.name(), item.sorted_as()), ("Icy One", "icy one"));
+        for sought in ["icy", "seed1", "slips at"] {
+            assert!(item.has_all(&[sought]), "{sought}");
+        }
+    }
+
+    #[test]
+    fn a_file_of_a_newer_version_is_not_called_damaged() {
+        let place = SavePlace::Champion("saves/future.ron".into());
+        let notes = Ok(EntryNotes::default());
+        let entry = LibraryEntry { place, bytes: 0, modified: Duration::ZERO, notes };
+        let mut item = LibraryItem::new(entry);
+        let message = "format is 99".to_owned();
+        item.learn(Err(EntryProblem { words: "from a newer version", message }));
+        assert_eq!(item.label(), "future, from a newer version: format is 99");
+        assert!(item.has_all(&["newer"]) && !item.has_all(&["damaged"]));
     }
 }

@@ -30,12 +30,18 @@ fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<
     loaded.map_err(|error| error.to_string())
 }
 
-/// The champion of an entry for the stage; of a run, its best, from generation `best` if known.
-pub fn champion_of(place: &SavePlace, best: Option<u32>) -> Result<StagedChampion, String> {
+/// The champion of an entry for the stage; of a run, its best, from generation `best` if known. `own_name` is the name
+/// that the user gave the run.
+pub fn champion_of(
+    place: &SavePlace,
+    own_name: Option<&str>,
+    best: Option<u32>,
+) -> Result<StagedChampion, String> {
     let (loaded, generation) = load(place, best)?;
-    let name = match generation {
-        None => place.name(),
-        Some(generation) => {
+    let name = match (generation, own_name) {
+        (None, _) => place.name(),
+        (Some(generation), Some(own)) => format!("{own}, generation {generation}"),
+        (Some(generation), None) => {
             let origin = &loaded.champion.origin;
             format!("{}, seed {}, generation {generation}", origin.preset, origin.seed)
         }

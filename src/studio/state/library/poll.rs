@@ -7,6 +7,7 @@ use super::{Library, LibraryItem};
 use crate::run::{BackgroundTask, LibraryEvent};
 use crate::save::library::LibraryEntry;
 use crate::studio::commands::Command;
+use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::schedule::FrameSet;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
@@ -49,7 +50,7 @@ fn take_drops(
         }
     }
     if !dropped.is_empty() {
-        send.write(Command::Library(LibraryCommand::Import(dropped)));
+        send.write(Command::File(FileCommand::Answer(FileQuestion::Import, dropped)));
     }
 }
 
@@ -151,7 +152,7 @@ mod tests {
 
     use super::*;
     use crate::save::SavesFolder;
-    use crate::save::library::SavePlace;
+    use crate::save::library::{EntryNotes, EntryProblem, SavePlace};
     use crate::studio::state::current_run::prepared_run;
 
     #[test]
@@ -161,8 +162,10 @@ mod tests {
             place: place(name),
             bytes: 1,
             modified: Duration::from_secs(day * 86_400),
+            notes: Ok(EntryNotes::default()),
         };
-        let read = |name: &str| LibraryEvent::Read(place(name), Err("cut off".to_owned()));
+        let read =
+            |name: &str| LibraryEvent::Read(place(name), Err(EntryProblem::damaged("cut off")));
         let listed = |day| LibraryEvent::Listed(vec![entry("a", 1), entry("b", day)]);
         let mut library = Library::of(vec![listed(2), read("a"), read("b")]);
         let state = |library: &Library| {
@@ -208,6 +211,6 @@ mod tests {
         let sent: Vec<Command> =
             app.world_mut().resource_mut::<Messages<Command>>().drain().collect();
         let both = vec![path("a.ron"), path("b.ron")];
-        assert_eq!(sent, [Command::Library(LibraryCommand::Import(both))]);
+        assert_eq!(sent, [Command::File(FileCommand::Answer(FileQuestion::Import, both))]);
     }
 }

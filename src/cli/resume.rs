@@ -1,0 +1,103 @@
+//! `--resume DIR`: the run in a folder, or the only run in a folder of runs.
+
+use std::path::{Path, PathBuf};
+
+use super::error::CliError;
+use super::output::print;
+use crate::run::RunSource;
+use crate::save::library::{SavePlace, read_notes};
+use crate::save::{RunSummary, SavesFolder};
+
+/// The run to resume in `folder`: its own, or that of the only run's folder in it. Several runs are listed, one per
+/// line.
+pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
+    let is_run = folder.join("run.ron").symlink_metadata().is_ok();
+    let runs = if is_run { Vec::new() } else { SavesFolder::find(Some(folder)).runs() };
+    match &runs[..] {
+        // Without any run, this says what is missing.
+        [] => Ok(RunSource::in_folder(folder)?),
+        [run] => Ok(RunSource::in_folder(&run.folder)?),
+        several => {
+            let lines = several.iter().map(|run| line(run, json));
+            print(&lines.collect::<String>())?;
+            Err(CliError::SeveralRuns { folder: folder.to_owned(), count: several.len() })
+        }
+    }
+}
+
+/// A line about a run: folder, name of its own, and state.
+fn line(run: &RunSummary, json: bool) -> String {
+    let RunSummary { folder, plan, finished, .. } = run;
+    let name = own_name(folder);
+    let generations = plan.settings.evolution.generations;
+    let is_stopped = run.is_stopped();
+    if json {
+        let line = serde_json::json!({
+            "folder": folder, "name": name, "generations": finished, "of": generations, "resumable": is_stopped,
+        });
+        return format!("{line}\n");
+    }
+    let folder = folder.display();
+    let name = name.map(|name| format!("  \"{name}\"")).unwrap_or_default();
+    let state = if is_stopped { "can be resumed" } else { "finished" };
+    format!("{folder}{name}  {finished} of {generations} generations, {state}\n")
+}
+
+/// The name that the user gave a run, if any. Notes that cannot be read do not keep a run from being resumed.
+fn own_name(folder: &Path) -> Option<String> {
+    let notes = read_notes(&SavePlace::Run(PathBuf::from(folder))).ok()?;
+    (!notes.name.is_empty()).then_some(notes.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{RunPlan, Settings};
+    use crate::save::ExistingRun;
+    use crate::save::library::rename;
+
+    /// Adds a run without finished generations, and returns its folder.
+    fn add_run(saves: &SavesFolder, seed: u64) -> PathBuf {
+        let plan = RunPlan::new("test", seed, Settings::default());
+        let folder = saves.of_run(&plan);
+        RunSource::in_saves(saves, plan, ExistingRun::Keep).open("a test").expect("opened");
+        folder
+    }
+
+    #[test]
+    fn a_folder_that_holds_one_run_stands_for_it_and_several_runs_are_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let missing = run_in(folder.path(), false).expect_err("no run").to_string();
+        assert!(missing.contains("it contains no run.ron"), "{missing}");
+        let only = add_run(&saves, 1);
+        for given in [folder.path(), &only] {
+            let found = run_in(given, false).expect("one run");
+            assert_eq!(found, RunSource::in_folder(&only).expect("a run"), "{}", given.display());
+        }
+        add_run(&saves, 2);
+        let refused = run_in(folder.path(), false).expect_err("two runs");
+        assert_eq!(refused.exit_code(), 2);
+        assert!(refused.to_string().contains("holds 2 runs"), "{refused}");
+        assert!(run_in(&only, false).is_ok());
+    }
+
+    #[test]
+    fn a_listed_run_has_its_own_name_and_its_state() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let run = add_run(&saves, 1);
+        rename(&SavePlace::Run(run.clone()), "The icy one").expect("renamed");
+        let runs = saves.runs();
+        let generations = Settings::default().evolution.generations;
+        assert_eq!(
+            line(&runs[0], false),
+            format!(
+                "{}  \"The icy one\"  0 of {generations} generations, can be resumed\n",
+                run.display()
+            )
+        );
+        let json: serde_json::Value = serde_json::from_str(&line(&runs[0], true)).expect("JSON");
+        assert_eq!((&json["name"], &json["resumable"]), (&"The icy one".into(), &true.into()));
+    }
+}

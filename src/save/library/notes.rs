@@ -1,0 +1,300 @@
+//! Names and notes that the user gives to saves: format 1, in a small file of their own beside a champion, or in the
+//! folder of a run. Nothing else reads them, so they cannot change a replay.
+//!
+//! A champion is named by its file; only a run, whose folder's name says which run it is, has a name in its notes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::change::FileStep;
+use super::list::SavePlace;
+use super::name::{MAX_NAME_CHARS, notes_beside};
+use crate::check::{Invalid, quoted};
+use crate::save::SaveError;
+use crate::save::files::{Header, parse, read_bytes, refuse_link, store_ron, text_of};
+
+const KIND: &str = "snakes-and-stairs notes";
+const FORMAT: u32 = 1;
+/// The file in a run's folder.
+const RUN_NOTES: &str = "about.ron";
+/// Maximum length of notes, in characters: a page of text.
+pub const MAX_NOTES_CHARS: usize = 4000;
+/// Maximum size of the file, in MiB.
+const LARGEST_MIB: u64 = 1;
+
+/// The user's name and notes for a save; both may be empty.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct EntryNotes {
+    /// Name of a run; if empty, its folder's name is shown.
+    pub name: String,
+    /// Free text, which may have several lines.
+    pub text: String,
+}
+
+#[derive(Serialize, Deserialize)]
+struct NotesFile {
+    kind: String,
+    format: u32,
+    #[serde(default)]
+    name: String,
+    #[serde(default)]
+    notes: String,
+}
+
+impl EntryNotes {
+    fn is_empty(&self) -> bool {
+        self.name.is_empty() && self.text.is_empty()
+    }
+
+    fn check(&self) -> Result<(), Invalid> {
+        if !self.name.is_empty() {
+            check_run_name(&self.name)?;
+        }
+        check_notes(&self.text)
+    }
+}
+
+/// Checks the name of a run. It is no file's name, so it may have any visible characters.
+///
+/// # Errors
+/// The name is empty or too long, or has a control character or spaces at its ends.
+pub fn check_run_name(name: &str) -> Result<(), Invalid> {
+    let characters = name.chars().count();
+    if !(1..=MAX_NAME_CHARS).contains(&characters) {
+        let allowed = format!("1 to {MAX_NAME_CHARS} characters");
+        return Err(Invalid::new("name", format!("{characters} characters long"), allowed));
+    }
+    if name.chars().any(char::is_control) {
+        let allowed = "a name without line breaks and control characters";
+        return Err(Invalid::new("name", quoted(name), allowed));
+    }
+    if name.trim() != name {
+        return Err(Invalid::new("name", quoted(name), "a name without spaces at its ends"));
+    }
+    Ok(())
+}
+
+/// Checks the text of notes.
+///
+/// # Errors
+/// The text is too long, or has control characters other than line breaks and tabs.
+pub fn check_notes(text: &str) -> Result<(), Invalid> {
+    let characters = text.chars().count();
+    if characters > MAX_NOTES_CHARS {
+        let allowed = format!("up to {MAX_NOTES_CHARS} characters");
+        return Err(Invalid::new("notes", format!("{characters} characters long"), allowed));
+    }
+    if text.chars().any(|c| c.is_control() && !"\n\t".contains(c)) {
+        return Err(Invalid::new("notes", quoted(text), "text without control characters"));
+    }
+    Ok(())
+}
+
+/// The file of an entry's notes; none for a part of the program.
+fn notes_path(place: &SavePlace) -> Option<PathBuf> {
+    match place {
+        SavePlace::Shipped(_) => None,
+        SavePlace::Champion(path) => Some(notes_beside(path)),
+        SavePlace::Run(folder) => Some(folder.join(RUN_NOTES)),
+    }
+}
+
+/// Reads the name and notes of an entry; empty ones if it has none.
+///
+/// # Errors
+/// Their file is unreadable, damaged, a link, or of another kind or format.
+pub fn read_notes(place: &SavePlace) -> Result<EntryNotes, SaveError> {
+    let Some(path) = notes_path(place) else { return Ok(EntryNotes::default()) };
+    match path.symlink_metadata() {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(EntryNotes::default()),
+        _ => read_file(&path),
+    }
+}
+
+fn read_file(path: &Path) -> Result<EntryNotes, SaveError> {
+    refuse_link(path).map_err(SaveError::unreadable(path))?;
+    let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
+    Header::check(path, &text, KIND, FORMAT)?;
+    let NotesFile { name, notes, .. } = parse(path, &text)?;
+    let notes = EntryNotes { name, text: notes };
+    notes.check().map_err(SaveError::invalid(path))?;
+    Ok(notes)
+}
+
+/// Gives an entry another name and other notes. Without any, it has no file.
+///
+/// # Errors
+/// The entry is part of the program or no longer exists; name or notes are not allowed; the present ones are damaged,
+/// and would be lost; the file cannot be written.
+pub fn set_notes(place: &SavePlace, notes: &EntryNotes) -> Result<FileStep, SaveError> {
+    let named = place.name();
+    let Some(path) = notes_path(place) else {
+        let source = Invalid::new("entry", "built-in", "a champion's file or a run's folder");
+        return Err(SaveError::Invalid { path: named.into(), source });
+    };
+    let entry = place.path().unwrap_or(&path);
+    entry.symlink_metadata().map_err(SaveError::unreadable(entry))?;
+    notes.check().map_err(SaveError::invalid(&path))?;
+    let before = read_notes(place)?;
+    if !notes.is_empty() {
+        let (name, text) = (notes.name.clone(), notes.text.clone());
+        let file = NotesFile { kind: KIND.to_owned(), format: FORMAT, name, notes: text };
+        store_ron(&path, &file)?;
+    } else if !before.is_empty() {
+        fs::remove_file(&path).map_err(SaveError::unwritable(&path))?;
+    }
+    Ok(FileStep::Noted { place: place.clone(), before })
+}
+
+/// Renames a run: gives it a name of its own, or none if `name` is empty. Its folder keeps its name.
+///
+/// # Errors
+/// As for [`set_notes`].
+pub fn name_run(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
+    let EntryNotes { text, .. } = read_notes(place)?;
+    // The folder's name is what is shown without a name.
+    let name = if name == place.name() { String::new() } else { name.to_owned() };
+    set_notes(place, &EntryNotes { name, text })
+}
+
+/// Changes the text of an entry's notes.
+///
+/// # Errors
+/// As for [`set_notes`].
+pub fn set_notes_text(place: &SavePlace, text: &str) -> Result<FileStep, SaveError> {
+    let EntryNotes { name, .. } = read_notes(place)?;
+    set_notes(place, &EntryNotes { name, text: text.to_owned() })
+}
+
+/// Copies the notes of a champion's file to a copy of it. Notes that cannot be read are left behind: the copy is whole
+/// without them.
+pub fn copy_notes(from: &Path, to: &Path) {
+    let notes = read_notes(&SavePlace::Champion(from.to_owned())).unwrap_or_default();
+    if !notes.is_empty() {
+        let _ = set_notes(&SavePlace::Champion(to.to_owned()), &notes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::library::fixtures::{champion_in, run_in, saves};
+    use crate::save::library::{delete, duplicate, export, import, list, read_entry, rename};
+
+    fn notes(name: &str, text: &str) -> EntryNotes {
+        EntryNotes { name: name.to_owned(), text: text.to_owned() }
+    }
+
+    fn read(place: &SavePlace) -> EntryNotes {
+        read_notes(place).expect("readable")
+    }
+
+    #[test]
+    fn a_run_gets_a_name_and_notes_that_are_undone_and_redone_and_keeps_its_folder() {
+        let (_folder, saves) = saves();
+        let run = run_in(&saves, 1);
+        let before = read_entry(&run).expect("whole");
+        let named = rename(&run, "Ice: 1/2, \"the slow one\"").expect("renamed");
+        let noted = set_notes_text(&run, "Slips at step 3.\nTry more grip.").expect("noted");
+        let both = notes("Ice: 1/2, \"the slow one\"", "Slips at step 3.\nTry more grip.");
+        assert_eq!(read(&run), both);
+        assert_eq!(named.place(), Some(run.clone()));
+        assert_eq!(read_entry(&run).expect("whole"), before, "nothing else changed");
+        let listed = list(&saves).expect("listed");
+        let listed = listed.into_iter().find(|entry| entry.place == run).expect("listed");
+        assert_eq!(listed.notes, Ok(both.clone()));
+        let again = noted.undo(&saves).expect("undone");
+        assert_eq!(read(&run).text, "");
+        again.undo(&saves).expect("done again");
+        assert_eq!(read(&run), both);
+        noted.undo(&saves).and_then(|_| named.undo(&saves)).expect("undone");
+        assert!(!run.path().expect("a folder").join(RUN_NOTES).exists(), "no empty file is left");
+        rename(&run, "other").expect("renamed");
+        rename(&run, &run.name()).expect("renamed");
+        assert_eq!(read(&run), EntryNotes::default(), "the folder's name is no name of its own");
+    }
+
+    #[test]
+    fn notes_follow_their_champion_when_it_is_renamed_copied_and_deleted() {
+        let (folder, saves) = saves();
+        let place = champion_in(&saves, "a");
+        let mine = notes("", "my favourite");
+        set_notes(&place, &mine).expect("noted");
+        let copy = duplicate(&saves, &place).expect("copied").place().expect("there");
+        assert_eq!((copy.name().as_str(), read(&copy)), ("a copy", mine.clone()));
+        let renamed = rename(&place, "b").expect("renamed");
+        let b = renamed.place().expect("there");
+        assert_eq!((read(&b), read(&place)), (mine.clone(), EntryNotes::default()));
+        let deleted = delete(&saves, &b).expect("deleted");
+        assert!(!folder.path().join("b.about").exists());
+        let restored = deleted.undo(&saves).expect("restored");
+        assert_eq!(read(&b), mine);
+        assert_eq!(restored.place(), Some(b.clone()));
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let exported = export(&saves, &b, Some(elsewhere.path())).expect("exported");
+        let exported = exported.place().expect("there");
+        assert_eq!(read(&exported), mine);
+        let path = exported.path().expect("a file");
+        let imported = import(&saves, path).expect("imported").place().expect("there");
+        assert_eq!((imported.name().as_str(), read(&imported)), ("b 2", mine));
+    }
+
+    #[test]
+    fn the_name_and_notes_of_a_run_are_exported_and_imported_with_it() {
+        let (_folder, saves) = saves();
+        let run = run_in(&saves, 1);
+        let mine = notes("The icy one", "notes");
+        set_notes(&run, &mine).expect("noted");
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let exported = export(&saves, &run, Some(elsewhere.path())).expect("exported");
+        let exported = exported.place().expect("there");
+        let (_other, others) = super::super::fixtures::saves();
+        let imported = import(&others, exported.path().expect("a folder")).expect("imported");
+        assert_eq!(read(&imported.place().expect("there")), mine);
+    }
+
+    #[test]
+    fn a_name_whose_notes_are_left_over_is_taken() {
+        let (folder, saves) = saves();
+        let place = champion_in(&saves, "a");
+        fs::write(folder.path().join("b.about"), "left over").expect("written");
+        let refusal = rename(&place, "b").expect_err("taken").to_string();
+        assert!(refusal.contains("not taken yet"), "{refusal}");
+        assert!(place.path().expect("a file").exists());
+    }
+
+    #[test]
+    fn damaged_notes_are_reported_and_never_replaced() {
+        let (folder, saves) = saves();
+        let place = champion_in(&saves, "a");
+        fs::write(folder.path().join("a.about"), "(kind: 3").expect("written");
+        let listed = list(&saves).expect("listed");
+        let listed = listed.into_iter().find(|entry| entry.place == place).expect("listed");
+        let problem = listed.notes.expect_err("damaged");
+        assert!(problem.contains("a.about: damaged or incomplete"), "{problem}");
+        assert!(set_notes(&place, &notes("", "new")).is_err());
+        assert_eq!(fs::read_to_string(folder.path().join("a.about")).expect("there"), "(kind: 3");
+    }
+
+    #[test]
+    fn names_and_notes_that_are_not_allowed_are_refused() {
+        let (_folder, saves) = saves();
+        let run = run_in(&saves, 1);
+        let long = "x".repeat(MAX_NOTES_CHARS + 1);
+        for (refused, message) in [
+            (notes("a\nb", ""), "allowed: a name without line breaks"),
+            (notes(&"x".repeat(101), ""), "name is 101 characters long; allowed: 1 to 100"),
+            (notes("", &long), "notes is 4001 characters long; allowed: up to 4000 characters"),
+            (notes("", "\u{7}"), "allowed: text without control characters"),
+        ] {
+            let error = set_notes(&run, &refused).expect_err("refused").to_string();
+            assert!(error.contains(message), "{error}");
+        }
+        let error = set_notes(&SavePlace::Shipped("fast"), &notes("", "x")).expect_err("built-in");
+        assert!(error.to_string().contains("entry is built-in"), "{error}");
+        let gone = SavePlace::Champion(saves.path().join("gone.ron"));
+        assert!(set_notes(&gone, &notes("", "x")).is_err());
+    }
+}

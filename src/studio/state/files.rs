@@ -1,0 +1,174 @@
+//! Files outside the library: what the system's dialogs answer, what was opened lately, and what goes to the file
+//! manager or the clipboard. Nothing here blocks the window.
+
+mod clipboard;
+mod dialog;
+mod portal;
+mod recent;
+
+use std::path::{Path, PathBuf};
+
+use bevy::ecs::system::NonSendMarker;
+use bevy::prelude::*;
+
+use super::library::Library;
+use super::undo::UndoHistory;
+use crate::run::BackgroundTask;
+use crate::save::library::run_of_plan;
+use crate::studio::commands::Command;
+use crate::studio::commands::WindowCommand;
+use crate::studio::commands::files::{FileCommand, FileQuestion};
+use crate::studio::commands::library::LibraryCommand;
+use crate::studio::commands::panel::PanelKind;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::Show;
+use crate::studio::ui::notifications::Notices;
+
+use clipboard::{Copied, CopyTask};
+use dialog::DialogAnswer;
+pub(crate) use recent::RecentFiles;
+
+/// Files outside the library.
+#[derive(Resource, Default)]
+pub(crate) struct Files {
+    /// Files that were opened or imported lately.
+    pub recent: RecentFiles,
+    /// Question to ask next.
+    wanted: Option<FileQuestion>,
+    /// Question that a dialog asks now.
+    asked: Option<(FileQuestion, BackgroundTask<DialogAnswer>)>,
+    /// Folders that the file manager is opening.
+    opening: Vec<BackgroundTask<Result<(), String>>>,
+    copying: CopyTask,
+}
+
+/// Subject of messages about copies to the clipboard.
+const COPIED: &str = "copied";
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Files>()
+        .add_systems(Update, take_in.in_set(FrameSet::TakeIn))
+        .add_systems(Update, ask.after(FrameSet::Apply));
+}
+
+/// Opens the dialog that was asked for. On macOS only the main thread may do that.
+fn ask(_main_thread: NonSendMarker, mut files: ResMut<Files>, mut notices: ResMut<Notices>) {
+    let Some(question) = files.wanted.take() else { return };
+    match dialog::ask(&question) {
+        Ok(task) => files.asked = Some((question, task)),
+        Err(error) => notices.problem(format!("The dialog could not be opened: {error}")),
+    }
+}
+
+fn take_in(
+    mut files: ResMut<Files>,
+    mut library: ResMut<Library>,
+    mut notices: ResMut<Notices>,
+    mut send: MessageWriter<Command>,
+) {
+    // Without a change, the library is left alone, because others react to its changes.
+    if let Some((question, answer)) = files.answered() {
+        send.write_batch(answer_to(question, answer, &mut library));
+    }
+    files.report(&mut notices);
+}
+
+/// The commands that follow from a dialog's answer; none if it was cancelled.
+fn answer_to(question: FileQuestion, answer: DialogAnswer, library: &mut Library) -> Vec<Command> {
+    match answer {
+        Ok(paths) if paths.is_empty() => Vec::new(),
+        Ok(paths) => vec![Command::File(FileCommand::Answer(question, paths))],
+        Err(reason) => {
+            library.ask_in_panel(question, reason);
+            vec![Command::Window(WindowCommand::OpenPanel(PanelKind::Library))]
+        }
+    }
+}
+
+impl Files {
+    /// Executes a command, and returns the champions to show on the stage.
+    ///
+    /// # Errors
+    /// The command cannot be executed, with the reason.
+    pub fn apply(
+        &mut self,
+        command: &FileCommand,
+        library: &mut Library,
+        history: &mut UndoHistory,
+        notices: &mut Notices,
+    ) -> Result<Option<Show>, String> {
+        match command {
+            FileCommand::Ask(_) if self.asked.is_some() => {
+                return Err("A dialog for files is open already.".to_owned());
+            }
+            FileCommand::Ask(question) => self.wanted = Some(question.clone()),
+            FileCommand::AskExport => library.request_export(),
+            FileCommand::Answer(question, paths) => {
+                let request = request(question, paths);
+                let done = request.map(|request| library.apply(&request, history, notices));
+                self.recent.note(question, paths);
+                return done.unwrap_or(Ok(None));
+            }
+            FileCommand::OpenFolder(folder) => self.open_folder(folder)?,
+            FileCommand::ShowSaves => {
+                library.prepare_folder()?;
+                self.open_folder(&library.folder().to_owned())?;
+            }
+            FileCommand::CopyPicture(path) => self.copying.start(Copied::Picture(path.clone()))?,
+            FileCommand::CopyPath(path) => self.copying.start(Copied::Path(path.clone()))?,
+        }
+        Ok(None)
+    }
+
+    fn open_folder(&mut self, folder: &Path) -> Result<(), String> {
+        let folder = folder.to_owned();
+        let task = BackgroundTask::start(move || dialog::open_folder(&folder));
+        self.opening.push(task.map_err(|error| format!("The folder cannot be shown: {error}"))?);
+        Ok(())
+    }
+
+    /// The answer of the dialog, once it is closed.
+    fn answered(&mut self) -> Option<(FileQuestion, DialogAnswer)> {
+        let answer = self.asked.as_ref()?.1.poll()?;
+        let (question, _) = self.asked.take()?;
+        Some((question, answer.flatten()))
+    }
+
+    /// Reports what the file manager and the clipboard have done.
+    fn report(&mut self, notices: &mut Notices) {
+        self.opening.retain(|task| match task.poll() {
+            None => true,
+            Some(opened) => {
+                notices.problems(opened.flatten().err());
+                false
+            }
+        });
+        match self.copying.poll() {
+            None => {}
+            Some((copied, Ok(()))) => notices.update(COPIED, copied.message().to_owned()),
+            Some((Copied::Picture(path), Err(reason))) => notices.offer(
+                COPIED,
+                format!("The picture could not be copied: {reason}."),
+                [("Copy path", Command::File(FileCommand::CopyPath(path)))],
+            ),
+            Some((Copied::Path(path), Err(reason))) => {
+                notices.problem(format!("{}: could not be copied: {reason}", path.display()));
+            }
+        }
+    }
+}
+
+/// What the library is asked to do with the paths that answer a question.
+fn request(question: &FileQuestion, paths: &[PathBuf]) -> Option<LibraryCommand> {
+    let first = paths.first()?;
+    Some(match question {
+        FileQuestion::Open => LibraryCommand::Replay(run_of_plan(first)),
+        FileQuestion::Import => LibraryCommand::Import(paths.to_vec()),
+        FileQuestion::Export(places) => {
+            LibraryCommand::Export { places: places.clone(), to: Some(first.clone()) }
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,116 @@
+//! Copies pictures and paths to the clipboard, on a thread of its own because the desktop may take its time.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use arboard::{Clipboard, ImageData};
+use bevy::platform::cell::SyncCell;
+
+use crate::run::BackgroundTask;
+use crate::save::{Picture, load_picture};
+
+/// What is copied.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Copied {
+    /// The picture in this file.
+    Picture(PathBuf),
+    /// The path itself, as text.
+    Path(PathBuf),
+}
+
+impl Copied {
+    /// The message after it was copied.
+    pub fn message(&self) -> &'static str {
+        match self {
+            Self::Picture(_) => "The picture is in the clipboard.",
+            Self::Path(_) => "The path is in the clipboard.",
+        }
+    }
+}
+
+/// The clipboard, which must be kept: on X11 what was copied is lost with it.
+type KeptClipboard = SyncCell<Option<Clipboard>>;
+
+/// Copies one thing at a time.
+#[derive(Default)]
+pub struct CopyTask {
+    kept: Option<KeptClipboard>,
+    running: Option<(Copied, BackgroundTask<(KeptClipboard, Result<(), String>)>)>,
+}
+
+impl CopyTask {
+    /// Starts to copy something.
+    ///
+    /// # Errors
+    /// Something is being copied, or no thread can be started.
+    pub fn start(&mut self, copied: Copied) -> Result<(), String> {
+        if self.running.is_some() {
+            return Err("The clipboard is still busy with the last copy.".to_owned());
+        }
+        let (kept, of) = (self.kept.take(), copied.clone());
+        let task = BackgroundTask::start(move || {
+            let mut clipboard = kept.and_then(SyncCell::to_inner);
+            let result = copy(&mut clipboard, &of);
+            (SyncCell::new(clipboard), result)
+        });
+        let task = task.map_err(|error| format!("The clipboard cannot be used: {error}"))?;
+        self.running = Some((copied, task));
+        Ok(())
+    }
+
+    /// What was copied, and whether that worked, once it is done.
+    pub fn poll(&mut self) -> Option<(Copied, Result<(), String>)> {
+        let result = self.running.as_ref()?.1.poll()?;
+        let (copied, _) = self.running.take()?;
+        let result = result.and_then(|(kept, result)| {
+            self.kept = Some(kept);
+            result
+        });
+        Some((copied, result))
+    }
+}
+
+fn copy(clipboard: &mut Option<Clipboard>, copied: &Copied) -> Result<(), String> {
+    let picture = match copied {
+        Copied::Picture(path) => Some(rgba(path)?),
+        Copied::Path(_) => None,
+    };
+    let clipboard = match clipboard {
+        Some(clipboard) => clipboard,
+        None => clipboard.insert(Clipboard::new().map_err(|error| error.to_string())?),
+    };
+    match (copied, picture) {
+        (_, Some(picture)) => clipboard.set_image(picture),
+        (Copied::Picture(path) | Copied::Path(path), None) => {
+            clipboard.set_text(path.to_string_lossy())
+        }
+    }
+    .map_err(|error| error.to_string())
+}
+
+/// The picture in a file, with an opaque alpha channel.
+fn rgba(path: &Path) -> Result<ImageData<'static>, String> {
+    let Picture { width, height, rgb } = load_picture(path).map_err(|error| error.to_string())?;
+    let opaque = |&[red, green, blue]: &[u8; 3]| [red, green, blue, u8::MAX];
+    let bytes: Vec<u8> = rgb.as_chunks::<3>().0.iter().flat_map(opaque).collect();
+    Ok(ImageData { width: width as usize, height: height as usize, bytes: Cow::Owned(bytes) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::store_picture;
+
+    #[test]
+    fn a_picture_is_copied_with_its_colours_and_opaque() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("picture.png");
+        let picture = Picture { width: 2, height: 1, rgb: vec![1, 2, 3, 40, 50, 60] };
+        store_picture(&path, &picture).expect("written");
+        let copied = rgba(&path).expect("read");
+        assert_eq!((copied.width, copied.height), (2, 1));
+        assert_eq!(*copied.bytes, [1, 2, 3, 255, 40, 50, 60, 255]);
+        let missing = rgba(&folder.path().join("gone.png")).expect_err("not there");
+        assert!(missing.contains("gone.png: cannot be read"), "{missing}");
+    }
+}

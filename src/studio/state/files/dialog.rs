@@ -1,0 +1,66 @@
+//! The system's dialogs for files, and its file manager.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::pin::Pin;
+use std::time::Duration;
+
+use bevy::tasks::block_on;
+use rfd::{AsyncFileDialog, FileHandle};
+
+use super::portal;
+use crate::run::BackgroundTask;
+use crate::studio::commands::files::FileQuestion;
+
+/// The paths chosen in a dialog, none if it was cancelled; or why there is no dialog.
+pub type DialogAnswer = Result<Vec<PathBuf>, String>;
+
+/// Time after which a file manager that is still starting counts as opened.
+const OPENED_AFTER: Duration = Duration::from_secs(10);
+
+/// Opens the dialog that asks a question, beside the window, which goes on. The caller must be the main thread.
+///
+/// # Errors
+/// No thread can be started to wait for the answer.
+pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> {
+    let dialog = AsyncFileDialog::new();
+    let champions_or_runs =
+        |dialog: AsyncFileDialog| dialog.add_filter("Champions, and run.ron of a run", &["ron"]);
+    let answer: Pin<Box<dyn Future<Output = Vec<FileHandle>> + Send>> = match question {
+        FileQuestion::Open => {
+            let dialog =
+                champions_or_runs(dialog).set_title("Open a champion, or run.ron of a run");
+            let file = dialog.pick_file();
+            Box::pin(async { file.await.into_iter().collect() })
+        }
+        FileQuestion::Import => {
+            let dialog =
+                champions_or_runs(dialog).set_title("Import champions, or run.ron of a run");
+            let files = dialog.pick_files();
+            Box::pin(async { files.await.unwrap_or_default() })
+        }
+        FileQuestion::Export(_) => {
+            let folder = dialog.set_title("Export to a folder").pick_folder();
+            Box::pin(async { folder.await.into_iter().collect() })
+        }
+    };
+    BackgroundTask::start(move || {
+        portal::check()?;
+        let chosen = block_on(answer);
+        Ok(chosen.iter().map(|file| file.path().to_owned()).collect())
+    })
+}
+
+/// Shows a folder in the system's file manager.
+///
+/// # Errors
+/// There is no such folder, or nothing that shows it.
+pub fn open_folder(folder: &Path) -> Result<(), String> {
+    let why = |error: io::Error| {
+        format!("{}: cannot be shown in a file manager: {error}", folder.display())
+    };
+    if !folder.is_dir() {
+        return Err(why(io::ErrorKind::NotFound.into()));
+    }
+    open::that_detached_with_timeout(folder, OPENED_AFTER).map_err(why)
+}

@@ -1,0 +1,67 @@
+//! Files that were opened or imported lately, for the menu.
+
+use std::path::{Path, PathBuf};
+
+use crate::save::MAX_RECENT;
+use crate::studio::commands::files::FileQuestion;
+
+/// Files that were opened or imported lately, the latest first.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct RecentFiles(Vec<PathBuf>);
+
+impl RecentFiles {
+    /// The files as they were kept.
+    pub fn from_texts(texts: &[String]) -> Self {
+        Self(texts.iter().map(PathBuf::from).take(MAX_RECENT).collect())
+    }
+
+    /// The files in a form that can be kept; those whose path is no text are left out.
+    pub fn to_texts(&self) -> Vec<String> {
+        self.0.iter().filter_map(|path| path.to_str().map(str::to_owned)).collect()
+    }
+
+    /// The files, the latest first.
+    pub fn paths(&self) -> impl ExactSizeIterator<Item = &Path> {
+        self.0.iter().map(PathBuf::as_path)
+    }
+
+    /// Notes the files that answer a question. Those that no longer exist are removed.
+    pub fn note(&mut self, question: &FileQuestion, paths: &[PathBuf]) {
+        if matches!(question, FileQuestion::Export(_)) {
+            return;
+        }
+        for path in paths.iter().rev() {
+            // A path relative to the working directory would lead elsewhere next time.
+            let path = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+            self.0.retain(|known| *known != path);
+            if path.exists() {
+                self.0.insert(0, path);
+            }
+        }
+        self.0.truncate(MAX_RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_ten_files_are_remembered_once_each_and_missing_ones_are_removed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |number: u32| folder.path().join(format!("{number}.ron"));
+        let mut recent = RecentFiles::default();
+        for number in (0..12).chain([5]) {
+            std::fs::write(path(number), "").expect("written");
+            recent.note(&FileQuestion::Open, &[path(number)]);
+        }
+        recent.note(&FileQuestion::Export(Vec::new()), &[folder.path().to_owned()]);
+        let expected: Vec<PathBuf> = [5, 11, 10, 9, 8, 7, 6, 4, 3, 2].map(path).into();
+        assert_eq!(recent.paths().collect::<Vec<_>>(), expected);
+        assert_eq!(RecentFiles::from_texts(&recent.to_texts()), recent);
+        std::fs::remove_file(path(9)).expect("removed");
+        recent.note(&FileQuestion::Import, &[path(9), path(1)]);
+        let expected: Vec<PathBuf> = [1, 5, 11, 10, 8, 7, 6, 4, 3, 2].map(path).into();
+        assert_eq!(recent.paths().collect::<Vec<_>>(), expected);
+    }
+}

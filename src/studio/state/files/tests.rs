@@ -1,0 +1,110 @@
+//! Tests of the answers of dialogs, with a folder of saves and without any window.
+
+use super::*;
+use crate::save::SavesFolder;
+use crate::save::library::SavePlace;
+use crate::save::{shipped_champion, store_champion};
+
+/// Files and a library in an empty folder, and a champion elsewhere.
+struct Tried {
+    _folder: tempfile::TempDir,
+    champion: PathBuf,
+    library: Library,
+    files: Files,
+    history: UndoHistory,
+    notices: Notices,
+}
+
+impl Tried {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(&folder.path().join("saves")));
+        let champion = folder.path().join("mine.ron");
+        let loaded = shipped_champion().expect("well formed");
+        store_champion(&champion, &loaded.champion, None).expect("written");
+        Self {
+            library: Library::new(saves),
+            champion,
+            files: Files::default(),
+            history: UndoHistory::default(),
+            notices: Notices::default(),
+            _folder: folder,
+        }
+    }
+
+    fn apply(&mut self, command: &FileCommand) -> Result<Option<Show>, String> {
+        self.files.apply(command, &mut self.library, &mut self.history, &mut self.notices)
+    }
+
+    /// Waits until a report was shown, and returns it.
+    fn report(&mut self) -> String {
+        while self.notices.len() == 0 {
+            self.files.report(&mut self.notices);
+        }
+        self.notices.last().expect("shown").to_owned()
+    }
+}
+
+#[test]
+fn a_file_is_opened_on_the_stage_without_being_imported_and_is_remembered() {
+    let mut tried = Tried::new();
+    let paths = vec![tried.champion.clone()];
+    let open = FileCommand::Answer(FileQuestion::Open, paths.clone());
+    let show = tried.apply(&open).expect("read").expect("shown");
+    assert_eq!(show.champions[0].name(), "mine");
+    assert_eq!(tried.files.recent.paths().collect::<Vec<_>>(), paths);
+    assert!(!tried.library.folder().exists(), "nothing was copied");
+    std::fs::remove_file(&tried.champion).expect("removed");
+    let error = tried.apply(&open).expect_err("gone");
+    assert!(error.contains("mine.ron: cannot be read"), "{error}");
+    assert_eq!(tried.files.recent.paths().len(), 0, "it is no longer offered");
+}
+
+#[test]
+fn without_a_system_dialog_the_library_asks_for_the_path_and_says_why() {
+    let mut tried = Tried::new();
+    let answer = Err("No portal.".to_owned());
+    let commands = answer_to(FileQuestion::Import, answer, &mut tried.library);
+    let open = Command::Window(WindowCommand::OpenPanel(PanelKind::Library));
+    assert_eq!(commands, [open]);
+    let expected = (FileQuestion::Import, "No portal.".to_owned());
+    assert_eq!(tried.library.unanswered(), (1, Some(&expected)));
+    let cancelled = answer_to(FileQuestion::Import, Ok(Vec::new()), &mut tried.library);
+    assert_eq!(cancelled, []);
+    let chosen = vec![tried.champion.clone()];
+    let commands = answer_to(FileQuestion::Import, Ok(chosen.clone()), &mut tried.library);
+    assert_eq!(commands, [Command::File(FileCommand::Answer(FileQuestion::Import, chosen))]);
+}
+
+#[test]
+fn each_question_becomes_a_command_to_the_library() {
+    let path = PathBuf::from("/runs/climb-seed1/run.ron");
+    let places = vec![SavePlace::Shipped("fast")];
+    for (question, expected) in [
+        (FileQuestion::Open, LibraryCommand::Replay(SavePlace::Run("/runs/climb-seed1".into()))),
+        (FileQuestion::Import, LibraryCommand::Import(vec![path.clone()])),
+        (
+            FileQuestion::Export(places.clone()),
+            LibraryCommand::Export { places, to: Some(path.clone()) },
+        ),
+    ] {
+        assert_eq!(request(&question, std::slice::from_ref(&path)), Some(expected));
+    }
+}
+
+#[test]
+fn a_folder_that_does_not_exist_is_reported() {
+    let mut tried = Tried::new();
+    tried.apply(&FileCommand::OpenFolder("/nowhere/at/all".into())).expect("begun");
+    let report = tried.report();
+    assert!(report.starts_with("/nowhere/at/all: cannot be shown in a file manager"), "{report}");
+}
+
+#[test]
+fn a_picture_that_cannot_be_read_is_not_copied() {
+    let mut tried = Tried::new();
+    let gone = tried.champion.with_file_name("gone.png");
+    tried.apply(&FileCommand::CopyPicture(gone)).expect("begun");
+    let report = tried.report();
+    assert!(report.starts_with("The picture could not be copied: "), "{report}");
+}

@@ -1,0 +1,23 @@
+//! Messages about files that the user had written, with buttons for what one does next.
+
+use std::path::Path;
+
+use crate::studio::commands::Command;
+use crate::studio::commands::files::FileCommand;
+use crate::studio::ui::notifications::Notices;
+
+/// A message about a new file, with buttons that show its folder and copy its path.
+pub(crate) fn offer_path(notices: &mut Notices, subject: &'static str, text: String, path: &Path) {
+    let copy = Command::File(FileCommand::CopyPath(path.to_owned()));
+    notices.offer(subject, text, [("Open folder", open_folder(path)), ("Copy path", copy)]);
+}
+
+/// A message about a new picture, with buttons that show its folder and copy the picture.
+pub(crate) fn offer_picture(notices: &mut Notices, text: String, path: &Path) {
+    let copy = Command::File(FileCommand::CopyPicture(path.to_owned()));
+    notices.offer("picture", text, [("Open folder", open_folder(path)), ("Copy", copy)]);
+}
+
+fn open_folder(path: &Path) -> Command {
+    Command::File(FileCommand::OpenFolder(path.parent().unwrap_or(path).to_owned()))
+}
