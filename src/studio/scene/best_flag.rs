@@ -91,7 +91,7 @@ fn plant(
     }
     let Some(y_m) = best.0 else { return };
     // Only the nearest lane has a flag.
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| lane.number() == 0) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| lane.number() == 0 && !lane.is_ghost()) {
         if !best.is_changed() && !lane.is_added() {
             continue;
         }

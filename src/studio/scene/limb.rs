@@ -1,11 +1,14 @@
-//! Shape of a limb: a rounded block with a stripe along its top, metal joints at its ends, and eyes on the head.
+//! Shape of a limb: a rounded block with a stripe along its top, a light belly, hinges at its ends, and a face on the
+//! head.
 //!
-//! Blocks are drawn a few centimetres shorter at joints, so that the joints show: a pin across the front limb for
-//! bending, and a collar on the rear limb for twisting. The stripes show a twist. The physics ignores all of this.
+//! Blocks are drawn a few centimetres shorter at joints, so that the hinges show: a drum and a pin across the front
+//! limb, about which it bends, and a collar on the rear limb, about which it twists. The stripes show a twist. The
+//! physics ignores all of this.
 
 use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
+use crate::studio::ui::theme::palette::{AXIS_TONE, BELLY_TONE, TONGUE_TONE};
 
 /// Parameters of a limb's shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,11 +24,13 @@ pub(crate) struct LimbShape {
 /// Gap at a joint on each limb, in metres.
 const CUT_M: f32 = 0.07;
 /// Radius of the edges, as a fraction of the smallest side.
-const EDGE: f32 = 0.10;
+const EDGE: f32 = 0.2;
 /// Height of paint above its surface, in metres, to avoid z-fighting.
 const PAINT_M: f32 = 0.006;
 /// Length of the pin outside a limb's sides, in metres.
-const PIN_END_M: f32 = 0.025;
+const PIN_END_M: f32 = 0.035;
+/// Height of the belly, as a fraction of the limb's.
+const BELLY: f32 = 0.26;
 
 impl LimbShape {
     /// Smaller side of the cross-section, which scales joints and eyes.
@@ -48,60 +53,139 @@ impl LimbShape {
         let [front, rear] = self.cuts_m();
         let size = self.size - Vec3::Y * (front + rear);
         let mut solid = MeshBuilder::default();
-        solid.rounded_box(Vec3::Y * (rear - front) / 2.0, size, self.edge_m(), 3);
+        solid.rounded_box(Vec3::Y * (rear - front) / 2.0, size, self.edge_m(), 4);
         solid
     }
 
-    /// White parts: stripe and eyes.
+    /// Light parts: stripe, belly, eyes and tongue.
     pub fn white(&self) -> MeshBuilder {
         let mut solid = MeshBuilder::default();
-        let [front, rear] = self.cuts_m();
+        let [front_cut, rear_cut] = self.cuts_m();
         // The head's stripe ends behind the eyes.
-        let front = if self.has_front { front + self.edge_m() } else { self.eye_m() * 3.2 };
-        let rear = rear + self.edge_m();
+        let front = if self.has_front { front_cut + self.edge_m() } else { self.eye_m() * 3.4 };
+        let rear = rear_cut + self.edge_m();
         let length = (self.size.y - front - rear).max(0.0);
         let centre = Vec3::new(0.0, (rear - front) / 2.0, self.size.z / 2.0 + PAINT_M);
+        solid.tone(Vec3::ONE);
         solid.sheet(centre, Vec3::X * self.thickness_m() * 0.07, Vec3::Y * length / 2.0);
         if !self.has_front {
             self.eyes().into_iter().for_each(|eye| solid.ball(eye, self.eye_m()));
+            self.tongue(&mut solid);
         }
+        solid.tone(BELLY_TONE);
+        self.belly(&mut solid);
         solid
     }
 
-    /// Dark parts: joints and pupils.
+    /// A light band around the lower part, which follows the block's round edges.
+    fn belly(&self, solid: &mut MeshBuilder) {
+        /// Strips of the band from one side over the bottom to the other.
+        const STRIPS: usize = 14;
+        let [front, rear] = self.cuts_m();
+        let edge_m = self.edge_m();
+        let half_length = ((self.size.y - front - rear) / 2.0 - edge_m).max(0.0);
+        let middle_y = (rear - front) / 2.0;
+        let (half_x, half_z) = (self.size.x / 2.0, self.size.z / 2.0);
+        let inner = Vec2::new(half_x - edge_m, half_z - edge_m).max(Vec2::ZERO);
+        // From the right end of the band to the left one: up the side, around the edge, along the bottom.
+        let place = |strip: usize| {
+            let share = strip as f32 / STRIPS as f32;
+            let side = if share < 0.5 { 1.0 } else { -1.0 };
+            let along = 1.0 - (share - 0.5).abs() * 2.0;
+            let (out, normal) = if along < 0.2 {
+                let top = self.size.z * BELLY - half_z;
+                let z = top + (-inner.y - top) * (along / 0.2).min(1.0);
+                (Vec2::new(half_x, z.max(-inner.y)), Vec2::X)
+            } else if along < 0.8 {
+                let (sin, cos) = libm::sincosf((along - 0.2) / 0.6 * std::f32::consts::FRAC_PI_2);
+                let normal = Vec2::new(cos, -sin);
+                (Vec2::new(inner.x, -inner.y) + normal * edge_m, normal)
+            } else {
+                (Vec2::new(inner.x * (1.0 - along) / 0.2, -half_z), Vec2::NEG_Y)
+            };
+            let at = out + normal * PAINT_M;
+            (Vec2::new(at.x * side, at.y), Vec2::new(normal.x * side, normal.y))
+        };
+        solid.patch(1, STRIPS, |end, strip| {
+            let (at, normal) = place(STRIPS - strip);
+            let y = middle_y + half_length * (end as f32 * 2.0 - 1.0);
+            (Vec3::new(at.x, y, at.y), Vec3::new(normal.x, 0.0, normal.y))
+        });
+    }
+
+    /// A forked tongue, on both of its sides.
+    fn tongue(&self, solid: &mut MeshBuilder) {
+        solid.tone(TONGUE_TONE);
+        let unit = self.thickness_m();
+        let root = Vec3::new(0.0, self.size.y / 2.0, -0.12 * self.size.z);
+        let fork = root + Vec3::new(0.0, 0.16, -0.02) * unit;
+        solid.cylinder(root - Vec3::Y * 0.05 * unit, fork, 0.035 * unit);
+        for side in [1.0, -1.0] {
+            solid.cylinder(fork, fork + Vec3::new(side * 0.07, 0.12, 0.03) * unit, 0.025 * unit);
+        }
+    }
+
+    /// Dark parts: hinges and pupils.
     pub fn dark(&self) -> MeshBuilder {
         let mut solid = MeshBuilder::default();
         let (thickness, half) = (self.thickness_m(), self.size.y / 2.0);
         let [front, rear] = self.cuts_m();
+        solid.tone(Vec3::ONE);
         if self.has_rear {
+            // The drum fills the gap of a high arch.
             let joint = Vec3::Y * -half;
-            let end = Vec3::X * (self.size.x / 2.0 + PIN_END_M);
-            solid.cylinder(joint - end, joint + end, thickness * 0.13);
-            solid.cylinder(joint, joint + Vec3::Y * rear * 1.2, thickness * 0.22);
+            let drum = Vec3::X * (self.size.x * 0.34);
+            solid.cylinder(joint - drum, joint + drum, thickness * 0.2);
+            for side in [1.0, -1.0] {
+                // A lug at each side holds the pin.
+                let lug = Vec3::new(side * self.size.x * 0.42, -half + rear * 0.9, 0.0);
+                let size = Vec3::new(self.size.x * 0.08, rear * 2.6, thickness * 0.3);
+                solid.rounded_box(lug, size, size.x * 0.4, 1);
+            }
         }
         if self.has_front {
             let joint = Vec3::Y * half;
-            solid.cylinder(joint - Vec3::Y * front * 1.2, joint, thickness * 0.34);
+            solid.cylinder(joint - Vec3::Y * front * 1.6, joint, thickness * 0.3);
         } else {
             for eye in self.eyes() {
-                let gaze = Vec3::new(eye.x.signum() * 0.75, 0.7, 0.3).normalize();
+                let gaze = Vec3::new(eye.x.signum() * 0.8, 0.62, 0.22).normalize();
                 solid.ball(eye + gaze * self.eye_m() * 0.5, self.eye_m() * 0.64);
             }
+        }
+        if self.has_rear {
+            // The axis of bending: a bright pin that stands out at both sides.
+            solid.tone(AXIS_TONE);
+            let joint = Vec3::Y * -half;
+            let end = Vec3::X * (self.size.x / 2.0 + PIN_END_M);
+            solid.cylinder(joint - end, joint + end, thickness * 0.085);
         }
         solid
     }
 
-    fn eye_m(&self) -> f32 {
-        self.thickness_m() * 0.19
+    /// A ring around the head in the colour of its lane.
+    pub fn collar(&self) -> MeshBuilder {
+        let mut solid = MeshBuilder::default();
+        let band = self.thickness_m() * COLLAR_OUT;
+        let size = Vec3::new(self.size.x + band, self.size.y * 0.13, self.size.z + band);
+        // Behind the middle of the head, where a neck would be.
+        solid.rounded_box(Vec3::NEG_Y * self.size.y * 0.2, size, self.edge_m(), 3);
+        solid
     }
 
-    /// Positions of the eyes: on top of the head, visible from all sides.
+    fn eye_m(&self) -> f32 {
+        self.thickness_m() * 0.2
+    }
+
+    /// Positions of the eyes: at the upper edges of the head, standing out at the top and at the side.
     fn eyes(&self) -> [Vec3; 2] {
         let radius = self.eye_m();
-        let (y, z) = (self.size.y / 2.0 - radius * 1.7, self.size.z / 2.0 + radius * 0.25);
-        [-1.0, 1.0].map(|side| Vec3::new(side * self.size.x * 0.26, y, z))
+        let (y, z) = (self.size.y / 2.0 - radius * 1.9, self.size.z / 2.0 - radius * 0.2);
+        [-1.0, 1.0].map(|side| Vec3::new(side * (self.size.x / 2.0 - radius * 0.35), y, z))
     }
 }
+
+/// How much thicker a collar is than the head, as a fraction of the head's thickness.
+const COLLAR_OUT: f32 = 0.07;
 
 #[cfg(test)]
 mod tests {
@@ -109,18 +193,36 @@ mod tests {
     use crate::studio::scene::mesh_builder::tests::closed_volume;
 
     const SIZE: Vec3 = Vec3::new(1.0, 2.0, 1.0);
+    const HEAD: LimbShape = LimbShape { size: SIZE, has_front: false, has_rear: true };
 
-    fn reach_y_m(solid: &MeshBuilder) -> [f32; 2] {
-        let ys = || solid.positions.iter().map(|at| at.y);
-        [ys().fold(f32::MAX, f32::min), ys().fold(f32::MIN, f32::max)]
+    fn reach(solid: &MeshBuilder, along: impl Fn(&Vec3) -> f32) -> [f32; 2] {
+        let places = || solid.positions.iter().map(&along);
+        [places().fold(f32::MAX, f32::min), places().fold(f32::MIN, f32::max)]
     }
 
     #[test]
     fn a_block_is_shorter_only_at_joints() {
-        let head = LimbShape { size: SIZE, has_front: false, has_rear: true };
-        let [rear, front] = reach_y_m(&head.block());
+        let [rear, front] = reach(&HEAD.block(), |at| at.y);
         assert!((front - 1.0).abs() < 1.0e-5 && (rear + 1.0 - CUT_M).abs() < 1.0e-5);
-        assert!(closed_volume(&head.block()) > 0.9 * SIZE.element_product());
+        assert!(closed_volume(&HEAD.block()) > 0.88 * SIZE.element_product());
+    }
+
+    #[test]
+    fn eyes_and_the_axis_of_a_joint_are_seen_from_the_side() {
+        // In the Side view, only what stands out of the side faces is in sight.
+        let of_eyes = |at: &Vec3| if at.y > 0.4 { at.x } else { 0.0 };
+        let [left, right] = reach(&HEAD.white(), of_eyes);
+        assert!(left < -0.6 && right > 0.6, "{left} to {right}");
+        let of_axis = |at: &Vec3| if at.y < -0.8 { at.x } else { 0.0 };
+        let [left, right] = reach(&HEAD.dark(), of_axis);
+        assert!(left < -0.52 && right > 0.52, "{left} to {right}");
+    }
+
+    #[test]
+    fn the_belly_lies_just_below_the_block() {
+        let below = HEAD.white().positions.into_iter().filter(|at| at.z < -0.4);
+        let lowest_m = below.map(|at| at.z).fold(0.0, f32::min);
+        assert!((-0.51..-0.5).contains(&lowest_m), "{lowest_m}");
     }
 
     #[test]
@@ -130,7 +232,7 @@ mod tests {
             for has_rear in [false, true] {
                 let shape = LimbShape { size: short, has_front, has_rear };
                 assert!(closed_volume(&shape.block()) > 0.0);
-                let parts = [shape.block(), shape.white(), shape.dark()];
+                let parts = [shape.block(), shape.white(), shape.dark(), shape.collar()];
                 let positions = parts.iter().flat_map(|solid| &solid.positions);
                 assert!(positions.clone().all(|at| at.is_finite()));
             }

@@ -14,6 +14,10 @@ pub(crate) struct MeshBuilder {
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     pub indices: Vec<u32>,
+    /// Factor for the material's colour at each vertex.
+    tones: Vec<Vec3>,
+    /// Factor for the vertices that follow; `None` leaves the material's colour as it is.
+    tone: Option<Vec3>,
 }
 
 /// Sides of round shapes: enough for something as thick as an arm.
@@ -34,6 +38,7 @@ impl MeshBuilder {
                 let (position, normal) = at(column, row);
                 self.positions.push(position);
                 self.normals.push(normal);
+                self.tones.push(self.tone.unwrap_or(Vec3::ONE));
             }
         }
         let across = columns as u32 + 1;
@@ -44,6 +49,11 @@ impl MeshBuilder {
                 self.indices.extend([low, low + 1, high + 1, low, high + 1, high]);
             }
         }
+    }
+
+    /// Multiplies the material's colour, in linear light, for the parts that follow.
+    pub fn tone(&mut self, factor: Vec3) {
+        self.tone = Some(factor);
     }
 
     /// A flat rectangle around `centre`; `right` and `up` lead from there to the middle of its edges.
@@ -81,10 +91,33 @@ impl MeshBuilder {
     /// The mesh, kept on the graphics card only.
     pub fn into_mesh(self) -> Mesh {
         let flat = |of: Vec<Vec3>| of.into_iter().map(|at| at.to_array()).collect::<Vec<_>>();
-        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+        let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD);
+        if self.tone.is_some() {
+            let colors: Vec<[f32; 4]> =
+                self.tones.iter().map(|tone| tone.extend(1.0).to_array()).collect();
+            mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
+        }
+        mesh
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, flat(self.positions))
             .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, flat(self.normals))
             .with_inserted_indices(Indices::U32(self.indices))
+    }
+
+    /// The mesh with a texture that repeats every `tile_m` metres, projected along the axis that each face looks at.
+    pub fn into_tiled_mesh(self, tile_m: f32) -> Mesh {
+        let place = |(at, normal): (&Vec3, &Vec3)| {
+            let facing = normal.abs();
+            let on_plane = if facing.z >= facing.x.max(facing.y) {
+                [at.y, at.x]
+            } else if facing.y >= facing.x {
+                [at.x, -at.z]
+            } else {
+                [at.y, -at.z]
+            };
+            on_plane.map(|m| m / tile_m)
+        };
+        let uvs: Vec<[f32; 2]> = self.positions.iter().zip(&self.normals).map(place).collect();
+        self.into_mesh().with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
     }
 }
 

@@ -1,8 +1,10 @@
-//! The static scene: lights and stairs. Each other part is in a file of its own. All colours come from the theme.
+//! The scene: its light. Each other part is in a file of its own. All colours come from the theme.
 
 pub mod best_flag;
 pub mod camera;
 pub mod ground;
+pub mod lane_marks;
+pub mod landing;
 pub mod limb;
 pub mod mesh_builder;
 pub mod name_tags;
@@ -12,8 +14,12 @@ pub mod quality;
 pub mod rounded_box;
 pub mod sky;
 pub mod snake;
+pub mod stairs;
 pub mod step_edges;
 pub mod step_labels;
+pub mod surface_look;
+pub mod surface_material;
+pub mod surface_texture;
 pub mod text;
 pub mod view_commands;
 pub mod wireframe;
@@ -24,11 +30,9 @@ use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
 
 use super::schedule::FrameSet;
-use super::stage::lane::Lane;
 use super::ui::theme::Theme;
-use crate::world::StairBox;
 
-use props::{Props, box_transform};
+use props::Props;
 use quality::Quality;
 
 /// The scene of the window: all that is drawn, with the camera and the mouse.
@@ -49,6 +53,10 @@ pub(super) fn drawing(app: &mut App) {
         .add_plugins((
             sky::plugin,
             ground::plugin,
+            surface_material::plugin,
+            stairs::plugin,
+            lane_marks::plugin,
+            landing::plugin,
             text::plugin,
             step_edges::plugin,
             step_labels::plugin,
@@ -56,7 +64,7 @@ pub(super) fn drawing(app: &mut App) {
         ))
         .add_plugins((snake::plugin, overlays::plugin))
         .add_systems(Startup, set_up)
-        .add_systems(Update, (build_stairs, fit_shadows).in_set(FrameSet::Draw))
+        .add_systems(Update, fit_shadows.in_set(FrameSet::Draw))
         .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
 }
 
@@ -66,6 +74,9 @@ const SHADOWS_BEYOND: f32 = 1.7;
 const SHADOWS_END_M: std::ops::RangeInclusive<f32> = 14.0..=150.0;
 /// Ratio between steps of the shadows' reach. Steps keep shadows from crawling while the camera moves.
 const SHADOW_STEP: f32 = 1.3;
+
+/// Opacity of a ghost's limbs.
+const GHOST_ALPHA: f32 = 0.3;
 
 fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
     let size = Quality::for_adapter(&adapter).shadow_map_pixels;
@@ -124,8 +135,8 @@ fn dress(
     for (handle, color) in [
         (&props.red, palette.red_limb),
         (&props.blue, palette.blue_limb),
-        (&props.stair, palette.stair),
-        (&props.stair_other, palette.stair_other),
+        (&props.red_ghost, palette.red_limb.with_alpha(GHOST_ALPHA)),
+        (&props.blue_ghost, palette.blue_limb.with_alpha(GHOST_ALPHA)),
     ] {
         if let Some(mut material) = materials.get_mut(handle) {
             material.base_color = color;
@@ -142,28 +153,6 @@ fn dress(
         brightness: palette.ambient_cd_m2,
         ..default()
     });
-}
-
-/// Spawns the stairs of a new lane.
-fn build_stairs(
-    lanes: Query<(Entity, &Lane), Added<Lane>>,
-    props: Res<Props>,
-    mut commands: Commands,
-) {
-    for (entity, lane) in &lanes {
-        commands.entity(entity).with_children(|parent| {
-            let boxes = lane.trial().stairs.boxes();
-            for (index, StairBox { min_m, max_m }) in boxes.into_iter().enumerate() {
-                let (min, max) = (Vec3::from(min_m), Vec3::from(max_m));
-                let material = if index % 2 == 0 { &props.stair } else { &props.stair_other };
-                parent.spawn((
-                    Mesh3d(props.cube.clone()),
-                    MeshMaterial3d(material.clone()),
-                    box_transform((min + max) / 2.0, max - min),
-                ));
-            }
-        });
-    }
 }
 
 #[cfg(test)]

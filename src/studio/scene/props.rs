@@ -11,8 +11,9 @@ pub(crate) struct Props {
     pub red: Handle<StandardMaterial>,
     /// Material of the second, fourth, ... limb.
     pub blue: Handle<StandardMaterial>,
-    pub stair: Handle<StandardMaterial>,
-    pub stair_other: Handle<StandardMaterial>,
+    /// The same for ghosts, translucent.
+    pub red_ghost: Handle<StandardMaterial>,
+    pub blue_ghost: Handle<StandardMaterial>,
 }
 
 impl FromWorld for Props {
@@ -20,12 +21,13 @@ impl FromWorld for Props {
         let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(1.0));
         let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
         // The theme sets the colours.
-        let mut material = |perceptual_roughness| {
-            materials.add(StandardMaterial { perceptual_roughness, ..default() })
+        let mut material = |alpha_mode| {
+            let perceptual_roughness = 0.5;
+            materials.add(StandardMaterial { perceptual_roughness, alpha_mode, ..default() })
         };
-        let [red, blue] = [0.55; 2].map(&mut material);
-        let [stair, stair_other] = [0.9; 2].map(&mut material);
-        Self { cube, red, blue, stair, stair_other }
+        let [red, blue] = [AlphaMode::Opaque; 2].map(&mut material);
+        let [red_ghost, blue_ghost] = [AlphaMode::Blend; 2].map(&mut material);
+        Self { cube, red, blue, red_ghost, blue_ghost }
     }
 }
 

@@ -1,8 +1,11 @@
 //! Draws the snake between the last two physics steps: red and blue blocks with joints.
+//!
+//! A ghost is only its translucent blocks: without details, shadow and collar, so that thirty of them stay cheap.
 
-use bevy::light::NotShadowCaster;
+use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
 
+use super::lane_marks::{LaneColors, LaneMark};
 use super::limb::LimbShape;
 use super::props::Props;
 use crate::studio::schedule::FrameSet;
@@ -19,6 +22,7 @@ struct LimbMeshes {
     block: Handle<Mesh>,
     white: Handle<Mesh>,
     dark: Handle<Mesh>,
+    collar: Handle<Mesh>,
 }
 
 /// Cache of meshes by shape, shared by snakes of the same build.
@@ -50,9 +54,10 @@ impl Shapes {
         if self.0.len() == MAX_SHAPES {
             self.0.remove(0);
         }
-        let [block, white, dark] =
-            [shape.block(), shape.white(), shape.dark()].map(|solid| meshes.add(solid.into_mesh()));
-        let new = LimbMeshes { block, white, dark };
+        let [block, white, dark, collar] =
+            [shape.block(), shape.white(), shape.dark(), shape.collar()]
+                .map(|solid| meshes.add(solid.into_mesh()));
+        let new = LimbMeshes { block, white, dark, collar };
         self.0.push((shape, new.clone()));
         new
     }
@@ -79,14 +84,18 @@ fn dress(theme: Res<Theme>, trim: Res<Trim>, mut materials: ResMut<Assets<Standa
 /// Spawns the limbs of a new lane.
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
-    props: Res<Props>,
-    trim: Res<Trim>,
+    (props, trim, colors): (Res<Props>, Res<Trim>, Res<LaneColors>),
     mut shapes: ResMut<Shapes>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
     for (entity, lane) in &lanes {
         let body = lane.body();
+        let [red, blue] = if lane.is_ghost() {
+            [&props.red_ghost, &props.blue_ghost]
+        } else {
+            [&props.red, &props.blue]
+        };
         commands.entity(entity).with_children(|parent| {
             for (index, (pose, plan)) in lane.drawn_poses().zip(&body.limbs).enumerate() {
                 let shape = LimbShape {
@@ -94,26 +103,38 @@ fn build(
                     has_front: body.joints.iter().any(|joint| joint.child == index),
                     has_rear: body.joints.iter().any(|joint| joint.parent == index),
                 };
-                let LimbMeshes { block, white, dark } = shapes.of(shape, &mut meshes);
-                let color = if index % 2 == 0 { &props.red } else { &props.blue };
+                let LimbMeshes { block, white, dark, collar } = shapes.of(shape, &mut meshes);
+                let color = if index % 2 == 0 { red } else { blue };
                 let place = Transform::from_translation(pose.translation);
-                parent
-                    .spawn((
-                        Limb(index),
-                        Mesh3d(block),
-                        MeshMaterial3d(color.clone()),
-                        place.with_rotation(pose.rotation),
-                    ))
-                    .with_children(|limb| {
-                        for (mesh, material) in [(white, &trim.white), (dark, &trim.dark)] {
-                            limb.spawn((
-                                Mesh3d(mesh),
-                                MeshMaterial3d(material.clone()),
-                                // The block already casts the shadow.
-                                NotShadowCaster,
-                            ));
-                        }
-                    });
+                let mut limb = parent.spawn((
+                    Limb(index),
+                    Mesh3d(block),
+                    MeshMaterial3d(color.clone()),
+                    place.with_rotation(pose.rotation),
+                ));
+                if lane.is_ghost() {
+                    limb.insert((NotShadowCaster, NotShadowReceiver));
+                    continue;
+                }
+                limb.with_children(|limb| {
+                    for (mesh, material) in [(white, &trim.white), (dark, &trim.dark)] {
+                        limb.spawn((
+                            Mesh3d(mesh),
+                            MeshMaterial3d(material.clone()),
+                            // The block already casts the shadow.
+                            NotShadowCaster,
+                        ));
+                    }
+                    if index == 0 {
+                        limb.spawn((
+                            LaneMark,
+                            Mesh3d(collar),
+                            MeshMaterial3d(colors.of(lane.number())),
+                            NotShadowCaster,
+                            Visibility::Hidden,
+                        ));
+                    }
+                });
             }
         });
     }
@@ -129,5 +150,68 @@ fn place(lanes: Query<(&Lane, &Children)>, mut limbs: Query<(&Limb, &mut Transfo
                 transform.set_if_neq(place.with_rotation(pose.rotation));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::stage::staged_champion::StagedChampion;
+
+    /// An app with a lane and a ghost of the same snake.
+    fn app() -> App {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let mut app = App::new();
+        app.init_resource::<Assets<Mesh>>()
+            .init_resource::<Assets<StandardMaterial>>()
+            .init_resource::<Theme>()
+            .init_resource::<Props>()
+            .init_resource::<LaneColors>()
+            .add_plugins(plugin);
+        for lane in [lane(0), lane(1).as_ghost()] {
+            app.world_mut().spawn((Transform::default(), Visibility::default(), lane));
+        }
+        app.update();
+        app
+    }
+
+    #[test]
+    fn a_ghost_is_translucent_without_details_and_shadow() {
+        let mut app = app();
+        let world = app.world_mut();
+        let props = world.resource::<Props>();
+        let ghosts = [props.red_ghost.clone(), props.blue_ghost.clone()];
+        let mut limbs = world.query::<(
+            &Limb,
+            &MeshMaterial3d<StandardMaterial>,
+            Has<NotShadowCaster>,
+            Option<&Children>,
+        )>();
+        let (mut seen, mut of_ghost) = (0, 0);
+        for (_, material, is_without_shadow, details) in limbs.iter(world) {
+            let is_ghost = ghosts.contains(&material.0);
+            assert_eq!((is_without_shadow, details.is_none()), (is_ghost, is_ghost));
+            seen += 1;
+            of_ghost += usize::from(is_ghost);
+        }
+        assert_eq!((seen, of_ghost), (10, 5));
+    }
+
+    #[test]
+    fn a_snake_that_rests_writes_no_transform() {
+        #[derive(Resource, Default)]
+        struct Moved(usize);
+        let mut app = app();
+        app.init_resource::<Moved>().add_systems(
+            PostUpdate,
+            |limbs: Query<(), (With<Limb>, Changed<Transform>)>, mut moved: ResMut<Moved>| {
+                moved.0 = limbs.iter().len();
+            },
+        );
+        app.update();
+        app.update();
+        assert_eq!(app.world().resource::<Moved>().0, 0);
     }
 }

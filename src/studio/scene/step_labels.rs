@@ -13,7 +13,7 @@ const NUMBER_EVERY_M: i32 = 5;
 /// Height of the ground's digits, in metres.
 const DIGIT_M: f32 = 0.7;
 /// Distance of the scale from the stairs, in metres.
-const ASIDE_M: f32 = 0.35;
+const ASIDE_M: f32 = 0.5;
 /// Length of the marks at numbers, in metres, and at each metre between them.
 const LONG_MARK_M: f32 = 0.7;
 const SHORT_MARK_M: f32 = 0.3;
@@ -41,7 +41,7 @@ fn paint(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, lane) in &lanes {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
         let mut writing = lettering.begin();
         if lane.number() == 0 {
             // Only the nearest lane is labelled. Large digits need less contrast than small ones.

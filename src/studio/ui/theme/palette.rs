@@ -2,7 +2,7 @@
 //!
 //! All text has the contrast that WCAG requires, 4.5 to 1, on every background that it is drawn on. The tests check it.
 
-use bevy::prelude::Color;
+use bevy::prelude::{Color, Vec3};
 use bevy_egui::egui;
 use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Stroke};
 
@@ -45,6 +45,12 @@ pub struct Palette {
     pub bend: Color32,
     /// Twist torques.
     pub twist: Color32,
+    /// Torques in the positive direction, in the scene.
+    pub torque_plus: Color32,
+    /// Torques in the negative direction, in the scene.
+    pub torque_minus: Color32,
+    /// Colours of the lanes, in their order. They stay apart for colour-blind eyes. See [`Palette::lane_color`].
+    lanes: [Color32; 10],
     /// Trail.
     pub trail: Color,
     /// Spring of a mouse pull.
@@ -57,10 +63,24 @@ pub struct Palette {
     pub ground: Color,
     /// The lines on the ground.
     pub grid: Color,
-    /// Odd steps.
+    /// Stone: a hard surface with usual friction.
     pub stair: Color,
-    /// Even steps.
-    pub stair_other: Color,
+    /// A surface with little friction.
+    pub ice: Color,
+    /// A surface with much friction.
+    pub glue: Color,
+    /// A surface with so much friction that nothing slides.
+    pub resin: Color,
+    /// A hard surface that gives impacts back.
+    pub rubber: Color,
+    /// A soft surface that springs back: the mat of a trampoline.
+    pub woven: Color,
+    /// A soft surface that does not spring back.
+    pub mud: Color,
+    /// Railing on the landing, and the door at its end.
+    pub wood: Color,
+    /// The wall at the end of the landing, and the posts of the finish.
+    pub wall: Color,
     /// Step edge.
     pub step_edge: Color,
     /// Step edge while the step is climbed: the accent's hue, but too bright to be mistaken for a limb.
@@ -103,14 +123,35 @@ pub const LIGHT: Palette = Palette {
     force: Color::srgb(0.02, 0.45, 0.30),
     bend: Color32::from_rgb(0x1a, 0x66, 0xd9),
     twist: Color32::from_rgb(0xb3, 0x5c, 0x00),
+    torque_plus: Color32::from_rgb(0xe0, 0x7b, 0x00),
+    torque_minus: Color32::from_rgb(0x00, 0x7d, 0xd6),
+    lanes: [
+        Color32::from_rgb(0xd1, 0x78, 0x1b),
+        Color32::from_rgb(0x10, 0x94, 0xe3),
+        Color32::from_rgb(0x31, 0x1a, 0x56),
+        Color32::from_rgb(0x43, 0x4b, 0xe3),
+        Color32::from_rgb(0xe6, 0x4e, 0x96),
+        Color32::from_rgb(0x66, 0x6c, 0x37),
+        Color32::from_rgb(0x65, 0x20, 0x19),
+        Color32::from_rgb(0x1f, 0x50, 0x73),
+        Color32::from_rgb(0x0e, 0x0d, 0xad),
+        Color32::from_rgb(0xd8, 0x0f, 0x00),
+    ],
     trail: Color::srgb(0.55, 0.20, 0.65),
     pull: Color::srgb(0.80, 0.30, 0.05),
     horizon: Color::srgb(0.89, 0.93, 0.96),
     zenith: Color::srgb(0.45, 0.67, 0.91),
     ground: Color::srgb(0.73, 0.78, 0.78),
     grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
-    stair: Color::srgb(0.84, 0.81, 0.76),
-    stair_other: Color::srgb(0.76, 0.73, 0.68),
+    stair: Color::srgb(0.81, 0.80, 0.78),
+    ice: Color::srgb(0.76, 0.91, 0.99),
+    glue: Color::srgb(0.96, 0.66, 0.16),
+    resin: Color::srgb(0.66, 0.33, 0.08),
+    rubber: Color::srgb(0.52, 0.54, 0.53),
+    woven: Color::srgb(0.12, 0.72, 0.66),
+    mud: Color::srgb(0.42, 0.29, 0.18),
+    wood: Color::srgb(0.62, 0.45, 0.29),
+    wall: Color::srgb(0.90, 0.88, 0.84),
     step_edge: Color::srgb(0.60, 0.57, 0.52),
     step_edge_lit: Color::srgb(0.05, 0.72, 1.0),
     paint: Color::srgba(0.06, 0.12, 0.18, 0.62),
@@ -142,14 +183,35 @@ pub const DARK: Palette = Palette {
     force: Color::srgb(0.45, 0.95, 0.70),
     bend: Color32::from_rgb(0x6c, 0xb0, 0xff),
     twist: Color32::from_rgb(0xff, 0xb8, 0x5c),
+    torque_plus: Color32::from_rgb(0xff, 0xb0, 0x3b),
+    torque_minus: Color32::from_rgb(0x62, 0xc0, 0xff),
+    lanes: [
+        Color32::from_rgb(0xca, 0xa4, 0x19),
+        Color32::from_rgb(0x95, 0xc6, 0xff),
+        Color32::from_rgb(0xff, 0xff, 0xff),
+        Color32::from_rgb(0x50, 0x5a, 0xea),
+        Color32::from_rgb(0xfa, 0xca, 0xa7),
+        Color32::from_rgb(0x1d, 0xae, 0xa5),
+        Color32::from_rgb(0x8c, 0x5a, 0x91),
+        Color32::from_rgb(0x80, 0x92, 0xff),
+        Color32::from_rgb(0xff, 0xff, 0x45),
+        Color32::from_rgb(0xd0, 0x47, 0x1d),
+    ],
     trail: Color::srgb(0.88, 0.62, 0.98),
     pull: Color::srgb(1.0, 0.72, 0.35),
     horizon: Color::srgb(0.20, 0.25, 0.34),
     zenith: Color::srgb(0.05, 0.08, 0.15),
     ground: Color::srgb(0.22, 0.26, 0.31),
     grid: Color::srgba(0.75, 0.85, 1.0, 0.08),
-    stair: Color::srgb(0.47, 0.50, 0.56),
-    stair_other: Color::srgb(0.40, 0.43, 0.49),
+    stair: Color::srgb(0.47, 0.49, 0.53),
+    ice: Color::srgb(0.55, 0.73, 0.86),
+    glue: Color::srgb(0.72, 0.46, 0.10),
+    resin: Color::srgb(0.45, 0.22, 0.06),
+    rubber: Color::srgb(0.30, 0.32, 0.32),
+    woven: Color::srgb(0.06, 0.50, 0.47),
+    mud: Color::srgb(0.27, 0.185, 0.12),
+    wood: Color::srgb(0.44, 0.33, 0.23),
+    wall: Color::srgb(0.50, 0.52, 0.56),
     step_edge: Color::srgb(0.30, 0.33, 0.38),
     step_edge_lit: Color::srgb(0.40, 0.80, 1.0),
     paint: Color::srgba(0.85, 0.92, 1.0, 0.60),
@@ -162,6 +224,13 @@ pub const DARK: Palette = Palette {
     ambient: Color::srgb(0.72, 0.82, 1.0),
     ambient_cd_m2: 260.0,
 };
+
+/// Colour of a snake's belly, as a factor of [`Palette::white`].
+pub const BELLY_TONE: Vec3 = Vec3::new(0.95, 0.80, 0.55);
+/// Colour of a snake's tongue, as a factor of [`Palette::white`].
+pub const TONGUE_TONE: Vec3 = Vec3::new(0.80, 0.09, 0.18);
+/// Colour of a joint's axis, as a factor of [`Palette::metal`].
+pub const AXIS_TONE: Vec3 = Vec3::new(26.0, 20.0, 9.0);
 
 /// Minimum contrast of text (WCAG 2, level AA).
 const READABLE: f32 = 4.5;
@@ -184,6 +253,12 @@ impl Palette {
             Role::Strategy(kind) => self.strategy(kind),
             Role::Share(share) => ramp(share),
         }
+    }
+
+    /// Colour of a lane: on the snake's collar, beside its lane, in lists and in charts. The first lane is 0; after ten
+    /// lanes the colours repeat.
+    pub fn lane_color(&self, number: usize) -> Color32 {
+        self.lanes[number % self.lanes.len()]
     }
 
     /// A colour, shifted towards the text colour until it is readable on the panel.
@@ -253,66 +328,4 @@ pub fn ramp(share: f32) -> Color32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn contrast_follows_the_wcag_formula() {
-        assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 0.01);
-        assert!((contrast(Color32::from_gray(0x77), Color32::WHITE) - 4.48).abs() < 0.01);
-        assert_eq!(contrast(Color32::RED, Color32::RED), 1.0);
-    }
-
-    #[test]
-    fn text_is_readable_in_both_themes() {
-        for (theme, of) in [("light", &LIGHT), ("dark", &DARK)] {
-            for (what, text, ground) in [
-                ("text on the panel", of.text, of.panel),
-                ("text in a field", of.text, of.field),
-                ("text in a field under the pointer", of.text, of.field_hovered),
-                ("text on what is chosen", of.text, of.accent_soft),
-                ("text on the accent", of.on_accent, of.accent),
-                ("weak text on the panel", of.text_weak, of.panel),
-                ("weak text in a field", of.text_weak, of.field),
-                ("the accent as text", of.accent, of.panel),
-                ("the second colour as text", of.second, of.panel),
-                ("a problem", of.problem, of.panel),
-            ] {
-                let found = contrast(text, ground);
-                assert!(found >= READABLE, "{theme}: {what} has {found:.2}");
-            }
-            for kind in StrategyKind::ALL {
-                let found = contrast(of.strategy(kind), of.panel);
-                assert!(found >= READABLE, "{theme}: {kind:?} has {found:.2}");
-            }
-        }
-    }
-
-    #[test]
-    fn charts_in_the_light_theme_match_their_exported_pictures() {
-        for role in [Role::First, Role::Second, Role::Third, Role::Others, Role::Bend, Role::Twist]
-        {
-            let [red, green, blue] = role_color(role);
-            assert_eq!(LIGHT.role(role), Color32::from_rgb(red, green, blue), "{role:?}");
-            for of in [&LIGHT, &DARK] {
-                let found = contrast(of.role(role), of.panel);
-                // WCAG's minimum for graphics.
-                assert!(found >= 3.0, "{role:?} has {found:.2}");
-            }
-        }
-    }
-
-    #[test]
-    fn strategies_have_distinct_colours_in_both_themes() {
-        for of in [&LIGHT, &DARK] {
-            for (index, one) in StrategyKind::ALL.into_iter().enumerate() {
-                for other in StrategyKind::ALL.into_iter().take(index) {
-                    let pairs =
-                        of.strategy(one).to_array().into_iter().zip(of.strategy(other).to_array());
-                    let apart: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(b))).sum();
-                    assert!(apart > 60, "{one:?} and {other:?} are {apart} apart");
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -1,0 +1,264 @@
+//! What makes the stairs a place worth reaching: a railing, a finish where the landing begins, a wall with a door at
+//! its end. The door has the size of a door, which gives everything else its scale.
+//!
+//! The physics knows none of it; it stands beside and above the snake's way. A lane has three meshes, shared by lanes
+//! with the same stairs.
+
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+
+use super::mesh_builder::MeshBuilder;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::theme::Theme;
+use crate::world::Stairs;
+
+/// Height of the railing above tread and landing, in metres.
+const RAIL_M: f32 = 1.0;
+/// Radius of the railing's bars, in metres.
+const RAIL_RADIUS_M: f32 = 0.04;
+/// Greatest distance between the posts of the railing, in metres.
+const POST_EVERY_M: f32 = 4.0;
+/// Distance of railing and posts from the edge of the stairs, in metres.
+const INSIDE_M: f32 = 0.1;
+/// Clear height of the finish above the landing, in metres: a rearing snake fits below it.
+const FINISH_M: f32 = 4.0;
+/// Height of the finish's chequered board, and side of its squares, in metres.
+const BOARD_M: f32 = 0.5;
+/// Depth of the chequered line on the floor, in metres.
+const LINE_M: f32 = 0.5;
+/// Height of the wall at the end of the landing above it, and its thickness, in metres.
+const WALL_M: f32 = 3.2;
+const WALL_THICK_M: f32 = 0.25;
+/// Width and height of the door, in metres.
+const DOOR_M: [f32; 2] = [1.1, 2.1];
+/// Height of paint above its surface, in metres.
+const PAINT_M: f32 = 0.006;
+/// Shortest landing that has a finish, in metres.
+const SHORTEST_M: f32 = 1.0;
+
+/// Materials of the landing.
+#[derive(Resource, Debug)]
+struct Fittings {
+    wood: Handle<StandardMaterial>,
+    wall: Handle<StandardMaterial>,
+    white: Handle<StandardMaterial>,
+}
+
+/// The meshes of the last stairs that were built.
+#[derive(Debug, Default)]
+struct LastMeshes(Option<(Stairs, [Handle<Mesh>; 3])>);
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Fittings>()
+        .add_systems(Update, build.in_set(FrameSet::Draw))
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+impl FromWorld for Fittings {
+    fn from_world(world: &mut World) -> Self {
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let mut material = || {
+            let (perceptual_roughness, reflectance) = (0.8, 0.2);
+            materials.add(StandardMaterial { perceptual_roughness, reflectance, ..default() })
+        };
+        Self { wood: material(), wall: material(), white: material() }
+    }
+}
+
+fn dress(
+    theme: Res<Theme>,
+    fittings: Res<Fittings>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    let palette = theme.palette();
+    for (handle, color) in [
+        (&fittings.wood, palette.wood),
+        (&fittings.wall, palette.wall),
+        (&fittings.white, palette.white),
+    ] {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
+/// Spawns the fittings of a new lane.
+fn build(
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
+    fittings: Res<Fittings>,
+    mut last: Local<LastMeshes>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
+        let stairs = &lane.trial().stairs;
+        if stairs.steps == 0 {
+            continue;
+        }
+        let [wood, wall, cheques] = match &last.0 {
+            Some((of, meshes)) if of == stairs => meshes.clone(),
+            _ => [railing(stairs), wall(stairs), cheques(stairs)]
+                .map(|solid| meshes.add(solid.into_mesh())),
+        };
+        last.0 = Some((stairs.clone(), [wood.clone(), wall.clone(), cheques.clone()]));
+        commands.entity(entity).with_children(|parent| {
+            parent.spawn((Mesh3d(wood), MeshMaterial3d(fittings.wood.clone())));
+            parent.spawn((Mesh3d(wall), MeshMaterial3d(fittings.wall.clone())));
+            parent.spawn((
+                Mesh3d(cheques),
+                MeshMaterial3d(fittings.white.clone()),
+                NotShadowCaster,
+            ));
+        });
+    }
+}
+
+/// A railing along the left side, behind the snake as the default camera sees it, and the door.
+fn railing(stairs: &Stairs) -> MeshBuilder {
+    let mut solid = MeshBuilder::default();
+    let x_m = INSIDE_M - stairs.width_m / 2.0;
+    let top_m = stairs.rise_m * stairs.steps as f32;
+    let (landing_m, end_m) = (stairs.riser_y_m(stairs.steps), stairs.end_y_m());
+    let slope_m = stairs.first_riser_y_m + stairs.tread_m / 2.0;
+    let at = |y_m: f32, z_m: f32| Vec3::new(x_m, y_m, z_m);
+    // The handrail follows the middles of the treads, then the landing.
+    let foot = at(slope_m, stairs.rise_m);
+    let top = at(landing_m - stairs.tread_m / 2.0, top_m);
+    let end = at(end_m, top_m);
+    let bar = |solid: &mut MeshBuilder, from: Vec3, to: Vec3, height_m: f32, radius_m: f32| {
+        if from.distance(to) > 0.01 {
+            solid.cylinder(from + Vec3::Z * height_m, to + Vec3::Z * height_m, radius_m);
+        }
+    };
+    for (height_m, radius_m) in [(RAIL_M, RAIL_RADIUS_M), (RAIL_M / 2.0, RAIL_RADIUS_M * 0.6)] {
+        bar(&mut solid, foot, top, height_m, radius_m);
+        bar(&mut solid, top, end, height_m, radius_m);
+    }
+    for (from, to) in [(foot, top), (top, end)] {
+        let parts = (from.distance(to) / POST_EVERY_M).ceil().max(1.0) as usize;
+        for part in 0..=parts {
+            let on_bar = from.lerp(to, part as f32 / parts as f32);
+            let foot = on_bar.with_z(stairs.surface_z_m(x_m, on_bar.y.min(end_m)).min(on_bar.z));
+            solid.cylinder(foot, on_bar + Vec3::Z * RAIL_M, RAIL_RADIUS_M);
+            solid.ball(on_bar + Vec3::Z * RAIL_M, RAIL_RADIUS_M * 1.4);
+        }
+    }
+    let [door_width_m, door_height_m] = door_m(stairs);
+    let front_m = end_m - WALL_THICK_M - PAINT_M;
+    let middle = Vec3::new(0.0, front_m, top_m + door_height_m / 2.0);
+    solid.sheet(middle, Vec3::X * door_width_m / 2.0, Vec3::Z * door_height_m / 2.0);
+    solid
+}
+
+/// Width and height of the door, which is narrower on narrow stairs.
+fn door_m(stairs: &Stairs) -> [f32; 2] {
+    [DOOR_M[0].min(stairs.width_m * 0.6), DOOR_M[1]]
+}
+
+/// The wall at the end of the landing, and the posts and the beam of the finish.
+fn wall(stairs: &Stairs) -> MeshBuilder {
+    let mut solid = MeshBuilder::default();
+    let top_m = stairs.rise_m * stairs.steps as f32;
+    let half_m = stairs.width_m / 2.0;
+    let middle = Vec3::new(0.0, stairs.end_y_m() - WALL_THICK_M / 2.0, top_m + WALL_M / 2.0);
+    solid.rounded_box(middle, Vec3::new(stairs.width_m, WALL_THICK_M, WALL_M), 0.03, 1);
+    if has_finish(stairs) {
+        let y_m = stairs.riser_y_m(stairs.steps);
+        for side in [1.0, -1.0] {
+            let foot = Vec3::new((half_m - INSIDE_M) * side, y_m, top_m);
+            solid.cylinder(foot, foot + Vec3::Z * (FINISH_M + BOARD_M), 0.07);
+        }
+        // The board, which bears the cheques on both sides.
+        let middle = Vec3::new(0.0, y_m, top_m + FINISH_M + BOARD_M / 2.0);
+        solid.rounded_box(middle, Vec3::new(stairs.width_m, 0.06, BOARD_M), 0.01, 1);
+    }
+    solid
+}
+
+/// The chequered line on the floor, and both sides of the board above it; and the door's frame and handle.
+fn cheques(stairs: &Stairs) -> MeshBuilder {
+    let mut solid = MeshBuilder::default();
+    let top_m = stairs.rise_m * stairs.steps as f32;
+    let y_m = stairs.riser_y_m(stairs.steps);
+    if has_finish(stairs) {
+        let floor = Vec3::new(0.0, y_m + LINE_M / 2.0, top_m + PAINT_M);
+        let board = Vec3::new(0.0, y_m, top_m + FINISH_M + BOARD_M / 2.0);
+        let out = Vec3::Y * 0.036;
+        let half_width = stairs.width_m / 2.0;
+        for (middle, right, up) in [
+            (floor, Vec3::X, Vec3::Y * LINE_M / 2.0),
+            (board - out, Vec3::X, Vec3::Z * BOARD_M / 2.0),
+            (board + out, Vec3::NEG_X, Vec3::Z * BOARD_M / 2.0),
+        ] {
+            squares(&mut solid, middle, right * half_width, up);
+        }
+    }
+    // A bright frame around the door.
+    solid.tone(Vec3::ONE);
+    let [door_width_m, door_height_m] = door_m(stairs);
+    let front_m = stairs.end_y_m() - WALL_THICK_M;
+    for side in [1.0, -1.0] {
+        let post = Vec3::new((door_width_m / 2.0 + 0.06) * side, front_m, top_m + door_height_m / 2.0);
+        solid.rounded_box(post, Vec3::new(0.12, 0.08, door_height_m), 0.01, 1);
+    }
+    let lintel = Vec3::new(0.0, front_m, top_m + door_height_m + 0.06);
+    solid.rounded_box(lintel, Vec3::new(door_width_m + 0.24, 0.08, 0.12), 0.01, 1);
+    let handle = Vec3::new(door_width_m * 0.36, front_m - 0.04, top_m + door_height_m * 0.48);
+    solid.ball(handle, 0.05);
+    solid
+}
+
+/// Two rows of white and dark squares; `right` and `up` lead from the middle to the edges.
+fn squares(solid: &mut MeshBuilder, middle: Vec3, right: Vec3, up: Vec3) {
+    let columns = (right.length() / up.length() * 2.0).round().max(2.0) as usize;
+    let (half, tall) = (right / columns as f32, up / 2.0);
+    for column in 0..columns {
+        for row in 0..2 {
+            let is_dark = (column + row) % 2 == 0;
+            solid.tone(Vec3::splat(if is_dark { 0.02 } else { 1.0 }));
+            let across = (column as f32 + 0.5) * 2.0 - columns as f32;
+            let at = middle + half * across + tall * (row as f32 * 2.0 - 1.0);
+            solid.sheet(at, half, tall);
+        }
+    }
+}
+
+/// Whether the landing is deep enough for a finish.
+fn has_finish(stairs: &Stairs) -> bool {
+    stairs.landing_m >= SHORTEST_M
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parts(stairs: &Stairs) -> [MeshBuilder; 3] {
+        [railing(stairs), wall(stairs), cheques(stairs)]
+    }
+
+    #[test]
+    fn nothing_stands_in_the_way_of_the_snake() {
+        let stairs = Stairs { landing_m: 40.0, ..Stairs::default() };
+        for solid in parts(&stairs) {
+            for at in &solid.positions {
+                let is_on_way = at.x.abs() < stairs.width_m / 2.0 - 0.3
+                    && at.y < stairs.end_y_m() - 0.5
+                    && (0.02..FINISH_M - 0.1).contains(&(at.z - stairs.surface_z_m(at.x, at.y)));
+                assert!(!is_on_way, "{at}");
+            }
+        }
+    }
+
+    #[test]
+    fn stairs_of_any_shape_have_finite_fittings_within_their_width() {
+        for (steps, width_m, landing_m, tread_m) in
+            [(1, 1.0, 0.0, 0.1), (100, 100.0, 100.0, 20.0), (3, 5.0, 0.5, 2.0)]
+        {
+            let stairs = Stairs { steps, width_m, landing_m, tread_m, ..Stairs::default() };
+            for at in parts(&stairs).iter().flat_map(|solid| &solid.positions) {
+                assert!(at.is_finite() && at.x.abs() <= width_m / 2.0 + 0.05, "{at} of {stairs:?}");
+            }
+        }
+    }
+}

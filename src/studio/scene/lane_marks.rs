@@ -1,0 +1,136 @@
+//! The colours of lanes side by side: a collar on each snake, and stripes on the ground beside its lane.
+
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+
+use super::mesh_builder::MeshBuilder;
+use super::stairs::{STRIP_ASIDE_M, strip_y_m};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::theme::Theme;
+use crate::world::Stairs;
+
+/// Materials in the colours of the lanes, in their order.
+#[derive(Resource, Debug)]
+pub(crate) struct LaneColors(Vec<Handle<StandardMaterial>>);
+
+/// Marks what shows the colour of a lane. It is hidden while there is only one.
+#[derive(Component, Debug)]
+pub(crate) struct LaneMark;
+
+/// Number of colours of the palette.
+const COLORS: usize = 10;
+/// Width of a stripe, in metres.
+const STRIPE_M: f32 = 0.16;
+/// Height of a stripe above the ground, in metres: above the grid.
+const STRIPE_HEIGHT_M: f32 = 0.013;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<LaneColors>()
+        .add_systems(Update, build.in_set(FrameSet::Draw))
+        .add_systems(PostUpdate, show.before(TransformSystems::Propagate))
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+impl FromWorld for LaneColors {
+    fn from_world(world: &mut World) -> Self {
+        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+        let plain = StandardMaterial { perceptual_roughness: 0.7, reflectance: 0.2, ..default() };
+        Self((0..COLORS).map(|_| materials.add(plain.clone())).collect())
+    }
+}
+
+impl LaneColors {
+    /// The material of a lane; the first is 0.
+    pub fn of(&self, number: usize) -> Handle<StandardMaterial> {
+        self.0[number % self.0.len()].clone()
+    }
+}
+
+fn dress(
+    theme: Res<Theme>,
+    colors: Res<LaneColors>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    for (number, handle) in colors.0.iter().enumerate() {
+        if let Some(mut material) = materials.get_mut(handle) {
+            let [red, green, blue, _] = theme.palette().lane_color(number).to_array();
+            material.base_color = Color::srgb_u8(red, green, blue);
+        }
+    }
+}
+
+/// Spawns the stripes of a new lane.
+fn build(
+    lanes: Query<(Entity, &Lane), Added<Lane>>,
+    colors: Res<LaneColors>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
+        let start_m = lane.trial().start_y_m - lane.body().length_m() / 2.0;
+        commands.entity(entity).with_child((
+            LaneMark,
+            Mesh3d(meshes.add(stripes(&lane.trial().stairs, start_m).into_mesh())),
+            MeshMaterial3d(colors.of(lane.number())),
+            NotShadowCaster,
+            Visibility::Hidden,
+        ));
+    }
+}
+
+/// A stripe on each side, from behind the snake to the end of the landing.
+fn stripes(stairs: &Stairs, start_m: f32) -> MeshBuilder {
+    let mut solid = MeshBuilder::default();
+    let [from_m, to_m] = strip_y_m(stairs, start_m);
+    let to_m = if stairs.steps == 0 { to_m } else { stairs.end_y_m() };
+    let aside_m = stairs.width_m / 2.0 + STRIP_ASIDE_M - STRIPE_M / 2.0;
+    for side in [1.0, -1.0] {
+        let middle = Vec3::new(aside_m * side, (from_m + to_m) / 2.0, STRIPE_HEIGHT_M);
+        solid.sheet(middle, Vec3::X * STRIPE_M / 2.0, Vec3::Y * (to_m - from_m) / 2.0);
+    }
+    solid
+}
+
+/// Shows the marks while several snakes run side by side.
+fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<LaneMark>>) {
+    let are_many = lanes.iter().filter(|lane| !lane.is_ghost()).nth(1).is_some();
+    let wanted = if are_many { Visibility::Inherited } else { Visibility::Hidden };
+    marks.iter_mut().for_each(|mut mark| {
+        mark.set_if_neq(wanted);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::stage::staged_champion::StagedChampion;
+
+    #[test]
+    fn marks_are_shown_only_beside_other_lanes_and_ghosts_are_none() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let mut app = App::new();
+        app.add_systems(Update, show);
+        let mark = app.world_mut().spawn((LaneMark, Visibility::Hidden)).id();
+        let seen = |app: &mut App| {
+            app.update();
+            *app.world().entity(mark).get::<Visibility>().expect("it has one")
+        };
+        app.world_mut().spawn(lane(0));
+        app.world_mut().spawn(lane(1).as_ghost());
+        assert_eq!(seen(&mut app), Visibility::Hidden);
+        app.world_mut().spawn(lane(2));
+        assert_eq!(seen(&mut app), Visibility::Inherited);
+    }
+
+    #[test]
+    fn stripes_accompany_the_lane_from_the_start_to_the_end_of_the_landing() {
+        let stripes = stripes(&Stairs::default(), -12.0);
+        let ys = || stripes.positions.iter().map(|at| at.y);
+        assert_eq!(ys().fold(f32::MAX, f32::min), -15.0);
+        assert_eq!(ys().fold(f32::MIN, f32::max), Stairs::default().end_y_m());
+        assert!(stripes.positions.iter().all(|at| (2.7..3.0).contains(&at.x.abs())));
+    }
+}

@@ -1,0 +1,218 @@
+//! How a surface looks, from its settings: ice, glue, mud, trampoline, rubber, stone, and every mixture between them.
+//!
+//! A pure function: the same settings always look the same, and a small change of a setting is a small change of the
+//! look. The physics does not read it.
+
+use bevy::prelude::*;
+
+use crate::studio::ui::theme::Palette;
+use crate::world::Surface;
+
+/// The look of a surface. All fields are shares from 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SurfaceLook {
+    /// Little friction: pale ice.
+    pub ice: f32,
+    /// Much friction: amber glue.
+    pub glue: f32,
+    /// So much friction that nothing ever slides: dark resin. Deepens the colour of glue.
+    pub resin: f32,
+    /// Gives the energy of an impact back although it is hard: rubber with flecks.
+    pub rubber: f32,
+    /// Yields deeply and springs back: a woven mat.
+    pub woven: f32,
+    /// Yields without springing back, and damps: mud.
+    pub mud: f32,
+    /// Yields under load, so that limbs leave dents.
+    pub soft: f32,
+    /// Creeps under load: a wet film.
+    pub wet: f32,
+    /// Grains of stone or dust; they disappear under ice, glue and mud.
+    pub speckle: f32,
+    /// Roughness of the material; 0 is a mirror.
+    pub roughness: f32,
+    /// Reflectance of the material.
+    pub gloss: f32,
+}
+
+/// Number of steps of each share in [`SurfaceLook::key`]: finer than an eye can tell apart.
+const LEVELS: f32 = 32.0;
+
+impl SurfaceLook {
+    /// The look of a surface with these settings.
+    pub fn of(surface: &Surface) -> Self {
+        let friction = surface.friction.max(0.0);
+        let ice = 1.0 - log_share(friction, 0.05, 0.7);
+        let glue = log_share(friction, 1.3, 5.0);
+        let resin = log_share(friction, 5.0, 150.0);
+        let soft = log_share(surface.soft_cfm_m_s_per_n, 1.0e-4, 0.05);
+        let springs_back = share(surface.soft_erp, 0.2, 0.85);
+        let woven = log_share(surface.soft_cfm_m_s_per_n, 0.005, 0.2) * springs_back;
+        // Impacts slower than the bounce velocity do not bounce, and few are faster than 10 m/s.
+        let bounce = surface.bounce * (1.0 - share(surface.bounce_velocity_m_s, 0.5, 10.0));
+        let rubber = share(bounce, 0.0, 0.7);
+        let wet = log_share(surface.slip_m_s_per_n, 1.0e-3, 0.1);
+        let damped = share(surface.dampen_per_s, 0.0, 2.0).max(wet * 0.5);
+        let hard_damped = share(surface.dampen_per_s, 0.0, 10.0);
+        let sinks = soft * (1.0 - springs_back) * (0.3 + 0.7 * damped);
+        let mud = 1.0 - (1.0 - sinks) * (1.0 - 0.7 * hard_damped);
+
+        // In the order in which one covers the other.
+        let through = |values: [f32; 6]| {
+            let [stone, of_ice, of_glue, of_rubber, of_woven, of_mud] = values;
+            let layers = [
+                (of_ice, ice),
+                (of_glue, glue),
+                (of_rubber, rubber),
+                (of_woven, woven),
+                (of_mud, mud),
+            ];
+            layers.into_iter().fold(stone, |below, (own, covers)| mix(below, own, covers))
+        };
+        let dry_roughness = through([0.95, 0.10, 0.22, 0.70, 0.62, 0.80]);
+        Self {
+            ice,
+            glue,
+            resin,
+            rubber,
+            woven,
+            mud,
+            soft,
+            wet,
+            speckle: through([1.0, 0.0, 0.0, 0.2, 0.0, 0.1]),
+            roughness: mix(dry_roughness, dry_roughness.min(0.28), wet),
+            gloss: through([0.2, 1.0, 0.9, 0.3, 0.4, 0.3]).max(wet * 0.8),
+        }
+    }
+
+    /// The colour of the surface in a theme.
+    pub fn tint(&self, palette: &Palette) -> Color {
+        let glue = palette.glue.mix(&palette.resin, self.resin);
+        let layers = [
+            (palette.ice, self.ice),
+            (glue, self.glue),
+            (palette.rubber, self.rubber),
+            (palette.woven, self.woven),
+            (palette.mud, self.mud),
+        ];
+        let dry = layers
+            .into_iter()
+            .fold(palette.stair, |below, (own, covers)| below.mix(&own, covers));
+        // Water darkens what soaks it up; ice stays as bright.
+        let soaked = 1.0 - 0.22 * self.wet * (1.0 - self.ice);
+        let linear = dry.to_linear();
+        Color::linear_rgb(linear.red * soaked, linear.green * soaked, linear.blue * soaked)
+    }
+
+    /// Equal for looks that an eye cannot tell apart.
+    pub fn key(&self) -> [u8; 11] {
+        let Self { ice, glue, resin, rubber, woven, mud, soft, wet, speckle, roughness, gloss } =
+            *self;
+        [ice, glue, resin, rubber, woven, mud, soft, wet, speckle, roughness, gloss]
+            .map(|share| (share * LEVELS).round() as u8)
+    }
+}
+
+/// Where a value lies between two others: 0 up to `from`, 1 from `to` on.
+fn share(value: f32, from: f32, to: f32) -> f32 {
+    ((value - from) / (to - from)).clamp(0.0, 1.0)
+}
+
+/// As [`share`], on a logarithmic scale, like the sliders of these settings.
+fn log_share(value: f32, from: f32, to: f32) -> f32 {
+    share(libm::logf(value.max(1.0e-9)), libm::logf(from), libm::logf(to))
+}
+
+/// A mixture of two values.
+pub(crate) fn mix(from: f32, to: f32, share: f32) -> f32 {
+    from + (to - from) * share
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_presets;
+    use crate::studio::ui::theme::Theme;
+
+    fn shipped(name: &str) -> Surface {
+        let presets = shipped_presets().expect("well formed");
+        let preset = presets.into_iter().find(|preset| preset.name == name).expect("shipped");
+        preset.settings.trial.surface
+    }
+
+    /// The surfaces that a picture must tell apart without labels.
+    fn surfaces() -> [(&'static str, Surface); 6] {
+        [
+            ("stone", Surface::default()),
+            ("ice", shipped("ice")),
+            ("glue", Surface { friction: 5.0, ..Surface::default() }),
+            ("mud", shipped("mud")),
+            ("trampoline", shipped("trampoline")),
+            ("rubber", shipped("rubber")),
+        ]
+    }
+
+    #[test]
+    fn each_shipped_surface_has_the_look_of_its_name() {
+        let look = |of: &str| {
+            let (_, surface) =
+                surfaces().into_iter().find(|(name, _)| *name == of).expect("in the list");
+            SurfaceLook::of(&surface)
+        };
+        assert!(look("ice").ice > 0.95 && look("ice").roughness < 0.15 && look("ice").gloss > 0.95);
+        assert!(look("glue").glue > 0.95 && look("glue").roughness < 0.3);
+        assert!(look("mud").mud > 0.8 && look("mud").wet > 0.3 && look("mud").soft > 0.95);
+        assert!(look("trampoline").woven > 0.95 && look("trampoline").mud < 0.05);
+        assert!(look("rubber").rubber > 0.7 && look("rubber").woven < 0.1);
+        let stone = look("stone");
+        assert!(stone.speckle > 0.95 && stone.roughness > 0.9 && stone.soft == 0.0, "{stone:?}");
+    }
+
+    #[test]
+    fn surfaces_have_distinct_colours_in_both_themes() {
+        for theme in [Theme::Light, Theme::Dark] {
+            let tints = surfaces().map(|(name, surface)| {
+                let tint: Oklaba = SurfaceLook::of(&surface).tint(theme.palette()).into();
+                (name, tint)
+            });
+            for (index, (one, a)) in tints.iter().enumerate() {
+                for (other, b) in &tints[..index] {
+                    let apart =
+                        Vec3::new(a.lightness - b.lightness, a.a - b.a, a.b - b.b).length();
+                    assert!(apart > 0.08, "{one} and {other} are {apart} apart, {theme:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_look_follows_every_slider_without_jumps() {
+        let fields: [(&str, f32, f32, fn(&mut Surface, f32)); 6] = [
+            ("friction", 0.03, 150.0, |surface, value| surface.friction = value),
+            ("softness", 1.0e-4, 0.5, |surface, value| surface.soft_cfm_m_s_per_n = value),
+            ("springiness", 0.05, 1.0, |surface, value| {
+                (surface.soft_cfm_m_s_per_n, surface.soft_erp) = (0.05, value);
+            }),
+            ("creep", 1.0e-3, 0.1, |surface, value| surface.slip_m_s_per_n = value),
+            ("damping", 0.05, 10.0, |surface, value| surface.dampen_per_s = value),
+            ("bounce", 0.01, 0.7, |surface, value| surface.bounce = value),
+        ];
+        const PARTS: i32 = 200;
+        for (name, least, most, set) in fields {
+            let looks: Vec<SurfaceLook> = (0..=PARTS)
+                .map(|part| {
+                    let mut surface = Surface::default();
+                    let share = part as f32 / PARTS as f32;
+                    set(&mut surface, least * libm::powf(most / least, share));
+                    SurfaceLook::of(&surface)
+                })
+                .collect();
+            for pair in looks.windows(2) {
+                let steps = pair[0].key().into_iter().zip(pair[1].key());
+                let most = steps.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0);
+                assert!(most <= 3, "{name} jumps: {:?} and {:?}", pair[0], pair[1]);
+            }
+            assert_ne!(looks[0].key(), looks[PARTS as usize].key(), "{name} is not seen");
+        }
+    }
+}

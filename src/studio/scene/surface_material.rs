@@ -1,0 +1,100 @@
+//! Materials of surfaces, shared by all lanes whose surfaces look the same.
+
+use bevy::prelude::*;
+
+use super::surface_look::SurfaceLook;
+use super::surface_texture::Grain;
+use crate::studio::schedule::FrameSet;
+use crate::studio::ui::theme::Theme;
+use crate::world::Surface;
+
+/// Cache of materials and textures by their look.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct SurfaceMaterials {
+    materials: Vec<(SurfaceLook, Handle<StandardMaterial>)>,
+    textures: Vec<(Grain, Handle<Image>)>,
+}
+
+/// Maximum number of cached materials and textures: more than lanes show at once. A slider that is dragged makes many.
+const MAX_CACHED: usize = 48;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<SurfaceMaterials>()
+        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+}
+
+impl SurfaceMaterials {
+    /// The material of a surface.
+    pub fn of(
+        &mut self,
+        surface: &Surface,
+        theme: Theme,
+        materials: &mut Assets<StandardMaterial>,
+        images: &mut Assets<Image>,
+    ) -> Handle<StandardMaterial> {
+        let look = SurfaceLook::of(surface);
+        let key = look.key();
+        if let Some((_, known)) = self.materials.iter().find(|(of, _)| of.key() == key) {
+            return known.clone();
+        }
+        let texture = self.texture(Grain::from(&look), images);
+        let material = materials.add(StandardMaterial {
+            base_color: look.tint(theme.palette()),
+            base_color_texture: Some(texture),
+            // Zero is a mirror, whose highlight is smaller than a pixel.
+            perceptual_roughness: look.roughness.max(0.08),
+            reflectance: look.gloss,
+            ..default()
+        });
+        if self.materials.len() == MAX_CACHED {
+            self.materials.remove(0);
+        }
+        self.materials.push((look, material.clone()));
+        material
+    }
+
+    fn texture(&mut self, grain: Grain, images: &mut Assets<Image>) -> Handle<Image> {
+        if let Some((_, known)) = self.textures.iter().find(|(of, _)| *of == grain) {
+            return known.clone();
+        }
+        if self.textures.len() == MAX_CACHED {
+            self.textures.remove(0);
+        }
+        let new = images.add(grain.draw());
+        self.textures.push((grain, new.clone()));
+        new
+    }
+}
+
+/// Applies the colours of the theme.
+fn dress(
+    theme: Res<Theme>,
+    surfaces: Res<SurfaceMaterials>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    for (look, handle) in &surfaces.materials {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = look.tint(theme.palette());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_looks_share_a_material_and_the_cache_stays_small() {
+        let (mut materials, mut images) = (Assets::default(), Assets::default());
+        let mut surfaces = SurfaceMaterials::default();
+        let mut of = |friction: f32| {
+            let surface = Surface { friction, ..Surface::default() };
+            surfaces.of(&surface, Theme::Light, &mut materials, &mut images)
+        };
+        assert_eq!(of(1.0), of(1.0));
+        assert_ne!(of(1.0), of(0.1));
+        let seen: Vec<_> = (0..400).map(|part| of(0.02 + part as f32 * 0.4)).collect();
+        assert_ne!(seen[0], seen[399]);
+        assert!(surfaces.materials.len() <= MAX_CACHED && surfaces.textures.len() <= MAX_CACHED);
+    }
+}

@@ -1,0 +1,251 @@
+//! The grain of surfaces, drawn in code: speckle, cracks in ice, shine of glue, ripples of mud, the weave of a mat.
+//!
+//! A texture only darkens the colour of its material. All of its shapes are several pixels wide and it has mipmaps, so
+//! that nothing shimmers in the distance. It is the same for the same look on every machine.
+
+use bevy::asset::RenderAssetUsages;
+use bevy::image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor};
+use bevy::prelude::*;
+use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+
+use super::surface_look::{SurfaceLook, mix};
+
+/// Side of the square that a texture covers, in metres.
+pub(crate) const TILE_M: f32 = 4.0;
+/// Side of a texture, in pixels: a power of two.
+const SIDE: usize = 256;
+/// Threads of the weave along a side.
+const THREADS: usize = 20;
+/// Steps of each share in [`Grain`].
+const LEVELS: f32 = 8.0;
+
+/// The parts of a look that its texture shows, in coarse steps, so that few textures are ever drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Grain {
+    speckle: u8,
+    ice: u8,
+    glue: u8,
+    rubber: u8,
+    woven: u8,
+    mud: u8,
+}
+
+impl From<&SurfaceLook> for Grain {
+    fn from(look: &SurfaceLook) -> Self {
+        let step = |share: f32| (share * LEVELS).round() as u8;
+        Self {
+            speckle: step(look.speckle),
+            ice: step(look.ice),
+            glue: step(look.glue),
+            rubber: step(look.rubber),
+            woven: step(look.woven),
+            mud: step(look.mud),
+        }
+    }
+}
+
+impl Grain {
+    /// Brightness of a texture at a pixel, from 0 to 1.
+    fn at(self, x: usize, y: usize) -> f32 {
+        let share = |step: u8| f32::from(step) / LEVELS;
+        // Dust and dark minerals: grains of some centimetres on slow clouds.
+        let clouds = noise(x, y, 8, 1) * 0.6 + noise(x, y, 16, 2) * 0.4;
+        let dark = rise(noise(x, y, 64, 3), 0.66, 0.80);
+        let pale = rise(noise(x, y, 64, 4), 0.70, 0.82);
+        let stone = 0.84 + 0.10 * (clouds - 0.5) - 0.30 * dark + 0.14 * pale;
+        let mut value = mix(0.86, stone, share(self.speckle));
+        let layers: [(u8, fn(usize, usize) -> f32); 5] = [
+            (self.ice, ice),
+            (self.glue, glue),
+            (self.rubber, rubber),
+            (self.woven, woven),
+            (self.mud, mud),
+        ];
+        for (step, of) in layers {
+            if step > 0 {
+                value = mix(value, of(x, y), share(step));
+            }
+        }
+        value.clamp(0.0, 1.0)
+    }
+
+    /// Draws the texture with all its mipmaps.
+    pub fn draw(self) -> Image {
+        let mut level: Vec<f32> = (0..SIDE * SIDE).map(|at| self.at(at % SIDE, at / SIDE)).collect();
+        let (mut data, mut side, mut levels) = (Vec::new(), SIDE, 0);
+        loop {
+            levels += 1;
+            data.extend(level.iter().flat_map(|value| {
+                let gray = (value * 255.0).round() as u8;
+                [gray, gray, gray, u8::MAX]
+            }));
+            if side == 1 {
+                break;
+            }
+            let half = side / 2;
+            level = (0..half * half)
+                .map(|at| {
+                    let first = at / half * 2 * side + at % half * 2;
+                    (level[first] + level[first + 1] + level[first + side] + level[first + side + 1])
+                        / 4.0
+                })
+                .collect();
+            side = half;
+        }
+        let mut image = Image::new_uninit(
+            Extent3d { width: SIDE as u32, height: SIDE as u32, depth_or_array_layers: 1 },
+            TextureDimension::D2,
+            TextureFormat::Rgba8UnormSrgb,
+            RenderAssetUsages::RENDER_WORLD,
+        );
+        image.texture_descriptor.mip_level_count = levels;
+        image.data = Some(data);
+        image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+            address_mode_u: ImageAddressMode::Repeat,
+            address_mode_v: ImageAddressMode::Repeat,
+            mag_filter: ImageFilterMode::Linear,
+            min_filter: ImageFilterMode::Linear,
+            mipmap_filter: ImageFilterMode::Linear,
+            anisotropy_clamp: 4,
+            ..default()
+        });
+        image
+    }
+}
+
+/// Clouded ice with pale cracks.
+fn ice(x: usize, y: usize) -> f32 {
+    let clouds = noise(x, y, 4, 11) * 0.7 + noise(x, y, 8, 12) * 0.3;
+    let crack = |cells, seed| 1.0 - rise((noise(x, y, cells, seed) - 0.5).abs(), 0.0, 0.035);
+    let cracks = crack(4, 13).max(crack(6, 14) * 0.7);
+    (0.76 + 0.16 * clouds).max(cracks)
+}
+
+/// Thick drops with a bright spot each.
+fn glue(x: usize, y: usize) -> f32 {
+    let height = noise(x, y, 14, 21) * 0.7 + noise(x, y, 6, 22) * 0.3;
+    let shine = rise(height, 0.60, 0.72);
+    0.66 + 0.16 * rise(height, 0.25, 0.55) + 0.18 * shine
+}
+
+/// Bright flecks in a dark mat.
+fn rubber(x: usize, y: usize) -> f32 {
+    let flecks = rise(noise(x, y, 64, 31), 0.70, 0.78).max(rise(noise(x, y, 40, 32), 0.74, 0.80));
+    0.50 + 0.08 * noise(x, y, 16, 33) + 0.42 * flecks
+}
+
+/// Threads that cross over and under each other.
+fn woven(x: usize, y: usize) -> f32 {
+    let across = |at: usize| {
+        let place = at as f32 * THREADS as f32 / SIDE as f32;
+        (place as usize, place - libm::floorf(place))
+    };
+    let ((column, in_column), (row, in_row)) = (across(x), across(y));
+    // The thread on top is lit along its middle; between two threads it is dark.
+    let round = |share: f32| libm::sinf(share * std::f32::consts::PI);
+    let (along, beside) =
+        if (column + row) % 2 == 0 { (in_row, in_column) } else { (in_column, in_row) };
+    0.38 + 0.62 * rise(round(beside), 0.1, 0.75) * (0.55 + 0.45 * round(along))
+}
+
+/// Heavy ripples and puddles.
+fn mud(x: usize, y: usize) -> f32 {
+    let ripples = (noise(x, y, 10, 41) - 0.5).abs() * 2.0;
+    let lumps = noise(x, y, 22, 42);
+    0.52 + 0.30 * ripples + 0.22 * (lumps - 0.3)
+}
+
+/// Smooth step from 0 at `from` to 1 at `to`.
+fn rise(value: f32, from: f32, to: f32) -> f32 {
+    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// Smooth noise from 0 to 1 over `cells` cells a side, which continues over the edges of the texture.
+fn noise(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
+    let across = |at: usize| {
+        let place = at as f32 * cells as f32 / SIDE as f32;
+        (place as usize, rise(place - libm::floorf(place), 0.0, 1.0))
+    };
+    let ((column, right), (row, up)) = (across(x), across(y));
+    let corner = |right: usize, up: usize| {
+        random(((column + right) % cells) as u32, ((row + up) % cells) as u32, seed)
+    };
+    let low = mix(corner(0, 0), corner(1, 0), right);
+    let high = mix(corner(0, 1), corner(1, 1), right);
+    mix(low, high, up)
+}
+
+/// A number from 0 to 1 that looks random and depends on nothing but its arguments.
+fn random(x: u32, y: u32, seed: u32) -> f32 {
+    let mut mixed = x.wrapping_mul(0x9E37_79B1)
+        ^ y.wrapping_mul(0x85EB_CA77)
+        ^ seed.wrapping_mul(0xC2B2_AE3D);
+    mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);
+    mixed = (mixed ^ (mixed >> 12)).wrapping_mul(0x297A_2D39);
+    (mixed ^ (mixed >> 15)) as f32 / u32::MAX as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Surface;
+
+    fn grain(change: fn(&mut Surface)) -> Grain {
+        let mut surface = Surface::default();
+        change(&mut surface);
+        Grain::from(&SurfaceLook::of(&surface))
+    }
+
+    fn grains() -> [Grain; 5] {
+        [
+            grain(|_| {}),
+            grain(|surface| surface.friction = 0.0),
+            grain(|surface| surface.friction = 5.0),
+            grain(|surface| (surface.soft_cfm_m_s_per_n, surface.soft_erp) = (0.5, 0.95)),
+            grain(|surface| {
+                (surface.soft_cfm_m_s_per_n, surface.soft_erp, surface.dampen_per_s) =
+                    (0.05, 0.05, 2.0);
+            }),
+        ]
+    }
+
+    #[test]
+    fn a_texture_has_all_mipmaps_and_is_the_same_every_time() {
+        let [stone, ..] = grains();
+        let image = stone.draw();
+        let pixels: usize = (0..=8).map(|level| (SIDE >> level) * (SIDE >> level)).sum();
+        assert_eq!(image.texture_descriptor.mip_level_count, 9);
+        assert_eq!(image.data.as_ref().map(Vec::len), Some(pixels * 4));
+        assert_eq!(image.data, stone.draw().data);
+    }
+
+    #[test]
+    fn textures_continue_over_their_edges() {
+        for grain in grains() {
+            let difference = |a: (usize, usize), b: (usize, usize)| {
+                (grain.at(a.0, a.1) - grain.at(b.0, b.1)).abs()
+            };
+            let mean = |pairs: &mut dyn Iterator<Item = f32>| pairs.sum::<f32>() / SIDE as f32;
+            let seam = mean(&mut (0..SIDE).map(|y| difference((SIDE - 1, y), (0, y))));
+            let inside = (0..8).map(|part| {
+                mean(&mut (0..SIDE).map(|y| difference((part * 32 + 9, y), (part * 32 + 10, y))))
+            });
+            let most = inside.fold(0.0, f32::max);
+            assert!(seam <= most * 1.5 + 0.02, "{grain:?}: {seam} at the seam, {most} inside");
+        }
+    }
+
+    #[test]
+    fn each_kind_of_surface_has_its_own_grain() {
+        for (index, one) in grains().into_iter().enumerate() {
+            for other in &grains()[..index] {
+                let pixels = (0..SIDE * SIDE).step_by(7).map(|at| (at % SIDE, at / SIDE));
+                let apart: Vec<f32> =
+                    pixels.map(|(x, y)| (one.at(x, y) - other.at(x, y)).abs()).collect();
+                let mean = apart.iter().sum::<f32>() / apart.len() as f32;
+                assert!(mean > 0.04, "{one:?} and {other:?} are {mean} apart");
+            }
+        }
+    }
+}

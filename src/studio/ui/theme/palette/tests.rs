@@ -1,0 +1,109 @@
+//! Contrast and distance of the colours.
+
+use super::*;
+
+#[test]
+fn contrast_follows_the_wcag_formula() {
+    assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 0.01);
+    assert!((contrast(Color32::from_gray(0x77), Color32::WHITE) - 4.48).abs() < 0.01);
+    assert_eq!(contrast(Color32::RED, Color32::RED), 1.0);
+}
+
+#[test]
+fn text_is_readable_in_both_themes() {
+    for (theme, of) in [("light", &LIGHT), ("dark", &DARK)] {
+        for (what, text, ground) in [
+            ("text on the panel", of.text, of.panel),
+            ("text in a field", of.text, of.field),
+            ("text in a field under the pointer", of.text, of.field_hovered),
+            ("text on what is chosen", of.text, of.accent_soft),
+            ("text on the accent", of.on_accent, of.accent),
+            ("weak text on the panel", of.text_weak, of.panel),
+            ("weak text in a field", of.text_weak, of.field),
+            ("the accent as text", of.accent, of.panel),
+            ("the second colour as text", of.second, of.panel),
+            ("a problem", of.problem, of.panel),
+        ] {
+            let found = contrast(text, ground);
+            assert!(found >= READABLE, "{theme}: {what} has {found:.2}");
+        }
+        for kind in StrategyKind::ALL {
+            let found = contrast(of.strategy(kind), of.panel);
+            assert!(found >= READABLE, "{theme}: {kind:?} has {found:.2}");
+        }
+    }
+}
+
+#[test]
+fn charts_in_the_light_theme_match_their_exported_pictures() {
+    for role in [Role::First, Role::Second, Role::Third, Role::Others, Role::Bend, Role::Twist]
+    {
+        let [red, green, blue] = role_color(role);
+        assert_eq!(LIGHT.role(role), Color32::from_rgb(red, green, blue), "{role:?}");
+        for of in [&LIGHT, &DARK] {
+            let found = contrast(of.role(role), of.panel);
+            // WCAG's minimum for graphics.
+            assert!(found >= 3.0, "{role:?} has {found:.2}");
+        }
+    }
+}
+
+/// Linear red, green and blue as an eye without red cones or without green cones sees them (Machado et al. 2009).
+const COLOR_BLIND: [[[f32; 3]; 3]; 2] = [
+    [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]],
+    [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]],
+];
+
+/// Distance of two colours in Oklab for the eye that tells them apart worst.
+fn apart(one: Color32, other: Color32) -> f32 {
+    let usual = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let seen = |color: Color32, eye: &[[f32; 3]; 3]| {
+        let linear = egui::Rgba::from(color);
+        let cones = [linear.r(), linear.g(), linear.b()];
+        let [red, green, blue] =
+            eye.map(|row| row.iter().zip(cones).map(|(a, b)| a * b).sum::<f32>());
+        let seen = Color::linear_rgb(red.max(0.0), green.max(0.0), blue.max(0.0));
+        let lab = bevy::color::Oklaba::from(seen);
+        bevy::math::Vec3::new(lab.lightness, lab.a, lab.b)
+    };
+    let eyes = std::iter::once(&usual).chain(&COLOR_BLIND);
+    eyes.map(|eye| seen(one, eye).distance(seen(other, eye))).fold(f32::MAX, f32::min)
+}
+
+#[test]
+fn lanes_have_colours_that_color_blind_eyes_tell_apart() {
+    for (theme, of) in [("light", &LIGHT), ("dark", &DARK)] {
+        for number in 0..10 {
+            let own = of.lane_color(number);
+            // WCAG's minimum for graphics.
+            assert!(contrast(own, of.panel) >= 3.0, "{theme}: lane {number}");
+            for other in 0..number {
+                let apart = apart(own, of.lane_color(other));
+                assert!(apart > 0.075, "{theme}: lanes {number} and {other}: {apart}");
+            }
+        }
+        assert_eq!(of.lane_color(13), of.lane_color(3), "{theme}");
+    }
+}
+
+#[test]
+fn the_directions_of_a_torque_have_colours_that_color_blind_eyes_tell_apart() {
+    for of in [&LIGHT, &DARK] {
+        let apart = apart(of.torque_plus, of.torque_minus);
+        assert!(apart > 0.2, "{apart}");
+    }
+}
+
+#[test]
+fn strategies_have_distinct_colours_in_both_themes() {
+    for of in [&LIGHT, &DARK] {
+        for (index, one) in StrategyKind::ALL.into_iter().enumerate() {
+            for other in StrategyKind::ALL.into_iter().take(index) {
+                let pairs =
+                    of.strategy(one).to_array().into_iter().zip(of.strategy(other).to_array());
+                let apart: u32 = pairs.map(|(a, b)| u32::from(a.abs_diff(b))).sum();
+                assert!(apart > 60, "{one:?} and {other:?} are {apart} apart");
+            }
+        }
+    }
+}
