@@ -122,7 +122,7 @@ pub const NOTICES_TOP: f32 = 84.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torque strip under the stage, in points.
-pub const TORQUE_STRIP_HEIGHT: f32 = 72.0;
+pub const TORQUE_STRIP_HEIGHT: f32 = 88.0;
 /// Width of the card with a limb's numbers, in points.
 pub const LIMB_CARD_WIDTH: f32 = 284.0;
 /// Font size of a name tag, in points.
