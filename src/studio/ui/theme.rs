@@ -113,7 +113,7 @@ pub const MENU_WIDTH: f32 = 230.0;
 /// Width of the command palette, in points.
 pub const PALETTE_WIDTH: f32 = 480.0;
 /// Width of a card of the tour, in points.
-pub const TOUR_WIDTH: f32 = 380.0;
+pub const TOUR_WIDTH: f32 = 332.0;
 /// Width of a column in the list of shortcuts, in points.
 pub const KEY_COLUMN_WIDTH: f32 = 320.0;
 /// Distance of messages from the top of the window, in points: below the bar over the stage, which reaches under them
