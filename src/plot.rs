@@ -2,6 +2,7 @@
 //! that is given as data.
 
 mod figure;
+mod labels;
 mod paint;
 
 use std::error::Error;
@@ -21,6 +22,7 @@ use crate::save::{CURVE_POINTS, Comparison, Picture};
 use crate::score::Rollout;
 
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
+pub use labels::beside_line;
 pub use paint::{figure, ramp, role_color};
 
 /// A plot could not be drawn.

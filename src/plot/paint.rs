@@ -8,6 +8,7 @@ use plotters::prelude::*;
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::labels::beside_line;
 use super::{Area, Axis, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
 use super::{Axes, TEXT_PIXELS, TITLE_PIXELS, draw, text};
 use crate::save::Picture;
@@ -22,6 +23,8 @@ const LEGEND_LINE: i32 = 30;
 const SAMPLE: i32 = 34;
 /// Lengths of the dashes and gaps of a dashed line, in pixels.
 const DASH: (i32, i32) = (10, 7);
+/// Space around the name of a mark on its plate, in pixels.
+const PLATE: f32 = 8.0;
 /// Height of the names below a chart, in pixels; they are rotated.
 const NAMES_HEIGHT: u32 = 250;
 /// Maximum length of a name, in characters; the rest is cut off.
@@ -199,11 +202,47 @@ fn paint(
         let ends = [(*chart.x.range.start(), mark.y), (*chart.x.range.end(), mark.y)];
         let dashes = DashedLineSeries::new(ends, DASH.0, DASH.1, color_of(Role::Others).into());
         axes.draw_series(dashes)?;
-        let weak = color_of(Role::Others);
-        let style = text().color(&weak);
-        let style = style.pos(Pos::new(HPos::Left, VPos::Bottom));
-        let name = Text::new(format!(" {}", mark.name), ends[0], style);
-        axes.draw_series([name])?;
+    }
+    mark_labels(area, &axes, chart)
+}
+
+/// Writes the names of the marks on plates beside their lines, where they cover least of the series.
+fn mark_labels(
+    area: &DrawingArea<BitMapBackend<'_>, Shift>,
+    axes: &Axes<'_, '_>,
+    chart: &Chart,
+) -> Result<(), Box<dyn Error>> {
+    let (left, top) = area.get_base_pixel();
+    let pixel = |x: f64, y: f64| {
+        let (x, y) = axes.plotting_area().map_coordinate(&(x, y));
+        [(x - left) as f32, (y - top) as f32]
+    };
+    let lines: Vec<Vec<[f32; 2]>> = (chart.series.iter())
+        .map(|series| match &series.shape {
+            Shape::Line(points) | Shape::Dashed(points) | Shape::Points(points) => {
+                points.iter().map(|&[x, y]| pixel(x, y)).collect()
+            }
+            Shape::Band(_) | Shape::Bars { .. } | Shape::Cells(_) => Vec::new(),
+        })
+        .collect();
+    let [from, to] = [
+        pixel(*chart.x.range.start(), *chart.y.range.end()),
+        pixel(*chart.x.range.end(), *chart.y.range.start()),
+    ];
+    let frame = [from[0], from[1], to[0], to[1]];
+    let weak = color_of(Role::Others);
+    let style = text().color(&weak);
+    let mut taken = Vec::new();
+    for mark in &chart.marks {
+        let (width, height) = area.estimate_text_size(&mark.name, &style)?;
+        let size = [width as f32 + PLATE * 2.0, height as f32 + PLATE];
+        let y = pixel(*chart.x.range.start(), mark.y)[1];
+        let place = beside_line(frame, size, y, &lines, &taken);
+        taken.push(place);
+        let [left, top, right, bottom] = place.map(|end| end as i32);
+        area.draw(&Rectangle::new([(left, top), (right, bottom)], WHITE.mix(0.85).filled()))?;
+        let corner = (left + PLATE as i32, top + PLATE as i32 / 2);
+        area.draw(&Text::new(mark.name.as_str(), corner, style.clone()))?;
     }
     Ok(())
 }

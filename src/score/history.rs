@@ -3,7 +3,7 @@
 
 use super::{Evaluation, Rollout, Trial};
 use crate::genome::Genome;
-use crate::world::{JointTorque, Vector};
+use crate::world::{JointTorque, Stairs, Vector};
 
 /// A rollout from its start to its end, with keyframes for seeking.
 pub struct KeyframeHistory {
@@ -17,6 +17,7 @@ pub struct KeyframeHistory {
     /// Positions of the middle limb's centre, sample by sample, the start first.
     middles_m: Vec<Vector>,
     landed_at_step: Option<u32>,
+    touched_stairs_at_step: Option<u32>,
     evaluation: Evaluation,
 }
 
@@ -48,6 +49,7 @@ impl KeyframeHistory {
             torques: Vec::new(),
             middles_m: vec![rollout.middle_m()],
             landed_at_step: None,
+            touched_stairs_at_step: None,
             evaluation: rollout.evaluation(),
         };
         while rollout.advance() {
@@ -66,6 +68,9 @@ impl KeyframeHistory {
             }
             if history.landed_at_step.is_none() && rollout.is_on_landing() {
                 history.landed_at_step = Some(step);
+            }
+            if history.touched_stairs_at_step.is_none() && touches_stairs(&rollout, &trial.stairs) {
+                history.touched_stairs_at_step = Some(step);
             }
         }
         history.evaluation = rollout.evaluation();
@@ -97,6 +102,11 @@ impl KeyframeHistory {
         self.landed_at_step
     }
 
+    /// Step after which a limb first touched the stairs, if one ever did.
+    pub fn touched_stairs_at_step(&self) -> Option<u32> {
+        self.touched_stairs_at_step
+    }
+
     /// Physics steps from one sample to the next.
     pub fn sample_steps(&self) -> u32 {
         self.sample_steps
@@ -111,6 +121,25 @@ impl KeyframeHistory {
     pub fn middles_m(&self) -> &[Vector] {
         &self.middles_m
     }
+}
+
+/// Distance before the first riser from which a contact is one with the stairs, in metres: limbs sink in a little.
+const RISER_MARGIN_M: f32 = 0.02;
+
+/// Whether a limb touches the stairs now.
+fn touches_stairs(rollout: &Rollout, stairs: &Stairs) -> bool {
+    let is_on_stairs = |at_m: Vector| {
+        let is_behind_riser = at_m.y >= stairs.first_riser_y_m - RISER_MARGIN_M;
+        stairs.steps > 0
+            && is_behind_riser
+            && at_m.y <= stairs.end_y_m()
+            && at_m.x.abs() <= stairs.width_m / 2.0
+    };
+    // Contacts are listed only where a limb is near the stairs, because listing them takes time.
+    let reach_m = rollout.body().length_m();
+    let is_near = rollout.middle_m().y >= stairs.first_riser_y_m - reach_m;
+    is_near
+        && rollout.simulation().contact_forces().iter().any(|contact| is_on_stairs(contact.at_m))
 }
 
 #[cfg(test)]

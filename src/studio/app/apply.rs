@@ -7,7 +7,9 @@ use bevy::prelude::*;
 use crate::studio::commands::files::FileCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
-use crate::studio::commands::{Command, LessonCommand, PlanCommand, RunCommand, WindowCommand};
+use crate::studio::commands::{
+    Command, LessonCommand, PlanCommand, PlayerCommand, RunCommand, WindowCommand,
+};
 use crate::studio::panels::help::tour::highlighted_panel;
 use crate::studio::scene::view_commands::ViewParams;
 use crate::studio::schedule::FrameSet;
@@ -91,9 +93,15 @@ fn apply(
                 if matches!(command, LessonCommand::Begin(_)) {
                     workspace.open(PanelKind::Lessons);
                 }
-                lessons
-                    .apply(command, &mut run, stage.on_show(), &mut history)
-                    .map(|show| stage.present_for_now(show))
+                let show = lessons.apply(command, &mut run, stage.on_show(), &mut history);
+                show.map(|show| {
+                    let is_new = show.is_some();
+                    stage.present_for_now(show);
+                    if is_new && lessons.awaits_guess() {
+                        // The race waits at its start until the reader has guessed.
+                        stage.apply_to_player(&PlayerCommand::Toggle);
+                    }
+                })
             }
             // A running batch operation is not in the history yet, and an earlier step would be the wrong one.
             Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),
@@ -167,10 +175,10 @@ mod tests {
     use super::*;
     use crate::save::library::SavePlace;
     use crate::save::shipped_champion;
+    use crate::studio::commands::StageCommand;
     use crate::studio::commands::library::LibraryCommand;
     use crate::studio::commands::pick::Pick;
     use crate::studio::commands::screenshot_area::ScreenshotArea;
-    use crate::studio::commands::{PlayerCommand, StageCommand};
     use crate::studio::scene::camera::CameraRig;
     use crate::studio::scene::overlays::Overlays;
     use crate::studio::stage::opening::NamedChampion;

@@ -224,8 +224,12 @@ pub(super) enum LessonCommand {
     Begin(usize),
     /// Show one of the lesson's scenes; the first is 0.
     ShowScene(usize),
-    /// Show the lesson's answer.
-    ShowAnswer,
+    /// Guess this answer to the scene's question and begin the experiment; the first answer is 0.
+    Guess(usize),
+    /// Begin the scene's experiment without a guess.
+    Watch,
+    /// Show the result of the scene now.
+    ShowResult,
     /// End the lesson and restore the state from before it.
     Leave,
 }

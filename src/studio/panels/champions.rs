@@ -1,5 +1,10 @@
 //! The best snake of every generation, newest first. A click replays it.
 
+mod columns;
+mod landing_times;
+
+use std::sync::Arc;
+
 use bevy_egui::egui;
 
 use super::shown::ShownChampion;
@@ -8,22 +13,30 @@ use crate::run::GenerationReport;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
-use crate::studio::ui::text_rows::{explain, row};
+use crate::studio::ui::text_rows::explain;
+
+use columns::{cells, heads};
+use landing_times::{LandingTime, LandingTimes};
 
 /// List of champions.
 #[derive(Debug, Default)]
 pub(super) struct ChampionsPanel {
     /// Cached summary of the reports, with the number of reports and the hash of the latest as its key.
     summary: Option<((usize, u64), ReportSummary)>,
+    /// Whether only generations that improved on all before are listed.
+    lists_better_only: bool,
+    times: LandingTimes,
 }
 
 /// Summary that is computed once for each new report instead of in every frame.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct ReportSummary {
     /// Number of generations that have a champion.
     champions: usize,
     /// Generation of the best champion of the run.
     best: Option<u32>,
+    /// Indices of the reports whose champions are better than all before.
+    better: Arc<[usize]>,
 }
 
 impl ReportSummary {
@@ -32,7 +45,19 @@ impl ReportSummary {
         let fitness = |champion: &Champion| champion.evaluation.fitness;
         // The earliest of equally fit champions wins.
         let best = champions.clone().rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
-        Self { champions: champions.count(), best: best.map(|champion| champion.origin.generation) }
+        let mut most = f32::MIN;
+        let is_better = |report: &GenerationReport| {
+            let fitness = report.champion.as_ref().map(fitness).filter(|fitness| *fitness > most);
+            most = fitness.unwrap_or(most);
+            fitness.is_some()
+        };
+        let all = reports.iter().map(is_better).enumerate();
+        let better = all.filter(|(_, is_better)| *is_better).map(|(index, _)| index).collect();
+        Self {
+            champions: champions.count(),
+            best: best.map(|champion| champion.origin.generation),
+            better,
+        }
     }
 }
 
@@ -47,8 +72,9 @@ impl ChampionsPanel {
         leaders: impl Fn(Option<u32>) -> usize,
         commands: &mut Vec<Command>,
     ) {
-        let ReportSummary { champions, best } = self.summary(reports);
-        ui.horizontal(|ui| {
+        let ReportSummary { champions, best, better } = self.summary(reports);
+        self.times.poll();
+        ui.horizontal_wrapped(|ui| {
             for (name, hint, is_on, needed, command) in [
                 (
                     "Race generations",
@@ -73,11 +99,16 @@ impl ChampionsPanel {
                 }
             }
         });
+        let hint =
+            "List only the generations whose best snake beat those of all generations before";
+        ui.checkbox(&mut self.lists_better_only, "Better ones only").on_hover_text(hint);
         if reports.is_empty() {
             explain(ui, "The best snake of each generation will appear here.");
         }
         let height = ui.spacing().interact_size.y;
-        let rows = opening.len() + reports.len();
+        let listed = if self.lists_better_only { better.len() } else { reports.len() };
+        let rows = opening.len() + listed;
+        heads(ui);
         let area = egui::ScrollArea::vertical().auto_shrink(false);
         // A run may have thousands of generations, so only visible rows are drawn.
         area.show_rows(ui, height, rows, |ui, seen| {
@@ -85,17 +116,25 @@ impl ChampionsPanel {
                 if let Some(saved) = opening.get(index) {
                     let is_shown = shown.contains(&ShownChampion::Opening(index));
                     let champion = &saved.loaded.champion;
-                    entry(ui, is_shown, &saved.name, champion, Pick::Opened(index), None, commands);
+                    // Another engine would reach the top at another time.
+                    let time = match saved.loaded.is_of_this_engine() {
+                        true => self.times.of(champion),
+                        false => LandingTime::None,
+                    };
+                    let row = Row { is_shown, name: &saved.name, champion, time };
+                    entry(ui, row, Pick::Opened(index), None, commands);
                     continue;
                 }
                 // The newest generation is listed first.
-                let Some(report) = reports.iter().rev().nth(index - opening.len()) else {
-                    continue;
-                };
+                let from_end = listed - 1 - (index - opening.len());
+                let place = if self.lists_better_only { better[from_end] } else { from_end };
+                let Some(report) = reports.get(place) else { continue };
                 let generation = report.generation;
                 let name = format!("Generation {generation}");
                 let Some(champion) = &report.champion else {
-                    row(ui, false, &name, "all disqualified");
+                    let cells = ["disqualified", "-", "-"].map(str::to_owned);
+                    let hint = "All snakes of this generation were disqualified";
+                    columns::row(ui, false, &name, &cells).on_hover_text(hint);
                     continue;
                 };
                 let individual = champion.origin.individual;
@@ -104,7 +143,9 @@ impl ChampionsPanel {
                 let is_best = best == Some(generation);
                 let name = if is_best { format!("{name}, best") } else { name };
                 let race = (leaders(Some(generation)) > 1).then_some(generation);
-                entry(ui, is_shown, &name, champion, pick, race, commands);
+                let time = self.times.of(champion);
+                let row = Row { is_shown, name: &name, champion, time };
+                entry(ui, row, pick, race, commands);
             }
         });
     }
@@ -113,26 +154,36 @@ impl ChampionsPanel {
 impl ChampionsPanel {
     fn summary(&mut self, reports: &[GenerationReport]) -> ReportSummary {
         let now = (reports.len(), reports.last().map_or(0, |report| report.hash));
-        match self.summary {
-            Some((key, summary)) if key == now => summary,
-            _ => self.summary.insert((now, ReportSummary::of(reports))).1,
+        match &self.summary {
+            Some((key, summary)) if *key == now => summary.clone(),
+            _ => self.summary.insert((now, ReportSummary::of(reports))).1.clone(),
         }
     }
+}
+
+/// Row of a champion.
+struct Row<'r> {
+    is_shown: bool,
+    name: &'r str,
+    champion: &'r Champion,
+    time: LandingTime,
 }
 
 /// Draws the row of a champion. A click shows it alone; Shift or Control adds it to the stage. Its context menu starts
 /// the next run from it, or races the best ten of its generation.
 fn entry(
     ui: &mut egui::Ui,
-    is_shown: bool,
-    name: &str,
-    champion: &Champion,
+    Row { is_shown, name, champion, time }: Row<'_>,
     pick: Pick,
     race: Option<u32>,
     commands: &mut Vec<Command>,
 ) {
-    let response = row(ui, is_shown, name, &champion.reached()).on_hover_ui(|ui| {
-        // These values distinguish champions that reached the same distance.
+    let response = columns::row(ui, is_shown, name, &cells(champion, time));
+    let response = response.on_hover_ui(|ui| {
+        ui.label(format!("{name}: {}", champion.reached()));
+        if let LandingTime::Known(time_s) = time {
+            ui.label(format!("Reached the top after {time_s:.2} s"));
+        }
         if let Some(effort) = champion.evaluation.effort {
             let (energy_kj, speed_m_s) = (effort.energy_j / 1000.0, effort.top_speed_m_s);
             ui.label(format!("Energy {energy_kj:.1} kJ, top speed {speed_m_s:.1} m/s"));
@@ -190,6 +241,7 @@ mod tests {
             let summary = panel.summary(reports);
             let expected = ReportSummary::of(reports);
             assert_eq!((summary.champions, summary.best), (expected.champions, expected.best));
+            assert_eq!(summary.better, expected.better);
         }
     }
 
@@ -224,5 +276,51 @@ mod tests {
             Command::Stage(StageCommand::RaceGenerations),
         ];
         assert_eq!(*harness.state(), commands);
+    }
+
+    #[test]
+    fn better_ones_only_lists_the_generations_that_improved_on_all_before() {
+        let mut settings = Settings::default();
+        settings.evolution.population = 4;
+        settings.trial.duration_s = 0.5;
+        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
+        let pool = LocalPool::new(1).expect("threads");
+        let first = experiment.run_generation(&pool, &RunControl::default()).expect("done");
+        let fitnesses = [1.0, 0.5, 2.0, 2.0, 3.0];
+        let reports: Vec<GenerationReport> = (1..)
+            .zip(fitnesses)
+            .map(|(generation, fitness)| {
+                let mut report = GenerationReport { generation, ..first.clone() };
+                let champion = report.champion.as_mut().expect("a healthy snake");
+                champion.origin.generation = generation;
+                champion.evaluation.fitness = fitness;
+                report
+            })
+            .collect();
+        let mut panel = ChampionsPanel::default();
+        let mut harness = Harness::builder().with_size(egui::vec2(360.0, 400.0)).build_ui_state(
+            |ui, commands| panel.ui(ui, &[], &reports, &[], |_| 2, commands),
+            Vec::new(),
+        );
+        let listed = |harness: &Harness<'_, Vec<Command>>| -> Vec<u32> {
+            let is_listed = |generation: &u32| {
+                let name = format!("Generation {generation}");
+                harness.query_by_label_contains(&name).is_some()
+            };
+            (1..=5).filter(is_listed).collect()
+        };
+        harness.run();
+        assert_eq!(listed(&harness), [1, 2, 3, 4, 5]);
+        for head in ["Fitness", "Time", "Energy"] {
+            assert!(harness.query_by_label(head).is_some(), "{head}");
+        }
+        assert!(harness.query_by_label_contains("Generation 5, best, 3.00 m, -, ").is_some());
+        harness.get_by_label("Better ones only").click();
+        harness.run();
+        assert_eq!(listed(&harness), [1, 3, 5]);
+        harness.get_by_label_contains("Generation 3").click();
+        harness.run();
+        let command = Command::Stage(StageCommand::Show(Pick::Generation(3)));
+        assert_eq!(*harness.state(), [command]);
     }
 }

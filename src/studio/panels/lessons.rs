@@ -5,7 +5,7 @@ use egui_plot::{Line, PlotPoints};
 
 use crate::score::Evaluation;
 use crate::studio::commands::{Command, LessonCommand};
-use crate::studio::state::lessons::{Found, LESSONS, LessonView};
+use crate::studio::state::lessons::{Found, LESSONS, LessonScene, LessonView, Progress};
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -63,29 +63,102 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         let is_shown = index == view.scene;
         let button = egui::Button::new(scene.label()).selected(is_shown);
         let size = egui::vec2(ui.available_width(), 0.0);
-        if ui.add_enabled(!view.is_busy, button.min_size(size)).clicked() {
+        let response = ui.add_enabled(!view.is_busy, button.min_size(size));
+        if response.on_disabled_hover_text("The runs are still in progress").clicked() {
             commands.push(Command::Lesson(LessonCommand::ShowScene(index)));
         }
     }
+    if let Some(scene) = lesson.scenes.get(view.scene) {
+        prediction(ui, scene, view, commands);
+    }
     heading(ui, "What to look for");
     ui.label(lesson.look_for);
-    if !view.lanes.is_empty() && view.has_tried {
-        lanes(ui, view.lanes);
-    }
-    if !view.runs.is_empty() {
-        runs(ui, view.runs, view.is_busy);
-    }
     heading(ui, "Conclusion");
-    if view.has_tried && !view.is_busy {
+    if view.shows_conclusion {
         ui.label(lesson.answer);
     } else {
-        ui.horizontal(|ui| {
-            explain(ui, "Try the experiment first.");
-            if ui.small_button("Show conclusion").clicked() {
-                commands.push(Command::Lesson(LessonCommand::ShowAnswer));
+        explain(ui, "It appears here once you have seen the result of an experiment.");
+    }
+    worksheet(ui, view.index, commands);
+}
+
+/// Question, guess and result of the selected scene.
+fn prediction(
+    ui: &mut egui::Ui,
+    scene: &LessonScene,
+    view: LessonView<'_>,
+    commands: &mut Vec<Command>,
+) {
+    let progress = view.progress;
+    let mut send = |command| commands.push(Command::Lesson(command));
+    if let Some(question) = scene.question() {
+        let palette = theme::of(ui);
+        ui.add_space(theme::GAP / 2.0);
+        palette.card(palette.accent).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            ui.label(egui::RichText::new(question.text).strong());
+            let guessed = progress.guess.and_then(|guess| scene.answers().get(guess).copied());
+            match (guessed, progress.comparison(scene)) {
+                (_, Some(comparison)) => {
+                    ui.label(comparison);
+                }
+                _ if !progress.has_begun => guess_buttons(ui, scene, &mut send),
+                (guessed, None) => {
+                    ui.label(match guessed {
+                        Some(guessed) => format!("Your guess: {guessed}"),
+                        None => "No guess".to_owned(),
+                    });
+                    if !view.is_busy {
+                        let text = "The result appears when the race has ended.";
+                        explain(ui, text);
+                        if ui.button("Show the result now").clicked() {
+                            send(LessonCommand::ShowResult);
+                        }
+                    }
+                }
             }
         });
     }
+    if progress.is_revealed && !progress.lanes.is_empty() {
+        lanes(ui, &progress.lanes);
+    }
+    if !progress.runs.is_empty() {
+        runs(ui, progress, view.is_busy);
+    }
+}
+
+/// The answers to guess, and a way to go on without a guess.
+fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, send: &mut impl FnMut(LessonCommand)) {
+    ui.horizontal_wrapped(|ui| {
+        for (index, answer) in scene.answers().into_iter().enumerate() {
+            let response = ui.button(answer);
+            // Other panels may have controls of the same name.
+            let name = format!("Guess: {answer}");
+            response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::Button, ui.is_enabled(), &name)
+            });
+            if response.on_hover_text("Guess this, and begin the experiment").clicked() {
+                send(LessonCommand::Guess(index));
+            }
+        }
+    });
+    let hint = "Begin the experiment; its result appears at the end";
+    if ui.small_button("Watch without a guess").on_hover_text(hint).clicked() {
+        send(LessonCommand::Watch);
+    }
+}
+
+/// The worksheet to print.
+fn worksheet(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
+    heading(ui, "Worksheet to print");
+    ui.horizontal_wrapped(|ui| {
+        explain(ui, &format!("One page: docs/worksheets/{}.md", index + 1));
+        let hint = "Copy its text (Markdown), to paste it into a text processor";
+        if ui.small_button("Copy worksheet").on_hover_text(hint).clicked() {
+            ui.ctx().copy_text(LESSONS[index].worksheet.to_owned());
+            commands.push(Command::Notify(format!("Worksheet {} copied.", index + 1)));
+        }
+    });
 }
 
 fn heading(ui: &mut egui::Ui, text: &str) {
@@ -113,8 +186,9 @@ fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
     });
 }
 
-/// Chart and table of the results of all runs.
-fn runs(ui: &mut egui::Ui, runs: &[Found], is_busy: bool) {
+/// Chart of all runs, and a table of their results once these may be seen.
+fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
+    let runs = &progress.runs;
     let palette = theme::of(ui);
     let colors = [palette.accent, palette.second];
     let best = |found: &Found| -> Vec<[f64; 2]> {
@@ -143,6 +217,9 @@ fn runs(ui: &mut egui::Ui, runs: &[Found], is_busy: bool) {
             let done = runs.iter().map(|found| found.reports.len()).min().unwrap_or(0);
             explain(ui, &format!("Generations finished: {done}"));
         });
+    }
+    if !progress.is_revealed {
+        return;
     }
     table(ui, "runs", &["", "Best", "Disqualified", "Run hash"], |ui| {
         for (found, color) in runs.iter().zip(colors) {
@@ -205,27 +282,60 @@ mod tests {
         }
     }
 
-    #[test]
-    fn lesson_buttons_run_an_experiment_show_the_conclusion_and_leave() {
+    /// Lesson after these commands.
+    fn after(commands: &[LessonCommand]) -> Lessons {
         let mut run = prepared_run();
         let mut of = Lessons::default();
-        let on_show = Show { champions: Vec::new(), mode: StageMode::Solo };
-        let mut apply = |of: &mut Lessons, command| {
-            let (show, history) = (on_show.clone(), &mut UndoHistory::default());
-            of.apply(&command, &mut run, show, history).expect("allowed");
-        };
-        apply(&mut of, LessonCommand::Begin(0));
-        let second = LESSONS[0].scenes[1].label();
-        assert_eq!(sent(&of, second), [Command::Lesson(LessonCommand::ShowScene(1))]);
-        assert_eq!(sent(&of, "Show conclusion"), [Command::Lesson(LessonCommand::ShowAnswer)]);
-        assert_eq!(sent(&of, "Next lesson"), [Command::Lesson(LessonCommand::Begin(1))]);
-        assert_eq!(sent(&of, "Back to my own run"), [Command::Lesson(LessonCommand::Leave)]);
-        apply(&mut of, LessonCommand::ShowScene(1));
-        // The conclusion is visible after an experiment.
+        for command in commands {
+            let show = Show { champions: Vec::new(), mode: StageMode::Solo };
+            of.apply(command, &mut run, show, &mut UndoHistory::default()).expect("allowed");
+        }
+        of
+    }
+
+    /// Whether the panel shows a label that contains `part`.
+    fn shows(of: &Lessons, part: &str) -> bool {
         let size = egui::vec2(theme::PANEL_WIDTH, 1600.0);
         let mut commands = Vec::new();
         let harness =
             Harness::builder().with_size(size).build_ui(|ui| lessons(ui, of.view(), &mut commands));
-        assert!(harness.query_by_label(LESSONS[0].answer).is_some());
+        harness.query_all_by_label_contains(part).next().is_some()
+    }
+
+    #[test]
+    fn lesson_buttons_guess_watch_change_the_scene_and_leave() {
+        let of = after(&[LessonCommand::Begin(0)]);
+        for (label, command) in [
+            (LESSONS[0].scenes[1].label(), LessonCommand::ShowScene(1)),
+            ("Guess: original", LessonCommand::Guess(1)),
+            ("Watch without a guess", LessonCommand::Watch),
+            ("Next lesson", LessonCommand::Begin(1)),
+            ("Back to my own run", LessonCommand::Leave),
+        ] {
+            assert_eq!(sent(&of, label), [Command::Lesson(command)], "{label}");
+        }
+        let guessed = after(&[LessonCommand::Begin(0), LessonCommand::Guess(1)]);
+        let now = Command::Lesson(LessonCommand::ShowResult);
+        assert_eq!(sent(&guessed, "Show the result now"), [now]);
+        let copied = Command::Notify("Worksheet 1 copied.".to_owned());
+        assert_eq!(sent(&of, "Copy worksheet"), [copied]);
+    }
+
+    #[test]
+    fn results_and_conclusion_are_hidden_until_the_reader_guesses_and_asks_for_them() {
+        let mut commands = vec![LessonCommand::Begin(0)];
+        for step in [LessonCommand::Guess(2), LessonCommand::ShowResult] {
+            let of = after(&commands);
+            assert!(!shows(&of, LESSONS[0].answer) && !shows(&of, "Ends at"), "before {step:?}");
+            commands.push(step);
+        }
+        let of = after(&commands);
+        assert!(shows(&of, LESSONS[0].answer) && shows(&of, "Ends at"));
+        assert!(shows(&of, "You guessed \"friction 5\", but \"original\" gets furthest"));
+        // The next question hides the conclusion again, and the first answer stays.
+        commands.push(LessonCommand::ShowScene(1));
+        assert!(!shows(&after(&commands), LESSONS[0].answer));
+        commands.push(LessonCommand::ShowScene(0));
+        assert!(shows(&after(&commands), "You guessed \"friction 5\""));
     }
 }

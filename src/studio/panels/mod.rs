@@ -43,7 +43,7 @@ use charts::{ChartsPanel, FitnessChart};
 use help::command_palette::CommandPalette;
 use help::key_list::key_overlay;
 use help::menu::menu;
-use help::tour::tour;
+use help::tour::Tour;
 use lessons::lessons;
 use library::LibraryPanel;
 use on_stage::OnStage;
@@ -67,6 +67,7 @@ struct Panels {
     world: WorldPanel,
     timeline: TimelinePanel,
     palette: CommandPalette,
+    tour: Tour,
     /// Rectangle of each panel in this frame, in points.
     panel_rects: Vec<(PanelKind, egui::Rect)>,
     is_styled: bool,
@@ -86,6 +87,7 @@ impl FromWorld for Panels {
             world: WorldPanel::default(),
             timeline: TimelinePanel::default(),
             palette: CommandPalette::default(),
+            tour: Tour::default(),
             panel_rects: Vec::new(),
             is_styled: false,
             letters: theme::GlyphWarmUp::default(),
@@ -218,7 +220,8 @@ fn draw(
             let target = highlighted_panel(step)
                 .and_then(|kind| panels.panel_rects.iter().find(|(of, _)| *of == kind))
                 .map(|(_, place)| *place);
-            tour(&context, step, target, &mut commands);
+            let is_playing = data.on_stage.playback.is_playing();
+            panels.tour.ui(&context, step, target, is_playing, &mut commands);
         }
         None => {}
     }

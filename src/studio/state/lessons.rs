@@ -2,6 +2,9 @@
 //! run is paused meanwhile.
 
 mod catalogue;
+mod prediction;
+#[cfg(test)]
+mod worksheets;
 
 use bevy::prelude::*;
 
@@ -9,15 +12,18 @@ use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
 use crate::evolve::{Champion, RunPlan};
 use crate::run::{GenerationReport, ParallelRuns, ParallelRunsEvent};
-use crate::score::{Evaluation, evaluate};
+use crate::score::evaluate;
 use crate::studio::commands::LessonCommand;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::ui::notifications::Notices;
 
-use catalogue::{LessonScene, Side, champions, plan};
+use catalogue::{Side, champions, plan};
 
-pub(crate) use catalogue::LESSONS;
+pub(crate) use catalogue::{LESSONS, LessonScene};
+pub(crate) use prediction::Progress;
 
 /// The current lesson, if any.
 #[derive(Resource, Debug, Default)]
@@ -30,14 +36,12 @@ pub(crate) struct Lessons {
 struct Current {
     /// Index of the lesson.
     index: usize,
-    /// Index of the scene on the stage.
+    /// Index of the selected scene.
     scene: usize,
-    /// Name and result of each lane of the scene.
-    lanes: Vec<(String, Evaluation)>,
-    /// Results of the scene's runs.
-    runs: Vec<Found>,
+    /// Guess and results of each scene. They stay while other scenes or panels are shown.
+    progress: Vec<Progress>,
+    /// Runs of the selected scene that are in progress.
     under_way: Option<ParallelRuns>,
-    has_tried: bool,
     own: Own,
 }
 
@@ -75,29 +79,36 @@ enum Pace {
 pub(crate) struct LessonView<'l> {
     /// Index of the lesson.
     pub index: usize,
-    /// Index of the scene on the stage.
+    /// Index of the selected scene.
     pub scene: usize,
-    /// Name and result of each lane.
-    pub lanes: &'l [(String, Evaluation)],
-    /// Results of the runs.
-    pub runs: &'l [Found],
+    /// Guess and results of that scene.
+    pub progress: &'l Progress,
     /// Whether runs are in progress.
     pub is_busy: bool,
-    /// Whether the user has tried something, so that the conclusion may be shown.
-    pub has_tried: bool,
+    /// Whether the conclusion may be seen: the selected scene leaves no question open, and an experiment was made.
+    pub shows_conclusion: bool,
 }
 
 impl Lessons {
     /// The current lesson.
     pub fn view(&self) -> Option<LessonView<'_>> {
-        self.current.as_ref().map(|current| LessonView {
+        let current = self.current.as_ref()?;
+        let progress = current.progress.get(current.scene)?;
+        let asks = current.scene().is_some_and(|scene| scene.question().is_some());
+        let is_answered = !asks || progress.is_revealed;
+        let has_tried = current.progress.iter().any(|progress| progress.is_revealed);
+        Some(LessonView {
             index: current.index,
             scene: current.scene,
-            lanes: &current.lanes,
-            runs: &current.runs,
+            progress,
             is_busy: current.under_way.is_some(),
-            has_tried: current.has_tried,
+            shows_conclusion: is_answered && has_tried && current.under_way.is_none(),
         })
+    }
+
+    /// Whether the selected scene waits for a guess.
+    pub fn awaits_guess(&self) -> bool {
+        self.current.as_ref().is_some_and(Current::awaits_guess)
     }
 
     /// Executes a command; returns what the stage shows then. `on_show` is on it now, and returns after the lesson.
@@ -113,12 +124,11 @@ impl Lessons {
     ) -> Result<Option<Show>, String> {
         match command {
             LessonCommand::Begin(index) => self.begin(*index, run, on_show, history),
-            LessonCommand::ShowScene(scene) => {
-                self.allow_answer();
-                self.show(*scene)
-            }
-            LessonCommand::ShowAnswer => {
-                self.allow_answer();
+            LessonCommand::ShowScene(scene) => self.show(*scene),
+            LessonCommand::Guess(answer) => self.try_it(Some(*answer)),
+            LessonCommand::Watch => self.try_it(None),
+            LessonCommand::ShowResult => {
+                self.reveal();
                 Ok(None)
             }
             LessonCommand::Leave => self.leave(run, history),
@@ -159,19 +169,34 @@ impl Lessons {
         self.current = Some(Current {
             index,
             scene: 0,
-            lanes: Vec::new(),
-            runs: Vec::new(),
+            progress: LESSONS[index].scenes.iter().map(|_| Progress::default()).collect(),
             under_way: None,
-            has_tried: false,
             own,
         });
         self.show(0)
     }
 
-    /// Shows the answer from now on.
-    fn allow_answer(&mut self) {
-        if let Some(current) = &mut self.current {
-            current.has_tried = true;
+    /// Begins the experiment of the selected scene, with a guess or without. A first guess stands.
+    fn try_it(&mut self, guess: Option<usize>) -> Result<Option<Show>, String> {
+        let Some(current) = &mut self.current else { return Ok(None) };
+        let number = current.scene;
+        let answers = current.scene().map_or(0, |scene| scene.answers().len());
+        let Some(progress) = current.progress.get_mut(number) else { return Ok(None) };
+        if progress.has_begun {
+            return Ok(None);
+        }
+        progress.guess = guess.filter(|answer| *answer < answers);
+        progress.has_begun = true;
+        self.show(number)
+    }
+
+    /// Shows the result of the selected scene, unless that is not known yet.
+    fn reveal(&mut self) {
+        if let Some(current) = &mut self.current
+            && current.under_way.is_none()
+            && let Some(progress) = current.progress.get_mut(current.scene)
+        {
+            progress.is_revealed = true;
         }
     }
 
@@ -195,32 +220,32 @@ impl Lessons {
         Ok(Some(Show { champions: own.champions, mode: own.mode }))
     }
 
-    /// Shows a scene, or starts its runs.
+    /// Selects a scene and shows its snakes. Its runs start once the reader has guessed.
     fn show(&mut self, number: usize) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
         let Some(scene) = LESSONS[current.index].scenes.get(number) else { return Ok(None) };
         (current.scene, current.under_way) = (number, None);
+        let progress = &mut current.progress[number];
         match scene {
             LessonScene::Lanes { lanes, champion, .. } => {
                 let champions = champions(champion, lanes)?;
-                current.runs.clear();
-                current.lanes = champions
-                    .iter()
-                    .map(|staged| {
-                        let evaluation = evaluate(&staged.champion().genome, staged.trial());
-                        (staged.label().to_owned(), evaluation)
-                    })
-                    .collect();
-                Ok(Some(if champions.len() > 1 {
-                    Show::race(champions)
-                } else {
-                    Show { champions, mode: StageMode::Solo }
-                }))
+                if progress.lanes.is_empty() {
+                    progress.lanes = champions
+                        .iter()
+                        .map(|staged| {
+                            let evaluation = evaluate(&staged.champion().genome, staged.trial());
+                            (staged.label().to_owned(), evaluation)
+                        })
+                        .collect();
+                }
+                Ok(Some(Show::race(champions)))
             }
+            // Finished runs are not repeated.
+            LessonScene::Runs { .. } if progress.is_revealed => Ok(progress.race()),
+            LessonScene::Runs { .. } if !progress.has_begun => Ok(None),
             LessonScene::Runs { runs, .. } => {
                 let plans = runs.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
-                current.lanes.clear();
-                current.runs = runs.iter().map(found).collect();
+                progress.runs = runs.iter().map(found).collect();
                 let started = ParallelRuns::start(plans);
                 current.under_way = Some(
                     started.map_err(|error| format!("The runs could not be started: {error}"))?,
@@ -233,31 +258,68 @@ impl Lessons {
     /// Handles events of the lesson's runs. Once all are finished, returns the best champion of each.
     fn take_in(&mut self) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
+        let Some(progress) = current.progress.get_mut(current.scene) else { return Ok(None) };
         while let Some(event) = current.under_way.as_ref().and_then(ParallelRuns::poll) {
             match event {
                 ParallelRunsEvent::Generation { run, report } => {
-                    current.runs[run].reports.push(*report)
+                    progress.runs[run].reports.push(*report)
                 }
                 ParallelRunsEvent::Finished { run, run_hash } => {
-                    current.runs[run].run_hash = Some(run_hash)
+                    progress.runs[run].run_hash = Some(run_hash)
                 }
                 ParallelRunsEvent::Failed(problem) => {
                     current.under_way = None;
+                    // The reader can try again.
+                    progress.has_begun = false;
                     return Err(format!("The lesson's runs failed: {problem}"));
                 }
             }
         }
-        let is_over = current.runs.iter().all(|found| found.run_hash.is_some());
+        let is_over = progress.runs.iter().all(|found| found.run_hash.is_some());
         if current.under_way.is_none() || !is_over {
             return Ok(None);
         }
         current.under_way = None;
-        let best = current.runs.iter().filter_map(|found| {
+        progress.is_revealed = true;
+        Ok(progress.race())
+    }
+
+    /// Reveals the result once the reader has watched the selected scene to its end: the names of the lanes that have
+    /// ended undisturbed are those of the scene.
+    fn see(&mut self, ended: &[Option<&str>]) {
+        let is_seen = self.current.as_ref().is_some_and(|current| {
+            let shown = current.progress.get(current.scene).map_or(&[][..], |of| &of.lanes);
+            let names = shown.iter().map(|(name, _)| Some(name.as_str()));
+            !shown.is_empty() && names.eq(ended.iter().copied())
+        });
+        if is_seen {
+            self.reveal();
+        }
+    }
+}
+
+impl Current {
+    /// The selected scene.
+    fn scene(&self) -> Option<&'static LessonScene> {
+        LESSONS[self.index].scenes.get(self.scene)
+    }
+
+    fn awaits_guess(&self) -> bool {
+        let asks = self.scene().is_some_and(|scene| scene.question().is_some());
+        let progress = self.progress.get(self.scene);
+        asks && progress.is_some_and(|of| !of.has_begun && !of.is_revealed)
+    }
+}
+
+impl Progress {
+    /// The best snakes of the finished runs, side by side.
+    fn race(&self) -> Option<Show> {
+        let best = self.runs.iter().filter_map(|found| {
             let champion = found.best()?;
             Some(StagedChampion::from_lesson(champion).named(found.name.clone()))
         });
         let champions: Vec<StagedChampion> = best.collect();
-        Ok((!champions.is_empty()).then(|| Show::race(champions)))
+        (!champions.is_empty()).then(|| Show::race(champions))
     }
 }
 
@@ -275,16 +337,26 @@ pub(crate) fn plugin(app: &mut App) {
 
 fn take_in(
     mut lessons: ResMut<Lessons>,
+    lanes: Query<&Lane>,
+    mut playback: ResMut<Playback>,
     mut show: MessageWriter<Show>,
     mut notices: ResMut<Notices>,
 ) {
     if lessons.current.is_none() {
         return;
     }
+    let mut lanes: Vec<&Lane> = lanes.iter().collect();
+    lanes.sort_by_key(|lane| lane.number());
+    let is_seen = |lane: &Lane| lane.is_over() && !lane.is_disturbed();
+    let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged().label()));
+    let ended: Vec<Option<&str>> = names.collect();
+    lessons.see(&ended);
     match lessons.take_in() {
-        Ok(shown) => {
-            show.write_batch(shown);
+        Ok(Some(shown)) => {
+            playback.restart();
+            show.write(shown);
         }
+        Ok(None) => {}
         Err(problem) => notices.problem(problem),
     }
 }

@@ -86,6 +86,18 @@ pub(crate) fn axis_name(ui: &egui::Ui, text: &str) -> egui::RichText {
     egui::RichText::new(text).color(theme::of(ui).text_weak).small()
 }
 
+/// Title of a vertical axis, above its upper end, where it is read without turning the head.
+pub(crate) fn y_title(ui: &mut egui::Ui, text: &str) -> egui::Response {
+    ui.add(egui::Label::new(axis_name(ui, text)).truncate())
+}
+
+/// Title of a horizontal axis, below its middle.
+pub(crate) fn x_title(ui: &mut egui::Ui, text: &str) {
+    ui.with_layout(egui::Layout::top_down(egui::Align::Center), |ui| {
+        ui.add(egui::Label::new(axis_name(ui, text)).truncate());
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -115,7 +115,7 @@ pub const MENU_WIDTH: f32 = 230.0;
 /// Width of the command palette, in points.
 pub const PALETTE_WIDTH: f32 = 480.0;
 /// Width of a card of the tour, in points.
-pub const TOUR_WIDTH: f32 = 380.0;
+pub const TOUR_WIDTH: f32 = 332.0;
 /// Width of a column in the list of shortcuts, in points.
 pub const KEY_COLUMN_WIDTH: f32 = 320.0;
 /// Distance of messages from the top of the window, in points: below the bar over the stage, which reaches under them
@@ -124,7 +124,7 @@ pub const NOTICES_TOP: f32 = 84.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torque strip under the stage, in points.
-pub const TORQUE_STRIP_HEIGHT: f32 = 72.0;
+pub const TORQUE_STRIP_HEIGHT: f32 = 88.0;
 /// Width of the card with a limb's numbers, in points.
 pub const LIMB_CARD_WIDTH: f32 = 284.0;
 /// Font size of a name tag, in points.

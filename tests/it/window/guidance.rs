@@ -14,10 +14,18 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
     studio.open_panel("Lessons");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
+    // The race waits at its start for a guess, and the conclusion until the result was seen.
+    studio.wait_for_title(", stopped");
     assert!(studio.find(|place| place.label.contains(ANSWER)).is_none());
-    studio.scroll_and_click("Button", "A little less, a little more");
-    studio.place_with("friction 0.7");
+    studio.scroll_and_click("Button", "Guess: original");
+    studio.wait_for_title_without(", stopped");
+    studio.scroll_and_click("Button", "Show the result now");
+    studio.place_with("You guessed \"original\"");
     studio.place_with(ANSWER);
+    // Another panel in between loses nothing.
+    studio.open_panel("World");
+    studio.open_panel("Lessons");
+    studio.place_with("You guessed \"original\"");
     studio.scroll_and_click("Button", "Back to my own run");
     studio.wait_for_title(&title);
     studio.open_panel("World");
@@ -32,6 +40,7 @@ fn the_fifth_lesson_repeats_a_run_bit_for_bit() {
     studio.scroll_and_click("Button", "Begin lesson 5");
     studio.wait_for_title("showing a lesson");
     studio.scroll_and_click("Button", "The same run twice");
+    studio.scroll_and_click("Button", "Guess: the same hash");
     let hashes = || -> Vec<String> {
         let is_hash =
             |text: &str| text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());

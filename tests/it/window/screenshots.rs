@@ -145,6 +145,9 @@ impl Album {
         studio.open_panel("Lessons");
         studio.click_label("Begin lesson 1");
         studio.wait_for_title("showing a race of 3");
+        // The race waits for a guess.
+        studio.scroll_and_click("Button", "Guess: original");
+        studio.wait_for_title_without(", stopped");
         studio.key("space");
         studio.wait_for_title(", stopped");
         studio.seek(0.6);

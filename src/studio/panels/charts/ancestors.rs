@@ -30,7 +30,7 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
     let mut series = vec![
         Series::new("all other snakes", Role::Others, Shape::Points(others(ancestry))),
         Series::new("second parents", Role::Second, Shape::Points(seconds)),
-        Series::new("the best and its ancestors", Role::First, Shape::Line(line.clone())),
+        best(ancestry, line.clone()),
     ];
     // Empty series need no legend entry.
     series.retain(|series| match &series.shape {
@@ -84,6 +84,23 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
     let hits = ancestry.line.iter().chain(&ancestry.others).filter_map(|of| hit(of)).collect();
     let note = note_on_start(ancestry);
     ChartView::new(Figure { note, ..Figure::of("Ancestors of the best", chart) }, vec![hits])
+}
+
+/// The best snake with its ancestors, if it has any.
+fn best(ancestry: &Ancestry, line: Vec<[f64; 2]>) -> Series {
+    match ancestry.line.as_slice() {
+        [alone] => {
+            let name = match alone.parents {
+                Parents::Distribution => "the best snake (CMA-ES: no ancestors)",
+                Parents::None => "the best snake (random: no ancestors)",
+                Parents::One(_) | Parents::Two(..) | Parents::Unknown => {
+                    "the best snake (ancestors not recorded)"
+                }
+            };
+            Series::new(name, Role::First, Shape::Points(line))
+        }
+        _ => Series::new("the best and its ancestors", Role::First, Shape::Line(line)),
+    }
 }
 
 /// Sample of all fitness values that is small enough to draw.
@@ -174,5 +191,8 @@ mod tests {
         let (view, _) = shown(StrategyKind::CmaEs);
         assert_eq!(view.hits[0].len(), 1, "the best alone");
         assert!(view.figure.note.contains("no snake has parents"), "{}", view.figure.note);
+        let names: Vec<&str> = view.figure.listed().iter().map(|of| of.name.as_str()).collect();
+        assert!(names.contains(&"the best snake (CMA-ES: no ancestors)"), "{names:?}");
+        assert!(!names.contains(&"the best and its ancestors"), "{names:?}");
     }
 }

@@ -2,11 +2,12 @@
 
 use bevy_egui::egui;
 
+use super::legend::click_hint;
 use crate::evolve::{Archive, Descriptor};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownChampion;
-use crate::studio::ui::plot_axes::{axis_name, number};
+use crate::studio::ui::plot_axes::{number, y_title};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
@@ -32,7 +33,8 @@ pub(crate) fn archive_map(
     if min > max {
         return explain(ui, "All snakes so far were disqualified.");
     }
-    ui.label(axis_name(ui, archive.y.label()));
+    click_hint(ui, "Click a coloured cell to replay its snake.");
+    y_title(ui, archive.y.label());
     let size = egui::vec2(ui.available_width(), height);
     let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
     let map =

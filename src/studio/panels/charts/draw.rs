@@ -1,23 +1,26 @@
 //! Draws charts: series, legend, hover texts and clicks.
 
 use bevy_egui::egui;
-use bevy_egui::egui::{Color32, Pos2, Sense, Stroke};
+use bevy_egui::egui::{Color32, Pos2, Stroke};
 use egui_plot::{
     Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints, PlotTransform,
-    PlotUi, Points, Polygon, Text,
+    PlotUi, Points, Polygon,
 };
 
 use super::downsample::DrawnSeries;
+use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::evolve::IndividualId;
-use crate::plot::{Chart, Figure, Role, Series, Shape};
+use crate::plot::{Chart, Role, Series, Shape, beside_line};
 use crate::studio::commands::{Command, StageCommand};
-use crate::studio::ui::plot_axes::{axis_name, bounds, fixed_plot};
+use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 
 /// Maximum distance between a click and a point, in screen points.
 const CLICK_DISTANCE: f32 = 16.0;
+/// Space around the name of a mark on its plate, in points.
+const MARK_PADDING: egui::Vec2 = egui::vec2(4.0, 1.0);
 /// Maximum number of points on a line that are marked individually.
 const MAX_MARKED_POINTS: usize = 30;
 
@@ -30,7 +33,7 @@ pub(super) fn draw(
     shown: Option<IndividualId>,
     commands: &mut Vec<Command>,
 ) {
-    legend(ui, &view.figure);
+    legend(ui, view);
     let figure = &view.figure;
     let count = figure.charts.len();
     let width = ui.available_width();
@@ -84,11 +87,10 @@ impl ChartPart<'_> {
     ) {
         let chart = self.chart;
         let has_names = !chart.x.names.is_empty();
-        let over = if has_names { chart.x.name.clone() } else { chart.x.label() };
         let name = if chart.name.is_empty() { String::new() } else { chart.name.clone() + ": " };
-        let text = format!("{name}{} over {}", chart.y.label(), lower(&over));
-        let line = ui.add(egui::Label::new(axis_name(ui, &text)).truncate());
-        let left = (height - line.rect.height() - theme::GAP).max(theme::MIN_CHART_HEIGHT);
+        let above = y_title(ui, &format!("{name}{}", chart.y.label()));
+        let titles = 2.0 * (above.rect.height() + ui.spacing().item_spacing.y);
+        let left = (height - titles).max(theme::MIN_CHART_HEIGHT);
         let palette = theme::of(ui);
         // This module draws the hover text itself.
         let plot =
@@ -106,11 +108,9 @@ impl ChartPart<'_> {
             for mark in &chart.marks {
                 let line = HLine::new(&mark.name, mark.y).color(palette.text_weak);
                 plot.hline(line.allow_hover(false).style(LineStyle::dashed_dense()));
-                let at = PlotPoint::new(*chart.x.range.start(), mark.y);
-                let words = axis_text(&format!(" {}", mark.name), palette.text_weak);
-                plot.text(Text::new(&mark.name, at, words).anchor(egui::Align2::LEFT_BOTTOM));
             }
         });
+        x_title(ui, &if has_names { chart.x.name.clone() } else { chart.x.label() });
         let response = plot.response;
         let label = match chart.name.as_str() {
             "" => format!("Chart: {}", self.title),
@@ -120,6 +120,7 @@ impl ChartPart<'_> {
             egui::WidgetInfo::labeled(egui::WidgetType::Other, ui.is_enabled(), &label)
         });
         let painter = ui.painter_at(response.rect);
+        self.mark_labels(&painter, &plot.transform, palette);
         let on_stage = hits.iter().find(|hit| shown.is_some() && hit.place == shown);
         if let Some(hit) = on_stage {
             ring(&painter, &plot.transform, hit, palette.second);
@@ -144,18 +145,39 @@ impl ChartPart<'_> {
         };
         response.on_hover_text_at_pointer(hit.words() + replay);
     }
+
+    /// Writes the names of the marks on plates beside their lines, where they cover least of the series.
+    fn mark_labels(&self, painter: &egui::Painter, transform: &PlotTransform, palette: &Palette) {
+        if self.chart.marks.is_empty() {
+            return;
+        }
+        let lines: Vec<Vec<[f32; 2]>> = self.drawn.iter().map(|of| pixels(of, transform)).collect();
+        let frame = transform.frame();
+        let area = [frame.left(), frame.top(), frame.right(), frame.bottom()];
+        let mut taken = Vec::new();
+        for mark in &self.chart.marks {
+            let font = egui::FontId::proportional(theme::SMALL_SIZE);
+            let text = painter.layout_no_wrap(mark.name.clone(), font, palette.text_weak);
+            let size = text.size() + MARK_PADDING * 2.0;
+            let y = transform.position_from_point(&PlotPoint::new(0.0, mark.y)).y;
+            let place = beside_line(area, size.into(), y, &lines, &taken);
+            taken.push(place);
+            let plate = egui::Rect::from_min_size(egui::pos2(place[0], place[1]), size);
+            painter.rect_filled(plate, 3.0, palette.panel.gamma_multiply(0.85));
+            painter.galley(plate.min + MARK_PADDING, text, palette.text_weak);
+        }
+    }
 }
 
-/// Lowercases the first letter only, because units are case-sensitive.
-fn lower(name: &str) -> String {
-    let mut letters = name.chars();
-    letters
-        .next()
-        .map_or(String::new(), |first| first.to_lowercase().collect::<String>() + letters.as_str())
-}
-
-fn axis_text(text: &str, color: Color32) -> egui::RichText {
-    egui::RichText::new(text).color(color).small()
+/// Points of a series on the screen.
+fn pixels(drawn: &DrawnSeries, transform: &PlotTransform) -> Vec<[f32; 2]> {
+    match drawn {
+        DrawnSeries::Points(points) => {
+            points.iter().map(|point| transform.position_from_point(point).into()).collect()
+        }
+        // Labels may cover areas, which stay visible around their plates.
+        DrawnSeries::Band(_) | DrawnSeries::AsItIs => Vec::new(),
+    }
 }
 
 /// Adds a series to a plot. It borrows the points, because there may be many in every frame.
@@ -240,66 +262,6 @@ fn ring(painter: &egui::Painter, transform: &PlotTransform, hit: &ChartHit, colo
         HitShape::Area([left, right, bottom, top]) => {
             let area = egui::Rect::from_two_pos(place([left, bottom]), place([right, top]));
             painter.rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
-        }
-    }
-}
-
-/// Draws the legend, which wraps between names. Marks are labelled in the chart.
-fn legend(ui: &mut egui::Ui, figure: &Figure) {
-    let color = theme::of(ui).text;
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = egui::vec2(theme::GAP, theme::GAP / 2.0);
-        for series in figure.listed() {
-            let font = egui::TextStyle::Small.resolve(ui.style());
-            let sample_size = egui::vec2(theme::SAMPLE_WIDTH, theme::SMALL_SIZE);
-            let left = sample_size.x + theme::GAP / 2.0;
-            // A long name wraps over several lines.
-            let room = (ui.max_rect().width() - left).max(theme::SAMPLE_WIDTH);
-            let name = ui.painter().layout(series.name.clone(), font, color, room);
-            let size = egui::vec2(left + name.size().x, name.size().y);
-            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-            response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &series.name)
-            });
-            sample(ui, egui::Align2::LEFT_CENTER.align_size_within_rect(sample_size, rect), series);
-            ui.painter().galley(egui::pos2(rect.left() + left, rect.top()), name, color);
-        }
-    });
-}
-
-/// Draws a sample of a series for the legend.
-fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
-    let color = theme::of(ui).role(series.role);
-    let (painter, y) = (ui.painter(), rect.center().y);
-    let ends = [egui::pos2(rect.left(), y), egui::pos2(rect.right(), y)];
-    match &series.shape {
-        Shape::Line(_) => {
-            painter.line_segment(ends, Stroke::new(2.0, color));
-        }
-        Shape::Dashed(_) => {
-            painter.extend(egui::Shape::dashed_line(&ends, Stroke::new(1.5, color), 5.0, 3.0));
-        }
-        Shape::Points(_) => {
-            painter.circle_filled(rect.center(), 3.0, color);
-        }
-        Shape::Band(_) => {
-            painter.rect_filled(rect.shrink(1.0), 0.0, color.gamma_multiply(0.3));
-        }
-        Shape::Bars { .. } => {
-            painter.rect_filled(rect.shrink(1.0), 0.0, color);
-        }
-        Shape::Cells(_) => {
-            let shades = 12;
-            let width = rect.width() / shades as f32;
-            for shade in 0..shades {
-                let left = rect.left() + width * shade as f32;
-                let part = egui::Rect::from_x_y_ranges(left..=left + width, rect.y_range());
-                painter.rect_filled(
-                    part,
-                    0.0,
-                    theme::palette::ramp(shade as f32 / (shades - 1) as f32),
-                );
-            }
         }
     }
 }

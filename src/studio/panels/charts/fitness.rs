@@ -13,6 +13,8 @@ use crate::studio::commands::pick::Pick;
 const MIN_GENERATIONS: f64 = 6.0;
 /// Distance below the landing from which the landing is shown, in metres.
 const LANDING_SHOWN_BELOW_M: f64 = 6.0;
+/// Space above the highest value, as a share of the range of values.
+const HEADROOM: f64 = 0.12;
 
 /// Chart of the finished generations.
 pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartView {
@@ -108,9 +110,11 @@ impl ChartBounds {
             (min, max) = (0.0, 1.0);
         }
         let margin = ((max - min) * 0.06).max(0.5);
+        // A best line that has reached the top of the stairs would else run along the frame.
+        let headroom = ((max - min) * HEADROOM).max(1.0);
         let last = (finished as f64).max(MIN_GENERATIONS);
         let aside = (last - 1.0) * 0.04;
-        Self { x: 1.0 - aside..=last + aside, y: min - margin..=max + margin, marks }
+        Self { x: 1.0 - aside..=last + aside, y: min - margin..=max + headroom, marks }
     }
 }
 
@@ -147,6 +151,8 @@ mod tests {
         assert!(late.x.contains(&120.0) && late.y.contains(&29.0));
         assert_eq!(late.marks, [("first step", 3.0), ("landing", 23.0)]);
         assert_eq!(of(20, &[10.0]).marks.len(), 1, "far below the landing");
+        let height = late.y.end() - late.y.start();
+        assert!(late.y.end() - 29.0 > height * 0.09, "the best line keeps off the frame: {late:?}");
     }
 
     #[test]

@@ -11,7 +11,9 @@ use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::Quartiles;
 use crate::run::compare::ComparisonRow;
 use crate::save::{CURVE_POINTS, Comparison};
-use crate::studio::ui::plot_axes::{axis_name, bounds, fixed_plot, number, padded_range};
+use crate::studio::ui::plot_axes::{
+    axis_name, bounds, fixed_plot, number, padded_range, x_title, y_title,
+};
 use crate::studio::ui::theme;
 
 /// An open comparison, with the selected controller.
@@ -155,7 +157,7 @@ impl CurvesPanel {
 
     fn plot(&self, ui: &mut egui::Ui, height: f32) {
         let y_unit = if self.unit.is_empty() { "" } else { " (m)" };
-        ui.label(axis_name(ui, &format!("Best fitness so far{y_unit} over evaluations")))
+        y_title(ui, &format!("Best fitness so far{y_unit}"))
             .on_hover_text("Line: median over the seeds. Band: middle 50 % of the seeds");
         let ends = self.shown_methods().flat_map(|of| of.curve.iter());
         let ends = ends.flat_map(|(_, quartiles)| [quartiles.low, quartiles.high]);
@@ -195,6 +197,7 @@ impl CurvesPanel {
                 plot.line(line.color(palette.strategy(method.strategy)).width(2.0));
             }
         });
+        x_title(ui, "Evaluations");
     }
 
     fn table(&self, ui: &mut egui::Ui) {

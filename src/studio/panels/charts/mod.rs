@@ -7,6 +7,7 @@ mod downsample;
 mod draw;
 mod fitness;
 mod learning_curves;
+mod legend;
 mod parents;
 mod pareto_front;
 mod runs;

@@ -75,8 +75,8 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     }
     let last = (names.len() - 1) as f64;
     let aside = (last * 0.03).max(0.3);
-    let x = Axis { names, ..Axis::new("Value", "", -aside..=last + aside) };
-    let y = Axis::new("Position in the allowed range, 0 minimum and 1 maximum", "", -0.05..=1.05);
+    let x = Axis { names, ..Axis::new("Gene", "", -aside..=last + aside) };
+    let y = Axis::new("Value within its range (0 lowest, 1 highest)", "", -0.05..=1.05);
     let chart = Chart { name: String::new(), x, y, series, marks: Vec::new() };
     let left_out = match surplus {
         0 => String::new(),

@@ -5,11 +5,12 @@ use std::ops::RangeInclusive;
 use bevy_egui::egui;
 use egui_plot::{HoverPosition, Line, PlotPoint, PlotPoints, Points};
 
+use super::legend::click_hint;
 use crate::evolve::{Front, FrontMember};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownChampion;
-use crate::studio::ui::plot_axes::{axis_name, bounds, fixed_plot, number, padded_range};
+use crate::studio::ui::plot_axes::{bounds, fixed_plot, number, padded_range, x_title, y_title};
 use crate::studio::ui::theme;
 
 /// Draws a front that has members, `height` points high, and collects the user's commands.
@@ -23,7 +24,8 @@ pub(crate) fn front_plot(
     let members: Vec<&FrontMember> = front.members().collect();
     let points: Vec<[f64; 2]> = members.iter().map(|member| place(member)).collect();
     let Some((x_range, y_range)) = ranges(&points) else { return };
-    ui.label(axis_name(ui, "Energy (kJ) over final distance (m)"));
+    click_hint(ui, "Click any point to replay that snake.");
+    y_title(ui, "Energy (kJ)");
     let shown_point = members
         .iter()
         .position(|of| shown.is_some_and(|shown| shown.is(of.generation, of.individual)));
@@ -42,6 +44,7 @@ pub(crate) fn front_plot(
             plot.points(ring.radius(6.5).allow_hover(false));
         }
     });
+    x_title(ui, "Final distance (m)");
     let response = plot.response;
     response.widget_info(|| {
         egui::WidgetInfo::labeled(

@@ -225,3 +225,42 @@ fn a_long_name_in_a_legend_wraps() {
     harness.run();
     assert_nothing_is_wider_than(&harness, 300.0);
 }
+
+#[test]
+fn both_axes_of_every_chart_have_titles_with_units_in_a_narrow_panel() {
+    let run = explored_run();
+    for (kind, y, x) in [
+        (ChartKind::Fitness, "Distance of the middle block (m)", "Generation"),
+        (ChartKind::Spread, "Snakes", "Distance of the middle block (m)"),
+        (ChartKind::Ancestors, "Distance of the middle block (m)", "Generation"),
+        (ChartKind::Parents, "Value within its range (0 lowest, 1 highest)", "Gene"),
+        (ChartKind::Front, "Energy (kJ)", "Final distance (m)"),
+        (ChartKind::Runs, "Distance of the middle block (m)", "Generation"),
+    ] {
+        with(&run, kind, 365.0, |harness| {
+            for title in [y, x] {
+                let found = harness.query_all_by_label(title).next();
+                let rect = found.unwrap_or_else(|| panic!("{kind:?}: {title}")).rect();
+                assert!(rect.width() < 360.0, "{kind:?}: {title} needs {rect:?}");
+            }
+            assert_nothing_is_wider_than(harness, 365.0);
+        });
+    }
+}
+
+#[test]
+fn a_legend_says_what_a_click_does() {
+    let run = explored_run();
+    for (kind, hint) in [
+        (ChartKind::Fitness, "Click any point to replay that snake."),
+        (ChartKind::Ancestors, "Click any point to replay that snake."),
+        (ChartKind::Spread, "Click a bar to replay its best snake."),
+        (ChartKind::Front, "Click any point to replay that snake."),
+        (ChartKind::Archive, "Click a coloured cell to replay its snake."),
+        (ChartKind::Runs, "Point at a line to read it."),
+    ] {
+        with(&run, kind, 365.0, |harness| {
+            assert!(harness.query_all_by_label(hint).next().is_some(), "{kind:?}: {hint}");
+        });
+    }
+}

@@ -4,3 +4,4 @@ pub mod command_palette;
 pub mod key_list;
 pub mod menu;
 pub mod tour;
+mod tour_place;

@@ -1,17 +1,23 @@
-//! Tour in five steps, shown when the studio is opened for the first time.
+//! Tour in five steps, shown when the studio is opened for the first time. Each card points at its panel and has one
+//! thing to try there.
 
 use bevy_egui::egui;
 
+use super::tour_place::{arrow, card_place};
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
-use crate::studio::commands::{Command, WindowCommand};
+use crate::studio::commands::{Command, LessonCommand, PlanCommand, PlayerCommand, RunCommand};
+use crate::studio::commands::{StageCommand, WindowCommand};
 use crate::studio::ui::theme;
 
-/// Step of the tour: the panel to highlight, and its text.
+/// Step of the tour: the panel to highlight, its text, and what to try.
 struct TourStep {
     highlights: PanelKind,
     title: &'static str,
     text: &'static str,
+    try_it: &'static str,
+    /// Whether a command does what is to be tried.
+    is_done_by: fn(&Command) -> bool,
 }
 
 const STEPS: [TourStep; 5] = [
@@ -20,72 +26,152 @@ const STEPS: [TourStep; 5] = [
         title: "A snake that learned to climb",
         text: "It has five blocks and four joints, and its movements evolved. Use the player below to \
                pause, move through time or change the speed. Drag to turn the camera; drag a limb to pull it.",
+        try_it: "Pause it with Space, or click in the strip below it",
+        is_done_by: |command| {
+            matches!(command, Command::Player(PlayerCommand::Toggle | PlayerCommand::Seek(_)))
+        },
     },
     TourStep {
         highlights: PanelKind::Run,
         title: "Evolution runs in the background",
         text: "Start and pause it here. Each generation tries many snakes and breeds from the best. \
                When a snake beats all earlier ones, it appears on the stage.",
+        try_it: "Pause evolution, or start it",
+        is_done_by: |command| {
+            use RunCommand::{Pause, Reset, SingleGeneration, Start};
+            matches!(command, Command::Run(Start | Pause | SingleGeneration | Reset))
+        },
     },
     TourStep {
         highlights: PanelKind::World,
         title: "Change the world",
         text: "Move a slider to see its effect at once: a copy of the snake starts beside it in the \
                changed world. Keep the change, or discard it with Esc. Ctrl Z undoes any change.",
+        try_it: "Drag the slider of Friction",
+        is_done_by: |command| {
+            matches!(
+                command,
+                Command::Plan(PlanCommand::SetField { .. } | PlanCommand::SetFields(_))
+            )
+        },
     },
     TourStep {
         highlights: PanelKind::Charts,
         title: "See how evolution works",
         text: "Compare the fitness of the generations, trace the ancestors of the best snake, or see which \
                torques changed. Click any point to replay that snake.",
+        try_it: "Click a point of the chart",
+        is_done_by: |command| {
+            matches!(command, Command::Stage(StageCommand::Show(_) | StageCommand::Join(_)))
+        },
     },
     TourStep {
         highlights: PanelKind::Lessons,
         title: "Five short lessons",
         text: "Five two-minute experiments. Your own run is paused and comes back unchanged. Press ? for \
                all shortcuts, Ctrl K to search commands.",
+        try_it: "Begin lesson 1, which ends the tour",
+        is_done_by: |command| matches!(command, Command::Lesson(LessonCommand::Begin(_))),
     },
 ];
+
+/// Period of the outline's pulse, in seconds.
+const PULSE_S: f64 = 1.8;
+/// Height of a card before it was drawn for the first time, in points.
+const CARD_HEIGHT: f32 = 170.0;
 
 /// Panel that a step highlights.
 pub(crate) fn highlighted_panel(step: usize) -> Option<PanelKind> {
     STEPS.get(step).map(|step| step.highlights)
 }
 
-/// Draws a step beside the highlighted rectangle `target` and collects the user's commands.
-pub(crate) fn tour(
-    context: &egui::Context,
-    index: usize,
-    target: Option<egui::Rect>,
-    commands: &mut Vec<Command>,
-) {
-    let Some(step) = STEPS.get(index) else { return };
-    let palette = theme::of_context(context);
-    let screen = context.content_rect();
-    let target = target.unwrap_or(screen).intersect(screen);
-    let layer = egui::LayerId::new(egui::Order::Middle, egui::Id::new("tour's frame"));
-    let stroke = egui::Stroke::new(3.0, palette.accent);
-    context.layer_painter(layer).rect_stroke(
-        target.shrink(2.0),
-        6.0,
-        stroke,
-        egui::StrokeKind::Inside,
-    );
-    let (pivot, at) = card_position(target, screen);
-    egui::Area::new(egui::Id::new("tour"))
-        .order(egui::Order::Foreground)
-        .pivot(pivot)
-        .fixed_pos(at)
-        .constrain_to(screen.shrink(theme::GAP))
-        .show(context, |ui| {
+/// The tour, with what was tried in this session.
+#[derive(Debug, Default)]
+pub(crate) struct Tour {
+    is_done: [bool; STEPS.len()],
+}
+
+impl Tour {
+    /// Draws a step beside the highlighted rectangle `target` and collects the user's commands. `commands` has those
+    /// of the panels in this frame; `is_playing` says whether the stage plays, which a key can change, too.
+    pub fn ui(
+        &mut self,
+        context: &egui::Context,
+        index: usize,
+        target: Option<egui::Rect>,
+        is_playing: bool,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(step) = STEPS.get(index) else { return };
+        let is_held = step.highlights == PanelKind::Stage && !is_playing;
+        self.is_done[index] |= is_held || commands.iter().any(step.is_done_by);
+        if commands.iter().any(|command| matches!(command, Command::Lesson(_))) {
+            commands.push(Command::Window(WindowCommand::CloseModal));
+        }
+        let palette = theme::of_context(context);
+        let screen = context.content_rect();
+        let target = target.unwrap_or(screen).intersect(screen);
+        outline(context, target);
+        let id = egui::Id::new("tour");
+        let width = theme::TOUR_WIDTH.min(screen.width() - theme::GAP * 4.0);
+        let known = context.memory(|memory| memory.area_rect(id)).map(|area| area.size());
+        let size = known.unwrap_or(egui::vec2(width + theme::GAP * 4.0, CARD_HEIGHT));
+        let place = card_place(target, screen, size);
+        let is_done = self.is_done[index];
+        let area = egui::Area::new(id)
+            .order(egui::Order::Foreground)
+            .fixed_pos(place.min)
+            .constrain_to(screen.shrink(theme::GAP));
+        let shown = area.show(context, |ui| {
             palette.dialog().show(ui, |ui| {
-                ui.set_width(theme::TOUR_WIDTH.min(screen.width() - theme::GAP * 4.0));
+                ui.set_width(width);
                 ui.label(egui::RichText::new(step.title).size(theme::TITLE_SIZE).strong());
                 ui.label(step.text);
+                to_try(ui, step.try_it, is_done);
                 ui.add_space(theme::GAP / 2.0);
                 ui.horizontal(|ui| buttons(ui, index, commands));
             });
         });
+        if let Some(points) = arrow(shown.response.rect, target) {
+            let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("tour's arrow"));
+            let shape = egui::Shape::convex_polygon(points, palette.accent, egui::Stroke::NONE);
+            context.layer_painter(layer).add(shape);
+        }
+    }
+}
+
+/// Draws the outline around the target, which pulses gently.
+fn outline(context: &egui::Context, target: egui::Rect) {
+    let palette = theme::of_context(context);
+    let turn = context.input(|input| input.time) / PULSE_S * std::f64::consts::TAU;
+    let strength = 0.5 + 0.5 * libm::sin(turn) as f32;
+    let layer = egui::LayerId::new(egui::Order::Middle, egui::Id::new("tour's frame"));
+    let color = palette.accent.gamma_multiply(0.65 + 0.35 * strength);
+    let stroke = egui::Stroke::new(2.5 + 2.0 * strength, color);
+    let rect = target.shrink(2.0);
+    context.layer_painter(layer).rect_stroke(rect, 6.0, stroke, egui::StrokeKind::Inside);
+}
+
+/// Draws what to try, with a box that is ticked once it was done.
+fn to_try(ui: &mut egui::Ui, text: &str, is_done: bool) {
+    let palette = theme::of(ui);
+    ui.horizontal_wrapped(|ui| {
+        let size = egui::Vec2::splat(theme::TITLE_SIZE);
+        let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let name = if is_done { format!("Done: {text}") } else { format!("Try it: {text}") };
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &name));
+        let painter = ui.painter();
+        let rect = rect.shrink(1.0);
+        let color = if is_done { palette.accent } else { palette.text_weak };
+        let stroke = egui::Stroke::new(1.5, color);
+        painter.rect_stroke(rect, 3.0, stroke, egui::StrokeKind::Inside);
+        if is_done {
+            let corners = [(0.22, 0.5), (0.43, 0.72), (0.8, 0.28)];
+            let points = corners.map(|(x, y)| rect.lerp_inside(egui::vec2(x, y)));
+            painter.line(points.to_vec(), egui::Stroke::new(2.0, color));
+        }
+        ui.label(egui::RichText::new(text).color(color).strong());
+    });
 }
 
 fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
@@ -118,23 +204,10 @@ fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     });
 }
 
-/// Position beside the target, on the side with more room. Over the stage: the corner away from the snake.
-fn card_position(target: egui::Rect, screen: egui::Rect) -> (egui::Align2, egui::Pos2) {
-    let gap = theme::GAP * 1.5;
-    let right = screen.right() - target.right();
-    let left = target.left() - screen.left();
-    if target.width() > screen.width() / 2.0 {
-        (egui::Align2::RIGHT_TOP, target.right_top() + egui::vec2(-gap, gap * 4.0))
-    } else if right >= left {
-        (egui::Align2::LEFT_TOP, target.right_top() + egui::vec2(gap, gap * 4.0))
-    } else {
-        (egui::Align2::RIGHT_TOP, target.left_top() + egui::vec2(-gap, gap * 4.0))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::commands::pick::Pick;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -144,7 +217,9 @@ mod tests {
             let click = |label: &str| {
                 let mut harness =
                     Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
-                        |ui, commands| tour(&ui.ctx().clone(), index, None, commands),
+                        |ui, commands| {
+                            Tour::default().ui(&ui.ctx().clone(), index, None, true, commands);
+                        },
                         Vec::new(),
                     );
                 harness.run();
@@ -166,12 +241,47 @@ mod tests {
 
     #[test]
     fn enter_continues_the_tour() {
-        let mut harness = Harness::builder()
-            .with_size(egui::vec2(800.0, 600.0))
-            .build_ui_state(|ui, commands| tour(&ui.ctx().clone(), 0, None, commands), Vec::new());
+        let mut harness = Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
+            |ui, commands| {
+                Tour::default().ui(&ui.ctx().clone(), 0, None, true, commands);
+            },
+            Vec::new(),
+        );
         harness.run();
         harness.key_press(egui::Key::Enter);
         harness.run();
         assert_eq!(*harness.state(), [Command::Window(WindowCommand::ToggleModal(Modal::Tour(1)))]);
+    }
+
+    #[test]
+    fn what_is_tried_is_ticked_and_a_lesson_ends_the_tour() {
+        let set = PlanCommand::SetField { field: "surface.friction".into(), text: "0.5".into() };
+        let tried = [
+            Command::Player(PlayerCommand::Seek(3.0)),
+            Command::Run(RunCommand::Pause),
+            Command::Plan(set),
+            Command::Stage(StageCommand::Show(Pick::Generation(1))),
+            Command::Lesson(LessonCommand::Begin(0)),
+        ];
+        for (index, command) in tried.into_iter().enumerate() {
+            let mut cards = Tour::default();
+            let mut harness =
+                Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
+                    |ui, commands| cards.ui(&ui.ctx().clone(), index, None, true, commands),
+                    Vec::new(),
+                );
+            harness.run();
+            let words = STEPS[index].try_it;
+            assert!(harness.query_by_label(&format!("Try it: {words}")).is_some(), "{index}");
+            let is_lesson = matches!(command, Command::Lesson(_));
+            harness.state_mut().push(command);
+            harness.step();
+            harness.state_mut().truncate(2);
+            let ends = harness.state().contains(&Command::Window(WindowCommand::CloseModal));
+            assert_eq!(ends, is_lesson, "{index}");
+            harness.state_mut().clear();
+            harness.run();
+            assert!(harness.query_by_label(&format!("Done: {words}")).is_some(), "{index}");
+        }
     }
 }

@@ -2,8 +2,10 @@
 
 pub mod camera_bar;
 pub mod cards;
+mod climb_events;
 pub mod generation_card;
 pub mod leaderboard;
 pub mod limb_card;
+mod strip_marks;
 pub mod timeline;
 pub mod torque_strip;

@@ -1,10 +1,12 @@
-//! Torques of a whole rollout, joint by joint, with a draggable time cursor.
+//! Torques of a whole rollout, joint by joint from head to tail, with marks of the climb and a draggable time cursor.
 
 use std::sync::Arc;
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke};
 
+use super::climb_events::{ClimbEvent, events};
+use super::strip_marks::{draw_events, event_at, legend};
 use crate::score::KeyframeHistory;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
@@ -16,13 +18,14 @@ pub(crate) struct TorqueStrip {
     drawn: Option<DrawnStrip>,
 }
 
-/// Lines that are cached until their input changes.
+/// Lines and events that are cached until their input changes.
 struct DrawnStrip {
     history: Arc<KeyframeHistory>,
     rect: Rect,
     end_s: f64,
     is_dark: bool,
     shapes: Vec<Shape>,
+    events: Vec<ClimbEvent>,
 }
 
 /// Reads the torque about one axis, in N·m.
@@ -32,12 +35,18 @@ type TorqueAxis = fn(&JointTorque) -> f32;
 const COLUMN_WIDTH: f32 = 2.0;
 /// Height of the time ruler, in points.
 const RULER_HEIGHT: f32 = 11.0;
+/// Height of the band with the marks of the climb, in points.
+const MARKS_HEIGHT: f32 = 12.0;
 /// Vertical margin of a row, in points.
 const ROW_MARGIN: f32 = 1.5;
+/// Width of the names of the joints beside a wide and a narrow strip, in points.
+const NAMES_WIDTH: [f32; 2] = [82.0, 42.0];
+/// Width from which a strip counts as wide, in points.
+const WIDE: f32 = 480.0;
 
 impl TorqueStrip {
-    /// Draws the strip over the available width. Returns the time that was clicked or dragged to, in simulated
-    /// seconds.
+    /// Draws the strip over the available width, with its legend above. Returns the time that was clicked or dragged
+    /// to, in simulated seconds.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -46,15 +55,22 @@ impl TorqueStrip {
         end_s: f64,
         height: f32,
     ) -> Option<f64> {
+        let is_wide = ui.available_width() >= WIDE;
+        legend(ui, &lane.body().joints);
+        let names_width = NAMES_WIDTH[usize::from(!is_wide)];
         let size = egui::vec2(ui.available_width(), height);
-        let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click_and_drag());
+        let (whole, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let rect = Rect::from_min_max(whole.min + egui::vec2(names_width, 0.0), whole.max);
+        let response = ui.interact(rect, ui.id().with("strip"), egui::Sense::click_and_drag());
         response.widget_info(|| {
             egui::WidgetInfo::slider(ui.is_enabled(), now_s, "Time, in simulated seconds")
         });
         let palette = theme::of(ui);
-        let painter = ui.painter_at(rect);
+        let painter = ui.painter_at(whole);
         painter.rect_filled(rect, 4.0, palette.field);
-        let mut plot = rect.shrink2(egui::vec2(0.0, 3.0));
+        let marks = Rect::from_min_size(rect.min, egui::vec2(rect.width(), MARKS_HEIGHT));
+        let mut plot = rect;
+        plot.min.y += MARKS_HEIGHT;
         plot.max.y -= RULER_HEIGHT;
         let x_of = |time_s: f64| {
             let share = if end_s > 0.0 { time_s / end_s } else { 0.0 };
@@ -64,11 +80,20 @@ impl TorqueStrip {
         let played = Rect::from_min_max(rect.min, egui::pos2(x_of(now_s), rect.bottom()));
         painter.rect_filled(played, 4.0, palette.field.lerp_to_gamma(palette.accent_soft, 0.5));
         seconds(&painter, rect, end_s, &x_of, palette);
+        let of_whole = Rect::from_x_y_ranges(whole.left()..=plot.left(), plot.y_range());
+        names(ui, of_whole, lane.body().joints.len(), is_wide);
+        let mut climb = Vec::new();
         match lane.history() {
             Some(history) => {
-                painter.extend(self.lines(history, lane, plot, end_s, ui.visuals().dark_mode));
+                let drawn = self.drawn(history, lane, plot, end_s, ui.visuals().dark_mode);
+                painter.extend(drawn.shapes.iter().cloned());
+                // A pulled snake climbs otherwise than its undisturbed rollout.
+                if !lane.is_disturbed() {
+                    climb.clone_from(&drawn.events);
+                }
             }
             None => {
+                climb = events(lane);
                 let text = match lane.lookahead_share() {
                     Some(share) => format!("Computing preview: {:.0} %", share * 100.0),
                     None if lane.staged().recording().is_some() => {
@@ -81,6 +106,7 @@ impl TorqueStrip {
                 painter.text(rect.center(), align, text, font, palette.text_weak);
             }
         }
+        draw_events(&painter, &climb, marks, plot.bottom(), &x_of, palette);
         let x = x_of(now_s);
         let cursor = Stroke::new(2.0, palette.accent);
         painter.line_segment([egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())], cursor);
@@ -93,36 +119,62 @@ impl TorqueStrip {
         };
         let requested_s = pointed.map(at);
         if let Some(hovered) = response.hover_pos().filter(|_| !response.dragged()) {
-            let time_s = at(hovered);
-            response.on_hover_text_at_pointer(hover_text(lane, time_s));
+            let event = event_at(&climb, hovered.x, &x_of).map(|words| words + "\n");
+            let text = event.unwrap_or_default() + &hover_text(lane, at(hovered));
+            response.on_hover_text_at_pointer(text);
         }
         requested_s
     }
 
-    fn lines(
+    fn drawn(
         &mut self,
         history: &Arc<KeyframeHistory>,
         lane: &Lane,
         plot: Rect,
         end_s: f64,
         is_dark: bool,
-    ) -> Vec<Shape> {
-        let is_drawn = self.drawn.as_ref().is_some_and(|drawn| {
+    ) -> &DrawnStrip {
+        let known = self.drawn.take().filter(|drawn| {
             Arc::ptr_eq(&drawn.history, history)
                 && (drawn.rect, drawn.end_s, drawn.is_dark) == (plot, end_s, is_dark)
         });
-        if !is_drawn {
+        let drawn = known.unwrap_or_else(|| {
             let palette = if is_dark { theme::Theme::Dark } else { theme::Theme::Light }.palette();
-            let shapes = shapes(history, lane, plot, end_s, palette);
-            self.drawn = Some(DrawnStrip {
+            DrawnStrip {
                 history: Arc::clone(history),
                 rect: plot,
                 end_s,
                 is_dark,
-                shapes,
-            });
-        }
-        self.drawn.as_ref().map(|drawn| drawn.shapes.clone()).unwrap_or_default()
+                shapes: shapes(history, lane, plot, end_s, palette),
+                events: events(lane),
+            }
+        });
+        self.drawn.insert(drawn)
+    }
+}
+
+/// Writes the names of the joints beside their rows, from head to tail; short ones beside a narrow strip. Rows that are
+/// lower than a line of text share a name with their neighbours.
+fn names(ui: &egui::Ui, area: Rect, joints: usize, is_wide: bool) {
+    let row_height = area.height() / joints.max(1) as f32;
+    let every = (theme::SMALL_SIZE / row_height.max(0.1)).ceil().max(1.0) as usize;
+    let font = egui::FontId::proportional(theme::SMALL_SIZE);
+    let painter = ui.painter_at(area.expand2(egui::vec2(0.0, theme::SMALL_SIZE)));
+    for joint in (0..joints).step_by(every) {
+        let end = match joint {
+            0 => "head",
+            _ if joint + every >= joints => "tail",
+            _ => "",
+        };
+        let number = joint + 1;
+        let name = match (is_wide, end) {
+            (true, "") => format!("Joint {number}"),
+            (true, end) => format!("Joint {number} ({end})"),
+            (false, end) => format!("{number} {end}"),
+        };
+        let at = egui::pos2(area.left(), area.top() + row_height * (joint as f32 + 0.5));
+        let color = theme::of(ui).text_weak;
+        painter.text(at, egui::Align2::LEFT_CENTER, name.trim_end(), font.clone(), color);
     }
 }
 
@@ -162,10 +214,11 @@ fn shapes(
     let row_height = plot.height() / joints.len().max(1) as f32;
     let columns = (plot.width() / COLUMN_WIDTH).max(1.0) as usize;
     let mut shapes = Vec::new();
+    let zero_color = palette.text_weak.gamma_multiply(0.5);
     for (joint, plan) in joints.iter().enumerate() {
         let middle = plot.top() + row_height * (joint as f32 + 0.5);
         let zero = [egui::pos2(plot.left(), middle), egui::pos2(plot.right(), middle)];
-        shapes.push(Shape::line_segment(zero, Stroke::new(1.0, palette.field_hovered)));
+        shapes.push(Shape::line_segment(zero, Stroke::new(1.0, zero_color)));
         let axes: [(TorqueAxis, f32, Color32); 2] = [
             (|torque| torque.twist_nm, plan.max_twist_torque_nm, palette.twist),
             (|torque| torque.bend_nm, plan.max_bend_torque_nm, palette.bend),
@@ -204,7 +257,12 @@ fn hover_text(lane: &Lane, time_s: f64) -> String {
         for (joint, torque) in (1..).zip(torques) {
             // Avoids "-0".
             let [bend_nm, twist_nm] = [torque.bend_nm, torque.twist_nm].map(|nm| nm.round() + 0.0);
-            text += &format!("\nJoint {joint}: bend {bend_nm:+} N·m, twist {twist_nm:+} N·m");
+            let end = match joint {
+                1 => " (head)",
+                _ if joint == torques.len() => " (tail)",
+                _ => "",
+            };
+            text += &format!("\nJoint {joint}{end}: bend {bend_nm:+} N·m, twist {twist_nm:+} N·m");
         }
     }
     text
@@ -244,5 +302,33 @@ mod tests {
         let dragged = harness.state().last().copied().expect("a moment");
         assert_eq!(dragged, 15.0, "beyond the end is the end");
         harness.drop_at(at(2.0));
+    }
+
+    #[test]
+    fn the_legend_names_unit_and_marks_and_a_mark_has_a_hover_text() {
+        let loaded = shipped_champion().expect("well formed");
+        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        lane.finish_lookahead();
+        let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
+        for width in [900.0, 420.0] {
+            let mut strip_panel = TorqueStrip::default();
+            let mut harness =
+                Harness::builder().with_size(egui::vec2(width, 140.0)).build_ui(|ui| {
+                    strip_panel.ui(ui, &lane, 1.0, 15.0, theme::TORQUE_STRIP_HEIGHT);
+                });
+            harness.run();
+            let legend = harness.get_by_label_contains("Legend: ").rect();
+            assert!(legend.right() <= width, "{legend:?}");
+            assert!(harness.query_by_label_contains("N·m, bend, twist").is_some(), "{width}");
+            let marks = harness.query_by_label_contains("step climbed, step lost");
+            assert!(marks.is_some() || width < 500.0, "{width}");
+            let strip = harness.get_by_label("Time, in simulated seconds").rect();
+            let share = (landed_s / 15.0) as f32;
+            harness.hover_at(strip.lerp_inside(egui::vec2(share, 0.05)));
+            harness.run();
+            let hover = harness.query_all_by_label_contains("Top of the stairs reached").count();
+            assert_eq!(hover, 1, "{width}");
+            assert!(harness.query_all_by_label_contains("Joint 4 (tail): bend").count() == 1);
+        }
     }
 }

@@ -5,6 +5,8 @@ use crate::save::library::{SavePlace, load_entry};
 use crate::save::load_preset;
 use crate::studio::stage::staged_champion::StagedChampion;
 
+use super::prediction::{Asks, Question};
+
 /// A guided experiment.
 #[derive(Debug)]
 pub(crate) struct Lesson {
@@ -22,6 +24,8 @@ pub(crate) struct Lesson {
     pub answer: &'static str,
     /// Scenes; the first is shown at once.
     pub scenes: &'static [LessonScene],
+    /// Text of the worksheet, as Markdown.
+    pub worksheet: &'static str,
 }
 
 /// Scene of a lesson.
@@ -33,6 +37,8 @@ pub(crate) enum LessonScene {
         label: &'static str,
         /// Name of a built-in champion.
         champion: &'static str,
+        /// What to guess before the race.
+        question: Option<Question>,
         /// Worlds, one per lane.
         lanes: &'static [Side],
     },
@@ -40,6 +46,8 @@ pub(crate) enum LessonScene {
     Runs {
         /// Label of its button.
         label: &'static str,
+        /// What to guess before the runs.
+        question: Question,
         /// Runs.
         runs: &'static [Side],
     },
@@ -50,6 +58,22 @@ impl LessonScene {
     pub fn label(&self) -> &'static str {
         match self {
             Self::Lanes { label, .. } | Self::Runs { label, .. } => label,
+        }
+    }
+
+    /// What to guess before its experiment.
+    pub fn question(&self) -> Option<&Question> {
+        match self {
+            Self::Lanes { question, .. } => question.as_ref(),
+            Self::Runs { question, .. } => Some(question),
+        }
+    }
+
+    /// Its lanes or runs.
+    pub fn sides(&self) -> &'static [Side] {
+        match self {
+            Self::Lanes { lanes, .. } => lanes,
+            Self::Runs { runs, .. } => runs,
         }
     }
 }
@@ -84,8 +108,21 @@ const fn run(
 const AS_FOUND: LessonScene = LessonScene::Lanes {
     label: "The original champion",
     champion: "climber",
+    question: None,
     lanes: &[lane("original", &[])],
 };
+
+const fn furthest() -> Question {
+    Question { text: "Which snake gets furthest?", asks: Asks::Furthest }
+}
+
+const fn best_run() -> Question {
+    Question { text: "Which run's best snake gets further?", asks: Asks::BestRun }
+}
+
+const fn same_hash() -> Question {
+    Question { text: "Will both runs have the same hash?", asks: Asks::SameHash }
+}
 
 /// All lessons.
 pub(crate) const LESSONS: [Lesson; 5] = [
@@ -95,8 +132,8 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         story: "In the original experiment, the surface was tuned by eye, which took a long time. On ice, a snake \
                 cannot push itself off. So is more grip always better? The stage shows the same snake on ice, on \
                 its own surface and on a surface like glue.",
-        to_try: "Open the World panel and drag Friction: a copy of the snake starts beside it with the new \
-                 value. Or click one of these examples.",
+        to_try: "Guess which snake gets furthest, then watch the race. Afterwards open the World panel and drag \
+                 Friction: a copy of the snake starts beside it with the new value.",
         look_for: "How far each snake gets. The torques are the same in all lanes; only the surface differs.",
         answer: "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
                  holds the others back. A snake that evolved on one surface is fit for that surface and tolerates only small changes. \
@@ -106,6 +143,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             LessonScene::Lanes {
                 label: "Ice, original, glue",
                 champion: "robust",
+                question: Some(furthest()),
                 lanes: &[
                     lane("friction 0.1", &[("surface.friction", "0.1")]),
                     lane("original", &[]),
@@ -115,6 +153,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             LessonScene::Lanes {
                 label: "A little less, a little more",
                 champion: "robust",
+                question: Some(furthest()),
                 lanes: &[
                     lane("friction 0.7", &[("surface.friction", "0.7")]),
                     lane("original", &[]),
@@ -122,6 +161,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 ],
             },
         ],
+        worksheet: include_str!("../../../../docs/worksheets/1.md"),
     },
     Lesson {
         title: "Forces that follow the frame rate",
@@ -129,8 +169,9 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         story: "In the original experiment, forces were applied once per drawn frame. Moving the window slowed the \
                 drawing, and therefore the snake. The stage shows the same genome with its own number of physics \
                 steps per second, with fewer, and with more.",
-        to_try: "Show the champion alone. Play it at a quarter of the speed and at four times the speed (the \
-                 field with × below the stage), or turn on everything in Show to slow the drawing.",
+        to_try: "Watch the race. Then show the champion alone, and play it at a quarter of the speed and at four \
+                 times the speed (the field with × below the stage), or turn on everything in Show to slow the \
+                 drawing.",
         look_for: "The fitness at the end. No digit of it changes, at any playback speed.",
         answer: "Here every physics step has the same length, and drawing does not affect the simulation. A slow \
                  computer shows fewer frames of exactly the same climb.",
@@ -138,14 +179,24 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             LessonScene::Lanes {
                 label: "Original, fewer and more steps per second",
                 champion: "climber",
+                question: Some(furthest()),
                 lanes: &[
                     lane("original", &[]),
                     lane("45 steps per second", &[("physics.steps_per_s", "45")]),
                     lane("90 steps per second", &[("physics.steps_per_s", "90")]),
                 ],
             },
-            AS_FOUND,
+            LessonScene::Lanes {
+                label: "The original champion at any playback speed",
+                champion: "climber",
+                question: Some(Question {
+                    text: "What changes at the end if you play it at a quarter of the speed?",
+                    asks: Asks::PlaybackSpeed,
+                }),
+                lanes: &[lane("original", &[])],
+            },
         ],
+        worksheet: include_str!("../../../../docs/worksheets/2.md"),
     },
     Lesson {
         title: "Limits on the joints",
@@ -162,6 +213,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             AS_FOUND,
             LessonScene::Runs {
                 label: "Evolve with and almost without limits",
+                question: best_run(),
                 runs: &[
                     run("with limits", 1, 1, &[("population", "120"), ("generations", "6")]),
                     run(
@@ -178,6 +230,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 ],
             },
         ],
+        worksheet: include_str!("../../../../docs/worksheets/3.md"),
     },
     Lesson {
         title: "Mutations that shrink too fast",
@@ -197,6 +250,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             AS_FOUND,
             LessonScene::Runs {
                 label: "Evolve with both ranges",
+                question: best_run(),
                 runs: &[
                     run("range halves", 3, 1, &[("population", "120"), ("generations", "14")]),
                     run(
@@ -208,6 +262,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 ],
             },
         ],
+        worksheet: include_str!("../../../../docs/worksheets/4.md"),
     },
     Lesson {
         title: "Repeating a run exactly",
@@ -226,6 +281,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             AS_FOUND,
             LessonScene::Runs {
                 label: "The same run twice",
+                question: same_hash(),
                 runs: &[
                     run("on one thread", 1, 1, &[("population", "60"), ("generations", "6")]),
                     run("on two threads", 1, 2, &[("population", "60"), ("generations", "6")]),
@@ -233,6 +289,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             },
             LessonScene::Runs {
                 label: "Friction changed by a millionth",
+                question: same_hash(),
                 runs: &[
                     run("friction 1", 1, 1, &[("population", "60"), ("generations", "6")]),
                     run(
@@ -248,6 +305,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 ],
             },
         ],
+        worksheet: include_str!("../../../../docs/worksheets/5.md"),
     },
 ];
 

@@ -1,8 +1,27 @@
 //! Tests of the lessons.
 
+use std::sync::OnceLock;
+
 use super::*;
 use crate::run::{Experiment, LocalPool, RunControl};
 use crate::studio::state::current_run::prepared_run;
+
+/// Results of a scene, computed once.
+pub(super) fn result(lesson: usize, scene: usize) -> &'static Progress {
+    static KNOWN: [[OnceLock<Progress>; 3]; LESSONS.len()] =
+        [const { [const { OnceLock::new() }; 3] }; LESSONS.len()];
+    KNOWN[lesson][scene].get_or_init(|| match &LESSONS[lesson].scenes[scene] {
+        LessonScene::Lanes { champion, lanes, .. } => {
+            let staged = champions(champion, lanes).expect("they fit");
+            let of = |staged: &StagedChampion| {
+                let evaluation = evaluate(&staged.champion().genome, staged.trial());
+                (staged.label().to_owned(), evaluation)
+            };
+            Progress { lanes: staged.iter().map(of).collect(), ..Progress::default() }
+        }
+        LessonScene::Runs { runs, .. } => Progress { runs: outcome(runs), ..Progress::default() },
+    })
+}
 
 /// Evolves the runs of a scene.
 fn outcome(sides: &[Side]) -> Vec<Found> {
@@ -24,63 +43,60 @@ fn outcome(sides: &[Side]) -> Vec<Found> {
 }
 
 /// Final distance of the centre in each lane of a scene, in metres.
-fn ends_m(champion: &'static str, lanes: &[Side]) -> Vec<f32> {
-    let champions = champions(champion, lanes).expect("they fit");
-    let evaluate = |staged: &StagedChampion| evaluate(&staged.champion().genome, staged.trial());
-    champions.iter().map(|staged| evaluate(staged).centre_y_m).collect()
+fn ends_m(lesson: usize, scene: usize) -> Vec<f32> {
+    result(lesson, scene).lanes.iter().map(|(_, evaluation)| evaluation.centre_y_m).collect()
 }
 
-fn lanes(lesson: usize, scene: usize) -> &'static [Side] {
-    let LessonScene::Lanes { lanes, .. } = &LESSONS[lesson].scenes[scene] else { panic!("lanes") };
-    lanes
-}
-
-fn runs(lesson: usize, scene: usize) -> &'static [Side] {
-    let LessonScene::Runs { runs, .. } = &LESSONS[lesson].scenes[scene] else { panic!("runs") };
-    runs
+/// The true answer to a scene's question.
+fn answer(lesson: usize, scene: usize) -> &'static str {
+    let shown = &LESSONS[lesson].scenes[scene];
+    let asks = shown.question().expect("a question").asks;
+    shown.answers()[result(lesson, scene).true_answer(asks).expect("known")]
 }
 
 #[test]
 fn the_conclusion_about_friction_is_true() {
-    let ends = ends_m("robust", lanes(0, 0));
+    let ends = ends_m(0, 0);
     let [little, original, much] = ends[..] else { panic!("three lanes") };
     assert!(original > 21.0, "the original stands on the landing");
     assert!(little < original - 10.0 && much < original - 10.0, "{ends:?}");
-    let near = ends_m("robust", lanes(0, 1));
+    assert_eq!(answer(0, 0), "original");
+    let near = ends_m(0, 1);
     assert!(near.iter().all(|end| *end > 18.0), "{near:?}");
 }
 
 #[test]
 fn the_conclusion_about_the_frame_rate_is_true() {
-    let ends = ends_m("climber", lanes(1, 0));
+    let ends = ends_m(1, 0);
     assert!(ends[1..].iter().all(|end| (end - ends[0]).abs() > 0.5), "{ends:?}");
+    assert_eq!(answer(1, 1), "not a digit changes");
 }
 
 #[test]
 fn the_conclusion_about_limits_is_true() {
-    let found = outcome(runs(2, 1));
+    let found = &result(2, 1).runs;
     let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
     let [with, without] = &found[..] else { panic!("two runs") };
     let best = |of: &Found| last(of).expect("a healthy snake").best;
     assert!(best(with) > best(without) + 3.0, "{} and {}", best(with), best(without));
     let out = |of: &Found| of.reports.iter().map(|report| report.disqualified).sum::<u32>();
     assert!(out(without) > out(with), "{} and {}", out(without), out(with));
+    assert_eq!(answer(2, 1), "with limits");
 }
 
 #[test]
 fn the_conclusion_about_halving_is_true() {
-    let found = outcome(runs(3, 1));
+    let found = &result(3, 1).runs;
     let [halved, kept] = &found[..] else { panic!("two runs") };
     let best = |of: &Found| of.best().expect("a champion").evaluation.fitness;
     assert!(best(kept) > best(halved) + 3.0, "{} and {}", best(kept), best(halved));
+    assert_eq!(answer(3, 1), "range stays large");
 }
 
 #[test]
 fn the_conclusion_about_bits_is_true() {
-    let twice = outcome(runs(4, 1));
-    assert_eq!(twice[0].run_hash, twice[1].run_hash);
-    let apart = outcome(runs(4, 2));
-    assert_ne!(apart[0].run_hash, apart[1].run_hash);
+    assert_eq!(answer(4, 1), "the same hash");
+    assert_eq!(answer(4, 2), "different hashes");
 }
 
 #[test]
@@ -102,7 +118,7 @@ fn every_scene_of_every_lesson_can_be_shown() {
 #[test]
 fn after_a_lesson_stage_and_settings_are_as_they_were() {
     let mut run = prepared_run();
-    let own = champions("climber", &[lanes(0, 0)[1].clone()]).expect("it fits");
+    let own = champions("climber", &[LESSONS[0].scenes[0].sides()[1].clone()]).expect("it fits");
     let next = run.next_plan().clone();
     let mut lessons = Lessons::default();
     let stage = |champions: Vec<StagedChampion>| Show { champions, mode: StageMode::Solo };
@@ -118,4 +134,69 @@ fn after_a_lesson_stage_and_settings_are_as_they_were() {
     assert_eq!(back.mode, StageMode::Solo);
     assert_eq!(back.champions.len(), own.len());
     assert!(lessons.view().is_none());
+}
+
+/// Lessons in which the first has begun, with the run beside them.
+fn first_lesson() -> (Lessons, CurrentRun) {
+    let (mut lessons, mut run) = (Lessons::default(), prepared_run());
+    let show = Show { champions: Vec::new(), mode: StageMode::Solo };
+    lessons.begin(0, &mut run, show, &mut UndoHistory::default()).expect("allowed");
+    (lessons, run)
+}
+
+fn apply(lessons: &mut Lessons, run: &mut CurrentRun, command: LessonCommand) -> Option<Show> {
+    let show = Show { champions: Vec::new(), mode: StageMode::Solo };
+    lessons.apply(&command, run, show, &mut UndoHistory::default()).expect("allowed")
+}
+
+#[test]
+fn a_race_waits_for_a_guess_and_starts_after_it() {
+    let (mut lessons, mut run) = first_lesson();
+    assert!(lessons.awaits_guess());
+    let race = apply(&mut lessons, &mut run, LessonCommand::Guess(1)).expect("a race");
+    assert_eq!(race.champions.len(), 3);
+    assert!(!lessons.awaits_guess());
+    apply(&mut lessons, &mut run, LessonCommand::Guess(0));
+    assert_eq!(lessons.view().expect("begun").progress.guess, Some(1), "a first guess stands");
+}
+
+#[test]
+fn the_result_appears_once_all_lanes_of_the_scene_were_watched_to_their_end() {
+    let (mut lessons, mut run) = first_lesson();
+    let is_revealed = |lessons: &Lessons| lessons.view().expect("begun").progress.is_revealed;
+    let names = ["friction 0.1", "original", "friction 5"].map(Some);
+    for ended in [&[][..], &names[..2], &[Some("Generation 3")], &[names[0], None, names[2]]] {
+        lessons.see(ended);
+        assert!(!is_revealed(&lessons), "{ended:?}");
+    }
+    lessons.see(&names);
+    assert!(is_revealed(&lessons), "watched without a guess");
+    assert!(lessons.view().expect("begun").shows_conclusion);
+    // The scene without a result does not inherit it.
+    apply(&mut lessons, &mut run, LessonCommand::ShowScene(1));
+    assert!(!is_revealed(&lessons) && lessons.awaits_guess());
+    apply(&mut lessons, &mut run, LessonCommand::ShowScene(0));
+    assert!(is_revealed(&lessons), "kept");
+}
+
+#[test]
+fn runs_start_only_after_a_guess_and_finished_ones_are_not_repeated() {
+    let (mut lessons, mut run) = first_lesson();
+    apply(&mut lessons, &mut run, LessonCommand::Begin(4));
+    assert!(apply(&mut lessons, &mut run, LessonCommand::ShowScene(1)).is_none());
+    assert!(!lessons.view().expect("begun").is_busy && lessons.awaits_guess());
+    apply(&mut lessons, &mut run, LessonCommand::Guess(0));
+    assert!(lessons.view().expect("begun").is_busy);
+    apply(&mut lessons, &mut run, LessonCommand::ShowResult);
+    assert!(!lessons.view().expect("begun").progress.is_revealed, "not known yet");
+    let race = loop {
+        if let Some(show) = lessons.take_in().expect("the runs succeed") {
+            break show;
+        }
+    };
+    assert_eq!(race.champions.len(), 2);
+    let view = lessons.view().expect("begun");
+    assert!(view.progress.is_revealed && view.shows_conclusion);
+    assert!(apply(&mut lessons, &mut run, LessonCommand::ShowScene(1)).is_some());
+    assert!(!lessons.view().expect("begun").is_busy);
 }

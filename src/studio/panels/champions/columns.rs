@@ -1,0 +1,123 @@
+//! Columns of the champion list: fitness, time and energy at the right of each row, as far as the width goes.
+
+use bevy_egui::egui;
+
+use super::landing_times::LandingTime;
+use crate::evolve::Champion;
+use crate::studio::ui::theme;
+
+/// Widths of the columns fitness, time and energy, in points.
+const WIDTHS: [f32; 3] = [68.0, 56.0, 62.0];
+/// Width that stays for the names, in points.
+const NAME_WIDTH: f32 = 136.0;
+/// Names of the columns and their hover texts.
+const HEADS: [(&str, &str); 3] = [
+    ("Fitness", "What the run rewards: see Fitness in the Run panel"),
+    (
+        "Time",
+        "Simulated time until the snake first reached the top of the stairs; - if it does not end there",
+    ),
+    ("Energy", "Energy that the joints used in the whole trial"),
+];
+
+/// Number of columns for which a list of this width has room; fitness always has.
+pub(super) fn count(width: f32) -> usize {
+    let fits = |count: &usize| NAME_WIDTH + WIDTHS[..*count].iter().sum::<f32>() <= width;
+    (1..=WIDTHS.len()).rev().find(fits).unwrap_or(1)
+}
+
+/// Texts of a champion's columns.
+pub(super) fn cells(champion: &Champion, time: LandingTime) -> [String; 3] {
+    let energy =
+        champion.evaluation.effort.map(|effort| format!("{:.1} kJ", effort.energy_j / 1000.0));
+    let time = match time {
+        LandingTime::Known(time_s) => format!("{time_s:.2} s"),
+        LandingTime::None => "-".to_owned(),
+        LandingTime::Pending => "…".to_owned(),
+    };
+    [champion.score(), time, energy.unwrap_or_else(|| "-".to_owned())]
+}
+
+/// Draws the names of the columns.
+pub(super) fn heads(ui: &mut egui::Ui) {
+    let width = ui.available_width();
+    let size = egui::vec2(width, theme::SMALL_SIZE + 4.0);
+    let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+    for (index, cell) in places(rect, count(width)).into_iter().enumerate() {
+        let (name, hint) = HEADS[index];
+        let text = egui::RichText::new(name).small().color(theme::of(ui).text_weak);
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        let mut cell = ui.new_child(egui::UiBuilder::new().max_rect(cell).layout(layout));
+        cell.label(text).on_hover_text(hint);
+    }
+}
+
+/// Draws a clickable row over the whole width: name at the left, columns at the right.
+pub(super) fn row(
+    ui: &mut egui::Ui,
+    is_shown: bool,
+    name: &str,
+    cells: &[String; 3],
+) -> egui::Response {
+    let width = ui.available_width();
+    let count = count(width);
+    let button = egui::Button::new("").selected(is_shown).min_size(egui::vec2(width, 0.0));
+    let response = ui.add(button);
+    let label = std::iter::once(name).chain(cells[..count].iter().map(String::as_str));
+    let label = label.collect::<Vec<_>>().join(", ");
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::WidgetType::Button, ui.is_enabled(), is_shown, &label)
+    });
+    let rect = response.rect;
+    let palette = theme::of(ui);
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let places = places(rect, count);
+    let names_end = places.first().map_or(rect.right(), |first| first.left());
+    let room = egui::Rect::from_min_max(rect.min, egui::pos2(names_end, rect.bottom()));
+    let at = egui::pos2(rect.left() + theme::GAP, rect.center().y);
+    let align = egui::Align2::LEFT_CENTER;
+    ui.painter().with_clip_rect(room.intersect(ui.clip_rect())).text(
+        at,
+        align,
+        name,
+        font.clone(),
+        palette.text,
+    );
+    let color = if is_shown { palette.text } else { palette.text_weak };
+    for (place, text) in places.iter().zip(cells) {
+        let at = egui::pos2(place.right(), place.center().y);
+        ui.painter().text(at, egui::Align2::RIGHT_CENTER, text, font.clone(), color);
+    }
+    response
+}
+
+/// Rectangles of the columns in a row, from left to right.
+fn places(row: egui::Rect, count: usize) -> Vec<egui::Rect> {
+    let mut right = row.right() - theme::GAP;
+    let mut places: Vec<egui::Rect> = WIDTHS[..count]
+        .iter()
+        .rev()
+        .map(|width| {
+            let place = egui::Rect::from_x_y_ranges(right - width..=right, row.y_range());
+            right -= width;
+            place
+        })
+        .collect();
+    places.reverse();
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_list_drops_energy_first_and_keeps_the_fitness() {
+        let counts = [400.0, 300.0, 220.0, 100.0].map(count);
+        assert_eq!(counts, [3, 2, 1, 1]);
+        let row = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(340.0, 24.0));
+        let places = places(row, 3);
+        assert!(places.windows(2).all(|pair| pair[0].right() == pair[1].left()));
+        assert!(places[0].left() >= NAME_WIDTH && places[2].right() < row.right());
+    }
+}

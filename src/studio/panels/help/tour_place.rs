@@ -1,0 +1,101 @@
+//! Where a card of the tour stands: beside its target, never over it or over the upper stairs.
+
+use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
+
+use crate::studio::ui::theme;
+
+/// Distance between a card and its target, in points.
+const GAP: f32 = theme::GAP * 2.0;
+/// Distance of a card over the stage from its upper edge, in points: below the bar with the cameras.
+const BELOW_BAR: f32 = theme::GAP * 6.0;
+/// Height of a card beside a panel at the right, as a share of the panel's: the stairs rise towards it, so the ground
+/// is free.
+const LOW: f32 = 0.6;
+
+/// Rectangle for a card of this size: at the right of its target, at its left, below or above it, where there is room;
+/// otherwise in the target's upper left corner, because the stairs rise to the right.
+pub(super) fn card_place(target: Rect, screen: Rect, size: Vec2) -> Rect {
+    let inside = screen.shrink(theme::GAP);
+    let at = |x: f32, y: f32| {
+        let last = inside.max - size;
+        let x = x.min(last.x).max(inside.left());
+        Rect::from_min_size(pos2(x, y.min(last.y).max(inside.top())), size)
+    };
+    let candidates = [
+        at(target.right() + GAP, target.top() + BELOW_BAR),
+        at(target.left() - GAP - size.x, target.top() + target.height() * LOW),
+        at(target.left() + GAP, target.bottom() + GAP),
+        at(target.left() + GAP, target.top() - GAP - size.y),
+    ];
+    let is_beside = |place: &Rect| !place.intersects(target) && inside.contains_rect(*place);
+    let beside = candidates.into_iter().find(is_beside);
+    beside.unwrap_or_else(|| at(target.left() + GAP, target.top() + BELOW_BAR))
+}
+
+/// Corners of an arrow from a card to its target; `None` if the card stands over it.
+pub(super) fn arrow(card: Rect, target: Rect) -> Option<Vec<Pos2>> {
+    let (long, half) = (theme::GAP * 1.75, theme::GAP);
+    let y = card.center().y.clamp(target.top(), target.bottom()).clamp(card.top(), card.bottom());
+    let x = card.center().x.clamp(target.left(), target.right()).clamp(card.left(), card.right());
+    let (base, along) = if card.left() >= target.right() {
+        (pos2(card.left(), y), vec2(-1.0, 0.0))
+    } else if card.right() <= target.left() {
+        (pos2(card.right(), y), vec2(1.0, 0.0))
+    } else if card.top() >= target.bottom() {
+        (pos2(x, card.top()), vec2(0.0, -1.0))
+    } else if card.bottom() <= target.top() {
+        (pos2(x, card.bottom()), vec2(0.0, 1.0))
+    } else {
+        return None;
+    };
+    let aside = along.rot90() * half;
+    Some(vec![base + aside, base + along * long, base - aside])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CARD: Vec2 = vec2(364.0, 190.0);
+
+    fn rect(left: f32, top: f32, right: f32, bottom: f32) -> Rect {
+        Rect::from_min_max(pos2(left, top), pos2(right, bottom))
+    }
+
+    #[test]
+    fn a_card_covers_neither_its_panel_nor_the_upper_stairs() {
+        // Window, panel at the left, stage, and charts at the right of a wide window.
+        for (size, left, right) in [
+            (vec2(1024.0, 640.0), 307.0, 1024.0),
+            (vec2(1280.0, 720.0), 384.0, 1280.0),
+            (vec2(1600.0, 900.0), 384.0, 1180.0),
+        ] {
+            let screen = Rect::from_min_size(Pos2::ZERO, size);
+            let panel = rect(0.0, 56.0, left, size.y);
+            let stage = rect(left, 28.0, right, size.y - 170.0);
+            let upper_stairs =
+                rect(left + stage.width() * 0.6, 28.0, right, 28.0 + stage.height() / 2.0);
+            let charts = rect(right, 56.0, size.x, size.y);
+            for target in [panel, stage, charts] {
+                if target.width() < 1.0 {
+                    continue;
+                }
+                let card = card_place(target, screen, CARD);
+                assert!(screen.contains_rect(card), "{size} {target}: {card}");
+                assert!(!card.intersects(upper_stairs), "{size} {target}: {card}");
+                assert!(target == stage || !card.intersects(target), "{size} {target}: {card}");
+                let points = arrow(card, target);
+                assert!(points.is_some() || target == stage, "{size} {target}: an arrow");
+            }
+        }
+    }
+
+    #[test]
+    fn an_arrow_points_from_the_card_to_its_target() {
+        let card = rect(400.0, 100.0, 700.0, 300.0);
+        let tip = |target| arrow(card, target).expect("beside it")[1];
+        assert_eq!(tip(rect(0.0, 0.0, 380.0, 600.0)), pos2(386.0, 200.0));
+        assert_eq!(tip(rect(720.0, 0.0, 900.0, 600.0)), pos2(714.0, 200.0));
+        assert_eq!(arrow(card, rect(0.0, 0.0, 900.0, 600.0)), None);
+    }
+}

@@ -1,0 +1,139 @@
+//! Events of a rollout for the time line: the first touch of the stairs, steps climbed and lost, the landing.
+
+use crate::score::KeyframeHistory;
+use crate::studio::stage::lane::Lane;
+use crate::world::Stairs;
+
+/// Something that happened to a snake.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ClimbEvent {
+    /// When, in simulated seconds.
+    pub time_s: f64,
+    /// What.
+    pub kind: ClimbEventKind,
+}
+
+/// Kind of an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ClimbEventKind {
+    /// A limb touched the stairs for the first time.
+    Touched,
+    /// The middle block climbed to this step; the lowest is 1.
+    Climbed(u32),
+    /// The middle block fell back to this step; 0 is the ground.
+    Lost(u32),
+    /// The middle block arrived on the last step or the landing, for the first time.
+    Landed,
+}
+
+/// Time for which the middle block must stay on a step, in seconds. At the edge of a step it may hop to and fro.
+const STAYS_S: f64 = 0.25;
+
+impl ClimbEvent {
+    /// What happened, for a hover text.
+    pub fn words(self) -> String {
+        let time_s = self.time_s;
+        match self.kind {
+            ClimbEventKind::Touched => format!("First touch of the stairs, {time_s:.2} s"),
+            ClimbEventKind::Climbed(step) => format!("Step {step} climbed, {time_s:.2} s"),
+            ClimbEventKind::Lost(0) => format!("Fell off the stairs, {time_s:.2} s"),
+            ClimbEventKind::Lost(step) => format!("Fell back to step {step}, {time_s:.2} s"),
+            ClimbEventKind::Landed => format!("Top of the stairs reached, {time_s:.2} s"),
+        }
+    }
+}
+
+/// Events of a lane's rollout in the order of their time, as far as they are known. A recording tells only its landing.
+pub(super) fn events(lane: &Lane) -> Vec<ClimbEvent> {
+    match lane.history() {
+        Some(history) => of_history(history, &lane.trial().stairs, lane.step_s()),
+        None => {
+            let landed_s = lane.landed_s(f64::INFINITY);
+            let landed = landed_s.map(|time_s| ClimbEvent { time_s, kind: ClimbEventKind::Landed });
+            landed.into_iter().collect()
+        }
+    }
+}
+
+fn of_history(history: &KeyframeHistory, stairs: &Stairs, step_s: f64) -> Vec<ClimbEvent> {
+    let sample_s = step_s * f64::from(history.sample_steps());
+    let positions = history.middles_m().iter();
+    let levels: Vec<u32> = positions.map(|at| stairs.steps_under(at.to_array())).collect();
+    let at_step = |step: Option<u32>, kind| {
+        step.map(|step| ClimbEvent { time_s: f64::from(step) * step_s, kind })
+    };
+    let mut events = changes(&levels, sample_s);
+    if history.landed_at_step().is_some() {
+        // The landing has a mark of its own.
+        let first = events.iter().position(|of| of.kind == ClimbEventKind::Climbed(stairs.steps));
+        first.into_iter().for_each(|index| drop(events.remove(index)));
+    }
+    events.extend(at_step(history.touched_stairs_at_step(), ClimbEventKind::Touched));
+    events.extend(at_step(history.landed_at_step(), ClimbEventKind::Landed));
+    events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    events
+}
+
+/// Changes of the step under the middle block that last, given that step in each sample.
+fn changes(levels: &[u32], sample_s: f64) -> Vec<ClimbEvent> {
+    let samples = (STAYS_S / sample_s.max(1.0e-6)).ceil().max(1.0) as usize;
+    let mut events = Vec::new();
+    let mut now = levels.first().copied().unwrap_or(0);
+    for (index, level) in levels.iter().enumerate() {
+        let after = &levels[index..levels.len().min(index + samples)];
+        let [least, most] = [after.iter().min(), after.iter().max()].map(|of| of.copied());
+        let time_s = index as f64 * sample_s;
+        let mut push = |kind| events.push(ClimbEvent { time_s, kind });
+        match (least, most) {
+            (Some(least), _) if *level > now && least > now => {
+                push(ClimbEventKind::Climbed(least));
+                now = least;
+            }
+            (_, Some(most)) if *level < now && most < now => {
+                push(ClimbEventKind::Lost(most));
+                now = most;
+            }
+            _ => {}
+        }
+    }
+    events
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::stage::staged_champion::StagedChampion;
+    use ClimbEventKind::{Climbed, Landed, Lost, Touched};
+
+    #[test]
+    fn steps_climbed_and_lost_are_marked_but_not_a_hop_at_an_edge() {
+        // A sample each tenth of a second.
+        let levels = [0, 0, 1, 1, 1, 2, 1, 1, 1, 3, 3, 3, 3, 1, 1, 1, 1];
+        let kinds: Vec<_> =
+            changes(&levels, 0.1).into_iter().map(|of| (of.time_s, of.kind)).collect();
+        let seconds = |samples: usize| samples as f64 * 0.1;
+        let expected = [(seconds(2), Climbed(1)), (seconds(9), Climbed(3)), (seconds(13), Lost(1))];
+        assert_eq!(kinds, expected);
+    }
+
+    #[test]
+    fn the_champion_touches_the_stairs_climbs_its_steps_and_lands() {
+        let loaded = shipped_champion().expect("well formed");
+        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        assert_eq!(events(&lane), [], "not known yet");
+        lane.finish_lookahead();
+        let events = events(&lane);
+        assert_eq!(events[0].kind, Touched, "{events:?}");
+        assert!(events.is_sorted_by(|a, b| a.time_s <= b.time_s));
+        let climbed = events.iter().filter(|of| matches!(of.kind, Climbed(_))).count();
+        assert!((3..20).contains(&climbed), "{events:?}");
+        let landed: Vec<_> = events.iter().filter(|of| of.kind == Landed).collect();
+        assert_eq!(landed.len(), 1);
+        assert_eq!(Some(landed[0].time_s), lane.landed_s(f64::INFINITY));
+        assert_eq!(
+            ClimbEvent { time_s: 1.5, kind: Lost(0) }.words(),
+            "Fell off the stairs, 1.50 s"
+        );
+    }
+}

@@ -1,0 +1,200 @@
+//! Questions that the reader answers before an experiment, and what came of them.
+
+use super::Found;
+use super::catalogue::LessonScene;
+use crate::score::Evaluation;
+
+/// Ends within this distance count as equally far, in metres.
+pub(super) const EQUAL_M: f32 = 1.0;
+
+/// A question to guess the answer to.
+#[derive(Debug)]
+pub(crate) struct Question {
+    /// The question.
+    pub text: &'static str,
+    /// What the answer depends on.
+    pub asks: Asks,
+}
+
+/// What the answer to a question depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asks {
+    /// Which lane ends furthest, or whether all end within [`EQUAL_M`].
+    Furthest,
+    /// Whether the fitness depends on the speed at which the one snake is played.
+    PlaybackSpeed,
+    /// Which run's best snake ends furthest.
+    BestRun,
+    /// Whether both runs have the same hash.
+    SameHash,
+}
+
+/// The reader's progress in a scene.
+#[derive(Debug, Default)]
+pub(crate) struct Progress {
+    /// Index of the guessed answer.
+    pub guess: Option<usize>,
+    /// Whether the experiment may run: the reader has guessed, or wants to watch without a guess.
+    pub has_begun: bool,
+    /// Whether the result may be seen.
+    pub is_revealed: bool,
+    /// Name and result of each lane.
+    pub lanes: Vec<(String, Evaluation)>,
+    /// Results of the runs.
+    pub runs: Vec<Found>,
+}
+
+/// The true answer to a question.
+#[derive(Debug, Clone, PartialEq)]
+struct Truth {
+    /// Index of the answer.
+    answer: usize,
+    /// The result as a clause.
+    words: String,
+}
+
+impl LessonScene {
+    /// The answers to choose from; none without a question.
+    pub fn answers(&self) -> Vec<&'static str> {
+        let names = || self.sides().iter().map(|side| side.name);
+        match self.question().map(|question| question.asks) {
+            Some(Asks::Furthest | Asks::BestRun) => {
+                names().chain(["all within 1 m of each other"]).collect()
+            }
+            Some(Asks::PlaybackSpeed) => vec!["the fitness changes", "not a digit changes"],
+            Some(Asks::SameHash) => vec!["the same hash", "different hashes"],
+            None => Vec::new(),
+        }
+    }
+}
+
+impl Progress {
+    /// The guess beside the result, in one sentence; `None` before the result may be seen.
+    pub fn comparison(&self, scene: &LessonScene) -> Option<String> {
+        if !self.is_revealed {
+            return None;
+        }
+        let Truth { answer, words } = self.truth(scene.question()?.asks)?;
+        let guessed = self.guess.and_then(|guess| scene.answers().get(guess).copied());
+        Some(match guessed {
+            Some(guessed) if self.guess == Some(answer) => {
+                format!("You guessed \"{guessed}\", and you were right: {words}.")
+            }
+            Some(guessed) => format!("You guessed \"{guessed}\", but {words}."),
+            None => format!("Without a guess: {words}."),
+        })
+    }
+
+    /// Index of the true answer.
+    #[cfg(test)]
+    pub fn true_answer(&self, asks: Asks) -> Option<usize> {
+        self.truth(asks).map(|truth| truth.answer)
+    }
+
+    fn truth(&self, asks: Asks) -> Option<Truth> {
+        match asks {
+            Asks::Furthest => {
+                let healthy = |evaluation: &Evaluation| {
+                    evaluation.disqualified.is_none().then_some(evaluation.centre_y_m)
+                };
+                let ends: Vec<_> =
+                    self.lanes.iter().map(|(name, of)| (name.as_str(), healthy(of))).collect();
+                furthest(&ends)
+            }
+            Asks::BestRun => {
+                let end = |found: &Found| found.best().map(|best| best.evaluation.centre_y_m);
+                let ends: Vec<_> =
+                    self.runs.iter().map(|found| (found.name.as_str(), end(found))).collect();
+                furthest(&ends)
+            }
+            Asks::PlaybackSpeed => {
+                let (_, evaluation) = self.lanes.first()?;
+                let fitness = evaluation.fitness;
+                let words = format!("the fitness at the end is {fitness:.2} at any speed");
+                Some(Truth { answer: 1, words })
+            }
+            Asks::SameHash => {
+                let hashes: Option<Vec<u64>> = self.runs.iter().map(|of| of.run_hash).collect();
+                let [first, second] = hashes?.try_into().ok()?;
+                Some(if first == second {
+                    Truth { answer: 0, words: "both runs have the same hash".to_owned() }
+                } else {
+                    Truth { answer: 1, words: "the two hashes differ".to_owned() }
+                })
+            }
+        }
+    }
+}
+
+/// The competitor that ended furthest, in metres; the answer after the last of them if all are within [`EQUAL_M`].
+fn furthest(ends: &[(&str, Option<f32>)]) -> Option<Truth> {
+    let known =
+        || ends.iter().enumerate().filter_map(|(index, (_, end_m))| Some((index, (*end_m)?)));
+    let (best, most_m) = known().max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let least_m = known().map(|(_, end_m)| end_m).fold(f32::MAX, f32::min);
+    let all_are_healthy = known().count() == ends.len();
+    Some(if all_are_healthy && most_m - least_m < EQUAL_M {
+        let words = format!("all end between {least_m:.2} m and {most_m:.2} m");
+        Truth { answer: ends.len(), words }
+    } else {
+        let words = format!("\"{}\" gets furthest, to {most_m:.2} m", ends[best].0);
+        Truth { answer: best, words }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::LESSONS;
+    use super::*;
+
+    fn progress(guess: Option<usize>, ends_m: &[f32]) -> Progress {
+        let names = ["friction 0.1", "original", "friction 5"].into_iter();
+        let lanes = names
+            .zip(ends_m)
+            .map(|(name, end_m)| (name.to_owned(), Evaluation::of_fitness(*end_m)));
+        Progress { guess, lanes: lanes.collect(), ..Progress::default() }
+    }
+
+    #[test]
+    fn a_guess_is_compared_with_the_result_in_one_sentence_once_that_may_be_seen() {
+        let scene = &LESSONS[0].scenes[0];
+        let mut right = progress(Some(1), &[2.0, 26.0, 4.0]);
+        assert_eq!(right.comparison(scene), None);
+        right.is_revealed = true;
+        let expected =
+            "You guessed \"original\", and you were right: \"original\" gets furthest, to 26.00 m.";
+        assert_eq!(right.comparison(scene).as_deref(), Some(expected));
+        for (guess, start) in
+            [(Some(2), "You guessed \"friction 5\", but"), (None, "Without a guess")]
+        {
+            let of = Progress { is_revealed: true, ..progress(guess, &[2.0, 26.0, 4.0]) };
+            let words = of.comparison(scene).expect("revealed");
+            assert!(words.starts_with(start), "{words}");
+        }
+    }
+
+    #[test]
+    fn ends_within_a_metre_count_as_equally_far() {
+        let close = progress(None, &[25.2, 26.0, 25.9]);
+        assert_eq!(close.true_answer(Asks::Furthest), Some(3));
+        let mut out = progress(None, &[25.2, 26.0, 25.9]);
+        out.lanes[0].1.disqualified = Some(crate::world::Disqualification::TooFast);
+        assert_eq!(out.true_answer(Asks::Furthest), Some(1), "a disqualified snake ends nowhere");
+    }
+
+    #[test]
+    fn every_comparing_scene_asks_for_a_guess() {
+        for lesson in &LESSONS {
+            assert!(
+                lesson.scenes.iter().any(|scene| scene.question().is_some()),
+                "{}",
+                lesson.title
+            );
+            for scene in lesson.scenes {
+                let compares = scene.sides().len() > 1;
+                assert!(scene.question().is_some() || !compares, "{}", scene.label());
+                assert_eq!(scene.answers().is_empty(), scene.question().is_none());
+            }
+        }
+    }
+}

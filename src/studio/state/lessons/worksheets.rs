@@ -1,0 +1,226 @@
+//! The worksheets in `docs/worksheets`, written from the catalogue and from the results of the experiments. Each prints
+//! on one page.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::prediction::Asks;
+use super::tests::result;
+use super::*;
+use crate::score::Evaluation;
+
+/// What a worksheet has beside the texts of its lesson.
+struct Sheet {
+    /// Instructions, after "guess".
+    steps: &'static [&'static str],
+    /// Questions about the result.
+    questions: [&'static str; 2],
+}
+
+const SHEETS: [Sheet; 5] = [
+    Sheet {
+        steps: &[
+            "Begin lesson 1, give your guess, and watch the race to its end. Fill in the table.",
+            "Do the same with \"A little less, a little more\".",
+            "Open the World panel and drag Friction: find the smallest value that still reaches the landing.",
+        ],
+        questions: [
+            "What goes wrong with too little friction, and what with too much?",
+            "Why does this snake climb best near the friction on which it evolved?",
+        ],
+    },
+    Sheet {
+        steps: &[
+            "Begin lesson 2, give your guess, and watch the race to its end. Fill in the table.",
+            "Choose \"The original champion at any playback speed\" and guess again. Play it at × 0.25, × 1 and × 4.",
+            "Write down the fitness at the end each time, with all digits.",
+        ],
+        questions: [
+            "What is the difference between fewer physics steps per second and a slower playback?",
+            "Why must forces not depend on how fast a computer draws?",
+        ],
+    },
+    Sheet {
+        steps: &[
+            "Begin lesson 3 and choose \"Evolve with and almost without limits\".",
+            "Give your guess and wait for the six generations. Fill in the table.",
+            "Watch the best snake of each run race against the other.",
+        ],
+        questions: [
+            "Why are so many snakes disqualified when their joints can turn almost freely?",
+            "How can a restriction make a search more successful?",
+        ],
+    },
+    Sheet {
+        steps: &[
+            "Begin lesson 4 and choose \"Evolve with both ranges\".",
+            "Give your guess and watch both lines grow for fourteen generations. Fill in the table.",
+            "Note the generation after which the lower line hardly rises any more.",
+        ],
+        questions: [
+            "A range of 100 N·m halves with each generation. How large is it in generation 7?",
+            "When are small changes useful, and when large ones?",
+        ],
+    },
+    Sheet {
+        steps: &[
+            "Begin lesson 5 and choose \"The same run twice\". Guess, wait, and write down both hashes.",
+            "Choose \"Friction changed by a millionth\", guess again, and write down both hashes.",
+            "Compare your hashes with those of your neighbours.",
+        ],
+        questions: [
+            "What does it tell you if two runs have the same hash?",
+            "Why should a scientific result be repeatable by other people?",
+        ],
+    },
+];
+
+/// A line to write on.
+const LINE: &str = "________________________________________";
+
+/// Text of a worksheet.
+fn text(index: usize) -> String {
+    let (lesson, sheet) = (&LESSONS[index], &SHEETS[index]);
+    let mut text = format!(
+        "# Worksheet {}: {}\n\nName: {LINE} Date: {}\n\n**{}** {}\n\n## Predict\n\n",
+        index + 1,
+        lesson.title,
+        &LINE[..15],
+        lesson.question,
+        lesson.story
+    );
+    for scene in lesson.scenes {
+        let Some(question) = scene.question() else { continue };
+        let answers: Vec<String> =
+            scene.answers().iter().map(|answer| format!("☐ {answer}")).collect();
+        text += &format!("- {}: {} {}\n", scene.label(), question.text, answers.join(" "));
+    }
+    text += &format!("\nBecause: {LINE}{LINE}\n\n## Try it\n\n");
+    for (number, step) in (1..).zip(sheet.steps) {
+        text += &format!("{number}. {step}\n");
+    }
+    text += &format!("\n{}\n## Explain\n\n", table(index));
+    for (number, question) in (1..).zip(sheet.questions) {
+        text += &format!("{number}. {question}\n\n   {LINE}{LINE}\n\n");
+    }
+    text + &format!(
+        "---\n\n**For the teacher** (cover before copying). {} {}\n",
+        expected(index),
+        lesson.answer
+    )
+}
+
+/// Table to fill in.
+fn table(index: usize) -> String {
+    let scenes = || LESSONS[index].scenes.iter();
+    let mut asked = scenes().filter_map(|scene| scene.question()).map(|question| question.asks);
+    let has_speeds = asked.clone().any(|asks| asks == Asks::PlaybackSpeed);
+    let asks = asked.next();
+    let heads: &[&str] = match asks {
+        _ if has_speeds => &["Snake", "Ends at (m)", "Fitness"],
+        Some(Asks::Furthest | Asks::PlaybackSpeed) => &["Snake", "Ends at (m)", "On the landing?"],
+        Some(Asks::BestRun) => &["Run", "Best fitness (m)", "Disqualified"],
+        Some(Asks::SameHash) | None => &["Run", "Hash"],
+    };
+    let row = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
+    let blank = |name: &str| {
+        let mut cells = vec![name];
+        cells.resize(heads.len(), " ");
+        row(&cells)
+    };
+    let rule = row(&vec!["---"; heads.len()]);
+    let mut names = Vec::new();
+    for scene in scenes() {
+        match scene.question().map(|question| question.asks) {
+            Some(Asks::PlaybackSpeed) => names.extend(["played at × 0.25", "played at × 4"]),
+            Some(_) => names.extend(scene.sides().iter().map(|side| side.name)),
+            None => {}
+        }
+    }
+    // Two scenes may have the original in common.
+    let is_new = |index: &usize| !names[..*index].contains(&names[*index]);
+    let rows = (0..names.len()).filter(is_new).map(|index| blank(names[index]));
+    row(heads) + &rule + &rows.collect::<String>()
+}
+
+/// Results of all experiments, in words.
+fn expected(index: usize) -> String {
+    let scenes = LESSONS[index].scenes.iter().enumerate();
+    let asked = scenes.filter_map(|(number, scene)| {
+        scene.question()?;
+        let progress = result(index, number);
+        let lane = |(name, of): &(String, Evaluation)| match of.disqualified {
+            Some(reason) => format!("{name}: disqualified, {}", reason.words()),
+            None => format!("{name}: {:.2} m, fitness {:.2}", of.centre_y_m, of.fitness),
+        };
+        let run = |found: &Found| {
+            let best = found.best().map_or("none".to_owned(), |best| best.score());
+            let out: u32 = found.reports.iter().map(|report| report.disqualified).sum();
+            let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
+            format!("{}: {best}, {out} of {all} disqualified", found.name)
+        };
+        let hash =
+            |found: &Found| format!("{}: {:016x}", found.name, found.run_hash.unwrap_or_default());
+        let results: Vec<String> = match scene.question()?.asks {
+            Asks::Furthest | Asks::PlaybackSpeed => progress.lanes.iter().map(lane).collect(),
+            Asks::BestRun => progress.runs.iter().map(run).collect(),
+            Asks::SameHash => progress.runs.iter().map(hash).collect(),
+        };
+        Some(format!("{} ({}).", scene.label(), results.join("; ")))
+    });
+    asked.collect::<Vec<_>>().join(" ")
+}
+
+fn file(index: usize) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("docs/worksheets");
+    folder.join(format!("{}.md", index + 1))
+}
+
+/// Printed height of a worksheet in lines of text: on A4 with margins of 2 cm and letters of 11 points, 95 characters
+/// fit on a line, and [`PAGE_LINES`] lines on the page.
+fn printed_lines(text: &str) -> f64 {
+    let height = |line: &str| match line {
+        // Between paragraphs there is half a line.
+        "" => 0.5,
+        heading if heading.starts_with('#') => 1.8,
+        row if row.starts_with('|') => 1.3,
+        line => line.chars().count().div_ceil(95) as f64,
+    };
+    text.lines().map(height).sum()
+}
+
+/// Lines of text on a page.
+const PAGE_LINES: f64 = 48.0;
+
+#[test]
+fn the_worksheets_are_up_to_date() {
+    for index in 0..LESSONS.len() {
+        let expected = text(index);
+        assert_eq!(
+            LESSONS[index].worksheet,
+            expected,
+            "worksheet {}: run `cargo test --lib write_the_worksheets -- --ignored`",
+            index + 1
+        );
+    }
+}
+
+#[test]
+fn each_worksheet_prints_on_one_page() {
+    for (number, lesson) in (1..).zip(&LESSONS) {
+        let lines = printed_lines(lesson.worksheet);
+        assert!((20.0..=PAGE_LINES).contains(&lines), "worksheet {number} has {lines} lines");
+        let parts = ["## Predict", "## Try it", "## Explain", "**For the teacher**", "☐"];
+        for part in parts.into_iter().chain([lesson.title, lesson.question]) {
+            assert!(lesson.worksheet.contains(part), "worksheet {number}: {part}");
+        }
+    }
+}
+
+#[test]
+#[ignore = "writes the worksheets into docs/worksheets"]
+fn write_the_worksheets() {
+    for index in 0..LESSONS.len() {
+        fs::write(file(index), text(index)).expect("written");
+    }
+}
