@@ -11,7 +11,8 @@ setting_group! {
             // From ice without any friction to beyond the 150 of the report's engine manual.
             number("Friction", 0.0..=1000.0)
                 .hint("Grip: largest sideways force divided by the force pressing down. 0 is no grip, 1 normal, 5 like glue")
-                .slider(0.0, 5.0);
+                .slider(0.0, 10.0)
+                .logarithmic_from(0.01);
 
         /// Restitution, from 0 (no bounce) to 1 (all of the speed comes back).
         bounce: f32 = 0.0,
@@ -73,7 +74,8 @@ setting_group! {
         friction: f32 = 1.0,
             number("Skin friction", 0.0..=1000.0)
                 .hint("Factor for the friction of everything that the snake touches. 1 changes nothing")
-                .slider(0.0, 5.0);
+                .slider(0.0, 10.0)
+                .logarithmic_from(0.01);
 
         /// Restitution, from 0 to 1.
         bounce: f32 = 0.0,

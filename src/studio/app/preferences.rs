@@ -96,7 +96,7 @@ fn restore(
     remembered.was_smooth = chosen.is_smooth();
     let Preferences { ui_scale, layout, overlays, speed, loops, smooth_edges, .. } =
         remembered.stored.clone();
-    chosen.workspace.scale = ui_scale;
+    chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
         let known = Overlay::ALL.into_iter().find(|overlay| overlay.words().0 == name);
@@ -155,7 +155,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
     let now = Preferences {
         theme: chosen.theme.name().to_owned(),
-        ui_scale: chosen.workspace.scale,
+        ui_scale: chosen.workspace.scale.chosen(),
         window_size: window_size.or(before.window_size),
         layout: chosen.workspace.layout.to_text(),
         overlays: shown.map(|overlay| overlay.words().0.to_owned()).collect(),
@@ -193,7 +193,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = PreferencesFile::at(&folder.path().join("studio.ron"));
         let mut first = app(&file);
-        first.world_mut().resource_mut::<Workspace>().scale = 1.5;
+        first.world_mut().resource_mut::<Workspace>().scale.choose(1.5);
         first.world_mut().resource_mut::<Workspace>().tour_is_over = true;
         first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
         first.world_mut().resource_mut::<Playback>().set_speed(0.5);
@@ -201,7 +201,7 @@ mod tests {
         first.world_mut().write_message(AppExit::Success);
         first.update();
         let second = app(&file);
-        assert_eq!(second.world().resource::<Workspace>().scale, 1.5);
+        assert_eq!(second.world().resource::<Workspace>().scale.chosen(), 1.5);
         assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         let chosen = second.world().resource::<StoredPreferences>().chosen().clone();

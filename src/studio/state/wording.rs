@@ -24,7 +24,7 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
             let name = listed.setting.short_name();
             match was {
                 Some(was) if was.value == listed.value => None,
-                Some(_) => Some(format!("{name} {}", listed.value)),
+                Some(_) => Some(format!("{name} {}", listed.setting.value_in_words(&listed.value))),
                 // A new group is named as a whole.
                 None => {
                     Some(format!("separate {}", listed.path.rsplit('.').nth(1).unwrap_or(&name)))

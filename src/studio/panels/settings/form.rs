@@ -157,6 +157,7 @@ impl Sheet {
             check: Check { settings: run.next_settings(), field, setting, all: values.listed() },
             field,
             value,
+            text: setting.shown_text(value),
             is_from_next_generation,
         };
         let new = match &setting.kind {
@@ -175,8 +176,8 @@ impl Sheet {
     pub(super) fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let preset = self.values.changed_from(shown.field)?.to_owned();
         let in_words = match preset.as_str() {
-            "none" => "off",
-            other => other,
+            "none" => "off".to_owned(),
+            other => shown.setting.shown_text(other),
         };
         let hint = format!("Reset to the preset's value: {in_words}");
         let label = format!("Reset {}", shown.setting.label);
@@ -220,8 +221,10 @@ pub(super) struct Shown<'a> {
     pub check: Check<'a>,
     /// Full dotted name.
     pub field: &'a str,
-    /// Value as text.
+    /// Value as text, in the unit of files.
     pub value: &'a str,
+    /// Value as text, in the unit of panels.
+    pub text: String,
     is_from_next_generation: bool,
 }
 
@@ -248,9 +251,12 @@ fn next_generation_mark(ui: &mut egui::Ui) {
 /// Text of a setting's tooltip: its effect, its range, and when a change takes effect.
 fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     let mut hint = format!("{}.", setting.hint.trim_end_matches('.'));
-    let allowed = setting.range_in_words();
+    let allowed = setting.shown_range_in_words();
     if !allowed.is_empty() {
         hint += &format!("\nAllowed: {allowed}.");
+    }
+    if setting.display.is_some() {
+        hint += &format!("\nFiles and --set have {} instead.", setting.unit);
     }
     if let Some(answer) = answer {
         hint += &format!("\n{}", when(answer));

@@ -6,6 +6,8 @@ mod choices;
 mod columns;
 mod form;
 mod number;
+mod scale;
+mod slider;
 mod validation;
 mod values;
 

@@ -11,6 +11,7 @@ use crate::score::Trial;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::undo::UndoHistory;
+use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::{explain, title_and};
 use crate::studio::ui::theme;
 
@@ -123,7 +124,7 @@ fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
     let mut differs = trial.ground.is_some();
     let hint = "On: the ground gets its own settings, copied from the stairs. Off: ground and stairs share one surface";
     let name = "The ground has its own surface";
-    if ui.checkbox(&mut differs, name).on_hover_text(hint).changed() {
+    if check_box(ui, &mut differs, name).on_hover_text(hint).changed() {
         let (field, text) = if differs {
             ("ground.friction", trial.surface.friction.to_string())
         } else {
