@@ -41,6 +41,8 @@ pub struct Preferences {
     pub smooth_edges: Option<bool>,
     /// Whether the tour was finished or skipped.
     pub tour_is_over: bool,
+    /// Titles of the sections whose advanced settings are unfolded.
+    pub unfolded: Vec<String>,
 }
 
 impl Default for Preferences {
@@ -55,6 +57,7 @@ impl Default for Preferences {
             loops: true,
             smooth_edges: None,
             tour_is_over: false,
+            unfolded: Vec::new(),
         }
     }
 }
@@ -74,6 +77,7 @@ impl Preferences {
             within("window_size.1", height, 240..=16_384)?;
         }
         within("layout", self.layout.len(), 0..=LONGEST_LAYOUT)?;
+        within("unfolded", self.unfolded.len(), 0..=100)?;
         within("overlays", self.overlays.len(), 0..=20)?;
         within("speed", self.speed, 0.01..=100.0)
     }

@@ -119,9 +119,8 @@ impl Setting {
     pub fn shown_range(&self, range: &NumberRange) -> NumberRange {
         let Some(display) = self.display else { return *range };
         let (least, most) = (display.bound(range.least, false), display.bound(range.most, true));
-        let slider = range.slider.map(|[from, to]| {
-            [display.bound(from, false), display.bound(to, true)]
-        });
+        let slider =
+            range.slider.map(|[from, to]| [display.bound(from, false), display.bound(to, true)]);
         let logarithmic_from = range.logarithmic_from.map(|from| display.bound(from, false));
         NumberRange { least, most, slider, logarithmic_from, ..*range }
     }
@@ -161,7 +160,8 @@ mod tests {
     #[test]
     fn a_typed_angle_becomes_the_nearest_32_bit_float() {
         for typed in ["57.2958", "45", "0.01", "171.88", "103.1324"] {
-            let stored: f32 = angle().stored_text(typed).and_then(|text| text.parse().ok()).expect(typed);
+            let stored: f32 =
+                angle().stored_text(typed).and_then(|text| text.parse().ok()).expect(typed);
             let exact = typed.parse::<f64>().expect(typed).to_radians();
             let off = |number: f32| (f64::from(number) - exact).abs();
             assert!(off(stored) <= off(stored.next_up()), "{typed}");
@@ -171,9 +171,9 @@ mod tests {
     }
 
     #[test]
-    fn an_angle_of_a_file_is_shown_with_two_decimals() {
+    fn an_angle_of_a_file_is_rounded_unless_a_few_digits_are_exact() {
         let shown = [0.6, 0.8, 1.0, 1.8, 0.0, 3.0].map(|stored| DEGREES.text(stored));
-        assert_eq!(shown, ["34.38", "45.84", "57.3", "103.13", "0", "171.89"]);
+        assert_eq!(shown, ["34.38", "45.84", "57.3", "103.1324", "0", "171.89"]);
     }
 
     #[test]
@@ -185,7 +185,8 @@ mod tests {
         assert_eq!(angle.shown_text("[0.6, 1]"), "[0.6, 1]", "this one has no list");
         assert_eq!(angle.shown_text("0.6"), "34.38");
         assert_eq!(angle.value_in_words(&SettingValue::Number(0.6)), "34.38°");
-        let limits = optional_per_part("Limit", 0.0..=3.0, Parts::Joints(2), 1.0).unit("rad").setting;
+        let limits =
+            optional_per_part("Limit", 0.0..=3.0, Parts::Joints(2), 1.0).unit("rad").setting;
         assert_eq!(limits.shown_text("[0.6, 1]"), "[34.38, 57.3]");
         assert_eq!(limits.shown_text("none"), "none");
         assert_eq!(limits.value_in_words(&SettingValue::None), "none");
@@ -198,8 +199,10 @@ mod tests {
         let shown = angle.shown_range(&range);
         assert_eq!((shown.slider, shown.most), (Some([0.0, 171.88]), 171.88));
         for end in [shown.least, shown.most] {
-            let stored: f32 =
-                angle.stored_text(&end.to_string()).and_then(|text| text.parse().ok()).expect("a number");
+            let stored: f32 = angle
+                .stored_text(&end.to_string())
+                .and_then(|text| text.parse().ok())
+                .expect("a number");
             assert!((range.least..=range.most).contains(&stored), "{end}");
         }
     }

@@ -94,8 +94,9 @@ fn restore(
 ) {
     notices.problems(remembered.problem.take());
     remembered.was_smooth = chosen.is_smooth();
-    let Preferences { ui_scale, layout, overlays, speed, loops, smooth_edges, .. } =
+    let Preferences { ui_scale, layout, overlays, speed, loops, smooth_edges, unfolded, .. } =
         remembered.stored.clone();
+    chosen.workspace.unfolded = unfolded.into_iter().collect();
     chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
@@ -163,6 +164,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         loops: chosen.playback.loops(),
         smooth_edges: is_smooth.filter(|_| has_chosen),
         tour_is_over: chosen.workspace.tour_is_over,
+        unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
     };
     // A closing window can have size zero; ignore that.
     if now.check().is_ok() { now } else { before.clone() }
@@ -195,6 +197,7 @@ mod tests {
         let mut first = app(&file);
         first.world_mut().resource_mut::<Workspace>().scale.choose(1.5);
         first.world_mut().resource_mut::<Workspace>().tour_is_over = true;
+        first.world_mut().resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
         first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
         first.world_mut().resource_mut::<Playback>().set_speed(0.5);
         *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
@@ -202,6 +205,7 @@ mod tests {
         first.update();
         let second = app(&file);
         assert_eq!(second.world().resource::<Workspace>().scale.chosen(), 1.5);
+        assert!(second.world().resource::<Workspace>().unfolded.contains("Surface"));
         assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         let chosen = second.world().resource::<StoredPreferences>().chosen().clone();

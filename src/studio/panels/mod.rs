@@ -134,6 +134,8 @@ fn draw(
     if is_first {
         theme::apply(&context);
         panels.is_styled = true;
+        panels.world.unfold(&workspace.unfolded);
+        panels.evolution.unfold(&workspace.unfolded);
     }
     theme::show(&context, *data.theme);
     workspace.scale.fit(context.content_rect().size() * context.zoom_factor());

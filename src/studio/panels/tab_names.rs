@@ -14,7 +14,8 @@ const AROUND: f32 = 16.0;
 pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<PanelKind> {
     let style = context.global_style();
     let font = egui::TextStyle::Button.resolve(&style);
-    let is_crowded = |(width, kinds): &(f32, Vec<PanelKind>)| bar_width(context, kinds, &font) > *width;
+    let is_crowded =
+        |(width, kinds): &(f32, Vec<PanelKind>)| bar_width(context, kinds, &font) > *width;
     layout.tab_bars().into_iter().filter(is_crowded).flat_map(|(_, kinds)| kinds).collect()
 }
 

@@ -39,3 +39,18 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::with_field;
+
+    #[test]
+    fn a_changed_angle_is_named_in_degrees() {
+        let original = Settings::default();
+        let limits = with_field(&original, "bend_limit_rad", "1").expect("allowed");
+        assert_eq!(changes_in_words(&original, &limits), "bend limit 57.3°");
+        let rise = with_field(&original, "rise_m", "0.7").expect("allowed");
+        assert_eq!(changes_in_words(&original, &rise), "rise 0.7");
+    }
+}

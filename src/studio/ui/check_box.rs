@@ -6,7 +6,7 @@ use bevy_egui::egui;
 use super::theme;
 
 /// Side of the box, in points.
-const SIDE: f32 = 16.0;
+pub(crate) const CHECK_BOX_SIDE: f32 = 16.0;
 /// Width of the tick, in points.
 const TICK: f32 = 10.0;
 /// Radius of the corners, in points: small beside the side, so that the box is a square.
@@ -23,7 +23,7 @@ pub(crate) fn check_box(
     let mark = if *is_on { palette.on_accent } else { palette.text };
     let label = label.into();
     ui.scope(|ui| {
-        ui.spacing_mut().icon_width = SIDE;
+        ui.spacing_mut().icon_width = CHECK_BOX_SIDE;
         ui.spacing_mut().icon_width_inner = TICK;
         let widgets = &mut ui.visuals_mut().widgets;
         for (widget, edge) in [
@@ -39,6 +39,23 @@ pub(crate) fn check_box(
         ui.checkbox(is_on, label)
     })
     .inner
+}
+
+/// Paints a check box that belongs to another widget, such as the entry of a menu.
+pub(crate) fn paint_check_box(ui: &egui::Ui, rect: egui::Rect, is_on: bool) {
+    let palette = theme::of(ui);
+    let fill = if is_on { palette.accent } else { palette.panel };
+    let edge = egui::Stroke::new(1.5, palette.text_weak);
+    ui.painter().rect(rect, CORNER, fill, edge, egui::StrokeKind::Inside);
+    if is_on {
+        let tick = egui::Rect::from_center_size(rect.center(), egui::Vec2::splat(TICK));
+        let points = vec![
+            egui::pos2(tick.left(), tick.center().y),
+            tick.center_bottom() - egui::vec2(TICK * 0.1, TICK * 0.1),
+            tick.right_top(),
+        ];
+        ui.painter().line(points, egui::Stroke::new(2.0, palette.on_accent));
+    }
 }
 
 #[cfg(test)]
@@ -66,6 +83,6 @@ mod tests {
     #[test]
     fn a_check_box_is_a_square_with_sharp_corners() {
         // A radius of half the side would be a circle.
-        assert!(f32::from(CORNER.nw) * 4.0 <= SIDE / 2.0);
+        assert!(f32::from(CORNER.nw) * 4.0 <= CHECK_BOX_SIDE / 2.0);
     }
 }

@@ -217,9 +217,8 @@ impl Layout {
         // Text from another version or edited by hand could describe a layout that cannot be drawn.
         let own = text.split_once(' ').filter(|(sum, text)| *sum == seal(text));
         let read = own.and_then(|(_, text)| ron::from_str(text).ok());
-        let read = read.filter(|(widths, state): &(PanelWidths, _)| {
-            widths.are_sound() && is_sound(state)
-        });
+        let read =
+            read.filter(|(widths, state): &(PanelWidths, _)| widths.are_sound() && is_sound(state));
         read.map_or_else(Self::default, |(widths, state)| Self {
             state,
             widths,

@@ -5,6 +5,8 @@ pub mod scale;
 pub mod situation;
 pub mod widths;
 
+use std::collections::BTreeSet;
+
 use bevy::prelude::*;
 
 use super::commands::WindowCommand;
@@ -27,6 +29,8 @@ pub(super) struct Workspace {
     pub is_bare: bool,
     /// Whether the tour was finished or skipped, in this or an earlier session.
     pub tour_is_over: bool,
+    /// Titles of the sections whose advanced settings are unfolded.
+    pub unfolded: BTreeSet<String>,
     /// Label of the setting to scroll to, until the settings panel has handled it.
     pub sought: Option<&'static str>,
     modal: Option<Modal>,
@@ -39,6 +43,7 @@ impl Default for Workspace {
             scale: UiScale::default(),
             is_bare: false,
             tour_is_over: true,
+            unfolded: BTreeSet::new(),
             sought: None,
             modal: None,
         }
@@ -69,6 +74,12 @@ impl Workspace {
             WindowCommand::TogglePanels => self.is_bare = !self.is_bare,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
             WindowCommand::ResetScale => self.scale.choose(1.0),
+            WindowCommand::FoldAdvanced { section, is_open: true } => {
+                self.unfolded.insert((*section).to_owned());
+            }
+            WindowCommand::FoldAdvanced { section, is_open: false } => {
+                self.unfolded.remove(*section);
+            }
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
             WindowCommand::CloseModal if self.modal.is_none() => self.is_bare = false,
             WindowCommand::CloseModal => self.close_modal(),

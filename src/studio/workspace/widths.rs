@@ -75,7 +75,8 @@ impl PanelWidths {
     pub fn fit(&mut self, tree: &mut Tree<PanelKind>, stage: NodeIndex, width: f32) {
         let splits = beside(tree, stage);
         self.note_dragged(&splits, width);
-        let wanted: Vec<f32> = splits.iter().map(|split| self.of(split.place)).collect();
+        let wanted: Vec<f32> =
+            splits.iter().map(|split| self.of(split.place).max(split.least)).collect();
         let widths = fitted(&wanted, &splits, width);
         let mut room = width.max(1.0);
         self.shares.clear();
@@ -173,7 +174,11 @@ fn fitted(wanted: &[f32], splits: &[Beside], width: f32) -> Vec<f32> {
         return splits.iter().map(|split| split.least * room / least).collect();
     }
     let part = if spare > 0.0 { ((room - least) / spare).min(1.0) } else { 1.0 };
-    wanted.iter().zip(splits).map(|(wanted, split)| split.least + (wanted - split.least) * part).collect()
+    wanted
+        .iter()
+        .zip(splits)
+        .map(|(wanted, split)| split.least + (wanted - split.least) * part)
+        .collect()
 }
 
 #[cfg(test)]

@@ -262,7 +262,10 @@ mod tests {
             sent(width, |harness| {
                 harness.get_by_label("More readings").click();
                 harness.run();
-                assert!(harness.query_all_by_label_contains("energy 0").next().is_some(), "{width}");
+                assert!(
+                    harness.query_all_by_label_contains("energy 0").next().is_some(),
+                    "{width}"
+                );
             });
         }
     }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::columns::{Columns, Part};
+use super::folds::Folds;
 use super::sections_of;
 use super::validation::Check;
 use super::values::Values;
@@ -29,6 +30,7 @@ pub struct Sheet {
     pub(super) typed: BTreeMap<String, Typed>,
     /// Last frame in which the panel was drawn.
     pub(super) drawn_in: u64,
+    pub(super) folds: Folds,
 }
 
 /// A slider being dragged.
@@ -64,6 +66,9 @@ impl Sheet {
         }
         self.drawn_in = frame;
         if !self.values.are_of(run) {
+            if self.values.preset_name() != run.next_preset() {
+                self.folds.forget_kept();
+            }
             self.values = Arc::new(Values::of(run));
         }
     }
@@ -97,18 +102,6 @@ impl Sheet {
         self.values.listed().iter().filter(move |listed| listed.section == section)
     }
 
-    /// Draws a section's settings and its reset button.
-    pub fn section(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        section: Section,
-        commands: &mut Vec<Command>,
-    ) {
-        self.entries(ui, run, section, |_| true, commands);
-        self.reset_section(ui, section, commands);
-    }
-
     /// Draws the settings of a section for which `is_wanted` holds.
     pub fn entries(
         &mut self,
@@ -125,7 +118,13 @@ impl Sheet {
         }
     }
 
-    fn reset_section(&self, ui: &mut egui::Ui, section: Section, commands: &mut Vec<Command>) {
+    /// Draws the button that resets a section, if a setting differs from the preset's.
+    pub(super) fn reset_section(
+        &self,
+        ui: &mut egui::Ui,
+        section: Section,
+        commands: &mut Vec<Command>,
+    ) {
         let fields = self.in_section(section).map(|listed| listed.path.as_str());
         let back = self.values.back(fields);
         if back.is_empty() {

@@ -4,6 +4,7 @@
 
 mod choices;
 mod columns;
+mod folds;
 mod form;
 mod number;
 mod scale;

@@ -138,9 +138,13 @@ impl Scale {
             let font = egui::FontId::proportional(NUMBER_SIZE);
             let galley = ui.painter().layout_no_wrap(text.clone(), font, color);
             let size = galley.size();
-            let left = (x - size.x / 2.0).clamp(rect.left(), (rect.right() - size.x).max(rect.left()));
+            let left =
+                (x - size.x / 2.0).clamp(rect.left(), (rect.right() - size.x).max(rect.left()));
             let place = egui::Rect::from_min_size(egui::pos2(left, top + MARK_LENGTH - 1.0), size);
-            if numbers.iter().all(|other| !other.expand2(egui::vec2(NUMBER_GAP, 0.0)).intersects(place)) {
+            if numbers
+                .iter()
+                .all(|other| !other.expand2(egui::vec2(NUMBER_GAP, 0.0)).intersects(place))
+            {
                 ui.painter().galley(place.min, galley, color);
                 numbers.push(place);
             }
@@ -209,7 +213,8 @@ mod tests {
         assert_eq!(shares(scale(0.0, 1.0, None)).len(), 6);
         assert_eq!(shares(scale(0.0, 2.0, None)), [0.0, 0.25, 0.5, 0.75, 1.0]);
         let angle = Scale { is_angle: true, ..scale(0.0, 171.88, None) };
-        let degrees: Vec<f32> = shares(angle).into_iter().map(|share| share * 171.88).collect();
+        let degrees: Vec<f32> =
+            shares(angle).into_iter().map(|share| (share * 171.88).round()).collect();
         assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0]);
     }
 

@@ -12,6 +12,8 @@ use crate::evolve::{Settings, fields, with_field};
 use crate::schema::{NumberRange, Parts, SettingKind};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
+use crate::studio::ui::theme;
+use crate::studio::workspace::widths::LEAST_PANEL;
 
 /// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
@@ -26,6 +28,14 @@ pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
         let is_inside = rect.left() >= 0.0 && rect.right() <= width;
         assert!(is_inside, "{rect:?} of {width} points: {node:?}");
     }
+}
+
+/// Width inside the narrowest panel, in points: without its margins and its scroll bar.
+pub(in crate::studio::panels) const LEAST_INSIDE: f32 = LEAST_PANEL - 2.5 * theme::GAP - theme::GAP;
+
+/// Titles of all sections.
+pub(in crate::studio::panels) fn every_section() -> BTreeSet<String> {
+    every_setting().into_iter().map(|listed| listed.section.title.to_owned()).collect()
 }
 
 /// A run in which all optional settings have values, and lower bounds of ranges are at their minimum.

@@ -138,7 +138,11 @@ mod tests {
         assert_eq!(typed("trial.stairs.rise_m", "4.5"), Ok("4.5".to_owned()), "beyond the slider");
         assert_eq!(typed("trial.stairs.steps", "12"), Ok("12".to_owned()));
         let list = typed("genome.bend_limits_rad", "34.38, 45.84,90");
-        assert_eq!(list, Ok("[0.6, 0.8, 1.5707964]".to_owned()), "unchanged ones keep their digits");
+        assert_eq!(
+            list,
+            Ok("[0.6, 0.8, 1.5707964]".to_owned()),
+            "unchanged ones keep their digits"
+        );
         let limit = typed("trial.agent.bend_limit_rad", "45");
         assert_eq!(limit, Ok(std::f32::consts::FRAC_PI_4.to_string()), "degrees become radians");
     }
@@ -162,11 +166,7 @@ mod tests {
                 "Bend limits to choose from is \"0.6, 172\"; allowed: numbers from 0 to 171.88°, with \
                  commas between them",
             ),
-            (
-                "trial.agent.twist_limit_rad",
-                "200",
-                "Twist limit is \"200\"; allowed: 0 to 171.88°",
-            ),
+            ("trial.agent.twist_limit_rad", "200", "Twist limit is \"200\"; allowed: 0 to 171.88°"),
             // The value conflicts with another setting.
             (
                 "trial.agent.limbs",
