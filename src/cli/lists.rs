@@ -29,6 +29,8 @@ pub fn print_settings(args: &Args, as_markdown: bool) -> Result<(), CliError> {
             "# Settings\n\n\
              `snakes --set NAME=VALUE` changes a setting. The start of a name may be left out if the rest is \
              unambiguous: `--set rise_m=0.4`. The studio's panels change the same settings.\n\n\
+             Angles are in radians here, after `--set` and in all files. The studio shows them, and reads what you \
+             type, in degrees: 1 rad is 57.3°.\n\n\
              The values below, and whether a setting is fixed, are those of the preset `{preset}`. If a setting may \
              change, a new value takes effect with the next generation of the current run, provided that the run's \
              strategy uses it; a fixed setting takes effect with the next run.\n\n\

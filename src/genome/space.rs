@@ -71,7 +71,7 @@ impl SettingGroup for GenomeSpace {
                 .hint("Torques of signals and waves stay between minus and plus this value")
                 .slider(1.0, 2000.0)
                 .used_if(kind.uses("torque_range_nm"));
-            torque_step_nm: number("Torque step", 0.0..=1.0e6)
+            torque_step_nm: number("Torque step", 0.0..=1.0e6).advanced()
                 .unit("N·m")
                 .hint("Maximum change between adjacent points of a random signal")
                 .slider(0.0, 2000.0)

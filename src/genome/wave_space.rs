@@ -26,7 +26,7 @@ setting_group! {
 
         /// Terms per wave; 1 is a sine.
         harmonics: u32 = 1,
-            whole("Harmonics", 1..=MOST_HARMONICS)
+            whole("Harmonics", 1..=MOST_HARMONICS).advanced()
                 .hint("1 is a plain sine; more allow richer motions but add genes")
                 .slider(1.0, 5.0);
 
@@ -40,7 +40,7 @@ setting_group! {
 
         /// Least stiffness of the servo, in N·m/rad.
         stiffness_min_nm_per_rad: f32 = 50.0,
-            number("Minimum stiffness", STIFFNESS_RANGE_NM_PER_RAD)
+            number("Minimum stiffness", STIFFNESS_RANGE_NM_PER_RAD).advanced()
                 .unit("N·m/rad")
                 .hint("Softest servo that a snake may have: it yields to obstacles")
                 .slider(0.0, 5000.0)
@@ -48,7 +48,7 @@ setting_group! {
 
         /// Greatest stiffness of the servo, in N·m/rad.
         stiffness_max_nm_per_rad: f32 = 1000.0,
-            number("Maximum stiffness", STIFFNESS_RANGE_NM_PER_RAD)
+            number("Maximum stiffness", STIFFNESS_RANGE_NM_PER_RAD).advanced()
                 .unit("N·m/rad")
                 .hint("Stiffest servo that a snake may have: it holds its angles")
                 .slider(0.0, 5000.0)
@@ -57,7 +57,7 @@ setting_group! {
         /// Damping of the servo, in N·m·s/rad. It acts through the torque, with a step's delay, and is limited with
         /// it; the joints' own damping is a part of the body.
         servo_damping_nms_per_rad: f32 = 0.0,
-            number("Servo damping", SERVO_DAMPING_RANGE)
+            number("Servo damping", SERVO_DAMPING_RANGE).advanced()
                 .unit("N·m·s/rad")
                 .hint("How much the servo resists fast turns, in addition to the joint damping")
                 .slider(0.0, 200.0)

@@ -47,6 +47,8 @@ pub struct Preferences {
     pub tour_is_over: bool,
     /// Paths of the files that were opened or imported lately, the latest first.
     pub recent: Vec<String>,
+    /// Titles of the sections whose advanced settings are unfolded.
+    pub unfolded: Vec<String>,
 }
 
 impl Default for Preferences {
@@ -62,6 +64,7 @@ impl Default for Preferences {
             smooth_edges: None,
             tour_is_over: false,
             recent: Vec::new(),
+            unfolded: Vec::new(),
         }
     }
 }
@@ -81,6 +84,7 @@ impl Preferences {
             within("window_size.1", height, 240..=16_384)?;
         }
         within("layout", self.layout.len(), 0..=LONGEST_LAYOUT)?;
+        within("unfolded", self.unfolded.len(), 0..=100)?;
         within("overlays", self.overlays.len(), 0..=20)?;
         within("recent", self.recent.len(), 0..=MAX_RECENT)?;
         for path in &self.recent {

@@ -4,12 +4,16 @@
 //! name, unit, range or choices, label, hint, and whether it may change during a run. Everything else reads these
 //! rows: the checks, the list of all settings, `--set`, live changes, the panels and `docs/settings.md`.
 //!
+//! Values are stored, written and checked in the unit of the row. Panels show some of them in another one, such as
+//! angles in degrees; `display` alone converts between the two.
+//!
 //! To add a setting, add a field with its default and its row to the `setting_group!` of its struct, which does not
 //! compile without the row. Where the walk has another order than the files, the row stands in `walk`.
 
 mod access;
 mod choice;
 mod declare;
+mod display;
 mod per_part;
 mod setting;
 mod table;
@@ -19,6 +23,7 @@ mod walk;
 pub use access::{check, find, list, set_text};
 pub use choice::{Choice, Choices};
 pub(crate) use declare::{choices, named_by_info, setting_group, settings};
+pub use display::DisplayUnit;
 pub use per_part::PerPart;
 pub use setting::{NumberRange, Parts, Setting, SettingKind, SettingRow};
 pub use setting::{

@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
 
+use super::display::DisplayUnit;
 use super::value::SettingValue;
 use super::{Choice, Choices, PerPart};
 use crate::check::{Invalid, within};
@@ -14,8 +15,12 @@ pub struct Setting {
     pub name: &'static str,
     /// The name in panels.
     pub label: &'static str,
-    /// Its unit; empty if it has none.
+    /// Its unit in files and flags; empty if it has none.
     pub unit: &'static str,
+    /// The unit in which panels show it, if that is another.
+    pub display: Option<DisplayUnit>,
+    /// Whether a panel shows it only among the advanced settings of its section.
+    pub is_advanced: bool,
     /// Its effect on the snake or on the search.
     pub hint: &'static str,
     /// The type and range of its values.
@@ -88,7 +93,16 @@ pub struct SettingRow<T> {
 }
 
 fn row<T>(label: &'static str, kind: SettingKind) -> SettingRow<T> {
-    let setting = Setting { name: "", label, unit: "", hint: "", kind, fixed: None };
+    let setting = Setting {
+        name: "",
+        label,
+        unit: "",
+        display: None,
+        is_advanced: false,
+        hint: "",
+        kind,
+        fixed: None,
+    };
     SettingRow { setting, is_used: true, field: PhantomData }
 }
 
@@ -164,9 +178,16 @@ pub fn absent(label: &'static str, how: &'static str) -> SettingRow<()> {
 }
 
 impl<T> SettingRow<T> {
-    /// With a unit.
+    /// With the unit of files and flags. Panels show angles in degrees: see [`DisplayUnit::of_unit`].
     pub fn unit(mut self, unit: &'static str) -> Self {
         self.setting.unit = unit;
+        self.setting.display = DisplayUnit::of_unit(unit);
+        self
+    }
+
+    /// That panels show only among the advanced settings of its section.
+    pub fn advanced(mut self) -> Self {
+        self.setting.is_advanced = true;
         self
     }
 
@@ -206,9 +227,9 @@ impl<T> SettingRow<T> {
 }
 
 impl Setting {
-    /// Its label with its unit.
+    /// Its label with the unit of panels.
     pub fn title(&self) -> String {
-        match self.unit {
+        match self.shown_unit() {
             "" => self.label.to_owned(),
             unit => format!("{}, {unit}", self.label),
         }
@@ -221,15 +242,27 @@ impl Setting {
         short.unwrap_or(name).replace('_', " ")
     }
 
-    /// The texts for one number or for the list, in words; empty for a choice and a switch.
+    /// The texts for one number or for the list, in words and in the unit of files; empty for a choice and a switch.
     pub fn range_in_words(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let ends = |range: &NumberRange| (range.least.to_string(), range.most.to_string());
+        self.range_with(&unit, ends)
+    }
+
+    /// The range in words, with the ends as `ends` writes them.
+    pub(super) fn range_with(
+        &self,
+        unit: &str,
+        ends: impl Fn(&NumberRange) -> (String, String),
+    ) -> String {
         match &self.kind {
-            SettingKind::Number(NumberRange { least, most, is_whole, .. }) => {
-                let whole = if *is_whole { ", whole numbers" } else { "" };
+            SettingKind::Number(range) => {
+                let whole = if range.is_whole { ", whole numbers" } else { "" };
+                let (least, most) = ends(range);
                 format!("{least} to {most}{unit}{whole}")
             }
-            SettingKind::List(NumberRange { least, most, .. }) => {
+            SettingKind::List(range) => {
+                let (least, most) = ends(range);
                 format!("numbers from {least} to {most}{unit}, with commas between them")
             }
             SettingKind::Choice(_) | SettingKind::Switch | SettingKind::Absent(_) => String::new(),

@@ -36,6 +36,10 @@ fn line(listed: &ListedSetting) -> String {
         }
         _ => setting.allowed(),
     };
+    let allowed = match setting.display {
+        Some(_) => format!("{allowed} (in the studio {})", setting.shown_range_in_words()),
+        None => allowed,
+    };
     let live = if fixed.is_some() { "fixed" } else { "may change" };
     let (label, hint) = (setting.label, setting.hint);
     format!("| `{path}` | {allowed} | `{value}` | {live} | {label}: {hint}. |\n")

@@ -90,7 +90,7 @@ impl SettingGroup for AgentSettings {
                 .slider(0.1, 50.0)
                 .logarithmic_from(0.1);
             // At 1000 a spin is gone within a millisecond, as in tar.
-            angular_damping_per_s: number("Angular damping", 0.0..=1000.0)
+            angular_damping_per_s: number("Angular damping", 0.0..=1000.0).advanced()
                 .unit("1/s")
                 .hint("Rate at which a block loses its spin, as in thick air")
                 .slider(0.0, 500.0)
@@ -135,7 +135,7 @@ impl SettingGroup for AgentSettings {
                 .slider(0.0, 500.0)
                 .logarithmic_from(1.0);
             // At 0.1 m/s per N a report's snake comes apart under its own weight.
-            joint_cfm_m_s_per_n: per_part("Joint softness (CFM)", 0.0..=0.1, each_joint)
+            joint_cfm_m_s_per_n: per_part("Joint softness (CFM)", 0.0..=0.1, each_joint).advanced()
                 .unit("m/s per N")
                 .hint("0 is rigid; larger values let the joints give way under load")
                 .slider(0.0, 0.1)

@@ -24,20 +24,20 @@ setting_group! {
 
         /// Relative change of the density of the limbs.
         density: f32 = 0.0,
-            number("Density variation", 0.0..=0.9)
+            number("Density variation", 0.0..=0.9).advanced()
                 .hint("Maximum relative change of the limbs' density")
                 .slider(0.0, 0.9);
 
         /// Shift of the start, along and across, in metres.
         start_m: f32 = 0.2,
-            number("Start variation", 0.0..=5.0)
+            number("Start variation", 0.0..=5.0).advanced()
                 .unit("m")
                 .hint("Maximum shift of the start, along and across the stairs")
                 .slider(0.0, 2.0);
 
         /// Turn of the snake at the start, in degrees.
         turn_deg: f32 = 5.0,
-            number("Start direction variation", 0.0..=180.0)
+            number("Start direction variation", 0.0..=180.0).advanced()
                 .unit("°")
                 .hint("Maximum turn of the snake at the start, to either side")
                 .slider(0.0, 45.0);

@@ -59,7 +59,7 @@ setting_group! {
 
         /// Largest |x| of a limb's centre, in metres.
         arena_half_width_m: f32 = 12.0,
-            number("Sideways limit", 1.0..=1000.0)
+            number("Sideways limit", 1.0..=1000.0).advanced()
                 .unit("m")
                 .hint(
                     "A snake is disqualified if a limb is further from the middle of the stairs than this",
@@ -68,7 +68,7 @@ setting_group! {
 
         /// Extent of the arena behind the origin of the y axis, in metres: a limb's least y is minus this.
         arena_back_m: f32 = 30.0,
-            number("Backward limit", 1.0..=1000.0)
+            number("Backward limit", 1.0..=1000.0).advanced()
                 .unit("m")
                 .hint("A snake is disqualified if a limb is further behind the origin (y = 0) than this")
                 .slider(5.0, 100.0);

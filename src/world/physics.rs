@@ -25,10 +25,10 @@ impl SettingGroup for PhysicsSettings {
                 .hint("Acceleration of free fall: 9.81 on Earth, 1.62 on the Moon")
                 .slider(0.0, 20.0);
             // Below 20 a second bodies pass through each other; above 1000 nothing changes.
-            steps_per_s: whole("Physics steps per second", 20..=1000)
+            steps_per_s: whole("Physics steps per second", 20..=1000).advanced()
                 .hint("More steps are more accurate but take longer. A different number changes all motions")
                 .slider(20.0, 240.0);
-            substeps: whole("Substeps per step", 1..=32)
+            substeps: whole("Substeps per step", 1..=32).advanced()
                 .hint(
                     "How often contacts and joints are solved within a step. More substeps make them stiffer \
                      but take longer",

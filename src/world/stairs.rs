@@ -39,7 +39,7 @@ setting_group! {
         /// touches the stairs with its centre at -2, so the riser is at 3.
         first_riser_y_m: f32 = 3.0,
             // Within a hundred metres floats still resolve a hundredth of a millimetre.
-            number("First riser at y", -100.0..=100.0)
+            number("First riser at y", -100.0..=100.0).advanced()
                 .unit("m")
                 .hint("Position at which the stairs begin")
                 .slider(0.0, 20.0);
@@ -47,7 +47,7 @@ setting_group! {
         /// Depth of the landing behind the last tread, in metres. Long enough by default that the
         /// whole snake (10 m) stands on it.
         landing_m: f32 = 14.0,
-            number("Landing", 0.0..=100.0)
+            number("Landing", 0.0..=100.0).advanced()
                 .unit("m")
                 .hint("Depth of the landing behind the last step")
                 .slider(0.0, 60.0);

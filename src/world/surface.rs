@@ -11,7 +11,8 @@ setting_group! {
             // From ice without any friction to beyond the 150 of the report's engine manual.
             number("Friction", 0.0..=1000.0)
                 .hint("Grip: largest sideways force divided by the force pressing down. 0 is no grip, 1 normal, 5 like glue")
-                .slider(0.0, 5.0);
+                .slider(0.0, 10.0)
+                .logarithmic_from(0.01);
 
         /// Restitution, from 0 (no bounce) to 1 (all of the speed comes back).
         bounce: f32 = 0.0,
@@ -23,7 +24,7 @@ setting_group! {
         /// Least incoming normal speed for a bounce, in m/s. Slower impacts do not bounce.
         bounce_velocity_m_s: f32 = 0.0,
             // Up to the speed at which an agent is disqualified by default, and beyond.
-            number("Bounce velocity", 0.0..=1000.0)
+            number("Bounce velocity", 0.0..=1000.0).advanced()
                 .unit("m/s")
                 .hint("Impacts slower than this do not bounce, so that a snake at rest stays at rest")
                 .slider(0.0, 10.0);
@@ -31,7 +32,7 @@ setting_group! {
         /// Error reduction parameter: the share of a penetration that is corrected in one physics step.
         soft_erp: f32 = 0.25,
             // At 0 nothing would ever be pushed out again and the snake would sink through the ground.
-            number("Springiness (ERP)", 0.01..=1.0)
+            number("Springiness (ERP)", 0.01..=1.0).advanced()
                 .hint("How quickly a soft surface springs back: share of a dent that is corrected per physics step")
                 .slider(0.01, 1.0);
 
@@ -49,7 +50,7 @@ setting_group! {
         /// contact creeps at slip times F.
         slip_m_s_per_n: f32 = 0.0,
             // At 10 m/s per N a limb's own weight is too much for the surface's hold.
-            number("Creep (slip)", 0.0..=10.0)
+            number("Creep (slip)", 0.0..=10.0).advanced()
                 .unit("m/s per N")
                 .hint("How fast a limb creeps under a force that friction would otherwise hold, as on oil")
                 .slider(0.0, 1.0)
@@ -59,7 +60,7 @@ setting_group! {
         /// in 1/s: a factor of 1 - dampen · step in each step.
         dampen_per_s: f32 = 0.0,
             // At 20 1/s and the longest step (1/20 s) everything stops at once; more would turn it around.
-            number("Damping", 0.0..=20.0)
+            number("Damping", 0.0..=20.0).advanced()
                 .unit("1/s")
                 .hint("Rate at which a limb loses speed while it touches the surface, as in mud")
                 .slider(0.0, 20.0);
@@ -73,7 +74,8 @@ setting_group! {
         friction: f32 = 1.0,
             number("Skin friction", 0.0..=1000.0)
                 .hint("Factor for the friction of everything that the snake touches. 1 changes nothing")
-                .slider(0.0, 5.0);
+                .slider(0.0, 10.0)
+                .logarithmic_from(0.01);
 
         /// Restitution, from 0 to 1.
         bounce: f32 = 0.0,
@@ -83,7 +85,7 @@ setting_group! {
 
         /// Error reduction parameter, as [`Surface::soft_erp`]. Matters where the skin is soft.
         soft_erp: f32 = 0.25,
-            number("Skin springiness (ERP)", 0.01..=1.0)
+            number("Skin springiness (ERP)", 0.01..=1.0).advanced()
                 .hint("How quickly a soft skin springs back: share of a dent that is corrected per physics step")
                 .slider(0.01, 1.0);
 

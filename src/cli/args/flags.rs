@@ -40,7 +40,8 @@ pub struct Args {
     pub(super) duration: Option<String>,
     #[arg(long, global = true, value_name = "NAME", help_heading = RUN, help = fitness_help())]
     pub(super) fitness: Option<String>,
-    /// Change a single setting, such as surface.friction=0.8 (see `snakes settings`); may be repeated
+    /// Change a single setting, such as surface.friction=0.8 (see `snakes settings`); angles are in radians; may be
+    /// repeated
     #[arg(long, global = true, value_name = "FIELD=VALUE", help_heading = RUN)]
     pub(super) set: Vec<String>,
     /// Continue the run in this folder, or the only run in this folder of runs, after its last finished generation

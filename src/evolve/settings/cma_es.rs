@@ -17,7 +17,7 @@ setting_group! {
 
         /// Whether bad individuals count too, by making their directions less likely.
         active: bool = true,
-            switch("Also learn from poor snakes")
+            switch("Also learn from poor snakes").advanced()
                 .hint("Directions that lead to poor snakes become less likely (active CMA-ES)")
                 .fixed(LEARNED);
 

@@ -20,17 +20,17 @@ setting_group! {
 
         /// How two parents make one child.
         crossover: Crossover = Crossover::Uniform,
-            choice("Crossover").hint("How the genes of two parents are combined");
+            choice("Crossover").advanced().hint("How the genes of two parents are combined");
 
         /// Share of the children that have two parents; the others are copies of one before they mutate.
         crossover_share: f32 = 0.5,
-            number("Share with two parents", 0.0..=1.0)
+            number("Share with two parents", 0.0..=1.0).advanced()
                 .hint("Share of children with two parents. The others are mutated copies of one parent")
                 .slider(0.0, 1.0);
 
         /// How a child's genes differ from what it inherited.
         mutation: Mutation = Mutation::Gaussian,
-            choice("Mutation")
+            choice("Mutation").advanced()
                 .hint("Distribution of the changes of inherited genes");
 
         /// Step of mutation of the first generation's children, as a share of each gene's range. Later it is
@@ -45,7 +45,7 @@ setting_group! {
         /// Factor of all steps with each generation, in addition to their evolution. Below 1 the search converges, as in
         /// the report's method.
         cooling: f32 = 1.0,
-            number("Cooling", 0.5..=1.0)
+            number("Cooling", 0.5..=1.0).advanced()
                 .hint("Factor by which mutation steps change per generation. Below 1, the search converges")
                 .slider(0.5, 1.0);
 

@@ -39,19 +39,19 @@ setting_group! {
 
         /// Standard deviation of its steps along the line to another elite, as a share of that line.
         line: f32 = 0.2,
-            number("Step towards another elite", 0.0..=2.0)
+            number("Step towards another elite", 0.0..=2.0).advanced()
                 .hint("Spread of steps along the line between two elites, in lengths of that line")
                 .slider(0.0, 1.0);
 
         /// Share of each generation that the CMA-ES emitter makes.
         cma_share: f32 = 0.5,
-            number("CMA-ES share", 0.0..=1.0)
+            number("CMA-ES share", 0.0..=1.0).advanced()
                 .hint("Share of each generation that CMA-ES creates around an elite")
                 .slider(0.0, 1.0);
 
         /// Step at which the CMA-ES emitter begins around an elite.
         cma_step: f32 = 0.1,
-            number("CMA-ES initial step size", 1.0e-6..=1.0)
+            number("CMA-ES initial step size", 1.0e-6..=1.0).advanced()
                 .hint("Initial spread of CMA-ES around an elite, as a share of each gene's range")
                 .slider(0.001, 1.0)
                 .logarithmic_from(0.001);

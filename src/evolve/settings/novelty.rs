@@ -24,14 +24,14 @@ setting_group! {
 
         /// Number of individuals of each generation, chosen at random, that enter the archive.
         remembered: u32 = 6,
-            whole("Memory per generation", 0..=1000)
+            whole("Memory per generation", 0..=1000).advanced()
                 .hint("Number of random snakes per generation kept for comparison with later ones")
                 .slider(0.0, 50.0);
 
         /// Maximum size of the archive. When it is full, new behaviours replace random others.
         archive_limit: u32 = 2000,
             // Each individual is compared with all of them.
-            whole("Memory size", 1..=20_000)
+            whole("Memory size", 1..=20_000).advanced()
                 .hint("Maximum number of snakes kept for comparison; beyond it, new ones replace others")
                 .slider(100.0, 20_000.0)
                 .logarithmic_from(100.0);

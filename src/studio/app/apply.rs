@@ -75,7 +75,9 @@ fn apply(
                     highlighted_panel(*step).into_iter().for_each(|kind| workspace.open(kind));
                     workspace.is_bare = false;
                 }
-                workspace.apply(command);
+                if let Some(news) = workspace.apply(command) {
+                    notices.update("panel size", news.to_owned());
+                }
                 Ok(())
             }
             Command::Library(command) => library

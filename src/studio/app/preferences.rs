@@ -96,10 +96,20 @@ fn restore(
 ) {
     notices.problems(remembered.problem.take());
     remembered.was_smooth = chosen.is_smooth();
-    let Preferences { ui_scale, layout, overlays, speed, loops, smooth_edges, recent, .. } =
-        remembered.stored.clone();
+    let Preferences {
+        ui_scale,
+        layout,
+        overlays,
+        speed,
+        loops,
+        smooth_edges,
+        recent,
+        unfolded,
+        ..
+    } = remembered.stored.clone();
     chosen.files.recent = RecentFiles::from_texts(&recent);
-    chosen.workspace.scale = ui_scale;
+    chosen.workspace.unfolded = unfolded.into_iter().collect();
+    chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
         let known = Overlay::ALL.into_iter().find(|overlay| overlay.words().0 == name);
@@ -158,7 +168,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
     let now = Preferences {
         theme: chosen.theme.name().to_owned(),
-        ui_scale: chosen.workspace.scale,
+        ui_scale: chosen.workspace.scale.chosen(),
         window_size: window_size.or(before.window_size),
         layout: chosen.workspace.layout.to_text(),
         overlays: shown.map(|overlay| overlay.words().0.to_owned()).collect(),
@@ -167,6 +177,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         smooth_edges: is_smooth.filter(|_| has_chosen),
         tour_is_over: chosen.workspace.tour_is_over,
         recent: chosen.files.recent.to_texts(),
+        unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
     };
     // A closing window can have size zero; ignore that.
     if now.check().is_ok() { now } else { before.clone() }
@@ -198,8 +209,9 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = PreferencesFile::at(&folder.path().join("studio.ron"));
         let mut first = app(&file);
-        first.world_mut().resource_mut::<Workspace>().scale = 1.5;
+        first.world_mut().resource_mut::<Workspace>().scale.choose(1.5);
         first.world_mut().resource_mut::<Workspace>().tour_is_over = true;
+        first.world_mut().resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
         first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
         first.world_mut().resource_mut::<Playback>().set_speed(0.5);
         *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
@@ -208,7 +220,8 @@ mod tests {
         first.world_mut().write_message(AppExit::Success);
         first.update();
         let second = app(&file);
-        assert_eq!(second.world().resource::<Workspace>().scale, 1.5);
+        assert_eq!(second.world().resource::<Workspace>().scale.chosen(), 1.5);
+        assert!(second.world().resource::<Workspace>().unfolded.contains("Surface"));
         assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         assert_eq!(second.world().resource::<Files>().recent, recent);

@@ -211,6 +211,13 @@ pub(super) enum WindowCommand {
     },
     /// Reset the UI scale to 1.
     ResetScale,
+    /// Remember whether the advanced settings of a section are unfolded.
+    FoldAdvanced {
+        /// Title of the section.
+        section: &'static str,
+        /// Unfolded, or else folded.
+        is_open: bool,
+    },
     /// Open a modal view, or close it if it is open.
     ToggleModal(Modal),
     /// Close the modal view.

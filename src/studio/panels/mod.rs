@@ -13,6 +13,7 @@ mod player;
 mod run;
 mod settings;
 mod shown;
+mod tab_names;
 mod undo_buttons;
 mod world;
 
@@ -51,6 +52,7 @@ use player::cards::{around_stage, lesson_card};
 use player::timeline::TimelinePanel;
 use run::EvolutionPanel;
 use shown::ShownChampion;
+use tab_names::{small_tabs, tab_name};
 use world::WorldPanel;
 
 pub(super) use super::commands::panel::PanelKind;
@@ -136,13 +138,17 @@ fn draw(
     if is_first {
         theme::apply(&context);
         panels.is_styled = true;
+        panels.world.unfold(&workspace.unfolded);
+        panels.evolution.unfold(&workspace.unfolded);
     }
     theme::show(&context, *data.theme);
-    panels.letters.warm_up(&context, workspace.scale);
+    workspace.scale.fit(context.content_rect().size() * context.zoom_factor());
+    let scale = workspace.scale.shown();
+    panels.letters.warm_up(&context, scale);
     set_click_limits(&context);
     // A new scale takes effect in the next frame.
-    let is_settled = context.zoom_factor() == workspace.scale;
-    context.set_zoom_factor(workspace.scale);
+    let is_settled = context.zoom_factor() == scale;
+    context.set_zoom_factor(scale);
     let mut commands = Vec::new();
     let situation =
         Situation::of(&data.run, &data.on_stage.mode, &workspace, &data.on_stage.history);
@@ -161,6 +167,7 @@ fn draw(
         panels.world.set_search(label);
     }
     let mut viewer = Viewer {
+        small_tabs: small_tabs(&context, &workspace.layout),
         panels: &mut *panels,
         data: &data,
         lanes: &lanes,
@@ -240,6 +247,8 @@ fn focused<'l>(lanes: &[&'l Lane], on_stage: &OnStage) -> Option<&'l Lane> {
 
 /// Draws the panels for the dock area.
 struct Viewer<'v, 'w, 's> {
+    /// Panels whose tabs have small names.
+    small_tabs: Vec<PanelKind>,
     panels: &'v mut Panels,
     data: &'v PanelData<'w, 's>,
     lanes: &'v [&'v Lane],
@@ -311,7 +320,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
     }
 
     fn title(&mut self, kind: &mut PanelKind) -> egui::WidgetText {
-        kind.name().into()
+        tab_name(*kind, self.small_tabs.contains(kind))
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, kind: &mut PanelKind) {

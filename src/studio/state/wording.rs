@@ -24,7 +24,7 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
             let name = listed.setting.short_name();
             match was {
                 Some(was) if was.value == listed.value => None,
-                Some(_) => Some(format!("{name} {}", listed.value)),
+                Some(_) => Some(format!("{name} {}", listed.setting.value_in_words(&listed.value))),
                 // A new group is named as a whole.
                 None => {
                     Some(format!("separate {}", listed.path.rsplit('.').nth(1).unwrap_or(&name)))
@@ -38,4 +38,19 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
         text += &format!(" and {} more", other.len() - MOST_NAMED);
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::with_field;
+
+    #[test]
+    fn a_changed_angle_is_named_in_degrees() {
+        let original = Settings::default();
+        let limits = with_field(&original, "bend_limit_rad", "1").expect("allowed");
+        assert_eq!(changes_in_words(&original, &limits), "bend limit 57.3°");
+        let rise = with_field(&original, "rise_m", "0.7").expect("allowed");
+        assert_eq!(changes_in_words(&original, &rise), "rise 0.7");
+    }
 }

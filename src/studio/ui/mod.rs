@@ -1,5 +1,6 @@
 //! Widgets, theme and fonts that all panels share.
 
+pub mod check_box;
 pub mod icons;
 pub mod notifications;
 pub mod number_field;

@@ -1,9 +1,10 @@
-//! Layout of the panels: docked, stacked, collapsed or floating.
+//! Layout of the panels: docked, stacked, collapsed or floating. Their widths are in [`super::widths`].
 
 use bevy_egui::egui;
-use egui_dock::{DockState, Node, NodeIndex, Style, SurfaceIndex, TabPath};
+use egui_dock::{DockState, NodeIndex, Style, SurfaceIndex, TabPath};
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::widths::PanelWidths;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::ui::theme;
 
@@ -11,6 +12,9 @@ use crate::studio::ui::theme;
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     state: DockState<PanelKind>,
+    widths: PanelWidths,
+    /// The size class of the window for which it was drawn last.
+    class: Option<SizeClass>,
     /// Whether to build the default layout as soon as the window's size is known.
     is_to_be_laid_out: bool,
     /// The panel to focus after that.
@@ -23,32 +27,55 @@ const WIDE: f32 = 1500.0;
 const HIGH: f32 = 800.0;
 /// Width of the left panels, in points. All tab names fit.
 const LEFT: f32 = 384.0;
-/// Minimum fraction of the width for the stage beside a panel.
-const MIN_STAGE_SHARE: f32 = 0.4;
 /// Width of the right panels in a wide window, in points.
 const RIGHT: f32 = 420.0;
 
+/// What the default layout depends on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct SizeClass {
+    /// There is room on both sides of the stage.
+    is_wide: bool,
+    /// There is room below other panels.
+    is_high: bool,
+}
+
+impl SizeClass {
+    fn of(size: egui::Vec2) -> Self {
+        Self { is_wide: size.x >= WIDE, is_high: size.y >= HIGH }
+    }
+}
+
 impl Default for Layout {
     fn default() -> Self {
-        Self { state: DockState::new(vec![PanelKind::Stage]), is_to_be_laid_out: true, first: None }
+        Self {
+            state: DockState::new(vec![PanelKind::Stage]),
+            widths: PanelWidths::default(),
+            class: None,
+            is_to_be_laid_out: true,
+            first: None,
+        }
     }
 }
 
 impl Layout {
     /// The default layout for a window of this size, in points.
     fn default_for(size: egui::Vec2) -> DockState<PanelKind> {
+        Self::default_of(SizeClass::of(size), size.x)
+    }
+
+    fn default_of(class: SizeClass, width: f32) -> DockState<PanelKind> {
         let mut state = DockState::new(vec![PanelKind::Stage]);
         let surface = state.main_surface_mut();
-        let (is_wide, is_high) = (size.x >= WIDE, size.y >= HIGH);
+        let SizeClass { is_wide, is_high } = class;
         let mut left = PanelKind::ALL.to_vec();
         let mut stage = NodeIndex::root();
         if is_wide {
             left.retain(|kind| ![PanelKind::Charts, PanelKind::Library].contains(kind));
             let right = vec![PanelKind::Charts, PanelKind::Library];
-            [stage, _] = surface.split_right(stage, 1.0 - RIGHT / size.x, right);
+            [stage, _] = surface.split_right(stage, (1.0 - RIGHT / width).clamp(0.1, 0.9), right);
         }
-        let room = if is_wide { size.x - RIGHT } else { size.x };
-        let share = (LEFT / room.max(1.0)).min(1.0 - MIN_STAGE_SHARE);
+        let room = if is_wide { width - RIGHT } else { width };
+        let share = (LEFT / room.max(1.0)).clamp(0.1, 0.9);
         left.retain(|kind| !is_high || *kind != PanelKind::Champions);
         let [_, node] = surface.split_left(stage, share, left);
         if is_high {
@@ -68,11 +95,15 @@ impl Layout {
     pub fn state_in(&mut self, size: egui::Vec2, is_settled: bool) -> &mut DockState<PanelKind> {
         if self.is_to_be_laid_out {
             self.state = Self::default_for(size);
+            self.widths.clear();
             self.is_to_be_laid_out = false;
             self.first.take().into_iter().for_each(|kind| self.open(kind));
         }
         if is_settled {
-            self.keep_widths(size.x);
+            self.follow_class(size);
+            if let Some((stage, _)) = self.state.find_main_surface_tab(&PanelKind::Stage) {
+                self.widths.fit(self.state.main_surface_mut(), stage, size.x);
+            }
         }
         // Hide the tab bar while the stage is the only tab.
         for (_, leaf) in self.state.iter_leaves_mut() {
@@ -81,35 +112,39 @@ impl Layout {
         &mut self.state
     }
 
-    /// After a change of the window's width, keeps the panels beside the stage at their width in points.
-    fn keep_widths(&mut self, width: f32) {
-        let Some((stage, _)) = self.state.find_main_surface_tab(&PanelKind::Stage) else { return };
-        let tree = self.state.main_surface_mut();
-        let before = tree.root_node().and_then(Node::rect).map_or(0.0, |rect| rect.width());
-        if !before.is_finite() || before <= 0.0 || (before - width).abs() < 1.0 {
+    /// Arranges the panels anew if the window has become much larger or smaller, unless a person has arranged them.
+    fn follow_class(&mut self, size: egui::Vec2) {
+        let class = SizeClass::of(size);
+        let Some(before) = self.class.replace(class).filter(|before| *before != class) else {
+            return;
+        };
+        if arrangement(&self.state) != arrangement(&Self::default_of(before, size.x)) {
             return;
         }
-        // Path from the root to the stage.
-        let up = std::iter::successors(Some(stage), |node| node.parent());
-        let mut way: Vec<NodeIndex> = up.collect();
-        way.reverse();
-        let (mut before, mut now) = (before, width);
-        for pair in way.windows(2) {
-            let is_first = pair[1].is_left();
-            if let Node::Horizontal(split) = &mut tree[pair[0]] {
-                let of_stage = |fraction: f32| if is_first { fraction } else { 1.0 - fraction };
-                let share = of_stage(split.fraction);
-                let beside = before * (1.0 - share);
-                let next = (1.0 - beside / now.max(1.0)).clamp(MIN_STAGE_SHARE, 0.97);
-                split.fraction = of_stage(next);
-                (before, now) = (before * share, now * next);
-            }
-        }
+        let focused = self.state.focused_leaf();
+        let active = |tabs: &[PanelKind], active: usize| tabs.get(active).copied();
+        let leaves = self.state.iter_leaves();
+        let mut shown: Vec<(bool, PanelKind)> = leaves
+            .filter_map(|(path, leaf)| {
+                Some((focused == Some(path), active(&leaf.tabs, leaf.active.0)?))
+            })
+            .collect();
+        // The one with the focus is opened last, so that it keeps it.
+        shown.sort_by_key(|(has_focus, _)| *has_focus);
+        self.state = Self::default_for(size);
+        self.widths.panels_were_rearranged();
+        shown.into_iter().for_each(|(_, kind)| self.open(kind));
     }
 
     /// Whether the layout contains a panel, visible or as a tab.
     pub fn has(&self, kind: PanelKind) -> bool {
         self.state.find_tab(&kind).is_some()
+    }
+
+    /// The tab bars: their widths, in points, and their panels.
+    pub fn tab_bars(&self) -> Vec<(f32, Vec<PanelKind>)> {
+        let leaves = self.state.iter_leaves().filter(|(_, leaf)| !leaf.tab_bar_hidden);
+        leaves.map(|(_, leaf)| (leaf.rect().width(), leaf.tabs.clone())).collect()
     }
 
     /// Focuses a panel, and restores it if it was closed.
@@ -173,7 +208,7 @@ impl Layout {
         if self.is_to_be_laid_out {
             return String::new();
         }
-        let text = ron::to_string(&self.state).unwrap_or_default();
+        let text = ron::to_string(&(&self.widths, &self.state)).unwrap_or_default();
         format!("{} {text}", seal(&text))
     }
 
@@ -181,11 +216,14 @@ impl Layout {
     pub fn from_text(text: &str) -> Self {
         // Text from another version or edited by hand could describe a layout that cannot be drawn.
         let own = text.split_once(' ').filter(|(sum, text)| *sum == seal(text));
-        let read = own.and_then(|(_, text)| ron::from_str(text).ok()).filter(is_sound);
-        read.map_or_else(Self::default, |state| Self {
+        let read = own.and_then(|(_, text)| ron::from_str(text).ok());
+        let read =
+            read.filter(|(widths, state): &(PanelWidths, _)| widths.are_sound() && is_sound(state));
+        read.map_or_else(Self::default, |(widths, state)| Self {
             state,
+            widths,
             is_to_be_laid_out: false,
-            first: None,
+            ..Self::default()
         })
     }
 }
@@ -193,6 +231,12 @@ impl Layout {
 /// Checksum of a layout's text and the program version.
 fn seal(text: &str) -> String {
     format!("{:016x}", xxh3_64(format!("{} {text}", env!("CARGO_PKG_VERSION")).as_bytes()))
+}
+
+/// The panels that share a place, place by place; windows of their own come last.
+fn arrangement(state: &DockState<PanelKind>) -> Vec<(bool, Vec<PanelKind>)> {
+    let leaves = state.iter_leaves();
+    leaves.map(|(path, leaf)| (path.surface == SurfaceIndex::main(), leaf.tabs.clone())).collect()
 }
 
 /// Whether the main window has exactly one stage and no panel occurs twice.
@@ -250,6 +294,7 @@ pub(crate) fn style(ui: &egui::Ui) -> Style {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use egui_dock::Node;
 
     fn laid_out(width: f32) -> Layout {
         let mut layout = Layout::default();
@@ -293,11 +338,28 @@ mod tests {
         };
         let mut layout = laid_out(1280.0);
         assert!((left(&layout) * 1280.0 - LEFT).abs() < 1.0);
-        // Drawing would set this rectangle.
-        let drawn = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 700.0));
-        layout.state.main_surface_mut().root_node_mut().expect("a root").set_rect(drawn);
+        layout.state_in(egui::vec2(1490.0, 790.0), true);
+        assert!((left(&layout) * 1490.0 - LEFT).abs() < 1.0);
+    }
+
+    #[test]
+    fn the_default_layout_follows_the_window_and_keeps_the_panel_in_front() {
+        let columns = |layout: &Layout| layout.state.iter_leaves().count();
+        let is_in_front = |layout: &Layout, kind: PanelKind| {
+            let path = layout.state.find_tab(&kind).expect("there");
+            layout.state.leaf(path.node_path()).expect("a leaf").active == path.tab
+        };
+        let mut layout = Layout::default();
+        layout.state_in(egui::vec2(1280.0, 720.0), true);
+        layout.open(PanelKind::World);
+        assert_eq!(columns(&layout), 2);
         layout.state_in(egui::vec2(1920.0, 1080.0), true);
-        assert!((left(&layout) * 1920.0 - LEFT).abs() < 1.0);
+        assert_eq!(columns(&layout), 4, "stage, charts, champions and the other panels");
+        assert!(is_in_front(&layout, PanelKind::World));
+        // A person's own arrangement stays.
+        layout.close(PanelKind::Lessons);
+        layout.state_in(egui::vec2(1280.0, 720.0), true);
+        assert_eq!(columns(&layout), 4);
     }
 
     #[test]

@@ -1,7 +1,11 @@
 //! State of the window: panel layout, UI scale, modal view.
 
 pub mod layout;
+pub mod scale;
 pub mod situation;
+pub mod widths;
+
+use std::collections::BTreeSet;
 
 use bevy::prelude::*;
 
@@ -10,9 +14,9 @@ use super::commands::modal::Modal;
 use super::commands::panel::PanelKind;
 use super::schedule::FrameSet;
 use super::state::options::OpenedComparison;
-use crate::save::UI_SCALES;
 
 use layout::Layout;
+use scale::UiScale;
 
 /// State of the window.
 #[derive(Resource, Debug)]
@@ -20,11 +24,13 @@ pub(super) struct Workspace {
     /// Layout of the panels.
     pub layout: Layout,
     /// UI scale; 1 is the default.
-    pub scale: f32,
+    pub scale: UiScale,
     /// Whether the panels are hidden.
     pub is_bare: bool,
     /// Whether the tour was finished or skipped, in this or an earlier session.
     pub tour_is_over: bool,
+    /// Titles of the sections whose advanced settings are unfolded.
+    pub unfolded: BTreeSet<String>,
     /// Label of the setting to scroll to, until the settings panel has handled it.
     pub sought: Option<&'static str>,
     modal: Option<Modal>,
@@ -34,9 +40,10 @@ impl Default for Workspace {
     fn default() -> Self {
         Self {
             layout: Layout::default(),
-            scale: 1.0,
+            scale: UiScale::default(),
             is_bare: false,
             tour_is_over: true,
+            unfolded: BTreeSet::new(),
             sought: None,
             modal: None,
         }
@@ -54,8 +61,8 @@ impl Workspace {
         self.modal
     }
 
-    /// Executes a command.
-    pub fn apply(&mut self, command: &WindowCommand) {
+    /// Executes a command. Returns a message if there is nothing to do.
+    pub fn apply(&mut self, command: &WindowCommand) -> Option<&'static str> {
         match command {
             WindowCommand::OpenPanel(kind) => self.open(*kind),
             WindowCommand::FindSetting(label) => {
@@ -65,12 +72,19 @@ impl Workspace {
             WindowCommand::ClosePanel => self.layout.close_front(),
             WindowCommand::ResetLayout => self.layout.reset(),
             WindowCommand::TogglePanels => self.is_bare = !self.is_bare,
-            WindowCommand::ChangeScale { larger } => self.change_scale(*larger),
-            WindowCommand::ResetScale => self.scale = 1.0,
+            WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
+            WindowCommand::ResetScale => self.scale.choose(1.0),
+            WindowCommand::FoldAdvanced { section, is_open: true } => {
+                self.unfolded.insert((*section).to_owned());
+            }
+            WindowCommand::FoldAdvanced { section, is_open: false } => {
+                self.unfolded.remove(*section);
+            }
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
             WindowCommand::CloseModal if self.modal.is_none() => self.is_bare = false,
             WindowCommand::CloseModal => self.close_modal(),
         }
+        None
     }
 
     /// Brings a panel to the front, and shows the panels if they are hidden.
@@ -95,18 +109,6 @@ impl Workspace {
         if matches!(self.modal, Some(Modal::Tour(_))) {
             self.tour_is_over = true;
         }
-    }
-
-    /// Selects the next larger or smaller UI scale.
-    pub fn change_scale(&mut self, larger: bool) {
-        let is_next =
-            |scale: &&f32| if larger { **scale > self.scale } else { **scale < self.scale };
-        let next = if larger {
-            UI_SCALES.iter().find(is_next)
-        } else {
-            UI_SCALES.iter().rev().find(is_next)
-        };
-        self.scale = next.copied().unwrap_or(self.scale);
     }
 }
 
@@ -133,19 +135,6 @@ fn open_first(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_ui_scale_changes_in_steps_within_its_limits() {
-        let mut workspace = Workspace::default();
-        workspace.change_scale(true);
-        assert_eq!(workspace.scale, 1.1);
-        workspace.change_scale(false);
-        assert_eq!(workspace.scale, 1.0);
-        (0..20).for_each(|_| workspace.change_scale(true));
-        assert_eq!(workspace.scale, UI_SCALES[UI_SCALES.len() - 1]);
-        (0..20).for_each(|_| workspace.change_scale(false));
-        assert_eq!(workspace.scale, UI_SCALES[0]);
-    }
 
     #[test]
     fn a_second_toggle_closes_a_modal_and_a_closed_tour_is_finished() {

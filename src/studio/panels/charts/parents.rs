@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::evolve::Settings;
+use crate::genome::Feature;
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::Ancestor;
+use crate::schema::DisplayUnit;
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::number;
 
@@ -34,7 +36,8 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     let mut hits = Vec::new();
     let mut values: Vec<Vec<f32>> = Vec::new();
     for (parent, genome, children) in known {
-        let features = settings.genome.features(genome);
+        let features: Vec<Feature> =
+            settings.genome.features(genome).into_iter().map(in_unit_of_panels).collect();
         let at = parent.place;
         let name = format!("generation {}, snake {}", at.generation, at.individual + 1);
         let reached = match parent.fitness {
@@ -59,7 +62,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         }
         values.push(features.iter().map(|feature| feature.value).collect());
         if names.is_empty() {
-            let name = |feature: &crate::genome::Feature| match feature.unit {
+            let name = |feature: &Feature| match feature.unit {
                 "" => feature.name.clone(),
                 unit => format!("{} ({unit})", feature.name),
             };
@@ -93,6 +96,15 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     let numbers = Some(columns(&chart, &values));
     let figure = Figure { note, numbers, ..Figure::of("Gene values of the parents", chart) };
     Some(ChartView::new(figure, vec![hits]))
+}
+
+/// A feature in the unit in which panels show it: angles in degrees.
+fn in_unit_of_panels(mut feature: Feature) -> Feature {
+    if let Some(display) = DisplayUnit::of_unit(feature.unit) {
+        feature.value = display.shown(feature.value) as f32;
+        feature.unit = display.unit;
+    }
+    feature
 }
 
 /// Table with one row per gene and one column per parent.

@@ -10,6 +10,7 @@ use crate::studio::commands::Command;
 use crate::studio::commands::actions::{ACTIONS, Action, Menu, Situation};
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::state::files::RecentFiles;
+use crate::studio::ui::check_box::{CHECK_BOX_SIDE, paint_check_box};
 use crate::studio::ui::theme;
 
 /// Draws the menus and collects the user's commands. `is_on` says whether the setting that a command toggles is on.
@@ -29,12 +30,19 @@ pub(crate) fn menu(
         for menu in Menu::ALL {
             ui.menu_button(menu.name(), |ui| {
                 ui.set_min_width(theme::MENU_WIDTH);
-                for action in ACTIONS.iter().filter(|action| action.menu == menu) {
-                    entry(ui, action, situation, is_on, commands);
-                    if action.name == BEFORE_RECENT {
-                        open_recent(ui, recent, commands);
+                let actions = || ACTIONS.iter().filter(|action| action.menu == menu);
+                let is_toggle = |action: &Action| (action.asks)(situation).as_ref().and_then(is_on);
+                let has_toggles = actions().any(|action| is_toggle(action).is_some());
+                // In a low window a menu would reach below its end.
+                let height = ui.ctx().content_rect().height() - theme::GAP * 8.0;
+                egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                    for action in actions() {
+                        entry(ui, action, situation, (has_toggles, is_on), commands);
+                        if action.name == BEFORE_RECENT {
+                            open_recent(ui, recent, commands);
+                        }
                     }
-                }
+                });
             });
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -69,11 +77,12 @@ fn short_name(path: &Path) -> String {
     run_of_plan(path).name()
 }
 
+/// Draws an entry. In a menu that `has_toggles`, names begin behind the check boxes.
 fn entry(
     ui: &mut egui::Ui,
     action: &Action,
     situation: Situation,
-    is_on: &dyn Fn(&Command) -> Option<bool>,
+    (has_toggles, is_on): (bool, &dyn Fn(&Command) -> Option<bool>),
     commands: &mut Vec<Command>,
 ) {
     // An action for a range of digits needs a digit, which a menu cannot supply.
@@ -81,11 +90,29 @@ fn entry(
         return;
     }
     let command = (action.asks)(situation);
-    let mut button = egui::Button::new(action.name).shortcut_text(action.key());
-    if let Some(is_on) = command.as_ref().and_then(is_on) {
-        button = button.selected(is_on);
-    }
-    if ui.add_enabled(command.is_some(), button).clicked() {
+    let place = egui::Id::new("check box of an entry");
+    let button = if has_toggles {
+        let side = egui::Vec2::splat(CHECK_BOX_SIDE);
+        egui::Button::new((egui::Atom::custom(place, side), action.name))
+    } else {
+        egui::Button::new(action.name)
+    };
+    let button = button.shortcut_text(action.key());
+    let is_enabled = command.is_some();
+    let shown = ui.add_enabled_ui(is_enabled, |ui| {
+        let shown = button.atom_ui(ui);
+        if let Some(is_on) = command.as_ref().and_then(is_on) {
+            if let Some(rect) = shown.rect(place) {
+                paint_check_box(ui, rect, is_on);
+            }
+            shown.response.widget_info(|| {
+                let kind = egui::WidgetType::Checkbox;
+                egui::WidgetInfo::selected(kind, is_enabled, is_on, action.name)
+            });
+        }
+        shown.response
+    });
+    if shown.inner.clicked() {
         commands.extend(command);
         ui.close();
     }
@@ -148,5 +175,33 @@ mod tests {
             let expected = FileCommand::Answer(FileQuestion::Open, vec![path.into()]);
             assert_eq!(harness.state().last(), Some(&Command::File(expected)));
         }
+    }
+
+    #[test]
+    fn an_entry_that_switches_something_has_a_check_box_with_its_state() {
+        use crate::studio::commands::{PlayerCommand, ViewCommand};
+        use egui_kittest::kittest::NodeT;
+        let is_on = |command: &Command| match command {
+            Command::View(ViewCommand::ToggleTheme) => Some(true),
+            Command::View(ViewCommand::ToggleFollow) => Some(false),
+            Command::Player(PlayerCommand::ToggleLoop) => Some(true),
+            _ => None,
+        };
+        let mut harness = Harness::new_ui_state(
+            |ui, commands| menu(ui, Situation::default(), &is_on, &RecentFiles::default(), "climb, seed 1", commands),
+            Vec::new(),
+        );
+        harness.get_by_label("View").click();
+        harness.run();
+        let state = |harness: &Harness<'_, Vec<Command>>, name: &str| {
+            let role = egui::accesskit::Role::CheckBox;
+            harness.get_by_role_and_label(role, name).accesskit_node().toggled()
+        };
+        use egui::accesskit::Toggled;
+        assert_eq!(state(&harness, "Dark theme"), Some(Toggled::True));
+        assert_eq!(state(&harness, "Follow snake"), Some(Toggled::False));
+        harness.get_by_label("Dark theme").click();
+        harness.run();
+        assert_eq!(*harness.state(), [Command::View(ViewCommand::ToggleTheme)]);
     }
 }

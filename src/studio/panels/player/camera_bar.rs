@@ -8,6 +8,7 @@ use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::commands::{Command, ViewCommand};
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::theme::Theme;
 
 /// Draws the bar and collects the user's commands.
@@ -44,14 +45,14 @@ pub(crate) fn view_bar(
             for overlay in Overlay::ALL {
                 let (name, hint) = overlay.words();
                 let mut is_shown = overlays.shows(overlay);
-                if ui.checkbox(&mut is_shown, name).on_hover_text(hint).changed() {
+                if check_box(ui, &mut is_shown, name).on_hover_text(hint).changed() {
                     commands.push(Command::View(ViewCommand::ToggleOverlay(overlay)));
                 }
             }
             ui.separator();
             let mut is_smooth = has_smooth_edges;
             let hint = "Smooth edges with four samples per pixel; slow without a graphics card (A)";
-            if ui.checkbox(&mut is_smooth, "Anti-aliasing").on_hover_text(hint).changed() {
+            if check_box(ui, &mut is_smooth, "Anti-aliasing").on_hover_text(hint).changed() {
                 commands.push(Command::View(ViewCommand::ToggleSmoothEdges));
             }
         });

@@ -17,6 +17,8 @@ pub(crate) struct TimelinePanel {
     torque_strip: TorqueStrip,
 }
 
+/// Width of the button that lists more readings, in points.
+const MORE_WIDTH: f32 = 40.0;
 /// Approximate width of a character, in points.
 const CHARACTER_WIDTH: f32 = 7.4;
 
@@ -171,22 +173,43 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
             "Energy that the joints have used so far",
         ),
     ];
+    let known: Vec<(&str, String, &str)> =
+        all.into_iter().filter_map(|(name, value, hint)| Some((name, value?, hint))).collect();
+    let width = |(name, value, _): &(&str, String, &str)| {
+        (name.len() + value.chars().count()) as f32 * CHARACTER_WIDTH + theme::GAP * 2.5
+    };
     let room = ui.available_width();
-    let mut used = 0.0;
-    let with_room = all.into_iter().filter_map(|(name, value, hint)| Some((name, value?, hint)));
-    let shown: Vec<(&str, String, &str)> = with_room
-        .take_while(|(name, value, _)| {
-            used +=
-                (name.len() + value.chars().count()) as f32 * CHARACTER_WIDTH + theme::GAP * 2.5;
-            used < room
-        })
-        .collect();
+    let mut shown = known.as_slice();
+    if known.iter().map(width).sum::<f32>() > room {
+        let mut used = MORE_WIDTH;
+        let fits = |reading: &&(&str, String, &str)| {
+            used += width(reading);
+            used <= room
+        };
+        let (first, others) = known.split_at(known.iter().take_while(fits).count());
+        shown = first;
+        more_readings(ui, others);
+    }
     // The layout runs from right to left.
-    for (name, value, hint) in shown.into_iter().rev() {
-        ui.label(egui::RichText::new(value).monospace()).on_hover_text(hint);
-        ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(hint);
+    for (name, value, hint) in shown.iter().rev() {
+        ui.label(egui::RichText::new(value).monospace()).on_hover_text(*hint);
+        ui.label(egui::RichText::new(*name).color(palette.text_weak)).on_hover_text(*hint);
         ui.add_space(theme::GAP / 2.0);
     }
+}
+
+/// Draws a button that lists the readings for which the panel has no room.
+fn more_readings(ui: &mut egui::Ui, readings: &[(&str, String, &str)]) {
+    let lines = |ui: &mut egui::Ui| {
+        for (name, value, hint) in readings {
+            ui.label(format!("{name} {value}")).on_hover_text(*hint);
+        }
+    };
+    let button = ui.menu_button("…", lines).response;
+    let is_on = ui.is_enabled();
+    let said = "More readings";
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, is_on, said));
+    button.on_hover_ui(|ui| lines(ui));
 }
 
 #[cfg(test)]
@@ -226,13 +249,24 @@ mod tests {
     }
 
     #[test]
-    fn a_narrow_panel_leaves_out_the_least_important_readings() {
+    fn a_narrow_panel_lists_the_least_important_readings_behind_a_button() {
         let is_shown = |width: f32, name: &str| {
             let mut seen = false;
             sent(width, |harness| seen = harness.query_by_label(name).is_some());
             seen
         };
         assert!(is_shown(900.0, "fitness") && is_shown(900.0, "energy"));
+        assert!(!is_shown(900.0, "More readings"));
         assert!(is_shown(540.0, "fitness") && !is_shown(540.0, "energy"));
+        for width in [400.0, 540.0] {
+            sent(width, |harness| {
+                harness.get_by_label("More readings").click();
+                harness.run();
+                assert!(
+                    harness.query_all_by_label_contains("energy 0").next().is_some(),
+                    "{width}"
+                );
+            });
+        }
     }
 }

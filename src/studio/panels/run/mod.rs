@@ -2,6 +2,8 @@
 
 pub mod progress;
 
+use std::collections::BTreeSet;
+
 use bevy_egui::egui;
 
 use super::settings::Sheet;
@@ -37,6 +39,11 @@ impl EvolutionPanel {
         unfinished_runs(ui, run, commands);
         self.fields(ui, run, commands);
         commands.append(&mut pressed);
+    }
+
+    /// Unfolds the advanced settings of the sections with these titles.
+    pub fn unfold(&mut self, sections: &BTreeSet<String>) {
+        self.sheet.unfold(sections.iter().cloned());
     }
 
     fn buttons(&self, ui: &mut egui::Ui, run: &CurrentRun, pressed: &mut Vec<Command>) {

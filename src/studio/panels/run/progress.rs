@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use crate::evolve::{EvolutionSettings, Settings, StrategyKind};
 use crate::run::GenerationReport;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::ui::theme;
@@ -12,6 +13,8 @@ const MEASURED_GENERATIONS: usize = 5;
 /// Draws the progress of the run.
 pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let (done, population) = run.progress();
+    let random_first = random_first(run.settings(), run.reports().len(), run.founder().is_some());
+    let population = random_first.unwrap_or(population);
     let generations = run.settings().evolution.generations;
     let finished = run.reports().len();
     let (text, share) = match run.status() {
@@ -19,8 +22,9 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
         RunStatus::Finished if finished < generations as usize => {
             let tried: u64 = run.reports().iter().map(|of| u64::from(of.evaluations)).sum();
             let text = format!(
-                "Finished: {tried} snakes in {finished} generations. Some generations were larger than \
-                 planned, so there were fewer than {generations}."
+                "Finished: {} snakes in {finished} generations. Some generations were larger than \
+                 planned, so there were fewer than {generations}.",
+                with_thousands(tried)
             );
             (text, 1.0)
         }
@@ -36,12 +40,20 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
         }
     };
     ui.label(text);
-    let inside = match run.run_hash() {
-        Some(_) => "finished".to_owned(),
-        None => format!("{done} of {population} snakes"),
+    let inside = match (run.run_hash(), random_first) {
+        (Some(_), _) => "finished".to_owned(),
+        (None, Some(random)) => format!("{done} of {random} random snakes first"),
+        (None, None) => format!("{done} of {population} snakes"),
+    };
+    let hint = match random_first {
+        Some(random) => format!(
+            "The search starts at the best of {random} random snakes. Later generations have {} snakes",
+            run.settings().evolution.population
+        ),
+        None => "Snakes evaluated in the current generation".to_owned(),
     };
     ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
-        .on_hover_text("Snakes evaluated in the current generation");
+        .on_hover_text(hint);
     if let Some(hash) = run.run_hash() {
         let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
                     on every computer with an x86-64 processor";
@@ -74,6 +86,25 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
         let hint = "In the latest finished generation. The limits are in the World panel";
         ui.add(egui::Label::new(weak(disqualified)).wrap()).on_hover_text(hint);
     }
+}
+
+/// Number of random snakes before the first generation of the population's size, as long as it is not finished.
+fn random_first(settings: &Settings, finished: usize, has_founder: bool) -> Option<u32> {
+    let EvolutionSettings { strategy, cma_es, .. } = &settings.evolution;
+    let is_first = finished == 0 && !has_founder && *strategy == StrategyKind::CmaEs;
+    // They take at most a quarter of the run's evaluations.
+    let most = u32::try_from(settings.evolution.budget() / 4).unwrap_or(u32::MAX);
+    Some(cma_es.newborns.min(most)).filter(|random| is_first && *random > 0)
+}
+
+/// A number with commas between its thousands: "5,980".
+fn with_thousands(number: u64) -> String {
+    let digits = number.to_string();
+    let is_before_comma = |index: usize| index > 0 && (digits.len() - index).is_multiple_of(3);
+    let with_comma = |(index, digit): (usize, char)| {
+        is_before_comma(index).then_some(',').into_iter().chain([digit])
+    };
+    digits.chars().enumerate().flat_map(with_comma).collect()
 }
 
 /// Evaluations per second in the latest generations, if there are any.
@@ -121,7 +152,7 @@ fn duration_text(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, Settings};
+    use crate::evolve::RunPlan;
     use crate::run::{Experiment, LocalPool, RunControl};
     use crate::world::Disqualification;
 
@@ -143,6 +174,27 @@ mod tests {
             [100.0, 2.0, 2.0, 2.0, 1.0, 1.0].map(report).into_iter().collect();
         assert_eq!(evaluations_per_s(&reports), Some(20.0 / 8.0));
         assert_eq!(evaluations_per_s(&[report(0.0)]), None, "known from nowhere");
+    }
+
+    #[test]
+    fn the_random_snakes_of_the_first_generation_are_counted_before_the_start() {
+        let mut settings = Settings::default();
+        settings.evolution.population = 30;
+        settings.evolution.generations = 200;
+        settings.evolution.cma_es.newborns = 100;
+        assert_eq!(random_first(&settings, 0, false), None, "another strategy has none");
+        settings.evolution.strategy = StrategyKind::CmaEs;
+        assert_eq!(random_first(&settings, 0, false), Some(100));
+        assert_eq!(random_first(&settings, 1, false), None, "later generations have 30");
+        assert_eq!(random_first(&settings, 0, true), None, "the founder takes their place");
+        settings.evolution.generations = 4;
+        assert_eq!(random_first(&settings, 0, false), Some(30), "at most a quarter of the budget");
+    }
+
+    #[test]
+    fn large_numbers_have_commas() {
+        let texts = [0, 999, 1000, 5980, 1_234_567].map(with_thousands);
+        assert_eq!(texts, ["0", "999", "1,000", "5,980", "1,234,567"]);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use bevy_egui::egui;
 use super::form::{Sheet, Shown};
 use super::number::Control;
 use crate::schema::Choice;
+use crate::studio::ui::check_box::check_box;
 
 impl Sheet {
     /// A drop-down list. Returns the new choice.
@@ -45,7 +46,7 @@ impl Sheet {
     pub(super) fn on_off(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         self.row(ui, shown, true, |_, ui, _, name| {
             let mut is_on = shown.value == "true";
-            let ticked = ui.checkbox(&mut is_on, "").labelled_by(name).on_hover_text(&shown.hint);
+            let ticked = check_box(ui, &mut is_on, "").labelled_by(name).on_hover_text(&shown.hint);
             ticked.changed().then(|| is_on.to_string())
         })
     }
@@ -53,9 +54,10 @@ impl Sheet {
     /// A text field with comma-separated numbers. Returns the new list when the field loses focus.
     pub(super) fn list(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let check = |text: &str| shown.check.typed(text);
-        let plain = shown.value.trim_start_matches('[').trim_end_matches(']');
+        let plain = shown.text.trim_start_matches('[').trim_end_matches(']');
         self.row(ui, shown, false, |sheet, ui, width, name| {
-            sheet.text_field(ui, &Control::of(shown, name, &check), plain, width)
+            let control = Control { value: plain, ..Control::of(shown, name, &check) };
+            sheet.text_field(ui, &control, plain, width)
         })
     }
 }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::columns::{Columns, Part};
+use super::folds::Folds;
 use super::sections_of;
 use super::validation::Check;
 use super::values::Values;
@@ -29,6 +30,7 @@ pub struct Sheet {
     pub(super) typed: BTreeMap<String, Typed>,
     /// Last frame in which the panel was drawn.
     pub(super) drawn_in: u64,
+    pub(super) folds: Folds,
 }
 
 /// A slider being dragged.
@@ -64,6 +66,9 @@ impl Sheet {
         }
         self.drawn_in = frame;
         if !self.values.are_of(run) {
+            if self.values.preset_name() != run.next_preset() {
+                self.folds.forget_kept();
+            }
             self.values = Arc::new(Values::of(run));
         }
     }
@@ -97,18 +102,6 @@ impl Sheet {
         self.values.listed().iter().filter(move |listed| listed.section == section)
     }
 
-    /// Draws a section's settings and its reset button.
-    pub fn section(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        section: Section,
-        commands: &mut Vec<Command>,
-    ) {
-        self.entries(ui, run, section, |_| true, commands);
-        self.reset_section(ui, section, commands);
-    }
-
     /// Draws the settings of a section for which `is_wanted` holds.
     pub fn entries(
         &mut self,
@@ -125,7 +118,13 @@ impl Sheet {
         }
     }
 
-    fn reset_section(&self, ui: &mut egui::Ui, section: Section, commands: &mut Vec<Command>) {
+    /// Draws the button that resets a section, if a setting differs from the preset's.
+    pub(super) fn reset_section(
+        &self,
+        ui: &mut egui::Ui,
+        section: Section,
+        commands: &mut Vec<Command>,
+    ) {
         let fields = self.in_section(section).map(|listed| listed.path.as_str());
         let back = self.values.back(fields);
         if back.is_empty() {
@@ -157,6 +156,7 @@ impl Sheet {
             check: Check { settings: run.next_settings(), field, setting, all: values.listed() },
             field,
             value,
+            text: setting.shown_text(value),
             is_from_next_generation,
         };
         let new = match &setting.kind {
@@ -175,8 +175,8 @@ impl Sheet {
     pub(super) fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let preset = self.values.changed_from(shown.field)?.to_owned();
         let in_words = match preset.as_str() {
-            "none" => "off",
-            other => other,
+            "none" => "off".to_owned(),
+            other => shown.setting.shown_text(other),
         };
         let hint = format!("Reset to the preset's value: {in_words}");
         let label = format!("Reset {}", shown.setting.label);
@@ -220,8 +220,10 @@ pub(super) struct Shown<'a> {
     pub check: Check<'a>,
     /// Full dotted name.
     pub field: &'a str,
-    /// Value as text.
+    /// Value as text, in the unit of files.
     pub value: &'a str,
+    /// Value as text, in the unit of panels.
+    pub text: String,
     is_from_next_generation: bool,
 }
 
@@ -248,9 +250,12 @@ fn next_generation_mark(ui: &mut egui::Ui) {
 /// Text of a setting's tooltip: its effect, its range, and when a change takes effect.
 fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     let mut hint = format!("{}.", setting.hint.trim_end_matches('.'));
-    let allowed = setting.range_in_words();
+    let allowed = setting.shown_range_in_words();
     if !allowed.is_empty() {
         hint += &format!("\nAllowed: {allowed}.");
+    }
+    if setting.display.is_some() {
+        hint += &format!("\nFiles and --set have {} instead.", setting.unit);
     }
     if let Some(answer) = answer {
         hint += &format!("\n{}", when(answer));

@@ -4,8 +4,11 @@
 
 mod choices;
 mod columns;
+mod folds;
 mod form;
 mod number;
+mod scale;
+mod slider;
 mod validation;
 mod values;
 

@@ -1,16 +1,18 @@
 //! Controls for numbers: a slider and a field, for one value or one per part.
+//!
+//! Controls have the unit of panels, such as degrees; the texts that they return have the unit of files.
 
 use bevy_egui::egui;
 
 use super::columns::{Columns, Part, VALUE_WIDTH};
-use super::form::{Changing, Sheet, Shown};
+use super::form::{Sheet, Shown};
+use super::scale::{NUMBERS_HEIGHT, Scale};
 use super::values::{list_of, numbers, rounded};
 use crate::schema::{NumberRange, Parts};
+use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::number_field::select_all_on_focus;
 use crate::studio::ui::theme;
 
-/// Time without movement after which a slider takes effect, in seconds.
-const REST_S: f64 = 0.35;
 /// Width of the switch between one value and one per part, in points.
 const SWITCH_WIDTH: f32 = 52.0;
 
@@ -22,10 +24,12 @@ pub(super) struct Control<'a> {
     pub name: egui::Id,
     /// Accessible name, if the label is not enough.
     pub said: Option<String>,
-    /// Value as text.
+    /// Value as text, in the unit of panels.
     pub value: &'a str,
+    /// Value as text, in the unit of files.
+    pub stored: &'a str,
     pub hint: &'a str,
-    /// Turns typed text into the setting's text.
+    /// Turns typed text into the setting's text, in the unit of files.
     pub check: &'a dyn Fn(&str) -> Result<String, String>,
 }
 
@@ -36,8 +40,8 @@ impl<'a> Control<'a> {
         name: egui::Id,
         check: &'a dyn Fn(&str) -> Result<String, String>,
     ) -> Self {
-        let Shown { field, value, ref hint, .. } = *shown;
-        Self { id: field, name, said: None, value, hint, check }
+        let Shown { field, value, ref text, ref hint, .. } = *shown;
+        Self { id: field, name, said: None, value: text, stored: value, hint, check }
     }
 }
 
@@ -50,6 +54,7 @@ impl Sheet {
         range: &NumberRange,
     ) -> Option<String> {
         let each = numbers(shown.value);
+        let shown_range = shown.setting.shown_range(range);
         let is_given = shown.value != "none";
         let mut name = ui.id();
         let mut new = None;
@@ -73,13 +78,18 @@ impl Sheet {
                 Part::Control => {
                     let check = |text: &str| shown.check.typed(text);
                     let control = Control::of(shown, name, &check);
-                    self.slider_and_field(ui, &control, range, width)
+                    self.slider_and_field(ui, &control, shown, &shown_range, width)
                 }
                 Part::Reset => self.reset(ui, shown),
             };
             new = requested.or(new.take());
         });
         self.problem(ui, shown.field);
+        // The numbers below the marks reach under the row.
+        let has_numbers = is_given && each.is_none() && range.logarithmic_from.is_some();
+        if has_numbers && range.slider.is_some() {
+            ui.add_space(NUMBERS_HEIGHT);
+        }
         for index in 0..each.as_ref().map_or(0, Vec::len) {
             let each = each.as_deref().unwrap_or_default();
             new = self.part(ui, shown, range, each, index).or(new.take());
@@ -102,7 +112,8 @@ impl Sheet {
             (_, _) => format!("Joint {}", index + 1),
         };
         let id = format!("{}[{index}]", shown.field);
-        let value = each[index].to_string();
+        let stored = each[index].to_string();
+        let value = shown.setting.shown_number(each[index]);
         let with = |text: &str| {
             let number: f32 = text.parse().unwrap_or(each[index]);
             let mut all = each.to_vec();
@@ -127,10 +138,12 @@ impl Sheet {
                     name,
                     said,
                     value: &value,
+                    stored: &stored,
                     hint: &shown.hint,
                     check: &check,
                 };
-                new = self.slider_and_field(ui, &control, range, width);
+                let range = shown.setting.shown_range(range);
+                new = self.slider_and_field(ui, &control, shown, &range, width);
             }
             Part::Reset => {}
         });
@@ -144,6 +157,7 @@ impl Sheet {
         &mut self,
         ui: &mut egui::Ui,
         control: &Control,
+        shown: &Shown,
         range: &NumberRange,
         width: f32,
     ) -> Option<String> {
@@ -151,7 +165,8 @@ impl Sheet {
         if let Some(ends) = range.slider {
             ui.spacing_mut().slider_width =
                 (width - VALUE_WIDTH - theme::GAP).max(theme::GAP * 4.0);
-            slid = self.slider(ui, control, range, ends);
+            let scale = Scale::of(range, ends, shown.setting.shown_unit());
+            slid = self.slider(ui, control, &scale, range.is_whole);
         } else {
             // Align with the other fields.
             ui.add_space(width - VALUE_WIDTH);
@@ -162,68 +177,6 @@ impl Sheet {
         };
         let typed = self.text_field(ui, control, &value, VALUE_WIDTH);
         slid.or(typed)
-    }
-
-    fn slider(
-        &mut self,
-        ui: &mut egui::Ui,
-        control: &Control,
-        range: &NumberRange,
-        [least, most]: [f32; 2],
-    ) -> Option<String> {
-        let value: f32 = control.value.parse().unwrap_or(least);
-        let mut so_far = match &self.changing {
-            Some(changing) if changing.id == control.id => changing.so_far,
-            _ => value,
-        };
-        let mut slider = egui::Slider::new(&mut so_far, least..=most)
-            .clamping(egui::SliderClamping::Never)
-            .show_value(false);
-        if let Some(from) = range.logarithmic_from {
-            slider = slider.logarithmic(true).smallest_positive(f64::from(from));
-        }
-        if range.is_whole {
-            slider = slider.step_by(1.0);
-        }
-        let response = ui.add(slider).labelled_by(control.name).on_hover_text(control.hint);
-        if let Some(said) = &control.said {
-            let (is_on, value) = (ui.is_enabled(), f64::from(so_far));
-            response.widget_info(|| egui::WidgetInfo::slider(is_on, value, said));
-        }
-        let now_s = ui.input(|input| input.time);
-        if response.changed() {
-            let id = control.id.to_owned();
-            self.changing = Some(Changing { id, so_far, since_s: now_s });
-        }
-        let since_s = match &self.changing {
-            Some(changing) if changing.id == control.id => changing.since_s,
-            _ => return None,
-        };
-        // With the arrow keys it has the focus and is never released.
-        let is_held = response.dragged() || response.has_focus();
-        let rests = is_held && now_s - since_s > REST_S;
-        if !is_held {
-            self.changing = None;
-        }
-        let text = rounded(so_far);
-        if (is_held && !rests) || text == rounded(value) {
-            return None;
-        }
-        if rests {
-            // Only once, until it is moved again.
-            let id = control.id.to_owned();
-            self.changing = Some(Changing { id, so_far, since_s: f64::INFINITY });
-        }
-        match (control.check)(&text) {
-            Ok(text) => {
-                self.typed.remove(control.id);
-                Some(text)
-            }
-            Err(problem) => {
-                self.keep(control.id, text, Some(problem), control.value);
-                None
-            }
-        }
     }
 
     /// A text field. Returns its text when it loses focus, if valid.
@@ -272,7 +225,9 @@ impl Sheet {
             return None;
         }
         let typed = self.typed.remove(control.id)?;
-        (control.check)(&typed.text).ok().filter(|text| text != control.value)
+        // A value that was not typed in the unit of panels is shown rounded. The same text leaves it as it is.
+        let is_other = typed.text.trim() != control.value;
+        (control.check)(&typed.text).ok().filter(|text| is_other && text != control.stored)
     }
 }
 
@@ -295,7 +250,7 @@ fn number_name(
         ui.set_width(name_width);
         let Some(begins_with) = range.begins_with else { return shown.name(ui, name_width) };
         let mut given = is_given;
-        let name = ui.checkbox(&mut given, shown.setting.title()).on_hover_text(&shown.hint);
+        let name = check_box(ui, &mut given, shown.setting.title()).on_hover_text(&shown.hint);
         if name.changed() {
             requested = Some(if given { begins_with.to_string() } else { "none".to_owned() });
         }

@@ -12,6 +12,8 @@ use crate::evolve::{Settings, fields, with_field};
 use crate::schema::{NumberRange, Parts, SettingKind};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
+use crate::studio::ui::theme;
+use crate::studio::workspace::widths::LEAST_PANEL;
 
 /// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
@@ -26,6 +28,14 @@ pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
         let is_inside = rect.left() >= 0.0 && rect.right() <= width;
         assert!(is_inside, "{rect:?} of {width} points: {node:?}");
     }
+}
+
+/// Width inside the narrowest panel, in points: without its margins and its scroll bar.
+pub(in crate::studio::panels) const LEAST_INSIDE: f32 = LEAST_PANEL - 2.5 * theme::GAP - theme::GAP;
+
+/// Titles of all sections.
+pub(in crate::studio::panels) fn every_section() -> BTreeSet<String> {
+    every_setting().into_iter().map(|listed| listed.section.title.to_owned()).collect()
 }
 
 /// A run in which all optional settings have values, and lower bounds of ranges are at their minimum.
@@ -121,12 +131,14 @@ fn every_control_sends_the_value_that_was_entered() {
             SettingKind::Number(range) => {
                 let is_allowed = |text: &str| with_field(settings, &full, text).is_ok();
                 let text = another(range, now, is_allowed);
-                type_into(&mut panel, &text);
-                text
+                // A person types it in the unit of panels.
+                let shown = listed.setting.shown_text(&text);
+                type_into(&mut panel, &shown);
+                listed.setting.stored_text(&shown).expect("a number")
             }
             SettingKind::List(_) => {
-                type_into(&mut panel, "0.5, 0.75");
-                "[0.5, 0.75]".to_owned()
+                type_into(&mut panel, "45, 90");
+                format!("[{}, {}]", 45.0_f32.to_radians(), 90.0_f32.to_radians())
             }
             SettingKind::Choice(choices) => {
                 let choices = choices();
@@ -283,7 +295,7 @@ fn one_limb_changes_without_the_others() {
 #[test]
 fn a_limit_is_optional() {
     let mut run = prepared_run();
-    let commands = clicked(&run, "trial.agent.bend_limit_rad", "Bend limit, rad");
+    let commands = clicked(&run, "trial.agent.bend_limit_rad", "Bend limit, °");
     assert_eq!(commands, [set("trial.agent.bend_limit_rad", "1")]);
     run.set_field("trial.agent.bend_limit_rad", "0.5").expect("allowed");
     let mut panel = panel_of(&run, "trial.agent.bend_limit_rad");
@@ -330,4 +342,41 @@ fn sliders_contain_the_values_of_the_built_in_presets() {
         }
     }
     assert!(beyond.is_empty(), "{beyond:?}");
+}
+
+#[test]
+fn angles_are_shown_and_typed_in_degrees_and_set_in_radians() {
+    let mut run = prepared_run();
+    let limit = "trial.agent.bend_limit_rad";
+    run.set_field(limit, "0.6").expect("allowed");
+    let mut panel = panel_of(&run, limit);
+    panel.run();
+    let field = || egui::accesskit::Role::TextInput;
+    assert_eq!(panel.get_by_role(field()).value().as_deref(), Some("34.38"));
+    type_into(&mut panel, "34.38");
+    assert_eq!(*panel.state(), [], "the value keeps the digits that are not shown");
+    type_into(&mut panel, "200");
+    assert!(panel.query_by_label_contains("allowed: 0 to 171.88°").is_some());
+    type_into(&mut panel, "57.25");
+    let radians = (57.25_f64.to_radians() as f32).to_string();
+    assert_eq!(*panel.state(), [set(limit, &radians)]);
+    drop(panel);
+    run.set_field(limit, &radians).expect("allowed");
+    let mut panel = panel_of(&run, limit);
+    panel.run();
+    assert_eq!(panel.get_by_role(field()).value().as_deref(), Some("57.25"));
+}
+
+#[test]
+fn no_text_of_a_panel_has_radians() {
+    let run = run_with_all_given();
+    for listed in list(run.next_settings()) {
+        let setting = listed.setting;
+        let shown = [setting.title(), setting.shown_range_in_words(), setting.hint.to_owned()];
+        // A stiffness per radian is no angle.
+        let is_angle = setting.unit == "rad";
+        let words = shown.iter().flat_map(|text| text.split(|c: char| !c.is_alphanumeric()));
+        assert!(!is_angle || words.clone().all(|word| word != "rad"), "{}", listed.path);
+        assert_eq!(is_angle, setting.display.is_some(), "{}", listed.path);
+    }
 }

@@ -3,7 +3,7 @@
 use super::values::numbers;
 use crate::check::Invalid;
 use crate::evolve::{Settings, with_field};
-use crate::schema::{ListedSetting, Setting, SettingKind};
+use crate::schema::{ListedSetting, Setting, SettingKind, SettingValue};
 
 /// A setting being typed, with all others.
 #[derive(Clone, Copy)]
@@ -19,7 +19,7 @@ pub struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// The setting's text for the typed text.
+    /// The setting's text for the typed text, which is in the unit of panels.
     ///
     /// # Errors
     /// The text is invalid; the message has the setting, the value and the allowed range.
@@ -29,12 +29,12 @@ impl Check<'_> {
             format!(
                 "{} is \"{typed}\"; allowed: {}",
                 self.setting.label,
-                self.setting.range_in_words()
+                self.setting.shown_range_in_words()
             )
         };
         let text = match &self.setting.kind {
             SettingKind::Number(range) => {
-                let text = with_point(typed);
+                let text = self.setting.stored_text(&with_point(typed)).ok_or_else(unreadable)?;
                 let is_number = if range.is_whole {
                     text.parse::<u32>().is_ok()
                 } else {
@@ -48,10 +48,19 @@ impl Check<'_> {
                 }
                 text
             }
-            SettingKind::List(_) => {
-                let text = format!("[{}]", typed.trim_start_matches('[').trim_end_matches(']'));
+            SettingKind::List(range) => {
+                let inside = typed.trim_start_matches('[').trim_end_matches(']');
+                let text = match self.setting.display {
+                    None => format!("[{inside}]"),
+                    Some(_) => self.stored_list(inside).ok_or_else(unreadable)?,
+                };
                 let list = numbers(&text).ok_or_else(unreadable)?;
-                if list.iter().any(|number| !number.is_finite()) {
+                let is_allowed = |number: &f32| (range.least..=range.most).contains(number);
+                // The check of the whole list would write the numbers in the unit of files.
+                let is_shown_otherwise = self.setting.display.is_some();
+                if list.iter().any(|number| !number.is_finite())
+                    || (is_shown_otherwise && !list.iter().all(is_allowed))
+                {
                     return Err(unreadable());
                 }
                 text
@@ -61,6 +70,23 @@ impl Check<'_> {
             }
         };
         self.whole(&text).map(|()| text)
+    }
+
+    /// The list in the unit of files. A number whose text stays as it is shown keeps all its digits: the text of a
+    /// number that was not typed in this unit is rounded.
+    fn stored_list(&self, typed: &str) -> Option<String> {
+        let now = self.all.iter().find(|listed| listed.path == self.field);
+        let now = match now.map(|listed| &listed.value) {
+            Some(SettingValue::List(numbers)) => numbers.as_slice(),
+            _ => &[],
+        };
+        let number = |(index, text): (usize, &str)| {
+            let text = text.trim();
+            let same = now.get(index).filter(|number| self.setting.shown_number(**number) == text);
+            same.map(f32::to_string).or_else(|| self.setting.stored_text(text))
+        };
+        let stored: Option<Vec<String>> = typed.split(',').enumerate().map(number).collect();
+        stored.map(|texts| format!("[{}]", texts.join(", ")))
     }
 
     /// Checks the text together with all other settings.
@@ -111,8 +137,14 @@ mod tests {
         assert_eq!(typed("trial.stairs.rise_m", " 0,7 "), Ok("0.7".to_owned()));
         assert_eq!(typed("trial.stairs.rise_m", "4.5"), Ok("4.5".to_owned()), "beyond the slider");
         assert_eq!(typed("trial.stairs.steps", "12"), Ok("12".to_owned()));
-        let list = typed("genome.bend_limits_rad", "0.6, 0.8,1");
-        assert_eq!(list, Ok("[0.6, 0.8,1]".to_owned()));
+        let list = typed("genome.bend_limits_rad", "34.38, 45.84,90");
+        assert_eq!(
+            list,
+            Ok("[0.6, 0.8, 1.5707964]".to_owned()),
+            "unchanged ones keep their digits"
+        );
+        let limit = typed("trial.agent.bend_limit_rad", "45");
+        assert_eq!(limit, Ok(std::f32::consts::FRAC_PI_4.to_string()), "degrees become radians");
     }
 
     #[test]
@@ -125,14 +157,16 @@ mod tests {
             (
                 "genome.bend_limits_rad",
                 "0.6, x",
-                "Bend limits to choose from is \"0.6, x\"; allowed: numbers from 0 to 3 rad, with \
+                "Bend limits to choose from is \"0.6, x\"; allowed: numbers from 0 to 171.88°, with \
                  commas between them",
             ),
             (
                 "genome.bend_limits_rad",
-                "0.6, 4",
-                "Bend limits to choose from is 4; allowed: 0 to 3",
+                "0.6, 172",
+                "Bend limits to choose from is \"0.6, 172\"; allowed: numbers from 0 to 171.88°, with \
+                 commas between them",
             ),
+            ("trial.agent.twist_limit_rad", "200", "Twist limit is \"200\"; allowed: 0 to 171.88°"),
             // The value conflicts with another setting.
             (
                 "trial.agent.limbs",

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::every_setting;
 use crate::evolve::{Settings, fields};
 use crate::schema::{ListedSetting, list};
 use crate::studio::state::current_run::CurrentRun;
@@ -17,6 +18,8 @@ pub struct Values {
     now: BTreeMap<String, String>,
     preset: BTreeMap<String, String>,
     preset_name: String,
+    /// Values that settings have without any preset.
+    usual: BTreeMap<String, String>,
     /// Whether a setting may change in the current run.
     live: BTreeMap<String, Result<(), &'static str>>,
 }
@@ -32,6 +35,7 @@ impl Values {
             now: fields(&settings).into_iter().collect(),
             preset: settings_of_preset.iter().flat_map(fields).collect(),
             preset_name: run.next_preset().to_owned(),
+            usual: every_setting().into_iter().map(|of| (of.path, of.value.to_string())).collect(),
             live: live.collect(),
             settings_of_run: run.settings().clone(),
             settings,
@@ -77,6 +81,12 @@ impl Values {
     pub fn changed_from(&self, field: &str) -> Option<&str> {
         let preset = self.in_preset(field)?;
         (self.now(field)? != preset).then_some(preset)
+    }
+
+    /// Whether a setting differs from the preset, or from the value that it has without any preset.
+    pub fn is_special(&self, field: &str) -> bool {
+        let is_unusual = || self.now(field) != self.usual.get(field).map(String::as_str);
+        self.changed_from(field).is_some() || is_unusual()
     }
 
     /// The changes that reset these settings to the preset's values.

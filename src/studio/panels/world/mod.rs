@@ -2,6 +2,8 @@
 
 pub mod presets;
 
+use std::collections::BTreeSet;
+
 use bevy_egui::egui;
 
 use super::settings::Sheet;
@@ -11,6 +13,7 @@ use crate::score::Trial;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::undo::UndoHistory;
+use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::{explain, title_and};
 use crate::studio::ui::theme;
 
@@ -44,6 +47,11 @@ impl WorldPanel {
         } else {
             self.search_results(ui, run, commands);
         }
+    }
+
+    /// Unfolds the advanced settings of the sections with these titles.
+    pub fn unfold(&mut self, sections: &BTreeSet<String>) {
+        self.sheet.unfold(sections.iter().cloned());
     }
 
     /// Sets the search text.
@@ -123,7 +131,7 @@ fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
     let mut differs = trial.ground.is_some();
     let hint = "On: the ground gets its own settings, copied from the stairs. Off: ground and stairs share one surface";
     let name = "The ground has its own surface";
-    if ui.checkbox(&mut differs, name).on_hover_text(hint).changed() {
+    if check_box(ui, &mut differs, name).on_hover_text(hint).changed() {
         let (field, text) = if differs {
             ("ground.friction", trial.surface.friction.to_string())
         } else {
@@ -154,7 +162,9 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+    use crate::studio::panels::settings::tests::{
+        LEAST_INSIDE, assert_nothing_is_wider_than, every_section,
+    };
     use crate::studio::state::current_run::prepared_run;
     use crate::studio::state::undo::UndoDirection;
     use egui_kittest::Harness;
@@ -173,6 +183,7 @@ mod tests {
         act: impl FnOnce(&mut Harness<'_, Vec<Command>>),
     ) -> Vec<Command> {
         let mut panel = WorldPanel::default();
+        panel.unfold(&every_section());
         let mut harness = Harness::builder()
             .with_size(egui::vec2(width, 4000.0))
             .with_step_dt(1.0 / 60.0)
@@ -310,7 +321,7 @@ mod tests {
         for (field, text) in given {
             run.set_field(field, text).expect("allowed");
         }
-        for width in [300.0, 320.0, 459.0, 480.0, 600.0, 900.0] {
+        for width in [LEAST_INSIDE, 320.0, 459.0, 480.0, 600.0, 900.0] {
             sent_at(&run, width, &UndoHistory::default(), |harness| {
                 for title in ["Body", "Joints", "Repeated trials", "Disqualification"] {
                     harness.get_by_label(title).click();

@@ -143,8 +143,10 @@ impl CurrentRun {
 /// Description of a change: "From generation 8: mutation range 50 N·m".
 pub(crate) fn news_of(change: &SettingChange) -> String {
     let SettingChange { generation, field, value } = change;
-    let unit = setting_of(field).map(|setting| setting.unit).filter(|unit| !unit.is_empty());
+    let setting = setting_of(field);
+    let unit = setting.map(|setting| setting.shown_unit()).filter(|unit| !unit.is_empty());
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+    let value = setting.map_or_else(|| value.clone(), |setting| setting.shown_text(value));
     let value = value.replace('_', " ");
     format!("From generation {generation}: {} {value}{unit}", name_of(field))
 }

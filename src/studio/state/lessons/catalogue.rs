@@ -205,7 +205,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 turn all the way round folds the snake into itself. With a maximum angle for each joint, chosen \
                 at random for each genome, evolution had fewer useless movements to try.",
         to_try: "Run evolution twice for six generations of 120 snakes: with the original limits, and with limits of \
-                 3 radians (172°), which hardly restrict a joint.",
+                 172°, which hardly restrict a joint.",
         look_for: "The number of disqualified snakes, and the distance of the best one.",
         answer: "Limits remove more useless movements than useful ones. Almost without limits, nearly all random \
                  snakes are disqualified before they have moved, and few are left to breed from.",

@@ -1,0 +1,165 @@
+//! Basic and advanced settings of a section. The advanced ones stand below a fold, except those that are not as usual:
+//! what makes a surface special must be seen.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use bevy_egui::egui;
+
+use super::form::Sheet;
+use crate::schema::{ListedSetting, Section};
+use crate::studio::commands::{Command, WindowCommand};
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::theme;
+
+/// Which advanced settings are in sight.
+#[derive(Debug, Default)]
+pub(super) struct Folds {
+    /// Titles of the sections whose advanced settings are unfolded.
+    open: BTreeSet<String>,
+    /// Advanced settings that were not as usual, by their full names. They keep their places above the fold until it is
+    /// used or another preset is chosen: a control must not vanish under the pointer that sets it to the usual value.
+    kept: BTreeSet<String>,
+}
+
+impl Folds {
+    /// Lets settings that are as usual again return below their folds.
+    pub fn forget_kept(&mut self) {
+        self.kept.clear();
+    }
+}
+
+impl Sheet {
+    /// Unfolds the advanced settings of the sections with these titles.
+    pub fn unfold(&mut self, sections: impl IntoIterator<Item = String>) {
+        self.folds.open.extend(sections);
+    }
+
+    /// Draws a section's settings, the advanced ones below a fold, and its reset button.
+    pub fn section(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        section: Section,
+        commands: &mut Vec<Command>,
+    ) {
+        let values = Arc::clone(&self.values);
+        let is_open = self.folds.open.contains(section.title);
+        let listed = values.listed().iter().filter(|listed| listed.section == section);
+        for listed in listed.filter(|listed| values.is_special(&listed.path)) {
+            self.folds.kept.insert(listed.path.clone());
+        }
+        let kept = self.folds.kept.clone();
+        let is_below = |listed: &ListedSetting| {
+            listed.setting.is_advanced && (is_open || !kept.contains(&listed.path))
+        };
+        self.entries(ui, run, section, |listed| !is_below(listed), commands);
+        if self.in_section(section).any(is_below) {
+            self.advanced(ui, run, section, is_below, commands);
+        }
+        self.reset_section(ui, section, commands);
+    }
+
+    /// Draws the fold, and below it the settings for which `is_below` holds.
+    fn advanced(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        section: Section,
+        is_below: impl Fn(&ListedSetting) -> bool,
+        commands: &mut Vec<Command>,
+    ) {
+        let is_open = self.folds.open.contains(section.title);
+        let count = self.in_section(section).filter(|listed| is_below(listed)).count();
+        let name = egui::RichText::new(format!("Advanced ({count})"));
+        let header = egui::CollapsingHeader::new(name.color(theme::of(ui).text_weak))
+            .id_salt(("advanced", section.title))
+            .open(Some(is_open));
+        let shown =
+            header.show_unindented(ui, |ui| self.entries(ui, run, section, is_below, commands));
+        let response = shown.header_response;
+        let is_on = ui.is_enabled();
+        let said = format!("Advanced settings of {}", section.title);
+        response.widget_info(|| {
+            egui::WidgetInfo::selected(egui::WidgetType::CollapsingHeader, is_on, is_open, &said)
+        });
+        if response.clicked() {
+            self.folds.forget_kept();
+            if is_open {
+                self.folds.open.remove(section.title);
+            } else {
+                self.folds.open.insert(section.title.to_owned());
+            }
+            let (section, is_open) = (section.title, !is_open);
+            commands.push(Command::Window(WindowCommand::FoldAdvanced { section, is_open }));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::score::Trial;
+    use crate::studio::state::current_run::prepared_run;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    type Panel<'a> = Harness<'a, (Sheet, Vec<Command>)>;
+
+    /// The section of the surface, with these sections unfolded.
+    fn surface<'a>(run: &'a CurrentRun, unfolded: &[&str]) -> Panel<'a> {
+        let mut sheet = Sheet::default();
+        sheet.unfold(unfolded.iter().map(|title| (*title).to_owned()));
+        let mut panel = Harness::builder().with_size(egui::vec2(400.0, 900.0)).build_ui_state(
+            |ui, (sheet, commands): &mut (Sheet, Vec<Command>)| {
+                sheet.begin(ui, run);
+                sheet.section(ui, run, Trial::SURFACE, commands);
+            },
+            (sheet, Vec::new()),
+        );
+        panel.run();
+        panel
+    }
+
+    fn shows(panel: &Panel, label: &str) -> bool {
+        panel.query_all_by_label_contains(label).next().is_some()
+    }
+
+    #[test]
+    fn advanced_settings_are_below_a_fold_that_a_click_opens_and_closes() {
+        let run = prepared_run();
+        let mut panel = surface(&run, &[]);
+        assert!(shows(&panel, "Friction") && shows(&panel, "Softness"));
+        assert!(!shows(&panel, "Creep"));
+        let fold = "Advanced settings of Surface";
+        panel.get_by_label(fold).click();
+        panel.run();
+        assert!(shows(&panel, "Creep") && shows(&panel, "Springiness"));
+        panel.get_by_label(fold).click();
+        panel.run();
+        assert!(!shows(&panel, "Creep"));
+        let command =
+            |is_open| Command::Window(WindowCommand::FoldAdvanced { section: "Surface", is_open });
+        assert_eq!(panel.state().1, [command(true), command(false)]);
+    }
+
+    #[test]
+    fn a_fold_that_was_open_is_open_again() {
+        let run = prepared_run();
+        assert!(shows(&surface(&run, &["Surface"]), "Creep"));
+        assert!(!shows(&surface(&run, &["Joints"]), "Creep"));
+    }
+
+    #[test]
+    fn an_advanced_setting_that_is_not_as_usual_is_always_shown() {
+        let mut run = prepared_run();
+        run.set_field("surface.slip_m_s_per_n", "0.25").expect("allowed");
+        let panel = surface(&run, &[]);
+        assert!(shows(&panel, "Creep") && !shows(&panel, "Springiness"), "changed");
+        drop(panel);
+        run.set_preset("mud").expect("shipped");
+        let panel = surface(&run, &[]);
+        assert!(shows(&panel, "Damping") && shows(&panel, "Springiness"), "what makes mud");
+        assert!(!shows(&panel, "Bounce velocity"));
+    }
+}

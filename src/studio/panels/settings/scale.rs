@@ -1,0 +1,233 @@
+//! The scale of a slider: how its values lie along the rail, and the marks below it.
+
+use bevy_egui::egui;
+
+use crate::schema::NumberRange;
+use crate::studio::ui::theme;
+
+/// Share of the rail of a logarithmic slider that stands for zero, which has no place on a logarithmic scale.
+const ZERO_SHARE: f32 = 0.1;
+/// Distance of the marks from the middle of the rail, in points: just below the handle.
+const MARK_TOP: f32 = 8.5;
+/// Length of a mark, in points.
+const MARK_LENGTH: f32 = 3.0;
+/// Font size of the numbers below the marks, in points. They fit into the gap between two rows.
+const NUMBER_SIZE: f32 = 9.0;
+/// Least distance between two numbers, in points.
+const NUMBER_GAP: f32 = 5.0;
+/// Height that numbers need below their row, in points.
+pub const NUMBERS_HEIGHT: f32 = 4.0;
+/// Steps between marks of an angle, in degrees.
+const ANGLE_STEPS: [f32; 4] = [5.0, 15.0, 45.0, 90.0];
+/// Most marks on a linear scale.
+const MOST_STEPS: f32 = 5.0;
+
+/// The scale of a slider.
+#[derive(Debug, Clone, Copy)]
+pub struct Scale {
+    least: f32,
+    most: f32,
+    /// The least positive value of a logarithmic scale; none: the scale is linear.
+    logarithmic_from: Option<f32>,
+    is_angle: bool,
+}
+
+/// A mark below the rail.
+#[derive(Debug, Clone, PartialEq)]
+struct Mark {
+    /// Place on the rail: 0 is its left end, 1 its right.
+    share: f32,
+    /// The value, on a scale whose marks have numbers.
+    number: Option<String>,
+}
+
+impl Scale {
+    /// The scale of a setting with this range, unit and ends of its slider.
+    pub fn of(range: &NumberRange, [least, most]: [f32; 2], unit: &str) -> Self {
+        let logarithmic_from = range.logarithmic_from.map(|from| from.max(least));
+        Self { least, most, logarithmic_from, is_angle: unit == "°" }
+    }
+
+    /// A slider on this scale for `value`.
+    pub fn slider<'a>(&self, value: &'a mut f32) -> egui::Slider<'a> {
+        let slider = egui::Slider::new(value, self.least..=self.most)
+            .clamping(egui::SliderClamping::Never)
+            .show_value(false);
+        if self.logarithmic_from.is_none() {
+            return slider;
+        }
+        slider.logarithmic(true).smallest_positive(f64::from(self.first_positive()))
+    }
+
+    /// The value at which the logarithmic part would begin, if it reached to the left end of the rail.
+    fn first_positive(&self) -> f32 {
+        let Some(from) = self.logarithmic_from else { return self.least };
+        if self.least > 0.0 {
+            return self.least;
+        }
+        let decades = libm::log10f(self.most / from) / (1.0 - ZERO_SHARE);
+        self.most / libm::powf(10.0, decades)
+    }
+
+    /// The value for one that the slider returned. In the part of the rail that stands for zero, the pointer gives zero;
+    /// a key leads from zero to the least positive value and back.
+    pub fn settled(&self, slid: f32, before: f32, is_dragged: bool) -> f32 {
+        match self.logarithmic_from {
+            Some(from) if self.least <= 0.0 && slid < from => {
+                if is_dragged || slid <= 0.0 || before >= from { 0.0 } else { from }
+            }
+            _ => slid,
+        }
+    }
+
+    /// Place of a value on the rail, from 0 to 1.
+    fn share(&self, value: f32) -> f32 {
+        if self.logarithmic_from.is_none() {
+            return ((value - self.least) / (self.most - self.least)).clamp(0.0, 1.0);
+        }
+        let first = self.first_positive();
+        if value <= first {
+            return 0.0;
+        }
+        (libm::log10f(value / first) / libm::log10f(self.most / first)).clamp(0.0, 1.0)
+    }
+
+    /// The marks, from left to right.
+    fn marks(&self) -> Vec<Mark> {
+        let Some(from) = self.logarithmic_from else { return self.linear_marks() };
+        let mark = |value: f32| Mark { share: self.share(value), number: Some(value.to_string()) };
+        let first = if self.least > 0.0 { self.least } else { 0.0 };
+        let lowest = libm::ceilf(libm::log10f(from) - 1.0e-3) as i32;
+        let highest = libm::floorf(libm::log10f(self.most) + 1.0e-3) as i32;
+        // Powers of ten from text: computed ones would have digits such as 0.000099999.
+        let decades = (lowest..=highest).filter_map(|power| format!("1e{power}").parse().ok());
+        let mut values: Vec<f32> =
+            std::iter::once(first).chain(decades).chain([self.most]).collect();
+        values.dedup();
+        values.into_iter().map(mark).collect()
+    }
+
+    fn linear_marks(&self) -> Vec<Mark> {
+        let width = self.most - self.least;
+        let of_angle = ANGLE_STEPS.into_iter().find(|step| width / step <= MOST_STEPS);
+        let step = of_angle.filter(|_| self.is_angle).unwrap_or_else(|| round_step(width));
+        let first = (self.least / step).ceil() as i32;
+        let values = (first..).map(|index| index as f32 * step);
+        let values = values.take_while(|value| *value <= self.most + step * 1.0e-3);
+        values.map(|value| Mark { share: self.share(value), number: None }).collect()
+    }
+
+    /// Draws the marks below the rail of a slider at `rect`.
+    pub fn paint(&self, ui: &egui::Ui, rect: egui::Rect) {
+        if !ui.is_rect_visible(rect) {
+            return;
+        }
+        // The reach of the middle of the handle, as egui computes it.
+        let radius = rect.height() / 2.5;
+        let aside = match ui.visuals().handle_shape {
+            egui::style::HandleShape::Circle => radius,
+            egui::style::HandleShape::Rect { aspect_ratio } => radius * aspect_ratio,
+        };
+        let rail = rect.x_range().shrink(aside);
+        let color = theme::of(ui).text_weak;
+        let top = rect.center().y + MARK_TOP;
+        let marks = self.marks();
+        let mut numbers: Vec<egui::Rect> = Vec::new();
+        let mut number = |mark: &Mark, x: f32| {
+            let Some(text) = &mark.number else { return };
+            let font = egui::FontId::proportional(NUMBER_SIZE);
+            let galley = ui.painter().layout_no_wrap(text.clone(), font, color);
+            let size = galley.size();
+            let left =
+                (x - size.x / 2.0).clamp(rect.left(), (rect.right() - size.x).max(rect.left()));
+            let place = egui::Rect::from_min_size(egui::pos2(left, top + MARK_LENGTH - 1.0), size);
+            if numbers
+                .iter()
+                .all(|other| !other.expand2(egui::vec2(NUMBER_GAP, 0.0)).intersects(place))
+            {
+                ui.painter().galley(place.min, galley, color);
+                numbers.push(place);
+            }
+        };
+        let x_of = |mark: &Mark| rail.min + rail.span() * mark.share;
+        // The ends come first, so that they have their numbers where there is no room for all.
+        for mark in marks.first().into_iter().chain(marks.last()).chain(&marks) {
+            number(mark, x_of(mark));
+        }
+        for mark in &marks {
+            ui.painter().vline(x_of(mark), top..=top + MARK_LENGTH, egui::Stroke::new(1.0, color));
+        }
+    }
+}
+
+/// A round step, of 1, 2 or 5 times a power of ten, that divides a width into a few parts.
+fn round_step(width: f32) -> f32 {
+    let power = libm::powf(10.0, libm::floorf(libm::log10f(width / MOST_STEPS)));
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
+    let few = steps.into_iter().find(|step| width / step <= MOST_STEPS + 1.0e-3);
+    few.unwrap_or(width)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{SettingKind, list};
+
+    fn scale(least: f32, most: f32, logarithmic_from: Option<f32>) -> Scale {
+        Scale { least, most, logarithmic_from, is_angle: false }
+    }
+
+    #[test]
+    fn zero_is_apart_from_small_values_on_a_logarithmic_scale() {
+        let friction = scale(0.0, 10.0, Some(0.01));
+        assert_eq!(friction.share(0.0), 0.0);
+        assert!((friction.share(0.01) - ZERO_SHARE).abs() < 1.0e-3, "{}", friction.share(0.01));
+        assert!(friction.share(0.1) > 0.35, "{}", friction.share(0.1));
+        assert_eq!(friction.share(10.0), 1.0);
+    }
+
+    #[test]
+    fn a_logarithmic_scale_has_a_numbered_mark_at_zero_and_at_each_decade() {
+        let numbers = |scale: Scale| -> Vec<String> {
+            scale.marks().into_iter().filter_map(|mark| mark.number).collect()
+        };
+        assert_eq!(numbers(scale(0.0, 10.0, Some(0.01))), ["0", "0.01", "0.1", "1", "10"]);
+        assert_eq!(numbers(scale(0.05, 5.0, Some(0.05))), ["0.05", "0.1", "1", "5"]);
+        assert_eq!(numbers(scale(0.0, 0.1, Some(1.0e-6))).last().map(String::as_str), Some("0.1"));
+    }
+
+    #[test]
+    fn the_pointer_reaches_zero_and_keys_leave_it() {
+        let slip = scale(0.0, 1.0, Some(0.001));
+        assert_eq!(slip.settled(0.0005, 0.4, true), 0.0);
+        assert_eq!(slip.settled(0.0005, 0.0, false), 0.001, "a key leaves zero");
+        assert_eq!(slip.settled(0.0009, 0.001, false), 0.0, "a key returns to zero");
+        assert_eq!(slip.settled(0.3, 0.1, true), 0.3);
+    }
+
+    #[test]
+    fn a_linear_scale_has_a_few_round_marks() {
+        let shares = |scale: Scale| -> Vec<f32> {
+            scale.marks().into_iter().map(|mark| mark.share).collect()
+        };
+        assert_eq!(shares(scale(0.0, 1.0, None)).len(), 6);
+        assert_eq!(shares(scale(0.0, 2.0, None)), [0.0, 0.25, 0.5, 0.75, 1.0]);
+        let angle = Scale { is_angle: true, ..scale(0.0, 171.88, None) };
+        let degrees: Vec<f32> =
+            shares(angle).into_iter().map(|share| (share * 171.88).round()).collect();
+        assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0]);
+    }
+
+    #[test]
+    fn every_slider_has_a_few_marks_and_the_place_that_egui_gives_its_value() {
+        for listed in list(&crate::evolve::Settings::default()) {
+            let SettingKind::Number(range) = listed.setting.kind else { continue };
+            let range = listed.setting.shown_range(&range);
+            let Some(ends) = range.slider else { continue };
+            let scale = Scale::of(&range, ends, listed.setting.shown_unit());
+            let marks = scale.marks();
+            assert!((2..=9).contains(&marks.len()), "{}: {}", listed.path, marks.len());
+            assert!(marks.is_sorted_by(|a, b| a.share < b.share), "{}: {marks:?}", listed.path);
+        }
+    }
+}
