@@ -107,6 +107,12 @@ impl Lane {
         self
     }
 
+    /// The same lane as a ghost.
+    #[cfg(test)]
+    pub fn as_ghost(self) -> Self {
+        Self { is_ghost: true, ..self }
+    }
+
     /// Whether it is drawn as a ghost.
     pub fn is_ghost(&self) -> bool {
         self.is_ghost
