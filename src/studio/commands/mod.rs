@@ -112,6 +112,8 @@ pub(super) enum PlanCommand {
     ForgetFounder,
     /// Discard the change of a what-if.
     DropChange,
+    /// Use the world of the selected lane for the next run.
+    UseWorldOfLane,
 }
 
 /// A command to the lanes of the stage.
@@ -131,6 +133,8 @@ pub(super) enum StageCommand {
     RaceGenerations,
     /// Race the best of this generation, or of the latest one; the first generation is 1.
     RaceLeaders(Option<u32>),
+    /// Show the snake at five values of this setting of the world, by its full dotted name, side by side.
+    Sweep(String),
     /// Accept the change of a what-if: only the changed lane stays.
     KeepChange,
     /// Keep only the selected lane.

@@ -11,6 +11,7 @@ pub mod new_file;
 pub mod options;
 pub mod plan_commands;
 pub mod run_context;
+pub mod sweep;
 pub mod undo;
 pub mod what_if;
 pub mod wording;

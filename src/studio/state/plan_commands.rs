@@ -3,6 +3,7 @@
 use super::current_run::CurrentRun;
 use super::library::{Library, founder_of};
 use super::lineup::champion_of;
+use super::sweep::changes_of;
 use super::what_if::{WorldChange, dropped, kept, what_if};
 use crate::studio::commands::PlanCommand;
 use crate::studio::stage::opening::OpeningChampions;
@@ -52,6 +53,12 @@ pub(crate) fn apply_to_plan(
             return Ok(kept(on_show, mode));
         }
         PlanCommand::ForgetFounder => run.forget_founder()?,
+        PlanCommand::UseWorldOfLane => {
+            let changes = on_show.first().map(changes_of).unwrap_or_default();
+            let texts = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
+            run.set_fields(&texts.collect::<Vec<_>>())?;
+            notices.info("The next run uses this world.".to_owned());
+        }
         PlanCommand::DropChange => return dropped(run, on_show, mode),
     }
     Ok(None)

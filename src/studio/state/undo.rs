@@ -205,7 +205,7 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
     let (subject, label) = match command {
         Command::Plan(command) => match command {
             PlanCommand::SetField { field, .. } => return Some((field.clone(), changes())),
-            PlanCommand::SetFields(_) => ("several", changes()),
+            PlanCommand::SetFields(_) | PlanCommand::UseWorldOfLane => ("several", changes()),
             PlanCommand::SetPopulation(_) => ("evolution.population", changes()),
             PlanCommand::SetSeed(seed) => ("seed", format!("seed {seed}")),
             PlanCommand::SetPreset(name) | PlanCommand::StorePreset(name) => {

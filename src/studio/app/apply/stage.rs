@@ -13,6 +13,7 @@ use crate::studio::stage::{Show, StageMode, end_s};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
+use crate::studio::state::sweep::sweep;
 use crate::studio::state::undo::{PlanStep, UndoDirection, followed, stepped};
 use crate::studio::state::what_if::kept;
 use crate::studio::ui::notifications::Notices;
@@ -154,6 +155,10 @@ impl StageParams<'_, '_> {
             StageCommand::TellStory => {
                 self.following.tell_story(run)?;
                 None
+            }
+            StageCommand::Sweep(field) => {
+                let on_show = self.champions_to_change();
+                on_show.first().map(|champion| sweep(champion, field)).transpose()?
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),

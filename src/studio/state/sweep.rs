@@ -1,0 +1,145 @@
+//! Sweep: one setting of the world at five values, in five lanes side by side.
+
+use super::wording::world_in_words;
+use crate::evolve::{Settings, fields, with_field};
+use crate::schema::{NumberRange, SettingKind, SettingValue, list};
+use crate::score::Trial;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{Show, StageMode};
+
+/// Number of values, the present one among them.
+const VALUES: u8 = 5;
+/// Ratios to the present value of a setting whose effect is one of proportion.
+const RATIOS: [f32; VALUES as usize] = [0.2, 0.5, 1.0, 2.0, 5.0];
+
+/// The champion in five worlds that differ in one setting, by its full dotted name.
+///
+/// # Errors
+/// The setting is no number of the world, has one value for each part, or has only one possible value; in a sentence.
+pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, String> {
+    let settings = settings_of(champion.trial());
+    let all = list(&settings);
+    let listed = all.iter().find(|listed| listed.path == field && field.starts_with("trial."));
+    let listed = listed.ok_or_else(|| format!("{field} is no setting of the world."))?;
+    let label = listed.setting.label;
+    let SettingKind::Number(range) = &listed.setting.kind else {
+        return Err(format!("{label} is no number, so it cannot be swept."));
+    };
+    let now = match (&listed.value, range.begins_with) {
+        (SettingValue::Number(now), _) => *now,
+        (SettingValue::Whole(now), _) => *now as f32,
+        (SettingValue::None, Some(first)) => first,
+        _ => return Err(format!("{label} has a value for each part; give it a single value first.")),
+    };
+    let world = |value: f32| -> Option<StagedChampion> {
+        let trial = with_field(&settings, field, &value.to_string()).ok()?.trial;
+        let words = world_in_words(champion.trial(), &trial);
+        let staged = if trial == *champion.trial() {
+            let value = listed.setting.value_in_words(&listed.value);
+            let name = listed.setting.short_name();
+            champion.simulated().named(format!("{name} {value} (now)"))
+        } else {
+            champion.in_world(&trial, words)
+        };
+        staged.check().is_ok().then_some(staged)
+    };
+    let champions: Vec<StagedChampion> = values(range, now).into_iter().filter_map(world).collect();
+    if champions.len() < 2 {
+        return Err(format!("The snake on the stage fits no other value of {label}."));
+    }
+    Ok(Show { champions, mode: StageMode::Race })
+}
+
+/// The values of a sweep, ascending: ratios of the present value where the slider is logarithmic, else spread evenly
+/// over the slider, with the present value in the place of the nearest.
+fn values(range: &NumberRange, now: f32) -> Vec<f32> {
+    let [from, to] = range.slider.unwrap_or([range.least, range.most]);
+    let (from, to) = (from.min(now), to.max(now));
+    let is_of_proportion = range.logarithmic_from.is_some() && now > 0.0;
+    let mut values: Vec<f32> = if is_of_proportion {
+        RATIOS.map(|ratio| if ratio == 1.0 { now } else { rounded(now * ratio) }).into()
+    } else {
+        let step = (to - from) / f32::from(VALUES - 1);
+        let mut spread: Vec<f32> =
+            (0..VALUES).map(|index| rounded(from + f32::from(index) * step)).collect();
+        let distance = |value: &f32| (value - now).abs();
+        let nearest = spread.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.into_iter().for_each(|nearest| *nearest = now);
+        spread
+    };
+    for value in &mut values {
+        let whole = if range.is_whole { value.round() } else { *value };
+        *value = whole.clamp(range.least, range.most);
+    }
+    values.sort_by(f32::total_cmp);
+    values.dedup();
+    values
+}
+
+/// A value with three significant digits, which fit into a label.
+fn rounded(value: f32) -> f32 {
+    if value == 0.0 {
+        return value;
+    }
+    let digits = 2 - libm::floorf(libm::log10f(value.abs())) as i32;
+    let scale = libm::powf(10.0, digits as f32);
+    (value * scale).round() / scale
+}
+
+/// The settings in which a lane's world differs from the one in which its champion was found: full dotted names and
+/// values.
+pub(crate) fn changes_of(staged: &StagedChampion) -> Vec<(String, String)> {
+    let found = fields(&settings_of(&staged.champion().trial));
+    let mut shown = fields(&settings_of(staged.trial()));
+    shown.retain(|field| !found.contains(field));
+    shown
+}
+
+fn settings_of(trial: &Trial) -> Settings {
+    Settings { trial: trial.clone(), ..Settings::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+
+    fn champion() -> StagedChampion {
+        StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
+    }
+
+    #[test]
+    fn a_sweep_shows_five_values_of_one_setting_and_names_them() {
+        let show = sweep(&champion(), "trial.surface.friction").expect("a number");
+        let labels: Vec<&str> = show.champions.iter().map(StagedChampion::label).collect();
+        assert_eq!(
+            labels,
+            ["friction 0.2", "friction 0.5", "friction 1 (now)", "friction 2", "friction 5"]
+        );
+        assert_eq!(show.mode, StageMode::Race);
+        let changed = &show.champions[0];
+        let changes = changes_of(changed);
+        assert_eq!(changes, [("trial.surface.friction".to_owned(), "0.2".to_owned())]);
+    }
+
+    #[test]
+    fn every_number_of_the_world_gives_several_worlds_or_a_reason() {
+        let champion = champion();
+        for listed in list(&settings_of(champion.trial())) {
+            match sweep(&champion, &listed.path) {
+                Ok(show) => {
+                    assert!((2..=5).contains(&show.champions.len()), "{}", listed.path);
+                    let is_now = |staged: &&StagedChampion| !staged.is_changed();
+                    assert!(show.champions.iter().filter(is_now).count() <= 1, "{}", listed.path);
+                }
+                Err(reason) => assert!(reason.ends_with('.'), "{reason}"),
+            }
+        }
+        assert!(sweep(&champion, "evolution.population").is_err(), "it is not of the world");
+    }
+
+    #[test]
+    fn values_have_three_digits_and_stay_within_the_range() {
+        assert_eq!([0.12345, 1234.5, 0.0].map(rounded), [0.123, 1230.0, 0.0]);
+    }
+}
