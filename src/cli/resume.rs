@@ -1,11 +1,10 @@
 //! `--resume DIR`: the run in a folder, or the only run in a folder of runs.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::error::CliError;
 use super::output::print;
 use crate::run::RunSource;
-use crate::save::library::{SavePlace, read_notes};
 use crate::save::{RunSummary, SavesFolder};
 
 /// The run to resume in `folder`: its own, or that of the only run's folder in it. Several runs are listed, one per
@@ -27,8 +26,7 @@ pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
 
 /// A line about a run: folder, name of its own, and state.
 fn line(run: &RunSummary, json: bool) -> String {
-    let RunSummary { folder, plan, finished, .. } = run;
-    let name = own_name(folder);
+    let RunSummary { folder, plan, finished, name, .. } = run;
     let generations = plan.settings.evolution.generations;
     let is_stopped = run.is_stopped();
     if json {
@@ -38,15 +36,9 @@ fn line(run: &RunSummary, json: bool) -> String {
         return format!("{line}\n");
     }
     let folder = folder.display();
-    let name = name.map(|name| format!("  \"{name}\"")).unwrap_or_default();
+    let name = name.as_ref().map(|name| format!("  \"{name}\"")).unwrap_or_default();
     let state = if is_stopped { "can be resumed" } else { "finished" };
     format!("{folder}{name}  {finished} of {generations} generations, {state}\n")
-}
-
-/// The name that the user gave a run, if any. Notes that cannot be read do not keep a run from being resumed.
-fn own_name(folder: &Path) -> Option<String> {
-    let notes = read_notes(&SavePlace::Run(PathBuf::from(folder))).ok()?;
-    (!notes.name.is_empty()).then_some(notes.name)
 }
 
 #[cfg(test)]
@@ -54,7 +46,8 @@ mod tests {
     use super::*;
     use crate::evolve::{RunPlan, Settings};
     use crate::save::ExistingRun;
-    use crate::save::library::rename;
+    use crate::save::library::{SavePlace, rename};
+    use std::path::PathBuf;
 
     /// Adds a run without finished generations, and returns its folder.
     fn add_run(saves: &SavesFolder, seed: u64) -> PathBuf {

@@ -7,6 +7,7 @@ use directories::ProjectDirs;
 
 use super::change::load_changed_plan;
 use super::files::{numbered, prepare_folder, refuse_link};
+use super::notes::{EntryNotes, notes_in_run};
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
 use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
@@ -88,7 +89,10 @@ impl SavesFolder {
             if is_stopped && finished > 0 && evolution.strategy.info().is_budget_driven {
                 is_stopped = has_generations_left(&plan, &read_records(&folder, &plan).ok()?);
             }
-            Some(RunSummary { folder, plan, finished, is_stopped })
+            // Notes that cannot be read do not keep a run from being resumed.
+            let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
+            let name = notes.own_name().map(str::to_owned);
+            Some(RunSummary { folder, plan, finished, name, is_stopped })
         };
         folders.into_iter().filter_map(summary).collect()
     }
@@ -122,6 +126,8 @@ pub struct RunSummary {
     pub plan: RunPlan,
     /// Number of finished generations.
     pub finished: u32,
+    /// The name that the user gave it, if any.
+    pub name: Option<String>,
     /// Whether evaluations are left for another generation.
     is_stopped: bool,
 }

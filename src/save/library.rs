@@ -21,9 +21,7 @@ pub use change::{DELETED, FileStep, delete, duplicate, rename};
 pub use details::{ChampionDetails, EntryDetails, RunDetails, load_entry, read_entry};
 pub use list::{LibraryEntry, SavePlace, list};
 pub use name::{MAX_NAME_CHARS, check_entry_name};
-pub use notes::{
-    EntryNotes, MAX_NOTES_CHARS, check_notes, check_run_name, read_notes, set_notes_text,
-};
+pub use notes::{read_notes, set_notes_text};
 pub use problem::EntryProblem;
 pub use thumbnail::Thumbnail;
 pub use transfer::{EXPORTS, export, import, run_of_plan};

@@ -8,11 +8,11 @@ use super::details::{text_of_file, text_of_shipped};
 use super::list::SavePlace;
 use super::moving::{move_entry, taken};
 use super::name::{ENDING, check_entry_name, free_path, notes_beside, shortened};
-use super::notes::{EntryNotes, copy_notes, name_run, set_notes};
+use super::notes::{copy_notes, name_run, set_notes};
 use crate::check::Invalid;
 use crate::save::files::{prepare_folder, write_new};
 use crate::save::lock::Lock;
-use crate::save::{SaveError, SavesFolder};
+use crate::save::{EntryNotes, SaveError, SavesFolder};
 
 /// Folder for deleted entries within a folder of saves.
 pub const DELETED: &str = ".deleted";

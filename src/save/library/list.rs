@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, UNIX_EPOCH};
 
 use super::name::{NOTES_ENDING, notes_beside};
-use super::notes::{EntryNotes, read_notes};
+use super::notes::read_notes;
 use super::shipped::SHIPPED;
 use crate::save::plan::RUN_FILE;
 use crate::save::record::LOG_FILE;
-use crate::save::{SaveError, SavesFolder};
+use crate::save::{EntryNotes, SaveError, SavesFolder};
 
 /// The place of a library entry.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,103 +1,20 @@
-//! Names and notes that the user gives to saves: format 1, in a small file of their own beside a champion, or in the
-//! folder of a run. Nothing else reads them, so they cannot change a replay.
-//!
-//! A champion is named by its file; only a run, whose folder's name says which run it is, has a name in its notes.
+//! Names and notes of library entries, as operations that can be undone.
 
-use std::fs;
 use std::path::{Path, PathBuf};
-
-use serde::{Deserialize, Serialize};
 
 use super::change::FileStep;
 use super::list::SavePlace;
-use super::name::{MAX_NAME_CHARS, notes_beside};
-use crate::check::{Invalid, quoted};
+use super::name::notes_beside;
+use crate::check::Invalid;
 use crate::save::SaveError;
-use crate::save::files::{Header, parse, read_bytes, refuse_link, store_ron, text_of};
-
-const KIND: &str = "snakes-and-stairs notes";
-const FORMAT: u32 = 1;
-/// The file in a run's folder.
-const RUN_NOTES: &str = "about.ron";
-/// Maximum length of notes, in characters: a page of text.
-pub const MAX_NOTES_CHARS: usize = 4000;
-/// Maximum size of the file, in MiB.
-const LARGEST_MIB: u64 = 1;
-
-/// The user's name and notes for a save; both may be empty.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct EntryNotes {
-    /// Name of a run; if empty, its folder's name is shown.
-    pub name: String,
-    /// Free text, which may have several lines.
-    pub text: String,
-}
-
-#[derive(Serialize, Deserialize)]
-struct NotesFile {
-    kind: String,
-    format: u32,
-    #[serde(default)]
-    name: String,
-    #[serde(default)]
-    notes: String,
-}
-
-impl EntryNotes {
-    fn is_empty(&self) -> bool {
-        self.name.is_empty() && self.text.is_empty()
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        if !self.name.is_empty() {
-            check_run_name(&self.name)?;
-        }
-        check_notes(&self.text)
-    }
-}
-
-/// Checks the name of a run. It is no file's name, so it may have any visible characters.
-///
-/// # Errors
-/// The name is empty or too long, or has a control character or spaces at its ends.
-pub fn check_run_name(name: &str) -> Result<(), Invalid> {
-    let characters = name.chars().count();
-    if !(1..=MAX_NAME_CHARS).contains(&characters) {
-        let allowed = format!("1 to {MAX_NAME_CHARS} characters");
-        return Err(Invalid::new("name", format!("{characters} characters long"), allowed));
-    }
-    if name.chars().any(char::is_control) {
-        let allowed = "a name without line breaks and control characters";
-        return Err(Invalid::new("name", quoted(name), allowed));
-    }
-    if name.trim() != name {
-        return Err(Invalid::new("name", quoted(name), "a name without spaces at its ends"));
-    }
-    Ok(())
-}
-
-/// Checks the text of notes.
-///
-/// # Errors
-/// The text is too long, or has control characters other than line breaks and tabs.
-pub fn check_notes(text: &str) -> Result<(), Invalid> {
-    let characters = text.chars().count();
-    if characters > MAX_NOTES_CHARS {
-        let allowed = format!("up to {MAX_NOTES_CHARS} characters");
-        return Err(Invalid::new("notes", format!("{characters} characters long"), allowed));
-    }
-    if text.chars().any(|c| c.is_control() && !"\n\t".contains(c)) {
-        return Err(Invalid::new("notes", quoted(text), "text without control characters"));
-    }
-    Ok(())
-}
+use crate::save::notes::{EntryNotes, notes_in_run};
 
 /// The file of an entry's notes; none for a part of the program.
 fn notes_path(place: &SavePlace) -> Option<PathBuf> {
     match place {
         SavePlace::Shipped(_) => None,
         SavePlace::Champion(path) => Some(notes_beside(path)),
-        SavePlace::Run(folder) => Some(folder.join(RUN_NOTES)),
+        SavePlace::Run(folder) => Some(notes_in_run(folder)),
     }
 }
 
@@ -106,21 +23,7 @@ fn notes_path(place: &SavePlace) -> Option<PathBuf> {
 /// # Errors
 /// Their file is unreadable, damaged, a link, or of another kind or format.
 pub fn read_notes(place: &SavePlace) -> Result<EntryNotes, SaveError> {
-    let Some(path) = notes_path(place) else { return Ok(EntryNotes::default()) };
-    match path.symlink_metadata() {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(EntryNotes::default()),
-        _ => read_file(&path),
-    }
-}
-
-fn read_file(path: &Path) -> Result<EntryNotes, SaveError> {
-    refuse_link(path).map_err(SaveError::unreadable(path))?;
-    let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
-    Header::check(path, &text, KIND, FORMAT)?;
-    let NotesFile { name, notes, .. } = parse(path, &text)?;
-    let notes = EntryNotes { name, text: notes };
-    notes.check().map_err(SaveError::invalid(path))?;
-    Ok(notes)
+    notes_path(place).map_or_else(|| Ok(EntryNotes::default()), |path| EntryNotes::load(&path))
 }
 
 /// Gives an entry another name and other notes. Without any, it has no file.
@@ -129,22 +32,13 @@ fn read_file(path: &Path) -> Result<EntryNotes, SaveError> {
 /// The entry is part of the program or no longer exists; name or notes are not allowed; the present ones are damaged,
 /// and would be lost; the file cannot be written.
 pub fn set_notes(place: &SavePlace, notes: &EntryNotes) -> Result<FileStep, SaveError> {
-    let named = place.name();
     let Some(path) = notes_path(place) else {
         let source = Invalid::new("entry", "built-in", "a champion's file or a run's folder");
-        return Err(SaveError::Invalid { path: named.into(), source });
+        return Err(SaveError::Invalid { path: place.name().into(), source });
     };
     let entry = place.path().unwrap_or(&path);
     entry.symlink_metadata().map_err(SaveError::unreadable(entry))?;
-    notes.check().map_err(SaveError::invalid(&path))?;
-    let before = read_notes(place)?;
-    if !notes.is_empty() {
-        let (name, text) = (notes.name.clone(), notes.text.clone());
-        let file = NotesFile { kind: KIND.to_owned(), format: FORMAT, name, notes: text };
-        store_ron(&path, &file)?;
-    } else if !before.is_empty() {
-        fs::remove_file(&path).map_err(SaveError::unwritable(&path))?;
-    }
+    let before = notes.store(&path)?;
     Ok(FileStep::Noted { place: place.clone(), before })
 }
 
@@ -182,6 +76,7 @@ mod tests {
     use super::*;
     use crate::save::library::fixtures::{champion_in, run_in, saves};
     use crate::save::library::{delete, duplicate, export, import, list, read_entry, rename};
+    use std::fs;
 
     fn notes(name: &str, text: &str) -> EntryNotes {
         EntryNotes { name: name.to_owned(), text: text.to_owned() }
@@ -210,7 +105,7 @@ mod tests {
         again.undo(&saves).expect("done again");
         assert_eq!(read(&run), both);
         noted.undo(&saves).and_then(|_| named.undo(&saves)).expect("undone");
-        assert!(!run.path().expect("a folder").join(RUN_NOTES).exists(), "no empty file is left");
+        assert!(!notes_in_run(run.path().expect("a folder")).exists(), "no empty file is left");
         rename(&run, "other").expect("renamed");
         rename(&run, &run.name()).expect("renamed");
         assert_eq!(read(&run), EntryNotes::default(), "the folder's name is no name of its own");
@@ -282,7 +177,7 @@ mod tests {
     fn names_and_notes_that_are_not_allowed_are_refused() {
         let (_folder, saves) = saves();
         let run = run_in(&saves, 1);
-        let long = "x".repeat(MAX_NOTES_CHARS + 1);
+        let long = "x".repeat(4001);
         for (refused, message) in [
             (notes("a\nb", ""), "allowed: a name without line breaks"),
             (notes(&"x".repeat(101), ""), "name is 101 characters long; allowed: 1 to 100"),

@@ -112,7 +112,7 @@ impl Files {
             FileCommand::OpenFolder(folder) => self.open_folder(folder)?,
             FileCommand::ShowSaves => {
                 library.prepare_folder()?;
-                self.open_folder(&library.folder().to_owned())?;
+                self.open_folder(library.folder())?;
             }
             FileCommand::CopyPicture(path) => self.copying.start(Copied::Picture(path.clone()))?,
             FileCommand::CopyPath(path) => self.copying.start(Copied::Path(path.clone()))?,

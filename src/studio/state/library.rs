@@ -153,8 +153,7 @@ impl Library {
 
     /// The name that the user gave a run, if any.
     fn own_name(&self, place: &SavePlace) -> Option<String> {
-        let notes = self.item(place)?.notes().ok()?;
-        (!notes.name.is_empty()).then(|| notes.name.clone())
+        self.item(place)?.notes().ok()?.own_name().map(str::to_owned)
     }
 
     /// The entry created, renamed or restored last, and a counter of such changes.

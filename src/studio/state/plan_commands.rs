@@ -46,9 +46,10 @@ pub(crate) fn apply_to_plan(
         }
         PlanCommand::StartFromSave(place) => {
             let founder = founder_of(place, library.best_of(place))?;
-            run.start_next_from(&founder, &place.name())?;
+            let name = library.name_of(place);
+            run.start_next_from(&founder, &name)?;
             run.begin_next()?;
-            notices.info(format!("A run started from {}.", place.name()));
+            notices.info(format!("A run started from {name}."));
             // The new run uses the change of a what-if.
             return Ok(kept(on_show, mode));
         }

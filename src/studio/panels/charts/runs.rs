@@ -129,7 +129,8 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
             let finished = other.finished;
             let all = other.plan.settings.evolution.generations;
-            let name = format!("{}, {finished} of {all} generations", title(&other.plan));
+            let name = other.name.clone().unwrap_or_else(|| title(&other.plan));
+            let name = format!("{name}, {finished} of {all} generations");
             let is_on = is_shown || others.compared().len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
             let hint = format!("Add this run to the chart: {}", other.folder.display());

@@ -8,7 +8,8 @@ use bevy_egui::egui::Key as Press;
 use super::LibraryPanel;
 use super::actions::send;
 use crate::check::Invalid;
-use crate::save::library::{SavePlace, check_entry_name, check_notes, check_run_name};
+use crate::save::library::{SavePlace, check_entry_name};
+use crate::save::{check_notes, check_run_name};
 use crate::studio::commands::Command;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
@@ -139,7 +140,7 @@ impl LibraryPanel {
         let is_restored =
             response.lost_focus() && ui.input(|input| input.key_pressed(Press::Escape));
         let is_edited = text.trim() != kept.trim() && !is_restored;
-        if response.lost_focus() && is_edited && problem.is_none() {
+        if response.lost_focus() && is_edited && !is_sent && problem.is_none() {
             let (place, text) = (item.place().clone(), text.clone());
             send(commands, LibraryCommand::SetNotes { place, text });
             is_sent = true;

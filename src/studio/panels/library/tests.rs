@@ -11,9 +11,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
 use crate::run::LibraryEvent;
-use crate::save::library::{
-    EntryDetails, EntryNotes, EntryProblem, LibraryEntry, RunDetails, read_entry,
-};
+use crate::save::EntryNotes;
+use crate::save::library::{EntryDetails, EntryProblem, LibraryEntry, RunDetails, read_entry};
 use crate::studio::commands::{PlanCommand, RunCommand};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;

@@ -264,7 +264,9 @@ fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Comma
         for summary in stopped {
             let RunPlan { preset, seed, settings, .. } = &summary.plan;
             let (finished, all) = (summary.finished, settings.evolution.generations);
-            let (name, behind) = (format!("{preset}, seed {seed}"), format!("{finished} of {all}"));
+            let name = || format!("{preset}, seed {seed}");
+            let name = summary.name.clone().unwrap_or_else(name);
+            let behind = format!("{finished} of {all}");
             let hint = format!(
                 "{finished} of {all} generations are finished. The current run stays saved.\n{}",
                 summary.folder.display()

@@ -31,11 +31,14 @@ impl Copied {
 /// The clipboard, which must be kept: on X11 what was copied is lost with it.
 type KeptClipboard = SyncCell<Option<Clipboard>>;
 
+/// The clipboard and whether the copy worked.
+type CopyResult = (KeptClipboard, Result<(), String>);
+
 /// Copies one thing at a time.
 #[derive(Default)]
 pub struct CopyTask {
     kept: Option<KeptClipboard>,
-    running: Option<(Copied, BackgroundTask<(KeptClipboard, Result<(), String>)>)>,
+    running: Option<(Copied, BackgroundTask<CopyResult>)>,
 }
 
 impl CopyTask {

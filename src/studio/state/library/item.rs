@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use crate::genome::ControllerKind;
+use crate::save::EntryNotes;
 use crate::save::library::{
-    ChampionDetails, EntryDetails, EntryNotes, EntryProblem, LibraryEntry, RunDetails, SavePlace,
-    Thumbnail,
+    ChampionDetails, EntryDetails, EntryProblem, LibraryEntry, RunDetails, SavePlace, Thumbnail,
 };
 use crate::score::Fitness;
 

@@ -151,8 +151,9 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
+    use crate::save::EntryNotes;
     use crate::save::SavesFolder;
-    use crate::save::library::{EntryNotes, EntryProblem, SavePlace};
+    use crate::save::library::{EntryProblem, SavePlace};
     use crate::studio::state::current_run::prepared_run;
 
     #[test]
