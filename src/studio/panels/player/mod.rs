@@ -5,4 +5,5 @@ pub mod cards;
 pub mod leaderboard;
 pub mod limb_card;
 pub mod timeline;
+pub mod torque_legend;
 pub mod torque_strip;
