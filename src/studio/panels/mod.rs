@@ -203,19 +203,19 @@ fn draw(
             .show_inside(&mut root, &mut viewer);
     }
     if let Some(stage) = viewer.stage {
-        let mut card_width = 0.0;
+        let mut board = None;
         if let Some(lane) = focused(&lanes, &data.on_stage) {
             let theme = (*data.theme, data.run.progress());
             let around =
                 around_stage(&context, stage, &data.on_stage, &lanes, lane, theme, &mut commands);
-            card_width = around.board_width;
+            board = around.board;
             let is_in_sight =
                 panels.panel_rects.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
             if let Some(view) = data.lessons.view().filter(|_| !is_in_sight) {
                 lesson_card(&context, around.below_bar, view.index, &mut commands);
             }
         }
-        area.set(&context, stage, card_width);
+        area.set(&context, stage, board);
     }
     match workspace.modal() {
         Some(Modal::Keys) => key_overlay(&context, &mut commands),

@@ -153,8 +153,6 @@ const FOLLOWED_M: f32 = 0.005;
 /// Visible length of the lanes ahead of and behind the snakes, in metres.
 const AHEAD_M: f32 = 9.0;
 const BEHIND_M: f32 = 6.0;
-/// Maximum fraction of the picture that is left free for a card.
-const MAX_ASIDE: f32 = 0.25;
 /// Rate at which the camera approaches its target view, in 1/s.
 const GLIDE_PER_S: f32 = 14.0;
 /// Zoom factor for a pinch over the trackpad's whole scale.
@@ -262,11 +260,13 @@ fn steer(
 
 /// Keeps the middle of the snake or of all snakes in view.
 fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Real>>) {
-    let count = lanes.iter().len();
+    // The camera leaves ghosts alone: they surround the lane that it follows.
+    let lanes = || lanes.iter().filter(|lane| !lane.is_ghost());
+    let count = lanes().count();
     if count == 0 {
         return;
     }
-    let is_new = lanes.iter().any(|lane| lane.is_added());
+    let is_new = lanes().any(|lane| lane.is_added());
     if is_new && (count > 1) != (rig.lanes > 1) {
         // A view for one lane does not suit several.
         rig.lanes = count;
@@ -274,13 +274,13 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
         rig.take(if camera_mode == CameraMode::Free { CameraMode::Follow } else { camera_mode });
     }
     rig.lanes = count;
-    rig.lane = rig.lane.filter(|lane| *lane < count && !is_new);
+    rig.lane = rig.lane.filter(|of| !is_new && lanes().any(|lane| lane.number() == *of));
     let of_one = |lane: &Lane| {
         // Following the snake's sideways motion would make viewers seasick.
         let middle = lane.drawn_middle();
         Vec3::new(lane.offset().x, middle.y, middle.z.max(0.0))
     };
-    let chosen = lanes.iter().filter(|lane| rig.lane.is_none_or(|number| number == lane.number()));
+    let chosen = lanes().filter(|lane| rig.lane.is_none_or(|number| number == lane.number()));
     let (mut least, mut most) = (Vec3::MAX, Vec3::MIN);
     chosen.map(|lane| of_one(&lane)).for_each(|middle| {
         least = least.min(middle);
@@ -306,19 +306,23 @@ fn glide(
     area: Res<StageArea>,
     time: Res<Time<Real>>,
     mut camera: Single<&mut Transform, With<StageCamera>>,
+    // Kept from frame to frame, so that no frame allocates.
+    (mut points, mut snakes): (Local<Vec<Vec3>>, Local<Vec<Vec3>>),
 ) {
     let mut goal = rig.view;
     if rig.frames_all() {
-        let points = lanes.iter().flat_map(|lane| {
+        points.clear();
+        snakes.clear();
+        for lane in lanes.iter().filter(|lane| !lane.is_ghost()) {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
             let middle = lane.drawn_middle() + lane.offset();
-            let around = [Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along);
-            let ends = lane.last_poses().iter().map(move |pose| pose.translation + lane.offset());
-            ends.chain([middle - half_width, middle + half_width]).chain(around)
-        });
-        // The card is low, and only a tail is in that corner, so half its width is enough.
-        let left_share = (area.card_share() / 2.0).min(MAX_ASIDE);
-        goal = goal.framing(rig.anchor.unwrap_or_default(), points, area.aspect(), left_share);
+            points.extend([half_width, -half_width].map(|aside| middle + aside));
+            points.extend([Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along));
+            snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
+        }
+        points.extend(snakes.iter());
+        let anchor = rig.anchor.unwrap_or_default();
+        goal = goal.framing(anchor, &points, &snakes, area.aspect(), area.card());
     }
     let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
     rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };

@@ -22,7 +22,7 @@ const POST_EVERY_M: f32 = 4.0;
 /// Distance of railing and posts from the edge of the stairs, in metres.
 const INSIDE_M: f32 = 0.1;
 /// Clear height of the finish above the landing, in metres: a rearing snake fits below it.
-const FINISH_M: f32 = 4.0;
+pub(crate) const FINISH_M: f32 = 4.0;
 /// Height of the finish's chequered board, and side of its squares, in metres.
 const BOARD_M: f32 = 0.5;
 /// Depth of the chequered line on the floor, in metres.
@@ -199,7 +199,8 @@ fn cheques(stairs: &Stairs) -> MeshBuilder {
     let [door_width_m, door_height_m] = door_m(stairs);
     let front_m = stairs.end_y_m() - WALL_THICK_M;
     for side in [1.0, -1.0] {
-        let post = Vec3::new((door_width_m / 2.0 + 0.06) * side, front_m, top_m + door_height_m / 2.0);
+        let post =
+            Vec3::new((door_width_m / 2.0 + 0.06) * side, front_m, top_m + door_height_m / 2.0);
         solid.rounded_box(post, Vec3::new(0.12, 0.08, door_height_m), 0.01, 1);
     }
     let lintel = Vec3::new(0.0, front_m, top_m + door_height_m + 0.06);

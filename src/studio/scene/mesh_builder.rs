@@ -97,8 +97,7 @@ impl MeshBuilder {
                 self.tones.iter().map(|tone| tone.extend(1.0).to_array()).collect();
             mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
         }
-        mesh
-            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, flat(self.positions))
+        mesh.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, flat(self.positions))
             .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, flat(self.normals))
             .with_inserted_indices(Indices::U32(self.indices))
     }

@@ -2,9 +2,11 @@
 
 pub mod best_flag;
 pub mod camera;
+pub mod confetti;
+pub mod dents;
 pub mod ground;
-pub mod lane_marks;
 pub mod landing;
+pub mod lane_marks;
 pub mod limb;
 pub mod mesh_builder;
 pub mod name_tags;
@@ -43,6 +45,7 @@ pub(super) fn plugin(app: &mut App) {
         camera::mouse::plugin,
         wireframe::plugin,
         name_tags::plugin,
+        confetti::plugin,
     ));
 }
 
@@ -57,6 +60,7 @@ pub(super) fn drawing(app: &mut App) {
             stairs::plugin,
             lane_marks::plugin,
             landing::plugin,
+            dents::plugin,
             text::plugin,
             step_edges::plugin,
             step_labels::plugin,

@@ -1,10 +1,10 @@
-//! Name tags above several snakes, with the distance of each.
+//! Labels in the picture: name tags above several snakes, with the distance of each, and the label of the fitness line.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 use super::camera::StageCamera;
-use super::overlays::Overlays;
+use super::overlays::{Overlays, fitness_line_end};
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
@@ -12,6 +12,17 @@ use crate::studio::ui::viewport::StageArea;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(EguiPrimaryContextPass, draw);
+}
+
+/// A tag, moved sideways so that the edge of the stage cuts none of its text. A tag whose snake is out of sight stays
+/// where it is.
+fn within(tag: egui::Rect, stage: egui::Rect) -> egui::Rect {
+    let stage = stage.shrink(theme::GAP / 2.0);
+    if !stage.x_range().contains(tag.center().x) {
+        return tag;
+    }
+    let aside = (stage.left() - tag.left()).max(0.0) - (tag.right() - stage.right()).max(0.0);
+    tag.translate(egui::vec2(aside, 0.0))
 }
 
 /// Height of a tag's anchor above the head's centre, in metres.
@@ -25,25 +36,24 @@ fn draw(
     area: Res<StageArea>,
 ) -> Result {
     let shows_line = overlays.shows(Overlay::FitnessLine);
-    let are_many = lanes.iter().len() > 1;
+    let racing = || lanes.iter().filter(|lane| !lane.is_ghost());
+    let are_many = racing().nth(1).is_some();
     if !are_many && !shows_line {
         return Ok(());
     }
     let context = contexts.ctx_mut()?;
     let (camera, place) = *camera;
     let place = GlobalTransform::from(*place);
-    let mut tags: Vec<(egui::Pos2, String)> = lanes
-        .iter()
+    let mut tags: Vec<(egui::Pos2, String)> = racing()
         .filter_map(|lane| {
-            let head = lane.drawn_poses().next()?.translation + lane.offset();
-            let above = head + Vec3::Z * OVER_HEAD_M;
-            let at = camera.world_to_viewport(&place, above).ok()?;
             let y_m = lane.drawn_middle().y;
-            let text = if are_many {
-                format!("{}  {y_m:.1} m", lane.staged().label())
+            let (above, text) = if are_many {
+                let head = lane.drawn_poses().next()?.translation + lane.offset();
+                (head + Vec3::Z * OVER_HEAD_M, format!("{}  {y_m:.1} m", lane.staged().label()))
             } else {
-                format!("{y_m:.2} m")
+                (fitness_line_end(lane), format!("middle block at {y_m:.2} m"))
             };
+            let at = camera.world_to_viewport(&place, above).ok()?;
             Some((area.point_of(at), text))
         })
         .collect();
@@ -57,7 +67,8 @@ fn draw(
     for (at, text) in tags {
         let galley = painter.layout_no_wrap(text, font.clone(), palette.text);
         let size = galley.size() + egui::vec2(theme::GAP * 1.5, theme::GAP * 0.75);
-        let mut rect = egui::Rect::from_center_size(at - egui::vec2(0.0, size.y / 2.0), size);
+        let over = egui::Rect::from_center_size(at - egui::vec2(0.0, size.y / 2.0), size);
+        let mut rect = within(over, stage);
         // Move a tag up if it would cover another.
         while let Some(other) = placed.iter().find(|other| other.intersects(rect)) {
             rect = rect.translate(egui::vec2(0.0, other.top() - rect.bottom() - 2.0));
@@ -74,4 +85,22 @@ fn draw(
         painter.galley(inside, galley, palette.text);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tag_at_the_edge_of_the_stage_is_not_cut() {
+        let stage = egui::Rect::from_min_max(egui::pos2(100.0, 0.0), egui::pos2(900.0, 500.0));
+        let tag =
+            |x: f32| egui::Rect::from_center_size(egui::pos2(x, 50.0), egui::vec2(140.0, 20.0));
+        for x in [105.0, 480.0, 890.0] {
+            let shown = within(tag(x), stage);
+            assert!(shown.left() >= stage.left() && shown.right() <= stage.right(), "{shown}");
+        }
+        assert_eq!(within(tag(480.0), stage), tag(480.0));
+        assert_eq!(within(tag(2000.0), stage), tag(2000.0), "out of sight");
+    }
 }

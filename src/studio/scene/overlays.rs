@@ -73,18 +73,19 @@ fn draw(
 ) {
     let palette = theme.palette();
     for (entity, lane) in &lanes {
-        if overlays.shows(Overlay::Contacts) {
+        let draws = |overlay| overlays.shows(overlay) && !lane.is_ghost();
+        if draws(Overlay::Contacts) {
             contacts(lane, palette, &mut on_top);
         }
-        if overlays.shows(Overlay::Torques) {
+        if draws(Overlay::Torques) {
             torques(lane, palette, &mut on_top);
         }
-        if overlays.shows(Overlay::Trail) {
+        if draws(Overlay::Trail) {
             let color = if lane.is_disturbed() { palette.pull } else { palette.trail };
             let way = lane.trail_m().into_iter().map(|at| at + lane.offset());
             hidden.linestrip(way, color);
         }
-        if overlays.shows(Overlay::FitnessLine) {
+        if draws(Overlay::FitnessLine) {
             fitness_line(lane, palette, &mut on_top);
         }
         if let Some(selection) = &selection
@@ -138,36 +139,53 @@ fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
         for side in [-1.0, 1.0] {
             let centre = at + front.rotation * Vec3::X * (side * (width_m / 2.0 + 0.1));
             let (up, ahead) = (front.rotation * Vec3::Z, front.rotation * Vec3::NEG_Y);
-            bent_arrow(gizmos, centre, [up, ahead], radius_m * 0.75, share, in_scene(palette.bend));
+            bent_arrow(gizmos, centre, [up, ahead], radius_m * 0.75, share, palette);
         }
         // About y, from the top.
         let share = torque.twist_nm / joint.max_twist_torque_nm.max(1.0e-6);
         let (up, aside) = (front.rotation * Vec3::Z, front.rotation * Vec3::X);
-        bent_arrow(gizmos, at, [up, aside], radius_m * 1.1, share, in_scene(palette.twist));
+        bent_arrow(gizmos, at, [up, aside], radius_m * 1.1, share, palette);
     }
 }
 
-/// An arrow along a circle, from the direction `from` towards `towards`, or reversed.
+/// Greatest number of lines side by side in a torque's arrow, and their distance, in metres.
+const MOST_LINES: f32 = 5.0;
+const LINES_APART_M: f32 = 0.045;
+
+/// Number of lines side by side in the arrow of a torque, as a fraction of the maximum.
+fn lines_of(share: f32) -> u32 {
+    (share.abs().min(1.0) * MOST_LINES).ceil() as u32
+}
+
+/// An arrow along a circle, from the direction `from` towards `towards`, or reversed. Its colour says the direction of
+/// the torque; its length and width, the size.
 fn bent_arrow(
     gizmos: &mut Gizmos<OnTop>,
     centre: Vec3,
     [from, towards]: [Vec3; 2],
     radius_m: f32,
     share: f32,
-    color: Color,
+    palette: &Palette,
 ) {
     const PARTS: u32 = 20;
     if share.abs() < MIN_TORQUE_SHARE {
         return;
     }
-    let point = |part: f32| {
+    let color = in_scene(if share > 0.0 { palette.torque_plus } else { palette.torque_minus });
+    let lines = lines_of(share);
+    let point = |part: f32, radius_m: f32| {
         let angle_rad = share.clamp(-1.0, 1.0) * FULL_TORQUE_RAD * part / PARTS as f32;
         let (sin, cos) = libm::sincosf(angle_rad);
         centre + (from * cos + towards * sin) * radius_m
     };
-    gizmos.linestrip((0..PARTS).map(|part| point(part as f32)), color);
-    let (before, end) = (point(PARTS as f32 - 1.0), point(PARTS as f32));
-    gizmos.arrow(before, end, color).with_tip_length(0.16);
+    for line in 0..lines {
+        let out_m = (line as f32 - (lines - 1) as f32 / 2.0) * LINES_APART_M;
+        gizmos.linestrip((0..PARTS).map(|part| point(part as f32, radius_m + out_m)), color);
+    }
+    let (before, end) = (point(PARTS as f32 - 1.0, radius_m), point(PARTS as f32, radius_m));
+    // The head is wider than the lines.
+    let tip_m = 0.16 + lines as f32 * LINES_APART_M;
+    gizmos.arrow(before, end, color).with_tip_length(tip_m);
 }
 
 /// Converts a panel colour for the scene.
@@ -176,14 +194,36 @@ fn in_scene(color: Color32) -> Color {
     Color::srgb_u8(red, green, blue)
 }
 
+/// Middle of the fitness line, in the coordinates of its lane, in metres.
+fn fitness_line_middle(lane: &Lane) -> Vec3 {
+    let y_m = lane.drawn_middle().y;
+    Vec3::new(0.0, y_m, lane.trial().stairs.surface_z_m(0.0, y_m) + ABOVE_M)
+}
+
+/// Right end of the fitness line in the scene, in metres, where its label stands.
+pub(crate) fn fitness_line_end(lane: &Lane) -> Vec3 {
+    let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
+    fitness_line_middle(lane) + half_width + lane.offset()
+}
+
 /// A line across the lane below the centre of the middle limb, and one up to it.
 fn fitness_line(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     let middle = lane.drawn_middle();
-    let stairs = &lane.trial().stairs;
-    let on_floor = Vec3::new(0.0, middle.y, stairs.surface_z_m(0.0, middle.y) + ABOVE_M);
-    let half_width = Vec3::X * (stairs.width_m / 2.0);
+    let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
     let color = in_scene(palette.accent);
+    let on_floor = fitness_line_middle(lane);
     let at = on_floor + lane.offset();
     gizmos.line(at - half_width, at + half_width, color);
     gizmos.line(on_floor.with_x(middle.x) + lane.offset(), middle + lane.offset(), color);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_arrow_of_a_larger_torque_is_wider() {
+        let widths = [0.02, 0.3, -0.5, 0.7, -1.0, 4.0].map(lines_of);
+        assert_eq!(widths, [1, 2, 3, 4, 5, 5]);
+    }
 }

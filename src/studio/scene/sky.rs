@@ -3,7 +3,7 @@
 //! The ground fades into the same colour, so the horizon is seamless.
 
 use bevy::camera::visibility::NoFrustumCulling;
-use bevy::light::{NotShadowCaster, NotShadowReceiver};
+use bevy::light::{EnvironmentMapLight, NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 
@@ -27,6 +27,7 @@ struct Dome;
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Startup, set_up)
         .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>))
+        .add_systems(Update, reflect.in_set(FrameSet::Draw))
         .add_systems(PostUpdate, follow.before(TransformSystems::Propagate));
 }
 
@@ -58,6 +59,36 @@ fn dress(
 ) {
     for mut mesh in &mut domes {
         mesh.0 = meshes.add(dome(theme.palette()));
+    }
+}
+
+/// Brightness at which a mirror shows the sky as it is drawn, in cd/m², for the exposure of Bevy's cameras.
+const MIRROR_CD_M2: f32 = 1000.0;
+
+/// Lets smooth surfaces, such as ice, reflect the sky. Its light on rough ones is the ambient light already.
+fn reflect(
+    theme: Res<Theme>,
+    cameras: Query<(Entity, Has<EnvironmentMapLight>), With<Camera3d>>,
+    mut images: ResMut<Assets<Image>>,
+    mut commands: Commands,
+) {
+    for (camera, has_sky) in &cameras {
+        if has_sky && !theme.is_changed() {
+            continue;
+        }
+        let palette = theme.palette();
+        let sky = [palette.zenith, palette.horizon, palette.ground];
+        let [top, middle, bottom] = sky;
+        let reflected =
+            EnvironmentMapLight::hemispherical_gradient(&mut images, top, middle, bottom);
+        let dark = EnvironmentMapLight::solid_color(&mut images, Color::BLACK);
+        commands.entity(camera).insert(EnvironmentMapLight {
+            diffuse_map: dark.diffuse_map,
+            intensity: MIRROR_CD_M2,
+            // The map's up is y, the world's is z.
+            rotation: Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
+            ..reflected
+        });
     }
 }
 

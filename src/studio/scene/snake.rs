@@ -207,7 +207,7 @@ mod tests {
         app.init_resource::<Moved>().add_systems(
             PostUpdate,
             |limbs: Query<(), (With<Limb>, Changed<Transform>)>, mut moved: ResMut<Moved>| {
-                moved.0 = limbs.iter().len();
+                moved.0 = limbs.iter().count();
             },
         );
         app.update();

@@ -95,9 +95,8 @@ impl SurfaceLook {
             (palette.woven, self.woven),
             (palette.mud, self.mud),
         ];
-        let dry = layers
-            .into_iter()
-            .fold(palette.stair, |below, (own, covers)| below.mix(&own, covers));
+        let dry =
+            layers.into_iter().fold(palette.stair, |below, (own, covers)| below.mix(&own, covers));
         // Water darkens what soaks it up; ice stays as bright.
         let soaked = 1.0 - 0.22 * self.wet * (1.0 - self.ice);
         let linear = dry.to_linear();
@@ -177,8 +176,7 @@ mod tests {
             });
             for (index, (one, a)) in tints.iter().enumerate() {
                 for (other, b) in &tints[..index] {
-                    let apart =
-                        Vec3::new(a.lightness - b.lightness, a.a - b.a, a.b - b.b).length();
+                    let apart = Vec3::new(a.lightness - b.lightness, a.a - b.a, a.b - b.b).length();
                     assert!(apart > 0.08, "{one} and {other} are {apart} apart, {theme:?}");
                 }
             }

@@ -1,6 +1,6 @@
 //! The grain of surfaces, drawn in code: speckle, cracks in ice, shine of glue, ripples of mud, the weave of a mat.
 //!
-//! A texture only darkens the colour of its material. All of its shapes are several pixels wide and it has mipmaps, so
+//! A texture only darkens the colour of its material, as a factor in linear light. All of its shapes are several pixels wide and it has mipmaps, so
 //! that nothing shimmers in the distance. It is the same for the same look on every machine.
 
 use bevy::asset::RenderAssetUsages;
@@ -52,8 +52,8 @@ impl Grain {
         let clouds = noise(x, y, 8, 1) * 0.6 + noise(x, y, 16, 2) * 0.4;
         let dark = rise(noise(x, y, 64, 3), 0.66, 0.80);
         let pale = rise(noise(x, y, 64, 4), 0.70, 0.82);
-        let stone = 0.84 + 0.10 * (clouds - 0.5) - 0.30 * dark + 0.14 * pale;
-        let mut value = mix(0.86, stone, share(self.speckle));
+        let stone = 0.86 + 0.08 * (clouds - 0.5) - 0.17 * dark + 0.10 * pale;
+        let mut value = mix(0.90, stone, share(self.speckle));
         let layers: [(u8, fn(usize, usize) -> f32); 5] = [
             (self.ice, ice),
             (self.glue, glue),
@@ -71,7 +71,8 @@ impl Grain {
 
     /// Draws the texture with all its mipmaps.
     pub fn draw(self) -> Image {
-        let mut level: Vec<f32> = (0..SIDE * SIDE).map(|at| self.at(at % SIDE, at / SIDE)).collect();
+        let mut level: Vec<f32> =
+            (0..SIDE * SIDE).map(|at| self.at(at % SIDE, at / SIDE)).collect();
         let (mut data, mut side, mut levels) = (Vec::new(), SIDE, 0);
         loop {
             levels += 1;
@@ -86,7 +87,10 @@ impl Grain {
             level = (0..half * half)
                 .map(|at| {
                     let first = at / half * 2 * side + at % half * 2;
-                    (level[first] + level[first + 1] + level[first + side] + level[first + side + 1])
+                    (level[first]
+                        + level[first + 1]
+                        + level[first + side]
+                        + level[first + side + 1])
                         / 4.0
                 })
                 .collect();
@@ -95,7 +99,7 @@ impl Grain {
         let mut image = Image::new_uninit(
             Extent3d { width: SIDE as u32, height: SIDE as u32, depth_or_array_layers: 1 },
             TextureDimension::D2,
-            TextureFormat::Rgba8UnormSrgb,
+            TextureFormat::Rgba8Unorm,
             RenderAssetUsages::RENDER_WORLD,
         );
         image.texture_descriptor.mip_level_count = levels;
@@ -113,25 +117,26 @@ impl Grain {
     }
 }
 
-/// Clouded ice with pale cracks.
+/// Clouded ice with pale, straight cracks that end somewhere.
 fn ice(x: usize, y: usize) -> f32 {
     let clouds = noise(x, y, 4, 11) * 0.7 + noise(x, y, 8, 12) * 0.3;
-    let crack = |cells, seed| 1.0 - rise((noise(x, y, cells, seed) - 0.5).abs(), 0.0, 0.035);
-    let cracks = crack(4, 13).max(crack(6, 14) * 0.7);
-    (0.76 + 0.16 * clouds).max(cracks)
+    let is_cracked = rise(noise(x, y, 5, 13), 0.45, 0.65);
+    let cracks = 1.0 - rise(between_cells(x, y, 4, 14), 0.0, 0.05);
+    let sheen = 0.80 + 0.12 * clouds;
+    mix(sheen, 1.0, cracks * is_cracked)
 }
 
 /// Thick drops with a bright spot each.
 fn glue(x: usize, y: usize) -> f32 {
     let height = noise(x, y, 14, 21) * 0.7 + noise(x, y, 6, 22) * 0.3;
     let shine = rise(height, 0.60, 0.72);
-    0.66 + 0.16 * rise(height, 0.25, 0.55) + 0.18 * shine
+    0.58 + 0.18 * rise(height, 0.25, 0.55) + 0.24 * shine
 }
 
 /// Bright flecks in a dark mat.
 fn rubber(x: usize, y: usize) -> f32 {
     let flecks = rise(noise(x, y, 64, 31), 0.70, 0.78).max(rise(noise(x, y, 40, 32), 0.74, 0.80));
-    0.50 + 0.08 * noise(x, y, 16, 33) + 0.42 * flecks
+    0.32 + 0.06 * noise(x, y, 16, 33) + 0.62 * flecks
 }
 
 /// Threads that cross over and under each other.
@@ -145,14 +150,14 @@ fn woven(x: usize, y: usize) -> f32 {
     let round = |share: f32| libm::sinf(share * std::f32::consts::PI);
     let (along, beside) =
         if (column + row) % 2 == 0 { (in_row, in_column) } else { (in_column, in_row) };
-    0.38 + 0.62 * rise(round(beside), 0.1, 0.75) * (0.55 + 0.45 * round(along))
+    0.30 + 0.70 * rise(round(beside), 0.1, 0.75) * (0.55 + 0.45 * round(along))
 }
 
 /// Heavy ripples and puddles.
 fn mud(x: usize, y: usize) -> f32 {
     let ripples = (noise(x, y, 10, 41) - 0.5).abs() * 2.0;
     let lumps = noise(x, y, 22, 42);
-    0.52 + 0.30 * ripples + 0.22 * (lumps - 0.3)
+    0.46 + 0.40 * ripples + 0.26 * (lumps - 0.3)
 }
 
 /// Smooth step from 0 at `from` to 1 at `to`.
@@ -176,11 +181,29 @@ fn noise(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
     mix(low, high, up)
 }
 
+/// Distance from the border between irregular cells, `cells` a side, as a share of a cell.
+fn between_cells(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
+    let at = Vec2::new(x as f32, y as f32) * cells as f32 / SIDE as f32;
+    let own = at.floor();
+    let (mut nearest, mut second) = (f32::MAX, f32::MAX);
+    for (right, up) in (-2..=2).flat_map(|right| (-2..=2).map(move |up| (right, up))) {
+        let cell = own + Vec2::new(right as f32, up as f32);
+        let wrapped = cell.rem_euclid(Vec2::splat(cells as f32)).as_uvec2();
+        let point = |salt: u32| random(wrapped.x, wrapped.y, seed + salt);
+        let distance = at.distance(cell + Vec2::new(point(0), point(1)));
+        if distance < nearest {
+            (nearest, second) = (distance, nearest);
+        } else {
+            second = second.min(distance);
+        }
+    }
+    second - nearest
+}
+
 /// A number from 0 to 1 that looks random and depends on nothing but its arguments.
 fn random(x: u32, y: u32, seed: u32) -> f32 {
-    let mut mixed = x.wrapping_mul(0x9E37_79B1)
-        ^ y.wrapping_mul(0x85EB_CA77)
-        ^ seed.wrapping_mul(0xC2B2_AE3D);
+    let mut mixed =
+        x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
     mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);
     mixed = (mixed ^ (mixed >> 12)).wrapping_mul(0x297A_2D39);
     (mixed ^ (mixed >> 15)) as f32 / u32::MAX as f32

@@ -10,23 +10,30 @@ use super::text_prompt;
 pub(crate) struct StageArea {
     /// Rectangle of the stage, in egui points.
     rect: egui::Rect,
-    /// Width of the card at the lower left corner, as a fraction of the stage's width.
-    card_share: f32,
+    /// Card over the stage, as fractions of its width and height from the upper left corner.
+    card: Option<Rect>,
     /// The egui context, which knows the layers over the stage.
     context: egui::Context,
 }
 
 impl Default for StageArea {
     fn default() -> Self {
-        Self { rect: egui::Rect::ZERO, card_share: 0.0, context: egui::Context::default() }
+        Self { rect: egui::Rect::ZERO, card: None, context: egui::Context::default() }
     }
 }
 
 impl StageArea {
-    /// Sets the stage's rectangle and the width of the card at its lower left corner, in points.
-    pub fn set(&mut self, context: &egui::Context, rect: egui::Rect, card_width: f32) {
+    /// Sets the stage's rectangle, and the rectangle of a card over it that must cover no snake, in points.
+    pub fn set(&mut self, context: &egui::Context, rect: egui::Rect, card: Option<egui::Rect>) {
         self.rect = rect;
-        self.card_share = card_width / rect.width().max(1.0);
+        self.card = card.map(|card| {
+            let size = rect.size().max(egui::Vec2::splat(1.0));
+            let share = |at: egui::Pos2| {
+                let from_corner = (at - rect.min) / size;
+                Vec2::new(from_corner.x, from_corner.y)
+            };
+            Rect::from_corners(share(card.min), share(card.max))
+        });
         // Cloning a context only clones a handle.
         self.context = context.clone();
     }
@@ -63,9 +70,9 @@ impl StageArea {
         self.context.text_edit_focused() || text_prompt::is_open(&self.context)
     }
 
-    /// Width of the card at the lower left corner, as a fraction of the stage's width.
-    pub fn card_share(&self) -> f32 {
-        self.card_share
+    /// Card over the stage, as fractions of its width and height from the upper left corner.
+    pub fn card(&self) -> Option<Rect> {
+        self.card
     }
 
     /// Ratio of width to height.
@@ -84,7 +91,7 @@ mod tests {
     fn letters_belong_to_an_open_prompt_even_if_no_widget_has_the_focus() {
         let context = egui::Context::default();
         let mut area = StageArea::default();
-        area.set(&context, egui::Rect::EVERYTHING, 0.0);
+        area.set(&context, egui::Rect::EVERYTHING, None);
         let mut prompt = TextPrompt::new("my-ice".to_owned());
         let mut pass = |is_open: bool| {
             let _ = context.run_ui(egui::RawInput::default(), |ui| {
@@ -100,5 +107,14 @@ mod tests {
         pass(false);
         pass(false);
         assert!(!area.takes_letters(), "the dialog is closed");
+    }
+
+    #[test]
+    fn the_card_is_known_as_a_share_of_the_stage() {
+        let mut area = StageArea::default();
+        let stage = egui::Rect::from_min_size(egui::pos2(300.0, 40.0), egui::vec2(800.0, 400.0));
+        let card = egui::Rect::from_min_size(egui::pos2(300.0, 240.0), egui::vec2(200.0, 200.0));
+        area.set(&egui::Context::default(), stage, Some(card));
+        assert_eq!(area.card(), Some(Rect::new(0.0, 0.5, 0.25, 1.0)));
     }
 }

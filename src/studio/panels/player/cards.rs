@@ -7,6 +7,8 @@ use super::camera_bar::view_bar;
 use super::generation_card::{generation_card, waiting_card};
 use super::leaderboard::leaderboard;
 use super::limb_card::limb_card;
+use super::torque_legend::torque_legend;
+use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, WindowCommand};
 use crate::studio::panels::on_stage::OnStage;
@@ -41,8 +43,8 @@ pub(crate) fn lesson_card(
 pub(crate) struct AroundStage {
     /// Position for another card below the camera bar.
     pub below_bar: egui::Pos2,
-    /// Width of the leaderboard with its margin, in points; 0 without one.
-    pub board_width: f32,
+    /// The leaderboard, in points. The camera keeps the snakes out of it.
+    pub board: Option<egui::Rect>,
 }
 
 /// Draws the cards over the edges of the stage. `progress` has the evaluated and all snakes of the current generation.
@@ -76,9 +78,9 @@ pub(crate) fn around_stage(
         });
     });
     let is_narrow = stage.width() < theme::NARROW_STAGE;
-    let mut board_width = 0.0;
+    let mut board = None;
     if *on_stage.mode != StageMode::Solo {
-        // With several lanes, the default camera shows no snake in the lower left corner.
+        // With several lanes, the default camera shows few snakes in the lower left corner, and leaves it free.
         let place = card("board", egui::Align2::LEFT_BOTTOM, stage.left_bottom());
         let shown = place.show(context, |ui| {
             frame.show(ui, |ui| {
@@ -91,7 +93,7 @@ pub(crate) fn around_stage(
                 leaderboard(ui, lanes, mode, focus, time_s, is_narrow, commands);
             });
         });
-        board_width = shown.response.rect.width() + theme::GAP * 1.5;
+        board = Some(shown.response.rect.expand(theme::GAP));
     } else if on_stage.following.awaits_first() {
         let place = card("waiting", egui::Align2::LEFT_BOTTOM, stage.left_bottom());
         place.show(context, |ui| {
@@ -105,6 +107,13 @@ pub(crate) fn around_stage(
             frame.show(ui, |ui| limb_card(ui, focused, limb));
         });
     }
-    let below_bar = bar.response.rect.left_bottom() + egui::vec2(0.0, theme::GAP);
-    AroundStage { below_bar, board_width }
+    let below = |rect: egui::Rect| rect.left_bottom() + egui::vec2(0.0, theme::GAP);
+    let mut below_bar = below(bar.response.rect);
+    if on_stage.overlays.shows(Overlay::Torques) {
+        // The legend ignores the pointer, because the snake may be behind it.
+        let place = card("torques", egui::Align2::LEFT_TOP, below_bar).interactable(false);
+        let shown = place.show(context, |ui| frame.show(ui, torque_legend));
+        below_bar = below(shown.response.rect);
+    }
+    AroundStage { below_bar, board }
 }

@@ -2,10 +2,12 @@
 
 use bevy_egui::egui;
 
+use crate::score::KeyframeHistory;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
+use crate::world::Stairs;
 
 /// State of a lane in the ranking.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +51,58 @@ fn order(ranking: &mut [RankedLane]) {
     });
 }
 
+impl RankedLane {
+    /// Whether its result counts.
+    fn counts(&self) -> bool {
+        !self.is_disqualified && !self.is_disturbed
+    }
+}
+
+/// Time at which the middle block first stood past each riser, in simulated seconds, as far as the snake has come by
+/// `time_s`. The last one is the landing.
+fn splits_s(stairs: &Stairs, history: &KeyframeHistory, step_s: f64, time_s: f64) -> Vec<f64> {
+    let sample_s = step_s * f64::from(history.sample_steps());
+    let shown = (time_s / sample_s) as usize + 1;
+    let way = &history.middles_m()[..shown.min(history.middles_m().len())];
+    let reached = |step: u32| {
+        let riser_m = stairs.riser_y_m(step);
+        way.iter().position(|at| at.y >= riser_m).map(|sample| sample as f64 * sample_s)
+    };
+    (0..=stairs.steps).map_while(reached).collect()
+}
+
+/// The tooltip of a snake's result: the time of each step that it has climbed.
+fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
+    let stairs = &lane.trial().stairs;
+    let history = lane.history().filter(|_| !lane.is_disturbed());
+    let splits_s =
+        history.map(|history| splits_s(stairs, history, lane.step_s(), time_s)).unwrap_or_default();
+    if splits_s.is_empty() {
+        ui.label("No step climbed so far.");
+        return;
+    }
+    ui.label("Time at which the middle block passed each riser:");
+    egui::Grid::new("splits").num_columns(2).spacing([theme::GAP, 0.0]).show(ui, |ui| {
+        for (step, split_s) in splits_s.iter().enumerate() {
+            let is_landing = step as u32 == stairs.steps;
+            ui.label(if is_landing { "Landing".to_owned() } else { format!("Step {}", step + 1) });
+            ui.label(egui::RichText::new(format!("{split_s:6.2} s")).monospace());
+            ui.end_row();
+        }
+    });
+}
+
+/// The dot in the colour of a lane.
+fn dot(ui: &mut egui::Ui, color: egui::Color32) {
+    let (rect, _) =
+        ui.allocate_exact_size(egui::Vec2::splat(theme::GAP * 1.25), egui::Sense::hover());
+    ui.painter().circle_filled(rect.center(), theme::GAP * 0.6, color);
+}
+
+fn strong_if(is_strong: bool, text: egui::RichText) -> egui::RichText {
+    if is_strong { text.strong() } else { text }
+}
+
 /// Draws the leaderboard and collects the user's commands. `focus` is the lane whose numbers are shown. Over a narrow
 /// stage (`is_narrow`) the texts are shorter.
 pub(crate) fn leaderboard(
@@ -71,15 +125,20 @@ pub(crate) fn leaderboard(
         StageMode::WhatIf { .. } => title(ui, "What if"),
     }
     egui::Grid::new("board")
-        .num_columns(3)
+        .num_columns(4)
         .min_col_width(0.0)
         .spacing([theme::GAP, theme::GAP / 4.0])
         .show(ui, |ui| {
-            for (place, ranked) in ranking(lanes.iter().copied(), time_s).iter().enumerate() {
-                let rank = format!("{}", place + 1);
-                ui.label(egui::RichText::new(rank).color(palette.text_weak).monospace());
+            let racers = lanes.iter().copied().filter(|lane| !lane.is_ghost());
+            for (place, ranked) in ranking(racers, time_s).iter().enumerate() {
+                let lane = lanes.iter().find(|lane| lane.number() == ranked.lane);
+                let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
+                let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
+                ui.label(strong_if(is_winner, rank.color(palette.text_weak)));
+                dot(ui, palette.lane_color(ranked.lane));
                 let hint = "Show the numbers and torques of this snake below";
-                let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
+                let name = strong_if(is_winner, egui::RichText::new(&ranked.name));
+                let name = ui.selectable_label(ranked.lane == focus, name);
                 if name.on_hover_text(hint).clicked() {
                     commands.push(Command::Stage(StageCommand::Focus(ranked.lane)));
                 }
@@ -92,16 +151,16 @@ pub(crate) fn leaderboard(
                     (false, Some(landed_s)) => format!("landed {landed_s:.2} s"),
                     (false, None) => format!("{:.2} m", ranked.y_m),
                 };
-                let color = match (ranked.is_disqualified || ranked.is_disturbed, ranked.landed_s) {
-                    (true, _) => palette.problem,
-                    (false, Some(_)) => palette.accent,
-                    (false, None) => palette.text,
+                let color = match (ranked.counts(), ranked.landed_s) {
+                    (false, _) => palette.problem,
+                    (true, Some(_)) => palette.accent,
+                    (true, None) => palette.text,
                 };
                 let width = if is_narrow { 8 } else { 14 };
                 let text = egui::RichText::new(format!("{text:>width$}")).monospace().color(color);
-                let value = ui.label(text);
-                if ranked.landed_s.is_some() && !ranked.is_disqualified && !ranked.is_disturbed {
-                    value.on_hover_text("Time at which it arrived on the landing");
+                let value = ui.label(strong_if(is_winner, text));
+                if let Some(lane) = lane {
+                    value.on_hover_ui(|ui| split_times(ui, lane, time_s));
                 }
                 ui.end_row();
             }
@@ -196,6 +255,42 @@ mod tests {
             harness.run();
             assert_eq!(*harness.state(), [command], "{label}");
         }
+    }
+
+    #[test]
+    fn split_times_grow_with_the_steps_and_end_at_the_present() {
+        let loaded = shipped_champion().expect("well formed");
+        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "one"), 0);
+        lane.finish_lookahead();
+        let history = lane.history().expect("it has finished");
+        let stairs = &lane.trial().stairs;
+        let all_s = splits_s(stairs, history, lane.step_s(), 15.0);
+        assert_eq!(all_s.len() as u32, stairs.steps + 1, "the shipped champion lands");
+        assert!(all_s.windows(2).all(|pair| pair[0] <= pair[1]), "{all_s:?}");
+        let landed_s = lane.landed_s(15.0).expect("it lands");
+        assert!((all_s[10] - landed_s).abs() < 0.2, "{} and {landed_s}", all_s[10]);
+        let some_s = splits_s(stairs, history, lane.step_s(), all_s[4] + 0.01);
+        assert_eq!(some_s, all_s[..some_s.len()]);
+        assert!((5..10).contains(&some_s.len()), "{some_s:?}");
+    }
+
+    #[test]
+    fn ghosts_are_not_ranked() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = |number, name: &str| {
+            Lane::new(StagedChampion::from_file(&loaded, number, name), number)
+        };
+        let lanes = [lane(0, "racer"), lane(1, "ghost").as_ghost()];
+        let lanes: Vec<&Lane> = lanes.iter().collect();
+        let mut harness = Harness::new_ui_state(
+            |ui, commands: &mut Vec<Command>| {
+                leaderboard(ui, &lanes, &StageMode::Race, 0, 0.0, false, commands);
+            },
+            Vec::new(),
+        );
+        harness.run();
+        harness.get_by_label("racer");
+        assert!(harness.query_by_label("ghost").is_none());
     }
 
     #[test]

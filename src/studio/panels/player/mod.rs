@@ -8,4 +8,5 @@ pub mod leaderboard;
 pub mod limb_card;
 mod strip_marks;
 pub mod timeline;
+pub mod torque_legend;
 pub mod torque_strip;

@@ -11,6 +11,7 @@ use rapier3d::parry::shape::{Cuboid, HalfSpace};
 
 use super::{CameraRig, StageCamera};
 use crate::studio::schedule::FrameSet;
+use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::{HeldLimb, Selection};
@@ -180,9 +181,36 @@ fn release(
     }
 }
 
-/// Clears the selection when other lanes take the stage.
-fn clear_selection(mut selection: ResMut<Selection>, added: Query<(), Added<Lane>>) {
-    if !added.is_empty() {
-        selection.reset();
+/// Clears the selection when other lanes take the stage. In a race, it selects the leader.
+fn clear_selection(
+    mut selection: ResMut<Selection>,
+    mode: Res<StageMode>,
+    added: Query<&Lane, Added<Lane>>,
+) {
+    if added.is_empty() {
+        return;
+    }
+    selection.reset();
+    if *mode == StageMode::Race {
+        let racers = added.iter().filter(|lane| !lane.is_ghost());
+        selection.lane = leader(racers.map(|lane| (lane.number(), lane.staged().fitness())));
+    }
+}
+
+/// The lane with the greatest recorded fitness; the last of equal ones, which is the latest generation.
+fn leader(lanes: impl Iterator<Item = (usize, f32)>) -> usize {
+    lanes.max_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))).map_or(0, |(lane, _)| lane)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_race_selects_its_best_snake_and_not_the_first_generation() {
+        let of = |fitness: &[f32]| leader(fitness.iter().copied().enumerate());
+        assert_eq!(of(&[1.0, 2.5, 26.0, 7.0]), 2);
+        assert_eq!(of(&[1.0, 26.0, 26.0]), 2, "the latest of equal ones");
+        assert_eq!(of(&[]), 0);
     }
 }

@@ -77,6 +77,8 @@ pub struct Palette {
     pub woven: Color,
     /// A soft surface that does not spring back.
     pub mud: Color,
+    /// Shade of a dent in a soft surface.
+    pub dent: Color,
     /// Railing on the landing, and the door at its end.
     pub wood: Color,
     /// The wall at the end of the landing, and the posts of the finish.
@@ -144,12 +146,13 @@ pub const LIGHT: Palette = Palette {
     ground: Color::srgb(0.73, 0.78, 0.78),
     grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
     stair: Color::srgb(0.81, 0.80, 0.78),
-    ice: Color::srgb(0.76, 0.91, 0.99),
+    ice: Color::srgb(0.80, 0.93, 1.0),
     glue: Color::srgb(0.96, 0.66, 0.16),
     resin: Color::srgb(0.66, 0.33, 0.08),
     rubber: Color::srgb(0.52, 0.54, 0.53),
     woven: Color::srgb(0.12, 0.72, 0.66),
     mud: Color::srgb(0.42, 0.29, 0.18),
+    dent: Color::srgba(0.05, 0.04, 0.05, 0.62),
     wood: Color::srgb(0.62, 0.45, 0.29),
     wall: Color::srgb(0.90, 0.88, 0.84),
     step_edge: Color::srgb(0.60, 0.57, 0.52),
@@ -210,6 +213,7 @@ pub const DARK: Palette = Palette {
     rubber: Color::srgb(0.30, 0.32, 0.32),
     woven: Color::srgb(0.06, 0.50, 0.47),
     mud: Color::srgb(0.27, 0.185, 0.12),
+    dent: Color::srgba(0.0, 0.0, 0.0, 0.70),
     wood: Color::srgb(0.44, 0.33, 0.23),
     wall: Color::srgb(0.50, 0.52, 0.56),
     step_edge: Color::srgb(0.30, 0.33, 0.38),

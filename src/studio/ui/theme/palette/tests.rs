@@ -36,8 +36,7 @@ fn text_is_readable_in_both_themes() {
 
 #[test]
 fn charts_in_the_light_theme_match_their_exported_pictures() {
-    for role in [Role::First, Role::Second, Role::Third, Role::Others, Role::Bend, Role::Twist]
-    {
+    for role in [Role::First, Role::Second, Role::Third, Role::Others, Role::Bend, Role::Twist] {
         let [red, green, blue] = role_color(role);
         assert_eq!(LIGHT.role(role), Color32::from_rgb(red, green, blue), "{role:?}");
         for of in [&LIGHT, &DARK] {

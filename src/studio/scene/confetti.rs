@@ -1,0 +1,190 @@
+//! Confetti from the finish when a snake lands during playback.
+//!
+//! Where a piece is depends only on its lane and the time since the landing, so a repeated landing looks the same.
+//! After a jump in time nothing is thrown, and pictures without a window have none.
+
+use bevy::prelude::*;
+
+use super::landing::FINISH_M;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
+use crate::studio::ui::theme::{Palette, Theme};
+use crate::world::Stairs;
+
+/// Thick lines: the pieces.
+#[derive(Default, Reflect, GizmoConfigGroup)]
+struct Pieces;
+
+/// Pieces per landing.
+const PIECES: u32 = 44;
+/// How long they fly, in simulated seconds.
+const FLIGHT_S: f64 = 2.0;
+/// Width of a piece, in pixels, and its length, in metres.
+const PIECE_PIXELS: f32 = 6.0;
+const PIECE_M: f32 = 0.17;
+/// Longest real time that passes between two frames of playback, in seconds. More is a jump.
+const LONGEST_FRAME_S: f64 = 0.6;
+
+/// Lanes whose landing was played, and the time of the last frame.
+#[derive(Debug, Default)]
+struct Celebration {
+    lanes: Vec<usize>,
+    time_s: f64,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_gizmo_group::<Pieces>()
+        .add_systems(Startup, set_up)
+        .add_systems(Update, throw.in_set(FrameSet::Draw));
+}
+
+fn set_up(mut config: ResMut<GizmoConfigStore>) {
+    config.config_mut::<Pieces>().0.line.width = PIECE_PIXELS;
+}
+
+impl Celebration {
+    /// Goes on to a time. `landings` are the lanes that have landed by then, with the time of each landing.
+    fn pass(&mut self, playback: &Playback, landings: impl Iterator<Item = (usize, f64)>) {
+        let (before_s, now_s) = (self.time_s, playback.time_s());
+        self.time_s = now_s;
+        let longest_s = LONGEST_FRAME_S * f64::from(playback.speed());
+        if !(0.0..=longest_s).contains(&(now_s - before_s)) {
+            self.lanes.clear();
+            return;
+        }
+        if playback.is_playing() {
+            let new = landings.filter(|(_, landed_s)| *landed_s > before_s && *landed_s <= now_s);
+            self.lanes.extend(new.map(|(lane, _)| lane));
+        }
+    }
+}
+
+fn throw(
+    lanes: Query<Ref<Lane>>,
+    playback: Res<Playback>,
+    theme: Res<Theme>,
+    mut celebration: Local<Celebration>,
+    mut gizmos: Gizmos<Pieces>,
+) {
+    if lanes.iter().any(|lane| lane.is_added()) {
+        celebration.lanes.clear();
+    }
+    let now_s = playback.time_s();
+    let racing = || lanes.iter().filter(|lane| !lane.is_ghost());
+    let landings =
+        racing().filter_map(|lane| lane.landed_s(now_s).map(|at_s| (lane.number(), at_s)));
+    celebration.pass(&playback, landings);
+    if celebration.lanes.is_empty() {
+        return;
+    }
+    for lane in racing().filter(|lane| celebration.lanes.contains(&lane.number())) {
+        let Some(landed_s) = lane.landed_s(now_s) else { continue };
+        let since_s = now_s - landed_s;
+        if since_s < FLIGHT_S {
+            let stairs = &lane.trial().stairs;
+            draw(
+                stairs,
+                lane.number(),
+                lane.offset(),
+                since_s as f32,
+                theme.palette(),
+                &mut gizmos,
+            );
+        }
+    }
+}
+
+/// Draws the pieces of a lane, some seconds after its landing.
+fn draw(
+    stairs: &Stairs,
+    lane: usize,
+    offset: Vec3,
+    since_s: f32,
+    palette: &Palette,
+    gizmos: &mut Gizmos<Pieces>,
+) {
+    let opacity = ((FLIGHT_S as f32 - since_s) / 0.5).clamp(0.0, 1.0);
+    for piece in 0..PIECES {
+        let [red, green, blue, _] = palette.lane_color(piece as usize).to_array();
+        let color = Color::srgb_u8(red, green, blue).with_alpha(opacity);
+        let (at, along) = piece_at(stairs, lane, piece, since_s);
+        let half = along * (PIECE_M / 2.0);
+        gizmos.line(offset + at - half, offset + at + half, color);
+    }
+}
+
+/// Position of a piece, in the coordinates of its lane, in metres, and its direction.
+fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Vec3) {
+    let share = |salt: u32| chance(lane as u32, piece * 8 + salt);
+    let top_m = stairs.rise_m * stairs.steps as f32;
+    let across_m = (share(0) - 0.5) * stairs.width_m;
+    let start = Vec3::new(across_m, stairs.riser_y_m(stairs.steps), top_m + FINISH_M);
+    let thrown_m_s =
+        Vec3::new((share(1) - 0.5) * 2.6, (share(2) - 0.5) * 4.0, 1.4 + share(3) * 2.4);
+    // Paper soon falls at a constant speed.
+    const DRAG_PER_S: f32 = 1.8;
+    let falls_m_s = 1.6 + share(4) * 0.9;
+    let flown_s = (1.0 - libm::expf(-DRAG_PER_S * since_s)) / DRAG_PER_S;
+    let at = start + (thrown_m_s + Vec3::Z * falls_m_s) * flown_s - Vec3::Z * falls_m_s * since_s;
+    let (sin, cos) = libm::sincosf(share(5) * 6.3 + since_s * (5.0 + share(6) * 6.0));
+    let along = Vec3::new(cos * 0.6, sin, cos * 0.8).normalize_or(Vec3::X);
+    (at.with_z(at.z.max(top_m + 0.03)), along)
+}
+
+/// A number from 0 to 1 that depends on nothing but its arguments.
+fn chance(lane: u32, salt: u32) -> f32 {
+    let mut mixed = lane.wrapping_mul(0x9E37_79B1) ^ salt.wrapping_mul(0x85EB_CA77) ^ 0x5EED;
+    mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);
+    mixed = (mixed ^ (mixed >> 12)).wrapping_mul(0x297A_2D39);
+    (mixed ^ (mixed >> 15)) as f32 / u32::MAX as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LANDED_S: f64 = 3.0;
+
+    /// The celebrating lanes after frames at these times, in seconds.
+    fn celebrated(times_s: &[f64], is_playing: bool) -> Vec<usize> {
+        let mut celebration = Celebration::default();
+        for time_s in times_s {
+            let mut playback = Playback::default();
+            playback.seek(*time_s, 100.0);
+            if !is_playing {
+                playback.hold_at(*time_s);
+            }
+            let landings = (*time_s >= LANDED_S).then_some((2, LANDED_S));
+            celebration.pass(&playback, landings.into_iter());
+        }
+        celebration.lanes
+    }
+
+    #[test]
+    fn confetti_flies_after_a_landing_that_was_played_and_not_after_a_jump() {
+        assert_eq!(celebrated(&[2.4, 2.9, 3.1, 3.5], true), [2]);
+        assert_eq!(celebrated(&[2.4, 2.9], true), Vec::<usize>::new(), "not landed yet");
+        assert_eq!(
+            celebrated(&[0.1, 3.1, 3.2], true),
+            Vec::<usize>::new(),
+            "a jump over the landing"
+        );
+        assert_eq!(celebrated(&[2.9, 3.1, 1.0, 4.0], true), Vec::<usize>::new(), "a jump back");
+        assert_eq!(celebrated(&[2.9, 3.1], false), Vec::<usize>::new(), "held");
+    }
+
+    #[test]
+    fn a_piece_is_where_lane_and_time_put_it_and_never_below_the_landing() {
+        let stairs = Stairs::default();
+        let seen = |lane, since_s| (0..PIECES).map(move |piece| (lane, piece, since_s));
+        for (lane, piece, since_s) in seen(0, 0.0).chain(seen(3, 0.7)).chain(seen(9, 2.0)) {
+            let (at, along) = piece_at(&stairs, lane, piece, since_s);
+            assert_eq!((at, along), piece_at(&stairs, lane, piece, since_s));
+            assert!((5.0..12.0).contains(&at.z) && at.is_finite(), "{at}");
+            assert!((at.y - 23.0).abs() < 3.0 && at.x.abs() < 5.0, "{at}");
+            assert!((along.length() - 1.0).abs() < 1.0e-4);
+        }
+        assert_ne!(piece_at(&stairs, 0, 1, 0.5), piece_at(&stairs, 1, 1, 0.5));
+    }
+}
