@@ -17,6 +17,8 @@ pub(crate) struct TimelinePanel {
     torque_strip: TorqueStrip,
 }
 
+/// Width of the dots that stand for readings without room, in points.
+const MORE_WIDTH: f32 = 22.0;
 /// Approximate width of a character, in points.
 const CHARACTER_WIDTH: f32 = 7.4;
 
@@ -171,17 +173,22 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
             "Energy that the joints have used so far",
         ),
     ];
-    let room = ui.available_width();
+    let room = ui.available_width() - MORE_WIDTH;
     let mut used = 0.0;
-    let with_room = all.into_iter().filter_map(|(name, value, hint)| Some((name, value?, hint)));
-    let shown: Vec<(&str, String, &str)> = with_room
-        .take_while(|(name, value, _)| {
-            used +=
-                (name.len() + value.chars().count()) as f32 * CHARACTER_WIDTH + theme::GAP * 2.5;
-            used < room
-        })
-        .collect();
+    let known = all.into_iter().filter_map(|(name, value, hint)| Some((name, value?, hint)));
+    let mut shown: Vec<(&str, String, &str)> = known.collect();
+    let fitting = shown.iter().take_while(|(name, value, _)| {
+        used += (name.len() + value.chars().count()) as f32 * CHARACTER_WIDTH + theme::GAP * 2.5;
+        used < room
+    });
+    let fitting = fitting.count();
+    let left_out = shown.split_off(fitting);
     // The layout runs from right to left.
+    if !left_out.is_empty() {
+        let lines = left_out.iter().map(|(name, value, _)| format!("{name} {value}"));
+        let more = egui::RichText::new("…").color(palette.text_weak);
+        ui.label(more).on_hover_text(lines.collect::<Vec<_>>().join("\n"));
+    }
     for (name, value, hint) in shown.into_iter().rev() {
         ui.label(egui::RichText::new(value).monospace()).on_hover_text(hint);
         ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(hint);
@@ -234,5 +241,17 @@ mod tests {
         };
         assert!(is_shown(900.0, "fitness") && is_shown(900.0, "energy"));
         assert!(is_shown(540.0, "fitness") && !is_shown(540.0, "energy"));
+    }
+
+    #[test]
+    fn readings_without_room_are_in_the_hover_text_of_dots() {
+        sent(540.0, |harness| {
+            let dots = harness.get_by_label("…").rect();
+            assert!(dots.right() <= 540.0);
+            harness.hover_at(dots.center());
+            harness.run();
+            assert!(harness.query_by_label_contains("energy 0.00 kJ").is_some());
+        });
+        sent(900.0, |harness| assert!(harness.query_by_label("…").is_none()));
     }
 }
