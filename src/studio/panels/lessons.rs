@@ -6,7 +6,7 @@ use egui_plot::{Line, PlotPoints};
 use crate::score::Evaluation;
 use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{Found, LESSONS, LessonScene, LessonView, Progress};
-use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range};
+use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range, x_title, y_title};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
@@ -111,7 +111,7 @@ fn prediction(
                     if !view.is_busy {
                         let text = "The result appears when the race has ended.";
                         explain(ui, text);
-                        if ui.button("Show the result now").clicked() {
+                        if guessed.is_some() && ui.button("Show the result now").clicked() {
                             send(LessonCommand::ShowResult);
                         }
                     }
@@ -202,7 +202,7 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
         padded_range(lines.iter().flatten().map(move |point| point[of]), least)
     };
     if let (Some(x), Some(y)) = (axis(0, 1.0), axis(1, 1.0)) {
-        explain(ui, "Best fitness of each generation (m)");
+        y_title(ui, "Best fitness of each generation (m)");
         fixed_plot("lesson", theme::PLOT_HEIGHT).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&x, &y));
             for ((found, points), color) in runs.iter().zip(&lines).zip(colors) {
@@ -210,6 +210,7 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
                 plot.line(line.color(color).width(2.0));
             }
         });
+        x_title(ui, "Generation");
     }
     if is_busy {
         ui.horizontal(|ui| {

@@ -96,7 +96,10 @@ impl Lessons {
         let progress = current.progress.get(current.scene)?;
         let asks = current.scene().is_some_and(|scene| scene.question().is_some());
         let is_answered = !asks || progress.is_revealed;
-        let has_tried = current.progress.iter().any(|progress| progress.is_revealed);
+        // The snake alone, which asks nothing, is no experiment.
+        let scenes = LESSONS[current.index].scenes.iter().zip(&current.progress);
+        let mut tried = scenes.filter(|(scene, of)| scene.question().is_some() && of.is_revealed);
+        let has_tried = tried.next().is_some();
         Some(LessonView {
             index: current.index,
             scene: current.scene,
@@ -128,7 +131,9 @@ impl Lessons {
             LessonCommand::Guess(answer) => self.try_it(Some(*answer)),
             LessonCommand::Watch => self.try_it(None),
             LessonCommand::ShowResult => {
-                self.reveal();
+                if self.view().is_some_and(|view| view.progress.guess.is_some()) {
+                    self.reveal();
+                }
                 Ok(None)
             }
             LessonCommand::Leave => self.leave(run, history),

@@ -66,7 +66,9 @@ fn of_history(history: &KeyframeHistory, stairs: &Stairs, step_s: f64) -> Vec<Cl
     if history.landed_at_step().is_some() {
         // The landing has a mark of its own.
         let first = events.iter().position(|of| of.kind == ClimbEventKind::Climbed(stairs.steps));
-        first.into_iter().for_each(|index| drop(events.remove(index)));
+        if let Some(index) = first {
+            events.remove(index);
+        }
     }
     events.extend(at_step(history.touched_stairs_at_step(), ClimbEventKind::Touched));
     events.extend(at_step(history.landed_at_step(), ClimbEventKind::Landed));

@@ -26,9 +26,11 @@ pub(super) fn draw_events(
 ) {
     let mut free_from = f32::MIN;
     for event in events {
-        let x = x_of(event.time_s);
+        let time_x = x_of(event.time_s);
+        // A mark at an end of the strip stays whole.
+        let x = time_x.max(marks.left() + HALF * 1.5).min(marks.right() - HALF * 1.5);
         let color = color_of(event.kind, palette);
-        let line = [egui::pos2(x, marks.bottom()), egui::pos2(x, bottom)];
+        let line = [egui::pos2(time_x, marks.bottom()), egui::pos2(time_x, bottom)];
         painter.line_segment(line, Stroke::new(1.0, color.gamma_multiply(0.35)));
         painter.add(shape(event.kind, egui::pos2(x, marks.center().y), color));
         let (ClimbEventKind::Climbed(step) | ClimbEventKind::Lost(step)) = event.kind else {

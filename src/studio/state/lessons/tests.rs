@@ -200,3 +200,16 @@ fn runs_start_only_after_a_guess_and_finished_ones_are_not_repeated() {
     assert!(apply(&mut lessons, &mut run, LessonCommand::ShowScene(1)).is_some());
     assert!(!lessons.view().expect("begun").is_busy);
 }
+
+#[test]
+fn watching_the_snake_alone_shows_no_conclusion_and_results_need_a_guess_or_the_end() {
+    let (mut lessons, mut run) = first_lesson();
+    apply(&mut lessons, &mut run, LessonCommand::Begin(2));
+    lessons.see(&[Some("original")]);
+    assert!(!lessons.view().expect("begun").shows_conclusion);
+    apply(&mut lessons, &mut run, LessonCommand::Begin(0));
+    for command in [LessonCommand::ShowResult, LessonCommand::Watch, LessonCommand::ShowResult] {
+        apply(&mut lessons, &mut run, command);
+        assert!(!lessons.view().expect("begun").progress.is_revealed);
+    }
+}

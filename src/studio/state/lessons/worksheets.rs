@@ -15,6 +15,8 @@ struct Sheet {
     steps: &'static [&'static str],
     /// Questions about the result.
     questions: [&'static str; 2],
+    /// Further expected answers, for the teacher.
+    expected: &'static str,
 }
 
 const SHEETS: [Sheet; 5] = [
@@ -28,6 +30,7 @@ const SHEETS: [Sheet; 5] = [
             "What goes wrong with too little friction, and what with too much?",
             "Why does this snake climb best near the friction on which it evolved?",
         ],
+        expected: "",
     },
     Sheet {
         steps: &[
@@ -39,6 +42,7 @@ const SHEETS: [Sheet; 5] = [
             "What is the difference between fewer physics steps per second and a slower playback?",
             "Why must forces not depend on how fast a computer draws?",
         ],
+        expected: "",
     },
     Sheet {
         steps: &[
@@ -50,6 +54,7 @@ const SHEETS: [Sheet; 5] = [
             "Why are so many snakes disqualified when their joints can turn almost freely?",
             "How can a restriction make a search more successful?",
         ],
+        expected: "",
     },
     Sheet {
         steps: &[
@@ -58,9 +63,10 @@ const SHEETS: [Sheet; 5] = [
             "Note the generation after which the lower line hardly rises any more.",
         ],
         questions: [
-            "A range of 100 N·m halves with each generation. How large is it in generation 7?",
+            "A range of 100 N·m is halved six times. How large is it then?",
             "When are small changes useful, and when large ones?",
         ],
+        expected: "Halved six times, 100 N·m become 1.6 N·m. ",
     },
     Sheet {
         steps: &[
@@ -72,6 +78,7 @@ const SHEETS: [Sheet; 5] = [
             "What does it tell you if two runs have the same hash?",
             "Why should a scientific result be repeatable by other people?",
         ],
+        expected: "",
     },
 ];
 
@@ -104,8 +111,9 @@ fn text(index: usize) -> String {
         text += &format!("{number}. {question}\n\n   {LINE}{LINE}\n\n");
     }
     text + &format!(
-        "---\n\n**For the teacher** (cover before copying). {} {}\n",
+        "---\n\n**For the teacher** (cover before copying). {} {}{}\n",
         expected(index),
+        sheet.expected,
         lesson.answer
     )
 }
@@ -176,20 +184,21 @@ fn file(index: usize) -> PathBuf {
     folder.join(format!("{}.md", index + 1))
 }
 
-/// Printed height of a worksheet in lines of text: on A4 with margins of 2 cm and letters of 11 points, 95 characters
-/// fit on a line, and [`PAGE_LINES`] lines on the page.
+/// Printed height of a worksheet in lines of text: on A4 with margins of 2 cm, letters of 11 points and a line spacing of
+/// 1.25, 95 characters fit on a line, and 53 lines on the page, of which [`PAGE_LINES`] are used at most.
 fn printed_lines(text: &str) -> f64 {
     let height = |line: &str| match line {
         // Between paragraphs there is half a line.
         "" => 0.5,
         heading if heading.starts_with('#') => 1.8,
+        rule if rule.starts_with("| ---") => 0.0,
         row if row.starts_with('|') => 1.3,
         line => line.chars().count().div_ceil(95) as f64,
     };
     text.lines().map(height).sum()
 }
 
-/// Lines of text on a page.
+/// Most lines of a worksheet.
 const PAGE_LINES: f64 = 48.0;
 
 #[test]
