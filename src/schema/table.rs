@@ -36,9 +36,12 @@ fn line(listed: &ListedSetting) -> String {
         }
         _ => setting.allowed(),
     };
-    let allowed = match setting.display {
-        Some(_) => format!("{allowed} (in the studio {})", setting.shown_range_in_words()),
-        None => allowed,
+    let allowed = match (setting.display, setting.kind) {
+        (Some(display), SettingKind::Number(range) | SettingKind::List(range)) => {
+            let shown = setting.shown_range(&range);
+            format!("{allowed}; in the studio {} to {}{}", shown.least, shown.most, display.unit)
+        }
+        _ => allowed,
     };
     let live = if fixed.is_some() { "fixed" } else { "may change" };
     let (label, hint) = (setting.label, setting.hint);

@@ -9,14 +9,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::studio::commands::panel::PanelKind;
 
-/// Minimum width of a panel, in points. The panels' tests check that their contents fit.
-pub const LEAST_PANEL: f32 = 320.0;
+/// Minimum width of a panel, in points: its contents, its margins and its scroll bar. The panels' tests check that their
+/// contents fit.
+pub const LEAST_PANEL: f32 = 348.0;
 /// Minimum fraction of the window for the stage, beside panels that are wider than they need to be.
 const STAGE_SHARE: f32 = 0.4;
 /// Width of the stage, in points, from which the buttons of the player fit below it.
 const ROOMY_STAGE: f32 = 400.0;
 /// Minimum width of the stage, in points, beside panels of minimum width.
-const LEAST_STAGE: f32 = 240.0;
+const LEAST_STAGE: f32 = 200.0;
 /// Largest difference between shares that are the same.
 const SAME: f32 = 1.0e-5;
 
@@ -184,7 +185,11 @@ fn fitted(wanted: &[f32], splits: &[Beside], width: f32) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::ui::theme;
     use egui_dock::DockState;
+
+    // Panels are tested at this width inside their margins and their scroll bar.
+    const _: () = assert!(LEAST_PANEL - 3.5 * theme::GAP >= theme::PANEL_WIDTH);
 
     const LEFT: Place = (Side::Left, 0);
     const RIGHT: Place = (Side::Right, 0);

@@ -144,6 +144,7 @@ mod tests {
         assert!(frequency.expect("a gene").words().contains(" Hz\nGeneration 1, snake "));
         let table = view.figure.table();
         assert_eq!((table.len(), table[0].len()), (1 + dimension, 1 + parents.len()));
+        assert_eq!(table[1][0], "bend limit (°)");
         assert_eq!(table[3][0], "density (kg/m³)");
         let best = parents.iter().max_by(|(a, _), (b, _)| {
             let fitness = |of: &Ancestor| of.fitness.unwrap_or(f32::MIN);

@@ -13,12 +13,15 @@ use crate::studio::state::files::RecentFiles;
 use crate::studio::ui::check_box::{CHECK_BOX_SIDE, paint_check_box};
 use crate::studio::ui::theme;
 
+/// Says whether the setting that a command toggles is on; `None` for other commands.
+type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
+
 /// Draws the menus and collects the user's commands. `is_on` says whether the setting that a command toggles is on.
 /// `recent` are the files that were opened lately. `about` is shown at the right end.
 pub(crate) fn menu(
     ui: &mut egui::Ui,
     situation: Situation,
-    is_on: &dyn Fn(&Command) -> Option<bool>,
+    is_on: IsOn<'_>,
     recent: &RecentFiles,
     about: &str,
     commands: &mut Vec<Command>,
@@ -82,7 +85,7 @@ fn entry(
     ui: &mut egui::Ui,
     action: &Action,
     situation: Situation,
-    (has_toggles, is_on): (bool, &dyn Fn(&Command) -> Option<bool>),
+    (has_toggles, is_on): (bool, IsOn<'_>),
     commands: &mut Vec<Command>,
 ) {
     // An action for a range of digits needs a digit, which a menu cannot supply.

@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::evolve::{HalvingSettings, StrategyKind};
-use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
-use crate::studio::panels::settings::tests::{LEAST_INSIDE, every_section};
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
 use crate::studio::state::current_run::prepared_run as run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -222,7 +221,7 @@ fn an_invalid_value_of_a_hidden_section_is_ignored() {
 #[test]
 fn at_every_width_nothing_is_wider_than_the_panel() {
     let run = run();
-    for width in [LEAST_INSIDE, 459.0, 480.0, 900.0] {
+    for width in [300.0, theme::PANEL_WIDTH, 459.0, 480.0, 900.0] {
         let mut panel = EvolutionPanel::default();
         panel.unfold(&every_section());
         let size = egui::vec2(width, 4000.0);

@@ -85,10 +85,8 @@ impl Sheet {
             new = requested.or(new.take());
         });
         self.problem(ui, shown.field);
-        // The numbers below the marks reach under the row.
-        let has_numbers = is_given && each.is_none() && range.logarithmic_from.is_some();
-        if has_numbers && range.slider.is_some() {
-            ui.add_space(NUMBERS_HEIGHT);
+        if is_given && each.is_none() {
+            make_room_for_numbers(ui, range);
         }
         for index in 0..each.as_ref().map_or(0, Vec::len) {
             let each = each.as_deref().unwrap_or_default();
@@ -148,6 +146,7 @@ impl Sheet {
             Part::Reset => {}
         });
         self.problem(ui, &id);
+        make_room_for_numbers(ui, range);
         new.map(|text| with(&text))
     }
 
@@ -279,6 +278,13 @@ fn number_name(
         }
     }
     (name.inner.id, requested)
+}
+
+/// Adds the space into which the numbers below a slider's marks reach.
+fn make_room_for_numbers(ui: &mut egui::Ui, range: &NumberRange) {
+    if range.slider.is_some() && range.logarithmic_from.is_some() {
+        ui.add_space(NUMBERS_HEIGHT);
+    }
 }
 
 fn weak(ui: &mut egui::Ui, text: &str) {

@@ -11,8 +11,9 @@ const ZERO_SHARE: f32 = 0.1;
 const MARK_TOP: f32 = 8.5;
 /// Length of a mark, in points.
 const MARK_LENGTH: f32 = 3.0;
-/// Font size of the numbers below the marks, in points. They fit into the gap between two rows.
-const NUMBER_SIZE: f32 = 9.0;
+/// Font size of the numbers below the marks, in points: one whose glyphs are loaded at the start. They fit into the gap
+/// between two rows.
+const NUMBER_SIZE: f32 = theme::SMALL_SIZE - 1.0;
 /// Least distance between two numbers, in points.
 const NUMBER_GAP: f32 = 5.0;
 /// Height that numbers need below their row, in points.

@@ -39,8 +39,11 @@ impl Sheet {
         if response.changed() {
             let is_dragged = response.dragged() || response.clicked();
             so_far = scale.settled(so_far, before, is_dragged);
-            let id = control.id.to_owned();
-            self.changing = Some(Changing { id, so_far, since_s: now_s });
+            // Within the part of the rail that stands for zero, the pointer moves and the value rests.
+            if so_far != before {
+                let id = control.id.to_owned();
+                self.changing = Some(Changing { id, so_far, since_s: now_s });
+            }
         }
         let since_s = match &self.changing {
             Some(changing) if changing.id == control.id => changing.since_s,

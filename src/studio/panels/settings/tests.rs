@@ -12,8 +12,6 @@ use crate::evolve::{Settings, fields, with_field};
 use crate::schema::{NumberRange, Parts, SettingKind};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
-use crate::studio::ui::theme;
-use crate::studio::workspace::widths::LEAST_PANEL;
 
 /// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
@@ -29,9 +27,6 @@ pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
         assert!(is_inside, "{rect:?} of {width} points: {node:?}");
     }
 }
-
-/// Width inside the narrowest panel, in points: without its margins and its scroll bar.
-pub(in crate::studio::panels) const LEAST_INSIDE: f32 = LEAST_PANEL - 2.5 * theme::GAP - theme::GAP;
 
 /// Titles of all sections.
 pub(in crate::studio::panels) fn every_section() -> BTreeSet<String> {

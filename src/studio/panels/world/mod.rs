@@ -162,9 +162,7 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::panels::settings::tests::{
-        LEAST_INSIDE, assert_nothing_is_wider_than, every_section,
-    };
+    use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
     use crate::studio::state::current_run::prepared_run;
     use crate::studio::state::undo::UndoDirection;
     use egui_kittest::Harness;
@@ -321,7 +319,7 @@ mod tests {
         for (field, text) in given {
             run.set_field(field, text).expect("allowed");
         }
-        for width in [LEAST_INSIDE, 320.0, 459.0, 480.0, 600.0, 900.0] {
+        for width in [300.0, theme::PANEL_WIDTH, 459.0, 480.0, 600.0, 900.0] {
             sent_at(&run, width, &UndoHistory::default(), |harness| {
                 for title in ["Body", "Joints", "Repeated trials", "Disqualification"] {
                     harness.get_by_label(title).click();
