@@ -81,9 +81,9 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
 fn effort_lines(effort: &Effort, health: &HealthLimits) -> String {
     format!(
         "energy      {:.1} J\n\
-         top speed   {:.2} m/s of {} m/s\n\
-         joint gap   {:.4} m of {} m\n\
-         sideways    {:.2} m of {} m",
+         top speed   {:.2} m/s (limit {} m/s)\n\
+         joint gap   {:.4} m (limit {} m)\n\
+         sideways    {:.2} m (limit {} m)",
         effort.energy_j,
         effort.top_speed_m_s,
         health.speed_m_s,

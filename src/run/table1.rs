@@ -104,7 +104,7 @@ impl Table1 {
     pub fn text(&self, meaning: impl Fn(f64) -> String) -> String {
         let mut text = format!(
             "{:>10} | {:>7}  {:<18} | {:>7}  {:>9}  {:>7}  {:>7}  {}\n",
-            "", "report", "in words", "ours", "std.dev.", "least", "most", "in words"
+            "", "report", "in words", "ours", "std.dev.", "min", "max", "in words"
         );
         for (index, spread) in self.spreads().into_iter().enumerate() {
             let report = REPORT_MEANS.get(index);

@@ -108,7 +108,7 @@ impl Trial {
     };
     /// The section of the material of the ground.
     pub const GROUND: Section =
-        Section { title: "Ground", about: "Material of the ground before the stairs." };
+        Section { title: "Ground", about: "Material of the ground around the stairs." };
     /// The section of the reward.
     pub const REWARD: Section = Section { title: "Reward", about: "What evolution maximises." };
 

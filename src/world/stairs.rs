@@ -49,7 +49,7 @@ setting_group! {
         landing_m: f32 = 14.0,
             number("Landing", 0.0..=100.0).advanced()
                 .unit("m")
-                .hint("Depth of the landing behind the last step")
+                .hint("Depth of the landing beyond the last step")
                 .slider(0.0, 60.0);
     }
 }

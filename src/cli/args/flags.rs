@@ -97,7 +97,7 @@ pub struct Args {
     /// Write the role, position and label of every widget to this file in every frame, for automated tests
     #[arg(long, global = true, value_name = "FILE", hide_short_help = true, help_heading = WINDOW)]
     pub places: Option<PathBuf>,
-    /// Close the window after this number of frames, and print the median, 95 % and maximum frame times
+    /// Close the window after this number of frames, and print the median, 95th-percentile and maximum frame times
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = WINDOW)]
     pub(super) exit_after_frames: Option<String>,
     /// The subcommand; without one, a run evolves.

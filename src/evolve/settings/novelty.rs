@@ -19,7 +19,7 @@ setting_group! {
         /// Number of nearest neighbours whose mean distance is the novelty.
         neighbours: u32 = 15,
             whole("Neighbours", 1..=1000)
-                .hint("Novelty is the mean distance to this number of most similar snakes")
+                .hint("Novelty is the mean distance to this many of the most similar snakes")
                 .slider(1.0, 50.0);
 
         /// Number of individuals of each generation, chosen at random, that enter the archive.

@@ -51,7 +51,7 @@ fn summary(times: &mut [Duration]) -> String {
     };
     let (median, p95, most) = (at(0.5), at(0.95), at(1.0));
     format!(
-        "median {median:.2} ms, 95 % {p95:.2} ms, maximum {most:.2} ms over {} frames",
+        "median {median:.2} ms, 95th percentile {p95:.2} ms, maximum {most:.2} ms over {} frames",
         times.len()
     )
 }

@@ -44,7 +44,7 @@ impl StoredPreferences {
                     .put_aside()
                     .map(|path| format!(" The old file is kept as {}.", path.display()));
                 let problem = format!(
-                    "The window settings were reset: {error}.{}",
+                    "The window preferences were reset: {error}.{}",
                     aside.unwrap_or_default()
                 );
                 (Preferences::default(), Some(problem))
@@ -147,7 +147,7 @@ fn remember(
     if (rests || ends) && now != remembered.stored {
         // Report a failure only once; the next attempt would fail too.
         if let Err(error) = remembered.file.store(&now) {
-            notices.problem(format!("The window settings could not be saved: {error}"));
+            notices.problem(format!("The window preferences could not be saved: {error}"));
         }
         remembered.stored = now;
     }

@@ -187,7 +187,7 @@ pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::Stage, "Next physics step", &["Right"], |_| {
         Some(Command::Player(PlayerCommand::Step { forward: true }))
     }),
-    action(Menu::Stage, "Go to start", &["R"], |_| Some(Command::Player(PlayerCommand::Restart))),
+    action(Menu::Stage, "Play from start", &["R"], |_| Some(Command::Player(PlayerCommand::Restart))),
     action(Menu::Stage, "Go to end", &["End"], |_| Some(Command::Player(PlayerCommand::SeekEnd))),
     action(Menu::Stage, "Faster", &["+", "="], |_| {
         Some(Command::Player(PlayerCommand::ChangeSpeed { faster: true }))
@@ -299,7 +299,7 @@ mod tests {
 
     #[test]
     fn shift_is_ignored_unless_the_shortcut_exists_with_shift() {
-        assert_eq!(of_keys("Shift R").map(|action| action.name), Some("Go to start"));
+        assert_eq!(of_keys("Shift R").map(|action| action.name), Some("Play from start"));
         assert_eq!(
             of_keys("Shift P").map(|action| action.name),
             Some("Save picture of the window")

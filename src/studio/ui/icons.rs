@@ -29,7 +29,7 @@ impl Icon {
     /// Label for screen readers.
     fn label(self) -> &'static str {
         match self {
-            Self::ToStart => "Go to start",
+            Self::ToStart => "Play from start",
             Self::StepBack => "Previous step",
             Self::Play => "Play",
             Self::Pause => "Pause playback",

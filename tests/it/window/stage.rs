@@ -43,7 +43,7 @@ fn the_player_pauses_steps_and_seeks() {
     studio.picture_with(|now| difference(&picture, now) < 50);
     studio.key("End");
     studio.wait_for_title("stopped at 15.00 s");
-    studio.click_label("Go to start");
+    studio.click_label("Play from start");
     studio.wait_for_title_without("stopped");
     // Four times the speed, without looping.
     studio.key("o");

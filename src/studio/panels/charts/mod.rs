@@ -251,7 +251,7 @@ impl ChartsPanel {
         match (kind, front, archive) {
             (ChartKind::Front, Some(front), _) => front_plot(ui, front, shown, height, commands),
             (ChartKind::Front, None, _) if exploration.is_some() => {
-                explain(ui, "No snake has moved ahead of its start yet.");
+                explain(ui, "No snake has ended ahead of its starting position yet.");
             }
             (ChartKind::Archive, _, Some(archive)) => {
                 archive_map(ui, archive, unit, shown, height, commands);

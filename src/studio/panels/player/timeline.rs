@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn each_button_of_the_player_sends_its_command() {
         for (label, command) in [
-            ("Go to start", Command::Player(PlayerCommand::Restart)),
+            ("Play from start", Command::Player(PlayerCommand::Restart)),
             ("Previous step", Command::Player(PlayerCommand::Step { forward: false })),
             ("Pause playback", Command::Player(PlayerCommand::Toggle)),
             ("Next step", Command::Player(PlayerCommand::Step { forward: true })),

@@ -45,6 +45,14 @@ impl BatchTask {
             Self::Undo(UndoDirection::Forth, _) => "Redoing",
         }
     }
+
+    /// What it does, as a whole: "Deleting saves", "Undoing".
+    fn whole(&self) -> String {
+        match self {
+            Self::Act(verb) => format!("{} saves", verb.doing),
+            Self::Undo(..) => self.doing().to_owned(),
+        }
+    }
 }
 
 /// The outcome for one file.
@@ -97,8 +105,9 @@ impl Library {
 
     /// The reason why files cannot be changed now: a long batch is running, and steps are undone in order.
     pub fn busy(&self) -> Option<String> {
-        let words = self.under_way().next()?.0;
-        Some(format!("{words} saves is in progress: wait for it, or cancel it"))
+        let job = self.batches.iter().find(|job| job.is_long())?;
+        let noun = if matches!(job.task, BatchTask::Act(_)) { "saves" } else { "files" };
+        Some(format!("{} {noun} is in progress: wait for it, or cancel it", job.words()))
     }
 
     pub(super) fn refuse_while_busy(&self) -> Result<(), String> {
@@ -146,7 +155,7 @@ impl Library {
     ) -> Result<(), String> {
         self.refuse_while_busy()?;
         let batch = BackgroundTask::for_each(things, act, leave)
-            .map_err(|error| format!("{} saves could not be started: {error}", task.doing()))?;
+            .map_err(|error| format!("{} could not be started: {error}", task.whole()))?;
         self.batches.push(BatchJobs { task, batch });
         Ok(())
     }
@@ -178,7 +187,7 @@ impl Library {
             self.finish(task, steps.into_iter().map(undo).collect(), history, notices);
             return Ok(());
         }
-        let said = format!("{} of {count}: {label}", task.doing());
+        let said = format!("{}: {label}", task.doing());
         let begun = self.start_batch(task, steps, undo, |step| BatchOutcome::Cancelled(Some(step)));
         match begun {
             Ok(()) => notices.update(UNDO_SUBJECT, said),
@@ -194,8 +203,8 @@ impl Library {
                 None => self.batches.push(BatchJobs { task, batch }),
                 Some(Ok(outcomes)) => self.finish(task, outcomes, history, notices),
                 Some(Err(problem)) => {
-                    let doing = task.doing();
-                    notices.problem(format!("{doing} saves ended with an error: {problem}"));
+                    let what = task.whole();
+                    notices.problem(format!("{what} ended with an error: {problem}"));
                     self.look_again();
                 }
             }
