@@ -131,8 +131,8 @@ fn ice(x: usize, y: usize) -> f32 {
 
 /// Thick, smooth waves that catch the light.
 fn glue(x: usize, y: usize) -> f32 {
-    let height = |x, y| noise(x, y, 10, 21) * 0.6 + noise(x, y, 5, 22) * 0.4;
-    0.78 + 2.4 * slope(x, y, height)
+    let height = |x, y| noise(x, y, 7, 21) * 0.5 + noise(x, y, 4, 22) * 0.5;
+    0.80 + 2.2 * slope(x, y, height)
 }
 
 /// Bright flecks in a dark mat.
