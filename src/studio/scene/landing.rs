@@ -49,7 +49,7 @@ struct Fittings {
 
 /// The meshes of the last stairs that were built.
 #[derive(Debug, Default)]
-struct LastMeshes(Option<(Stairs, [Handle<Mesh>; 3])>);
+struct LastFittings(Option<(Stairs, [Handle<Mesh>; 3])>);
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Fittings>()
@@ -89,7 +89,7 @@ fn dress(
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     fittings: Res<Fittings>,
-    mut last: Local<LastMeshes>,
+    mut last: Local<LastFittings>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
