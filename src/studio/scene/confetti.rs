@@ -5,7 +5,7 @@
 
 use bevy::prelude::*;
 
-use super::landing::FINISH_M;
+use super::landing::{FINISH_M, finish_y_m};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
@@ -119,7 +119,7 @@ fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Ve
     let share = |salt: u32| chance(lane as u32, piece * 8 + salt);
     let top_m = stairs.rise_m * stairs.steps as f32;
     let across_m = (share(0) - 0.5) * stairs.width_m;
-    let start = Vec3::new(across_m, stairs.riser_y_m(stairs.steps), top_m + FINISH_M);
+    let start = Vec3::new(across_m, finish_y_m(stairs), top_m + FINISH_M);
     let thrown_m_s =
         Vec3::new((share(1) - 0.5) * 2.6, (share(2) - 0.5) * 4.0, 1.4 + share(3) * 2.4);
     // Paper soon falls at a constant speed.
@@ -182,7 +182,7 @@ mod tests {
             let (at, along) = piece_at(&stairs, lane, piece, since_s);
             assert_eq!((at, along), piece_at(&stairs, lane, piece, since_s));
             assert!((5.0..12.0).contains(&at.z) && at.is_finite(), "{at}");
-            assert!((at.y - 23.0).abs() < 3.0 && at.x.abs() < 5.0, "{at}");
+            assert!((at.y - 21.2).abs() < 3.0 && at.x.abs() < 5.0, "{at}");
             assert!((along.length() - 1.0).abs() < 1.0e-4);
         }
         assert_ne!(piece_at(&stairs, 0, 1, 0.5), piece_at(&stairs, 1, 1, 0.5));

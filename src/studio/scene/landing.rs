@@ -1,4 +1,4 @@
-//! What makes the stairs a place worth reaching: a railing, a finish where the landing begins, a wall with a door at
+//! What makes the stairs a place worth reaching: a railing, a finish at the last step, a wall with a door at
 //! its end. The door has the size of a door, which gives everything else its scale.
 //!
 //! The physics knows none of it; it stands beside and above the snake's way. A lane has three meshes, shared by lanes
@@ -25,6 +25,8 @@ const INSIDE_M: f32 = 0.1;
 pub(crate) const FINISH_M: f32 = 4.0;
 /// Height of the finish's chequered board, and side of its squares, in metres.
 const BOARD_M: f32 = 0.5;
+/// Distance of the finish from the edge of the last step, in metres: behind its strip.
+const BEHIND_EDGE_M: f32 = 0.2;
 /// Depth of the chequered line on the floor, in metres.
 const LINE_M: f32 = 0.5;
 /// Height of the wall at the end of the landing above it, and its thickness, in metres.
@@ -47,7 +49,7 @@ struct Fittings {
 
 /// The meshes of the last stairs that were built.
 #[derive(Debug, Default)]
-struct LastMeshes(Option<(Stairs, [Handle<Mesh>; 3])>);
+struct LastFittings(Option<(Stairs, [Handle<Mesh>; 3])>);
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Fittings>()
@@ -87,7 +89,7 @@ fn dress(
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     fittings: Res<Fittings>,
-    mut last: Local<LastMeshes>,
+    mut last: Local<LastFittings>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
@@ -164,7 +166,7 @@ fn wall(stairs: &Stairs) -> MeshBuilder {
     let middle = Vec3::new(0.0, stairs.end_y_m() - WALL_THICK_M / 2.0, top_m + WALL_M / 2.0);
     solid.rounded_box(middle, Vec3::new(stairs.width_m, WALL_THICK_M, WALL_M), 0.03, 1);
     if has_finish(stairs) {
-        let y_m = stairs.riser_y_m(stairs.steps);
+        let y_m = finish_y_m(stairs);
         for side in [1.0, -1.0] {
             let foot = Vec3::new((half_m - INSIDE_M) * side, y_m, top_m);
             solid.cylinder(foot, foot + Vec3::Z * (FINISH_M + BOARD_M), 0.07);
@@ -180,7 +182,7 @@ fn wall(stairs: &Stairs) -> MeshBuilder {
 fn cheques(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let top_m = stairs.rise_m * stairs.steps as f32;
-    let y_m = stairs.riser_y_m(stairs.steps);
+    let y_m = finish_y_m(stairs);
     if has_finish(stairs) {
         let floor = Vec3::new(0.0, y_m + LINE_M / 2.0, top_m + PAINT_M);
         let board = Vec3::new(0.0, y_m, top_m + FINISH_M + BOARD_M / 2.0);
@@ -225,9 +227,15 @@ fn squares(solid: &mut MeshBuilder, middle: Vec3, right: Vec3, up: Vec3) {
     }
 }
 
+/// Position of the finish on the y axis, in metres: behind the edge of the last step. A snake whose middle block is on
+/// that has landed.
+pub(crate) fn finish_y_m(stairs: &Stairs) -> f32 {
+    stairs.riser_y_m(stairs.steps.saturating_sub(1)) + BEHIND_EDGE_M
+}
+
 /// Whether the landing is deep enough for a finish.
 fn has_finish(stairs: &Stairs) -> bool {
-    stairs.landing_m >= SHORTEST_M
+    stairs.landing_m + stairs.tread_m >= SHORTEST_M
 }
 
 #[cfg(test)]

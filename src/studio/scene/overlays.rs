@@ -149,8 +149,8 @@ fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
 }
 
 /// Greatest number of lines side by side in a torque's arrow, and their distance, in metres.
-const MOST_LINES: f32 = 5.0;
-const LINES_APART_M: f32 = 0.045;
+const MOST_LINES: f32 = 6.0;
+const LINES_APART_M: f32 = 0.03;
 
 /// Number of lines side by side in the arrow of a torque, as a fraction of the maximum.
 fn lines_of(share: f32) -> u32 {
@@ -224,6 +224,6 @@ mod tests {
     #[test]
     fn the_arrow_of_a_larger_torque_is_wider() {
         let widths = [0.02, 0.3, -0.5, 0.7, -1.0, 4.0].map(lines_of);
-        assert_eq!(widths, [1, 2, 3, 4, 5, 5]);
+        assert_eq!(widths, [1, 2, 3, 5, 6, 6]);
     }
 }

@@ -22,8 +22,14 @@ impl FromWorld for Props {
         let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
         // The theme sets the colours.
         let mut material = |alpha_mode| {
-            let perceptual_roughness = 0.5;
-            materials.add(StandardMaterial { perceptual_roughness, alpha_mode, ..default() })
+            // Little reflectance keeps the red and the blue of the report under a bright sky.
+            let (perceptual_roughness, reflectance) = (0.5, 0.25);
+            materials.add(StandardMaterial {
+                perceptual_roughness,
+                reflectance,
+                alpha_mode,
+                ..default()
+            })
         };
         let [red, blue] = [AlphaMode::Opaque; 2].map(&mut material);
         let [red_ghost, blue_ghost] = [AlphaMode::Blend; 2].map(&mut material);

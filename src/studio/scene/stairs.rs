@@ -29,7 +29,7 @@ struct Caster(Handle<StandardMaterial>);
 
 /// The meshes of the last stairs that were built: lanes side by side mostly have the same.
 #[derive(Debug, Default)]
-struct LastMeshes(Option<(Stairs, Handle<Mesh>)>);
+struct LastStairs(Option<(Stairs, Handle<Mesh>)>);
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Caster>().add_systems(Update, build.in_set(FrameSet::Draw));
@@ -50,7 +50,7 @@ fn build(
     theme: Res<Theme>,
     caster: Res<Caster>,
     mut surfaces: ResMut<SurfaceMaterials>,
-    mut last: Local<LastMeshes>,
+    mut last: Local<LastStairs>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut images: ResMut<Assets<Image>>,

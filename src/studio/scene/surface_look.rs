@@ -81,7 +81,7 @@ impl SurfaceLook {
             wet,
             speckle: through([1.0, 0.0, 0.0, 0.2, 0.0, 0.1]),
             roughness: mix(dry_roughness, dry_roughness.min(0.28), wet),
-            gloss: through([0.2, 1.0, 0.9, 0.3, 0.4, 0.3]).max(wet * 0.8),
+            gloss: through([0.2, 1.0, 0.55, 0.3, 0.4, 0.3]).max(wet * 0.6),
         }
     }
 
@@ -185,7 +185,8 @@ mod tests {
 
     #[test]
     fn the_look_follows_every_slider_without_jumps() {
-        let fields: [(&str, f32, f32, fn(&mut Surface, f32)); 6] = [
+        type Slider = (&'static str, f32, f32, fn(&mut Surface, f32));
+        let sliders: [Slider; 6] = [
             ("friction", 0.03, 150.0, |surface, value| surface.friction = value),
             ("softness", 1.0e-4, 0.5, |surface, value| surface.soft_cfm_m_s_per_n = value),
             ("springiness", 0.05, 1.0, |surface, value| {
@@ -196,7 +197,7 @@ mod tests {
             ("bounce", 0.01, 0.7, |surface, value| surface.bounce = value),
         ];
         const PARTS: i32 = 200;
-        for (name, least, most, set) in fields {
+        for (name, least, most, set) in sliders {
             let looks: Vec<SurfaceLook> = (0..=PARTS)
                 .map(|part| {
                     let mut surface = Surface::default();

@@ -58,8 +58,8 @@ impl RankedLane {
     }
 }
 
-/// Time at which the middle block first stood past each riser, in simulated seconds, as far as the snake has come by
-/// `time_s`. The last one is the landing.
+/// Time at which the middle block first passed each riser, in simulated seconds, as far as the snake has come by
+/// `time_s`. The last step is the landing.
 fn splits_s(stairs: &Stairs, history: &KeyframeHistory, step_s: f64, time_s: f64) -> Vec<f64> {
     let sample_s = step_s * f64::from(history.sample_steps());
     let shown = (time_s / sample_s) as usize + 1;
@@ -68,7 +68,7 @@ fn splits_s(stairs: &Stairs, history: &KeyframeHistory, step_s: f64, time_s: f64
         let riser_m = stairs.riser_y_m(step);
         way.iter().position(|at| at.y >= riser_m).map(|sample| sample as f64 * sample_s)
     };
-    (0..=stairs.steps).map_while(reached).collect()
+    (0..stairs.steps).map_while(reached).collect()
 }
 
 /// The tooltip of a snake's result: the time of each step that it has climbed.
@@ -84,8 +84,9 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     ui.label("Time at which the middle block passed each riser:");
     egui::Grid::new("splits").num_columns(2).spacing([theme::GAP, 0.0]).show(ui, |ui| {
         for (step, split_s) in splits_s.iter().enumerate() {
-            let is_landing = step as u32 == stairs.steps;
-            ui.label(if is_landing { "Landing".to_owned() } else { format!("Step {}", step + 1) });
+            let number = step as u32 + 1;
+            let landing = if number == stairs.steps { ", the landing" } else { "" };
+            ui.label(format!("Step {number}{landing}"));
             ui.label(egui::RichText::new(format!("{split_s:6.2} s")).monospace());
             ui.end_row();
         }
@@ -265,10 +266,10 @@ mod tests {
         let history = lane.history().expect("it has finished");
         let stairs = &lane.trial().stairs;
         let all_s = splits_s(stairs, history, lane.step_s(), 15.0);
-        assert_eq!(all_s.len() as u32, stairs.steps + 1, "the shipped champion lands");
+        assert_eq!(all_s.len() as u32, stairs.steps, "the shipped champion lands");
         assert!(all_s.windows(2).all(|pair| pair[0] <= pair[1]), "{all_s:?}");
         let landed_s = lane.landed_s(15.0).expect("it lands");
-        assert!((all_s[10] - landed_s).abs() < 0.2, "{} and {landed_s}", all_s[10]);
+        assert!((all_s[9] - landed_s).abs() < 0.2, "{} and {landed_s}", all_s[9]);
         let some_s = splits_s(stairs, history, lane.step_s(), all_s[4] + 0.01);
         assert_eq!(some_s, all_s[..some_s.len()]);
         assert!((5..10).contains(&some_s.len()), "{some_s:?}");

@@ -106,7 +106,7 @@ impl CameraView {
         let zoom = self.distance_m / Self::DEFAULT_M;
         let target = target + self.offset;
         let points = points.iter().copied();
-        let distance_m = self.distance_to_see(target, points, aspect * (1.0 - left_share)) * zoom;
+        let distance_m = self.distance_beside(target, points, aspect, left_share) * zoom;
         let half_width_m = distance_m * libm::tanf(VERTICAL_VIEW_RAD / 2.0) * aspect;
         let right = self.turn() * Vec3::Y;
         Self { distance_m, offset: self.offset - right * (half_width_m * left_share), ..self }
@@ -129,13 +129,30 @@ impl CameraView {
         points: impl IntoIterator<Item = Vec3>,
         aspect: f32,
     ) -> f32 {
+        self.distance_beside(target, points, aspect, 0.0)
+    }
+
+    /// As [`Self::distance_to_see`], with the leftmost `left_share` of the picture free: the camera is moved to the left
+    /// by that share of half the picture's width at the target.
+    fn distance_beside(
+        &self,
+        target: Vec3,
+        points: impl IntoIterator<Item = Vec3>,
+        aspect: f32,
+        left_share: f32,
+    ) -> f32 {
         let into_view = self.turn().inverse();
-        let upright = libm::tanf(VERTICAL_VIEW_RAD / 2.0) / MARGIN;
+        let upright = libm::tanf(VERTICAL_VIEW_RAD / 2.0);
         let across = upright * aspect.max(0.1);
+        // Edges of the content, in halves of the picture's width from its middle.
+        let (right, left) = (1.0 / MARGIN, 2.0 * left_share - 1.0 / MARGIN);
+        let room = across * (right - left_share);
         let needed = points.into_iter().map(|point| {
             // In the view's frame x points at the eye, y to the right, z up.
             let at = into_view * (point - target);
-            at.x + (at.y.abs() / across).max(at.z.abs() / upright)
+            let to_right = (at.y + right * across * at.x) / room;
+            let to_left = (-at.y - left * across * at.x) / room;
+            to_right.max(to_left).max(at.x + at.z.abs() * MARGIN / upright)
         });
         needed.fold(*Self::DISTANCE_M.start(), f32::max).min(*Self::DISTANCE_M.end())
     }
