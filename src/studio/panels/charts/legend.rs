@@ -21,7 +21,9 @@ pub(super) fn legend(ui: &mut egui::Ui, view: &ChartView) {
 /// Says what a click does, in the weak colour of explanations.
 pub(super) fn click_hint(ui: &mut egui::Ui, text: &str) {
     if !text.is_empty() {
-        ui.label(egui::RichText::new(text).small().italics().color(theme::of(ui).text_weak));
+        let text = egui::RichText::new(text).small().italics().color(theme::of(ui).text_weak);
+        // It moves to the next line as a whole.
+        ui.add(egui::Label::new(text).extend());
     }
 }
 

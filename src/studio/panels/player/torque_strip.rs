@@ -9,6 +9,7 @@ use super::climb_events::{ClimbEvent, events};
 use super::strip_marks::{draw_events, event_at, legend};
 use crate::score::KeyframeHistory;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::ui::theme;
 use crate::world::JointTorque;
 
@@ -105,6 +106,10 @@ impl TorqueStrip {
                 let align = egui::Align2::CENTER_CENTER;
                 painter.text(rect.center(), align, text, font, palette.text_weak);
             }
+        }
+        if lane.staged().source() == ChampionSource::Lesson {
+            // Later marks would give away the result that the reader is to guess.
+            climb.retain(|event| event.time_s <= now_s);
         }
         draw_events(&painter, &climb, marks, plot.bottom(), &x_of, palette);
         let x = x_of(now_s);
@@ -329,6 +334,28 @@ mod tests {
             let hover = harness.query_all_by_label_contains("Top of the stairs reached").count();
             assert_eq!(hover, 1, "{width}");
             assert!(harness.query_all_by_label_contains("Joint 4 (tail): bend").count() == 1);
+        }
+    }
+
+    #[test]
+    fn in_a_lesson_marks_appear_only_once_they_have_happened() {
+        let loaded = shipped_champion().expect("well formed");
+        let mut lane = Lane::new(StagedChampion::from_lesson(&loaded.champion), 0);
+        lane.finish_lookahead();
+        let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
+        for (now_s, is_seen) in [(1.0, false), (landed_s + 0.1, true)] {
+            let mut strip_panel = TorqueStrip::default();
+            let mut harness =
+                Harness::builder().with_size(egui::vec2(600.0, 140.0)).build_ui(|ui| {
+                    strip_panel.ui(ui, &lane, now_s, 15.0, theme::TORQUE_STRIP_HEIGHT);
+                });
+            harness.run();
+            let strip = harness.get_by_label("Time, in simulated seconds").rect();
+            let share = (landed_s / 15.0) as f32;
+            harness.hover_at(strip.lerp_inside(egui::vec2(share, 0.05)));
+            harness.run();
+            let hover = harness.query_by_label_contains("Top of the stairs reached");
+            assert_eq!(hover.is_some(), is_seen, "at {now_s} s");
         }
     }
 }

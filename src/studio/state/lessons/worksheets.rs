@@ -203,11 +203,10 @@ const PAGE_LINES: f64 = 48.0;
 
 #[test]
 fn the_worksheets_are_up_to_date() {
-    for index in 0..LESSONS.len() {
-        let expected = text(index);
+    for (index, lesson) in LESSONS.iter().enumerate() {
         assert_eq!(
-            LESSONS[index].worksheet,
-            expected,
+            lesson.worksheet,
+            text(index),
             "worksheet {}: run `cargo test --lib write_the_worksheets -- --ignored`",
             index + 1
         );
