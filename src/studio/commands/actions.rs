@@ -187,7 +187,9 @@ pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::Stage, "Next physics step", &["Right"], |_| {
         Some(Command::Player(PlayerCommand::Step { forward: true }))
     }),
-    action(Menu::Stage, "Play from start", &["R"], |_| Some(Command::Player(PlayerCommand::Restart))),
+    action(Menu::Stage, "Play from start", &["R"], |_| {
+        Some(Command::Player(PlayerCommand::Restart))
+    }),
     action(Menu::Stage, "Go to end", &["End"], |_| Some(Command::Player(PlayerCommand::SeekEnd))),
     action(Menu::Stage, "Faster", &["+", "="], |_| {
         Some(Command::Player(PlayerCommand::ChangeSpeed { faster: true }))

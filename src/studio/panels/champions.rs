@@ -62,7 +62,7 @@ impl ReportSummary {
 }
 
 impl ChampionsPanel {
-    /// Draws the list and collects the user's commands.
+    /// Draws the list and collects the user's commands. `follows` says whether the stage shows each better generation.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -70,12 +70,27 @@ impl ChampionsPanel {
         reports: &[GenerationReport],
         shown: &[ShownChampion],
         leaders: impl Fn(Option<u32>) -> usize,
+        mut follows: bool,
         commands: &mut Vec<Command>,
     ) {
         let ReportSummary { champions, best, better } = self.summary(reports);
         self.times.poll();
         ui.horizontal_wrapped(|ui| {
             for (name, hint, is_on, needed, command) in [
+                (
+                    "Whole generation",
+                    "Show all snakes of the latest generation at once (I)",
+                    leaders(None) > 1,
+                    "a generation",
+                    Command::Stage(StageCommand::ShowGeneration(None)),
+                ),
+                (
+                    "Story",
+                    "Play the first, the middle and the latest of the better generations (S)",
+                    better.len() > 1,
+                    "two generations",
+                    Command::Stage(StageCommand::TellStory),
+                ),
                 (
                     "Race generations",
                     "Replay champions of several generations side by side (N)",
@@ -92,13 +107,17 @@ impl ChampionsPanel {
                 ),
             ] {
                 let button = egui::Button::new(name);
-                let disabled_hint = format!("Nothing to race yet: finish {needed} first");
+                let disabled_hint = format!("Nothing to show yet: finish {needed} first");
                 let response = ui.add_enabled(is_on, button).on_hover_text(hint);
                 if response.on_disabled_hover_text(disabled_hint).clicked() {
                     commands.push(command);
                 }
             }
         });
+        let hint = "Show each better generation as soon as it is found (W)";
+        if ui.checkbox(&mut follows, "Follow evolution").on_hover_text(hint).clicked() {
+            commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
+        }
         let hint =
             "List only the generations whose best snake beat those of all generations before";
         ui.checkbox(&mut self.lists_better_only, "Better ones only").on_hover_text(hint);
@@ -259,7 +278,15 @@ mod tests {
         let mut panel = ChampionsPanel::default();
         let mut harness = Harness::new_ui_state(
             |ui, commands| {
-                panel.ui(ui, &opening, &reports, &[ShownChampion::Opening(0)], |_| 2, commands);
+                panel.ui(
+                    ui,
+                    &opening,
+                    &reports,
+                    &[ShownChampion::Opening(0)],
+                    |_| 2,
+                    false,
+                    commands,
+                );
             },
             Vec::new(),
         );
@@ -299,7 +326,7 @@ mod tests {
             .collect();
         let mut panel = ChampionsPanel::default();
         let mut harness = Harness::builder().with_size(egui::vec2(360.0, 400.0)).build_ui_state(
-            |ui, commands| panel.ui(ui, &[], &reports, &[], |_| 2, commands),
+            |ui, commands| panel.ui(ui, &[], &reports, &[], |_| 2, false, commands),
             Vec::new(),
         );
         let listed = |harness: &Harness<'_, Vec<Command>>| -> Vec<u32> {

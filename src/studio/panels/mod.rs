@@ -301,7 +301,8 @@ impl Viewer<'_, '_, '_> {
             PanelKind::Champions => {
                 let reports = run.reports();
                 let leaders = |generation| run.leaders(generation).len();
-                panels.champions.ui(ui, &opening.0, reports, &shown, leaders, commands);
+                let follows = self.data.on_stage.following.follows_evolution();
+                panels.champions.ui(ui, &opening.0, reports, &shown, leaders, follows, commands);
             }
             PanelKind::Lessons => lessons(ui, self.data.lessons.view(), commands),
             PanelKind::Library => {

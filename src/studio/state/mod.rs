@@ -2,8 +2,8 @@
 
 pub mod chart_export;
 pub mod current_run;
-pub mod following;
 pub mod files;
+pub mod following;
 pub mod lessons;
 pub mod library;
 pub mod lineup;

@@ -29,7 +29,9 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
         (SettingValue::Number(now), _) => *now,
         (SettingValue::Whole(now), _) => *now as f32,
         (SettingValue::None, Some(first)) => first,
-        _ => return Err(format!("{label} has a value for each part; give it a single value first.")),
+        _ => {
+            return Err(format!("{label} has a value for each part; give it a single value first."));
+        }
     };
     let world = |value: f32| -> Option<StagedChampion> {
         let trial = with_field(&settings, field, &value.to_string()).ok()?.trial;

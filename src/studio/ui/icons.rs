@@ -18,6 +18,8 @@ pub(crate) enum Icon {
     Reset,
     Undo,
     Redo,
+    /// A setting at several values side by side.
+    Sweep,
 }
 
 /// Side length of a button, in points.
@@ -38,6 +40,7 @@ impl Icon {
             Self::Reset => "Reset",
             Self::Undo => "Undo",
             Self::Redo => "Redo",
+            Self::Sweep => "Sweep",
         }
     }
 
@@ -61,6 +64,13 @@ impl Icon {
             Self::Reset => round_arrow(square, stroke, true),
             Self::Undo => turned_arrow(square, stroke, true),
             Self::Redo => turned_arrow(square, stroke, false),
+            Self::Sweep => (0..4)
+                .map(|index| {
+                    let (left, top) = (0.05 + 0.25 * index as f32, 0.75 - 0.22 * index as f32);
+                    let bar = Rect::from_min_max(at(left, top), at(left + 0.15, 0.95));
+                    Shape::rect_filled(bar, 0.5, stroke.color)
+                })
+                .collect(),
         }
     }
 }

@@ -191,7 +191,16 @@ mod tests {
             _ => None,
         };
         let mut harness = Harness::new_ui_state(
-            |ui, commands| menu(ui, Situation::default(), &is_on, &RecentFiles::default(), "climb, seed 1", commands),
+            |ui, commands| {
+                menu(
+                    ui,
+                    Situation::default(),
+                    &is_on,
+                    &RecentFiles::default(),
+                    "climb, seed 1",
+                    commands,
+                )
+            },
             Vec::new(),
         );
         harness.get_by_label("View").click();

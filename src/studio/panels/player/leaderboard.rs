@@ -191,6 +191,13 @@ pub(crate) fn leaderboard(
                 commands.push(command.clone());
             }
         }
+        let selected = lanes.iter().find(|lane| lane.number() == focus);
+        if *mode == StageMode::Race && selected.is_some_and(|lane| lane.staged().is_changed()) {
+            let hint = "Use the changed settings of the selected snake's world for the next run";
+            if ui.button("Use this world").on_hover_text(hint).clicked() {
+                commands.push(Command::Plan(PlanCommand::UseWorldOfLane));
+            }
+        }
     });
 }
 

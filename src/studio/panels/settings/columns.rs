@@ -1,4 +1,4 @@
-//! Layout of a setting's label, control and reset button: in columns, or in two lines on narrow panels.
+//! Layout of a setting's label, control and buttons: in columns, or in two lines on narrow panels.
 
 use bevy_egui::egui;
 
@@ -19,14 +19,14 @@ pub enum Part {
     Label,
     /// Control.
     Control,
-    /// Button that resets to the preset's value.
-    Reset,
+    /// Buttons that reset to the preset's value, and that show several values side by side.
+    Buttons,
 }
 
 /// Minimum width of a one-line row, in points.
 const WIDE: f32 = 460.0;
-/// Width of the reset button, in points.
-pub const RESET_WIDTH: f32 = 22.0;
+/// Width of the two buttons, in points.
+pub const BUTTONS_WIDTH: f32 = 50.0;
 /// Width of a number field, in points.
 pub const VALUE_WIDTH: f32 = 76.0;
 
@@ -36,19 +36,19 @@ impl Columns {
         let all = ui.available_width();
         let gap = theme::GAP;
         if all < WIDE && is_small {
-            let label = (all - VALUE_WIDTH - RESET_WIDTH - 2.0 * gap).max(0.0);
+            let label = (all - VALUE_WIDTH - BUTTONS_WIDTH - 2.0 * gap).max(0.0);
             return Self { is_wide: true, label, control: VALUE_WIDTH };
         }
         if all < WIDE {
             return Self {
                 is_wide: false,
-                label: (all - RESET_WIDTH - gap).max(0.0),
+                label: (all - BUTTONS_WIDTH - gap).max(0.0),
                 control: all,
             };
         }
         // Limit the width: a longer slider is no easier to set.
         let label = (all * 0.42).min(300.0);
-        let control = (all - label - RESET_WIDTH - 2.0 * gap).min(440.0);
+        let control = (all - label - BUTTONS_WIDTH - 2.0 * gap).min(440.0);
         Self { is_wide: true, label, control }
     }
 
@@ -60,7 +60,7 @@ impl Columns {
             if is_wide {
                 cell(ui, control, |ui| part(ui, Part::Control, control));
             }
-            cell(ui, RESET_WIDTH, |ui| part(ui, Part::Reset, RESET_WIDTH));
+            cell(ui, BUTTONS_WIDTH, |ui| part(ui, Part::Buttons, BUTTONS_WIDTH));
         });
         if !is_wide {
             cell(ui, control, |ui| part(ui, Part::Control, control));

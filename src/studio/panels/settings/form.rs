@@ -15,7 +15,7 @@ use super::sections_of;
 use super::validation::Check;
 use super::values::Values;
 use crate::schema::{ListedSetting, Section, Setting, SettingKind};
-use crate::studio::commands::{Command, PlanCommand};
+use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::icons::{Icon, small_icon_button};
 use crate::studio::ui::theme;
@@ -31,6 +31,8 @@ pub struct Sheet {
     /// Last frame in which the panel was drawn.
     pub(super) drawn_in: u64,
     pub(super) folds: Folds,
+    /// The setting whose sweep was asked for in this frame.
+    pub(super) swept: Option<String>,
 }
 
 /// A slider being dragged.
@@ -169,10 +171,29 @@ impl Sheet {
         if let Some(text) = new {
             commands.push(set(field, &text));
         }
+        if let Some(field) = self.swept.take() {
+            commands.push(Command::Stage(StageCommand::Sweep(field)));
+        }
     }
 
-    /// Draws the reset button if the value differs from the preset's. Returns the preset's value after a click.
-    pub(super) fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
+    /// Draws the button of a sweep beside a number of the world, and the reset button if the value differs from the
+    /// preset's. Returns the preset's value after a click on that.
+    pub(super) fn buttons(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
+        let is_number = matches!(shown.setting.kind, SettingKind::Number(_));
+        if is_number && shown.field.starts_with("trial.") {
+            let label = format!("Sweep {}", shown.setting.label);
+            let hint = format!(
+                "Show the snake on the stage with five values of \"{}\" side by side",
+                shown.setting.label
+            );
+            if small_icon_button(ui, Icon::Sweep, &label, &hint).clicked() {
+                self.swept = Some(shown.field.to_owned());
+            }
+        }
+        self.reset(ui, shown)
+    }
+
+    fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let preset = self.values.changed_from(shown.field)?.to_owned();
         let in_words = match preset.as_str() {
             "none" => "off".to_owned(),
@@ -204,7 +225,7 @@ impl Sheet {
         Columns::of(ui, is_small).row(ui, |ui, part, width| match part {
             Part::Label => name = shown.name(ui, width).id,
             Part::Control => new = control(self, ui, width, name).or(new.take()),
-            Part::Reset => new = self.reset(ui, shown).or(new.take()),
+            Part::Buttons => new = self.buttons(ui, shown).or(new.take()),
         });
         self.problem(ui, shown.field);
         new

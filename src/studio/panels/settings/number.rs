@@ -80,7 +80,7 @@ impl Sheet {
                     let control = Control::of(shown, name, &check);
                     self.slider_and_field(ui, &control, shown, &shown_range, width)
                 }
-                Part::Reset => self.reset(ui, shown),
+                Part::Buttons => self.buttons(ui, shown),
             };
             new = requested.or(new.take());
         });
@@ -143,7 +143,7 @@ impl Sheet {
                 let range = shown.setting.shown_range(range);
                 new = self.slider_and_field(ui, &control, shown, &range, width);
             }
-            Part::Reset => {}
+            Part::Buttons => {}
         });
         self.problem(ui, &id);
         make_room_for_numbers(ui, range);
