@@ -35,12 +35,17 @@ pub(crate) struct Files {
     pub recent: RecentFiles,
     /// Question to ask next.
     wanted: Option<FileQuestion>,
+    /// Question that no dialog asks, and why.
+    unasked: Option<(FileQuestion, String)>,
     /// Question that a dialog asks now.
     asked: Option<(FileQuestion, BackgroundTask<DialogAnswer>)>,
     /// Folders that the file manager is opening.
     opening: Vec<BackgroundTask<Result<(), String>>>,
     copying: CopyTask,
 }
+
+/// Reason to ask for a path in the window.
+const OPEN_ALREADY: &str = "Another dialog for files is open, perhaps behind this window. You can also type the path here.";
 
 /// Subject of messages about copies to the clipboard.
 const COPIED: &str = "copied";
@@ -70,6 +75,9 @@ fn take_in(
     if let Some((question, answer)) = files.answered() {
         send.write_batch(answer_to(question, answer, &mut library));
     }
+    if let Some((question, reason)) = files.unasked.take() {
+        send.write_batch(answer_to(question, Err(reason), &mut library));
+    }
     files.report(&mut notices);
 }
 
@@ -98,8 +106,9 @@ impl Files {
         notices: &mut Notices,
     ) -> Result<Option<Show>, String> {
         match command {
-            FileCommand::Ask(_) if self.asked.is_some() => {
-                return Err("A dialog for files is open already.".to_owned());
+            // A desktop's dialog may be hidden by a window, or never answer.
+            FileCommand::Ask(question) if self.asked.is_some() => {
+                self.unasked = Some((question.clone(), OPEN_ALREADY.to_owned()));
             }
             FileCommand::Ask(question) => self.wanted = Some(question.clone()),
             FileCommand::AskExport => library.request_export(),

@@ -80,10 +80,11 @@ impl LibraryPanel {
         let Some(renaming) = &mut self.renaming else { return };
         let problem = renaming.problem();
         let edge = problem.as_ref().map(|_| theme::of(ui).problem);
-        let (response, end) = renaming.prompt.ui(ui, |ui, field| {
-            let field =
-                field.margin(egui::Margin::symmetric(4, 0)).vertical_align(egui::Align::Center);
-            ui.put(rect, field)
+        // A child leaves the next row where it is.
+        let mut over_row = ui.new_child(egui::UiBuilder::new().max_rect(rect));
+        let (response, end) = renaming.prompt.ui(&mut over_row, |ui, field| {
+            let margin = egui::Margin::symmetric(theme::GAP as i8 / 2, 0);
+            ui.put(rect, field.margin(margin).vertical_align(egui::Align::Center))
         });
         label(ui, &response, "New name");
         if let Some(edge) = edge {

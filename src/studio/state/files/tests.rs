@@ -77,6 +77,24 @@ fn without_a_system_dialog_the_library_asks_for_the_path_and_says_why() {
 }
 
 #[test]
+fn while_a_dialog_does_not_answer_a_second_question_is_asked_in_the_window() {
+    let mut tried = Tried::new();
+    tried.apply(&FileCommand::Ask(FileQuestion::Open)).expect("asked");
+    assert_eq!(tried.files.wanted, Some(FileQuestion::Open));
+    let (end, waits) = crossbeam_channel::bounded::<()>(0);
+    let hidden = move || {
+        let _ = waits.recv();
+        Ok(Vec::new())
+    };
+    let hidden = BackgroundTask::start(hidden).expect("a thread");
+    tried.files.asked = Some((FileQuestion::Open, hidden));
+    tried.apply(&FileCommand::Ask(FileQuestion::Import)).expect("asked");
+    let unasked = tried.files.unasked.take().expect("asked in the window");
+    assert_eq!(unasked, (FileQuestion::Import, OPEN_ALREADY.to_owned()));
+    drop(end);
+}
+
+#[test]
 fn each_question_becomes_a_command_to_the_library() {
     let path = PathBuf::from("/runs/climb-seed1/run.ron");
     let places = vec![SavePlace::Shipped("fast")];

@@ -46,15 +46,16 @@ fn a_name_is_edited_in_its_row_and_invalid_names_are_refused() {
 }
 
 #[test]
-fn the_name_field_leaves_the_second_line_of_a_row_free() {
+fn the_name_field_leaves_the_second_line_and_the_next_row_where_they_are() {
     let library = library();
     let mut harness = harness(&library, [420.0, 800.0]);
-    let row = row_of(&harness, "alpha").rect();
+    let [row, next] = ["alpha", "beta"].map(|name| row_of(&harness, name).rect());
     select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::F2);
     let field = harness.get_by_label("New name").rect();
     assert!(row.contains_rect(field), "{field} in {row}");
     assert!(field.bottom() <= row.center().y + 0.5, "{field} over the second line of {row}");
+    assert_eq!(row_of(&harness, "beta").rect().top(), next.top());
 }
 
 #[test]
