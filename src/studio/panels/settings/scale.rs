@@ -17,7 +17,7 @@ const NUMBER_SIZE: f32 = theme::SMALL_SIZE - 1.0;
 /// Least distance between two numbers, in points.
 const NUMBER_GAP: f32 = 5.0;
 /// Height that numbers need below their row, in points.
-pub const NUMBERS_HEIGHT: f32 = 4.0;
+pub const NUMBERS_HEIGHT: f32 = 8.0;
 /// Steps between marks of an angle, in degrees.
 const ANGLE_STEPS: [f32; 4] = [5.0, 15.0, 45.0, 90.0];
 /// Most marks on a linear scale.
