@@ -30,7 +30,9 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
         (SettingValue::Whole(now), _) => *now as f32,
         (SettingValue::None, Some(first)) => first,
         _ => {
-            return Err(format!("{label} has a value for each part; give it a single value first."));
+            return Err(format!(
+                "{label} has a value for each part; give it a single value first."
+            ));
         }
     };
     let world = |value: f32| -> Option<StagedChampion> {

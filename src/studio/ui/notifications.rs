@@ -156,7 +156,10 @@ fn draw(
                             node.set_live(Live::Polite);
                         });
                         if !notice.offers.is_empty() {
-                            ui.horizontal(|ui| {
+                            let row = egui::Layout::left_to_right(egui::Align::Center);
+                            let size =
+                                egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+                            ui.allocate_ui_with_layout(size, row, |ui| {
                                 for (label, command) in &notice.offers {
                                     if ui.button(label).clicked() {
                                         taken = Some((index, command.clone()));
