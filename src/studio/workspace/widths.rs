@@ -22,11 +22,11 @@ const LEAST_STAGE: f32 = 200.0;
 const SAME: f32 = 1.0e-5;
 
 /// The place of panels beside the stage: the side, and the number of splits further out on the same side.
-type Place = (Side, usize);
+type Place = (StageSide, usize);
 
 /// A side of the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-enum Side {
+enum StageSide {
     Left,
     Right,
 }
@@ -84,7 +84,8 @@ impl PanelWidths {
         for (split, beside) in splits.iter().zip(widths) {
             let share = (1.0 - beside / room).clamp(0.03, 0.97);
             if let Node::Horizontal(of_node) = &mut tree[split.node] {
-                of_node.fraction = if split.place.0 == Side::Right { share } else { 1.0 - share };
+                of_node.fraction =
+                    if split.place.0 == StageSide::Right { share } else { 1.0 - share };
             }
             self.shares.push((split.node, share));
             room *= share;
@@ -132,9 +133,9 @@ fn beside(tree: &Tree<PanelKind>, stage: NodeIndex) -> Vec<Beside> {
         let Node::Horizontal(split) = &tree[node] else { return None };
         let is_right = next.is_left();
         let (side, panels, share) = if is_right {
-            (Side::Right, node.right(), split.fraction)
+            (StageSide::Right, node.right(), split.fraction)
         } else {
-            (Side::Left, node.left(), 1.0 - split.fraction)
+            (StageSide::Left, node.left(), 1.0 - split.fraction)
         };
         let count = &mut counts[usize::from(is_right)];
         *count += 1;
@@ -191,8 +192,8 @@ mod tests {
     // Panels are tested at this width inside their margins and their scroll bar.
     const _: () = assert!(LEAST_PANEL - 3.5 * theme::GAP >= theme::PANEL_WIDTH);
 
-    const LEFT: Place = (Side::Left, 0);
-    const RIGHT: Place = (Side::Right, 0);
+    const LEFT: Place = (StageSide::Left, 0);
+    const RIGHT: Place = (StageSide::Right, 0);
 
     /// The stage between panels of 384 and 420 points, in a window of 1600 points.
     fn on_both_sides() -> (DockState<PanelKind>, PanelWidths) {

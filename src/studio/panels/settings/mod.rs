@@ -12,17 +12,10 @@ mod slider;
 mod validation;
 mod values;
 
-use crate::evolve::Settings;
-use crate::schema::{ListedSetting, Section, list};
+use crate::schema::{ListedSetting, Section};
 
 pub use form::Sheet;
-
-/// Every possible setting, including those of a separate ground.
-pub fn every_setting() -> Vec<ListedSetting> {
-    let mut settings = Settings::default();
-    settings.trial.ground = Some(settings.trial.surface.clone());
-    list(&settings)
-}
+pub use values::every_setting;
 
 /// The sections of these settings, in order.
 pub fn sections_of<'a>(listed: impl IntoIterator<Item = &'a ListedSetting>) -> Vec<Section> {

@@ -35,7 +35,7 @@ pub struct Scale {
 
 /// A mark below the rail.
 #[derive(Debug, Clone, PartialEq)]
-struct Mark {
+struct ScaleMark {
     /// Place on the rail: 0 is its left end, 1 its right.
     share: f32,
     /// The value, on a scale whose marks have numbers.
@@ -94,9 +94,10 @@ impl Scale {
     }
 
     /// The marks, from left to right.
-    fn marks(&self) -> Vec<Mark> {
+    fn marks(&self) -> Vec<ScaleMark> {
         let Some(from) = self.logarithmic_from else { return self.linear_marks() };
-        let mark = |value: f32| Mark { share: self.share(value), number: Some(value.to_string()) };
+        let mark =
+            |value: f32| ScaleMark { share: self.share(value), number: Some(value.to_string()) };
         let first = if self.least > 0.0 { self.least } else { 0.0 };
         let lowest = libm::ceilf(libm::log10f(from) - 1.0e-3) as i32;
         let highest = libm::floorf(libm::log10f(self.most) + 1.0e-3) as i32;
@@ -108,14 +109,14 @@ impl Scale {
         values.into_iter().map(mark).collect()
     }
 
-    fn linear_marks(&self) -> Vec<Mark> {
+    fn linear_marks(&self) -> Vec<ScaleMark> {
         let width = self.most - self.least;
         let of_angle = ANGLE_STEPS.into_iter().find(|step| width / step <= MOST_STEPS);
         let step = of_angle.filter(|_| self.is_angle).unwrap_or_else(|| round_step(width));
         let first = (self.least / step).ceil() as i32;
         let values = (first..).map(|index| index as f32 * step);
         let values = values.take_while(|value| *value <= self.most + step * 1.0e-3);
-        values.map(|value| Mark { share: self.share(value), number: None }).collect()
+        values.map(|value| ScaleMark { share: self.share(value), number: None }).collect()
     }
 
     /// Draws the marks below the rail of a slider at `rect`.
@@ -134,7 +135,7 @@ impl Scale {
         let top = rect.center().y + MARK_TOP;
         let marks = self.marks();
         let mut numbers: Vec<egui::Rect> = Vec::new();
-        let mut number = |mark: &Mark, x: f32| {
+        let mut number = |mark: &ScaleMark, x: f32| {
             let Some(text) = &mark.number else { return };
             let font = egui::FontId::proportional(NUMBER_SIZE);
             let galley = ui.painter().layout_no_wrap(text.clone(), font, color);
@@ -150,7 +151,7 @@ impl Scale {
                 numbers.push(place);
             }
         };
-        let x_of = |mark: &Mark| rail.min + rail.span() * mark.share;
+        let x_of = |mark: &ScaleMark| rail.min + rail.span() * mark.share;
         // The ends come first, so that they have their numbers where there is no room for all.
         for mark in marks.first().into_iter().chain(marks.last()).chain(&marks) {
             number(mark, x_of(mark));

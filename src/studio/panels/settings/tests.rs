@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 use super::values::list_of;
 use super::*;
 use crate::evolve::{Settings, fields, with_field};
-use crate::schema::{NumberRange, Parts, SettingKind};
+use crate::schema::{NumberRange, Parts, SettingKind, list};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
 

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use super::every_setting;
 use crate::evolve::{Settings, fields};
 use crate::schema::{ListedSetting, list};
 use crate::studio::state::current_run::CurrentRun;
@@ -97,6 +96,13 @@ impl Values {
         };
         fields.into_iter().filter_map(back).collect()
     }
+}
+
+/// Every possible setting, including those of a separate ground.
+pub fn every_setting() -> Vec<ListedSetting> {
+    let mut settings = Settings::default();
+    settings.trial.ground = Some(settings.trial.surface.clone());
+    list(&settings)
 }
 
 /// Parses a list: `[1, 2]`.
