@@ -1,6 +1,7 @@
 //! The ground, and a grid that fades out before it could flicker.
 
 use bevy::asset::RenderAssetUsages;
+use bevy::light::NotShadowCaster;
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 
@@ -49,7 +50,8 @@ impl FromWorld for Earth {
 
 fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, earth: Res<Earth>) {
     let ground = meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)));
-    commands.spawn((Mesh3d(ground), MeshMaterial3d(earth.ground.clone())));
+    // The ground has nothing below it to shade. As a caster it would draw saw-teeth along the foot of every wall.
+    commands.spawn((Mesh3d(ground), MeshMaterial3d(earth.ground.clone()), NotShadowCaster));
     commands.spawn((Mesh3d(meshes.add(grid())), MeshMaterial3d(earth.grid.clone())));
 }
 
@@ -85,4 +87,25 @@ fn grid() -> Mesh {
     Mesh::new(PrimitiveTopology::LineList, RenderAssetUsages::RENDER_WORLD)
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, points)
         .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ground_casts_no_shadow_on_the_foot_of_the_stairs() {
+        let mut app = App::new();
+        app.init_resource::<Assets<Mesh>>()
+            .init_resource::<Assets<StandardMaterial>>()
+            .init_resource::<Earth>()
+            .add_systems(Startup, set_up);
+        app.update();
+        let world = app.world_mut();
+        let ground = world.resource::<Earth>().ground.clone();
+        let mut grounds =
+            world.query::<(&MeshMaterial3d<StandardMaterial>, Has<NotShadowCaster>)>();
+        let casts = grounds.iter(world).any(|(of, is_without)| of.0 == ground && !is_without);
+        assert!(!casts);
+    }
 }

@@ -100,8 +100,13 @@ fn dot(ui: &mut egui::Ui, color: egui::Color32) {
     ui.painter().circle_filled(rect.center(), theme::GAP * 0.6, color);
 }
 
-fn strong_if(is_strong: bool, text: egui::RichText) -> egui::RichText {
-    if is_strong { text.strong() } else { text }
+/// Marks the winner by the accent below the text: the panels' font has no bold weight.
+fn marked_if(is_winner: bool, text: egui::RichText, palette: &theme::Palette) -> egui::RichText {
+    if is_winner {
+        text.color(palette.on_accent).background_color(palette.accent).strong()
+    } else {
+        text
+    }
 }
 
 /// Draws the leaderboard and collects the user's commands. `focus` is the lane whose numbers are shown. Over a narrow
@@ -135,11 +140,10 @@ pub(crate) fn leaderboard(
                 let lane = lanes.iter().find(|lane| lane.number() == ranked.lane);
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
                 let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
-                ui.label(strong_if(is_winner, rank.color(palette.text_weak)));
+                ui.label(marked_if(is_winner, rank.color(palette.text_weak), palette));
                 dot(ui, palette.lane_color(ranked.lane));
                 let hint = "Show the numbers and torques of this snake below";
-                let name = strong_if(is_winner, egui::RichText::new(&ranked.name));
-                let name = ui.selectable_label(ranked.lane == focus, name);
+                let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
                 if name.on_hover_text(hint).clicked() {
                     commands.push(Command::Stage(StageCommand::Focus(ranked.lane)));
                 }
@@ -159,7 +163,7 @@ pub(crate) fn leaderboard(
                 };
                 let width = if is_narrow { 8 } else { 14 };
                 let text = egui::RichText::new(format!("{text:>width$}")).monospace().color(color);
-                let value = ui.label(strong_if(is_winner, text));
+                let value = ui.label(marked_if(is_winner, text, palette));
                 if let Some(lane) = lane {
                     value.on_hover_ui(|ui| split_times(ui, lane, time_s));
                 }
