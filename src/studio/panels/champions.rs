@@ -13,6 +13,7 @@ use crate::run::GenerationReport;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
+use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
 
 use columns::{cells, heads};
@@ -115,12 +116,12 @@ impl ChampionsPanel {
             }
         });
         let hint = "Show each better generation as soon as it is found (W)";
-        if ui.checkbox(&mut follows, "Follow evolution").on_hover_text(hint).clicked() {
+        if check_box(ui, &mut follows, "Follow evolution").on_hover_text(hint).clicked() {
             commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
         }
         let hint =
             "List only the generations whose best snake beat those of all generations before";
-        ui.checkbox(&mut self.lists_better_only, "Better ones only").on_hover_text(hint);
+        check_box(ui, &mut self.lists_better_only, "Better ones only").on_hover_text(hint);
         if reports.is_empty() {
             explain(ui, "The best snake of each generation will appear here.");
         }

@@ -119,7 +119,7 @@ mod tests {
             *app.world().entity(mark).get::<Visibility>().expect("it has one")
         };
         app.world_mut().spawn(lane(0));
-        app.world_mut().spawn(lane(1).as_ghost());
+        app.world_mut().spawn(lane(1).into_ghost());
         assert_eq!(seen(&mut app), Visibility::Hidden);
         app.world_mut().spawn(lane(2));
         assert_eq!(seen(&mut app), Visibility::Inherited);

@@ -170,7 +170,7 @@ mod tests {
             .init_resource::<Props>()
             .init_resource::<LaneColors>()
             .add_plugins(plugin);
-        for lane in [lane(0), lane(1).as_ghost()] {
+        for lane in [lane(0), lane(1).into_ghost()] {
             app.world_mut().spawn((Transform::default(), Visibility::default(), lane));
         }
         app.update();

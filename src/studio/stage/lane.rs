@@ -109,7 +109,7 @@ impl Lane {
 
     /// The same lane as a ghost.
     #[cfg(test)]
-    pub fn as_ghost(self) -> Self {
+    pub fn into_ghost(self) -> Self {
         Self { is_ghost: true, ..self }
     }
 

@@ -182,7 +182,7 @@ fn follow(
     if lanes.iter().any(Lane::is_disturbed) {
         return;
     }
-    let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(&lanes);
+    let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(lanes);
     let Some(generation) = following.due(&run, is_over) else { return };
     following.shown = Some(generation);
     following.shown_for = Duration::ZERO;

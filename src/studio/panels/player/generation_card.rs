@@ -6,6 +6,7 @@ use crate::studio::commands::{Command, PlayerCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::following::Following;
+use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::theme;
 
 /// Draws the card of the generation on the stage. `best` is the lane of its best snake, `shown` the number of lanes.
@@ -30,7 +31,7 @@ pub(crate) fn generation_card(
     ui.horizontal(|ui| {
         let hint = "Show each better generation as soon as it is found (W)";
         let mut follows = following.follows_evolution();
-        if ui.checkbox(&mut follows, "Follow evolution").on_hover_text(hint).clicked() {
+        if check_box(ui, &mut follows, "Follow evolution").on_hover_text(hint).clicked() {
             commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
         }
         let hint = "Show only the best snake of this generation (Esc)";

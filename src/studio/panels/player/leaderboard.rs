@@ -292,7 +292,7 @@ mod tests {
         let lane = |number, name: &str| {
             Lane::new(StagedChampion::from_file(&loaded, number, name), number)
         };
-        let lanes = [lane(0, "racer"), lane(1, "ghost").as_ghost()];
+        let lanes = [lane(0, "racer"), lane(1, "ghost").into_ghost()];
         let lanes: Vec<&Lane> = lanes.iter().collect();
         let mut harness = Harness::new_ui_state(
             |ui, commands: &mut Vec<Command>| {
