@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, UNIX_EPOCH};
 
 use ron::ser::PrettyConfig;
 use serde::{Deserialize, Serialize};
@@ -334,4 +335,9 @@ pub fn names_in(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
     names.sort();
     names
+}
+
+/// Time of the last change, since the beginning of 1970; zero if it is unknown.
+pub(super) fn modified(about: &fs::Metadata) -> Duration {
+    about.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok()).unwrap_or_default()
 }

@@ -2,11 +2,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use directories::ProjectDirs;
 
 use super::change::load_changed_plan;
-use super::files::{numbered, prepare_folder, refuse_link};
+use super::files::{modified, numbered, prepare_folder, refuse_link};
 use super::notes::{EntryNotes, notes_in_run};
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
@@ -92,7 +93,9 @@ impl SavesFolder {
             // Notes that cannot be read do not keep a run from being resumed.
             let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
             let name = notes.own_name().map(str::to_owned);
-            Some(RunSummary { folder, plan, finished, name, is_stopped })
+            let log = fs::metadata(folder.join("log.jsonl"));
+            let saved_at = log.map_or(Duration::ZERO, |log| modified(&log));
+            Some(RunSummary { folder, plan, finished, name, saved_at, is_stopped })
         };
         folders.into_iter().filter_map(summary).collect()
     }
@@ -128,6 +131,8 @@ pub struct RunSummary {
     pub finished: u32,
     /// The name that the user gave it, if any.
     pub name: Option<String>,
+    /// Time of the last change of its log since 1970; zero if it is unknown.
+    pub saved_at: Duration,
     /// Whether evaluations are left for another generation.
     is_stopped: bool,
 }

@@ -186,7 +186,7 @@ fn a_first_start_shows_the_first_generation_and_then_a_better_one() {
     let Some(studio) = Studio::open_following("learns", "--preset quick --seed 3") else { return };
     studio.wait_for_title("showing generation 1, ");
     studio.place("Generation 1");
-    studio.place_with(" snakes at once");
+    studio.place_with("40 of 60 snakes");
     studio.wait_for_title_without("showing generation 1, ");
     studio.wait_for_title("showing generation ");
     studio.click_label("Only the best");

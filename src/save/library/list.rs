@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 use std::fs::{self, DirEntry};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, UNIX_EPOCH};
+use std::time::Duration;
 
 use super::name::{NOTES_ENDING, notes_beside};
 use super::notes::read_notes;
 use super::shipped::SHIPPED;
+use crate::save::files::modified;
 use crate::save::plan::RUN_FILE;
 use crate::save::record::LOG_FILE;
 use crate::save::{EntryNotes, SaveError, SavesFolder};
@@ -129,11 +130,6 @@ fn entry_of(found: &DirEntry, notes: &BTreeSet<PathBuf>) -> Option<LibraryEntry>
 
 fn notes_of(place: &SavePlace) -> Result<EntryNotes, String> {
     read_notes(place).map_err(|error| error.to_string())
-}
-
-/// Time of the last change, since the beginning of 1970.
-fn modified(about: &fs::Metadata) -> Duration {
-    about.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok()).unwrap_or_default()
 }
 
 #[cfg(test)]

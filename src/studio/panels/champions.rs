@@ -141,7 +141,7 @@ impl ChampionsPanel {
                         true => self.times.of(champion),
                         false => LandingTime::None,
                     };
-                    let row = Row { is_shown, name: &saved.name, champion, time };
+                    let row = ChampionRow { is_shown, name: &saved.name, champion, time };
                     entry(ui, row, Pick::Opened(index), None, commands);
                     continue;
                 }
@@ -164,7 +164,7 @@ impl ChampionsPanel {
                 let name = if is_best { format!("{name}, best") } else { name };
                 let race = (leaders(Some(generation)) > 1).then_some(generation);
                 let time = self.times.of(champion);
-                let row = Row { is_shown, name: &name, champion, time };
+                let row = ChampionRow { is_shown, name: &name, champion, time };
                 entry(ui, row, pick, race, commands);
             }
         });
@@ -182,7 +182,7 @@ impl ChampionsPanel {
 }
 
 /// Row of a champion.
-struct Row<'r> {
+struct ChampionRow<'r> {
     is_shown: bool,
     name: &'r str,
     champion: &'r Champion,
@@ -193,7 +193,7 @@ struct Row<'r> {
 /// the next run from it, or races the best ten of its generation.
 fn entry(
     ui: &mut egui::Ui,
-    Row { is_shown, name, champion, time }: Row<'_>,
+    ChampionRow { is_shown, name, champion, time }: ChampionRow<'_>,
     pick: Pick,
     race: Option<u32>,
     commands: &mut Vec<Command>,

@@ -72,6 +72,12 @@ impl Show {
     }
 }
 
+/// All of `count` indices if they are at most `most`, else `few` of them, evenly spread from the first to the last.
+pub(super) fn evenly(count: usize, most: usize, few: usize) -> impl Iterator<Item = usize> {
+    let chosen = if count <= most { count } else { few };
+    (0..chosen).map(move |index| index * (count - 1) / (chosen - 1).max(1))
+}
+
 pub(super) fn plugin(app: &mut App) {
     app.add_message::<Show>()
         .init_resource::<Playback>()

@@ -4,9 +4,9 @@ mod compared_runs;
 mod events;
 mod individuals;
 mod live_changes;
-mod milestones;
 mod next_run;
-mod stopped_run;
+mod run_commands;
+mod whole_generation;
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -14,18 +14,13 @@ use std::sync::{Arc, OnceLock};
 
 use bevy::prelude::*;
 
-use super::chart_export;
-use super::new_file::{offer_path, offer_picture};
+use super::milestones::Milestones;
 use super::run_context::RunContext;
 use crate::evolve::{Champion, RunPlan, Settings};
 use crate::run::{BackgroundRun, Exploration, GenerationReport, RunSource};
 use crate::save::{ExistingRun, RunSummary};
-use crate::studio::commands::RunCommand;
-use crate::studio::commands::chart_export::ChartFormat;
-use crate::studio::ui::notifications::Notices;
 
 use individuals::Ancestors;
-use milestones::Milestone;
 
 pub(crate) use compared_runs::{ComparedRuns, MOST_COMPARED};
 pub(crate) use live_changes::news_of;
@@ -65,7 +60,7 @@ pub(crate) struct CurrentRun {
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
     /// The generations that were better than all before them.
-    milestones: Vec<Milestone>,
+    milestones: Milestones,
     /// Results besides champions, after the first finished generation.
     exploration: Option<Box<Exploration>>,
     /// Individuals with descendants, by place; computed on first use.
@@ -84,7 +79,7 @@ pub(crate) struct CurrentRun {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<CurrentRun>().add_plugins((events::plugin, stopped_run::plugin));
+    app.init_resource::<CurrentRun>().add_plugins(events::plugin);
 }
 
 impl FromWorld for CurrentRun {
@@ -110,7 +105,7 @@ impl CurrentRun {
             background: None,
             before: None,
             reports: Vec::new(),
-            milestones: Vec::new(),
+            milestones: Milestones::default(),
             exploration: None,
             ancestors: OnceLock::new(),
             times_explored: 0,
@@ -230,32 +225,6 @@ impl CurrentRun {
     pub fn champion_of(&self, generation: u32) -> Option<&Champion> {
         let index = (generation as usize).checked_sub(1)?;
         self.reports.get(index)?.champion.as_ref()
-    }
-
-    /// Executes a command.
-    ///
-    /// # Errors
-    /// The run, its folder or the system does not allow it, with the reason.
-    pub fn apply(&mut self, command: &RunCommand, notices: &mut Notices) -> Result<(), String> {
-        match command {
-            RunCommand::Start => self.start(),
-            RunCommand::Pause => self.pause(),
-            RunCommand::SingleGeneration => self.single_generation(),
-            RunCommand::Reset => self.reset(),
-            RunCommand::Continue(folder) => self.go_on_with(folder),
-            RunCommand::SetThreads(threads) => self.set_threads(*threads),
-            RunCommand::ListRuns => self.list_runs(),
-            RunCommand::Compare(folder) => self.others.toggle(folder),
-            RunCommand::ExportChart(chart) => {
-                let path = chart_export::export(&self.context.saves, chart)?;
-                let text = format!("Chart saved to {}", path.display());
-                match chart.format {
-                    ChartFormat::Png => offer_picture(notices, text, &path),
-                    ChartFormat::Csv => offer_path(notices, "table", text, &path),
-                }
-                Ok(())
-            }
-        }
     }
 
     /// Evolves until held or finished. After the end of a run it begins the next one.

@@ -7,10 +7,12 @@ use std::time::Duration;
 use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
+use crate::studio::commands::{Command, StageCommand};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::{Show, end_s};
+use crate::studio::ui::notifications::Notices;
 
 /// Decides which generation of the current run the stage shows.
 #[derive(Resource, Debug, Default)]
@@ -24,6 +26,8 @@ pub(crate) struct Following {
     run: u32,
     /// The generation on the stage.
     shown: Option<u32>,
+    /// The latest generation that came onto the stage or was announced.
+    announced: u32,
     /// Real time for which it has been played.
     shown_for: Duration,
 }
@@ -137,7 +141,7 @@ impl Following {
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Following>()
         .add_systems(Startup, await_first)
-        .add_systems(Update, follow.in_set(FrameSet::TakeIn));
+        .add_systems(Update, (follow, announce).chain().in_set(FrameSet::TakeIn));
 }
 
 /// Lets the snake lie at the foot of the stairs until the first generation comes.
@@ -162,7 +166,7 @@ fn follow(
     }
     if following.run != run.number() {
         // The user has begun another run, and wants to see it learn.
-        following.run = run.number();
+        (following.run, following.announced) = (run.number(), 0);
         following.follow_evolution();
         following.is_new = true;
     }
@@ -185,11 +189,28 @@ fn follow(
     let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(lanes);
     let Some(generation) = following.due(&run, is_over) else { return };
     following.shown = Some(generation);
+    following.announced = following.announced.max(generation);
     following.shown_for = Duration::ZERO;
     following.holds = false;
     if let Some(generation) = run.whole_generation(generation) {
         playback.restart();
         show.write(generation);
+    }
+}
+
+/// Announces a generation that is better than all before it, unless the stage shows better ones anyway.
+fn announce(mut following: ResMut<Following>, run: Res<CurrentRun>, mut notices: ResMut<Notices>) {
+    let Some(latest) = run.milestones().last() else { return };
+    if following.follows_evolution() || latest.generation <= following.announced {
+        return;
+    }
+    following.announced = latest.generation;
+    // An earlier session has seen those whose snakes are not kept.
+    if let Some(best) = run.champion_of(latest.generation).filter(|_| latest.is_whole()) {
+        let generation = latest.generation;
+        let text = format!("Generation {generation} is the best so far: {}", best.reached());
+        let show = Command::Stage(StageCommand::ShowGeneration(Some(generation)));
+        notices.offer("best", text, [("Show it", show)]);
     }
 }
 

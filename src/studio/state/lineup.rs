@@ -5,7 +5,7 @@ use crate::evolve::Champion;
 use crate::studio::commands::pick::Pick;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
-use crate::studio::stage::{MAX_LANES, Show};
+use crate::studio::stage::{MAX_LANES, Show, evenly};
 
 /// Number of generations that race if there are more than lanes: as many as the report shows.
 const CHOSEN_GENERATIONS: usize = 6;
@@ -69,12 +69,6 @@ pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, S
 /// The indices of those of `count` that race: all, or of many some at equal distances.
 pub(crate) fn evenly_chosen(count: usize) -> impl Iterator<Item = usize> {
     evenly(count, MAX_LANES, CHOSEN_GENERATIONS)
-}
-
-/// All of `count` indices if they are at most `most`, else `few` of them, evenly spread from the first to the last.
-pub(crate) fn evenly(count: usize, most: usize, few: usize) -> impl Iterator<Item = usize> {
-    let chosen = if count <= most { count } else { few };
-    (0..chosen).map(move |index| index * (count - 1) / (chosen - 1).max(1))
 }
 
 /// The best of a generation, or of the latest one.

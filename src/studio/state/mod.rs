@@ -7,10 +7,12 @@ pub mod following;
 pub mod lessons;
 pub mod library;
 pub mod lineup;
+pub mod milestones;
 pub mod new_file;
 pub mod options;
 pub mod plan_commands;
 pub mod run_context;
+mod stopped_run;
 pub mod sweep;
 pub mod undo;
 pub mod what_if;
@@ -26,6 +28,7 @@ pub(super) fn plugin(app: &mut App) {
         undo::plugin,
         current_run::plugin,
         following::plugin,
+        stopped_run::plugin,
         library::plugin,
         files::plugin,
         lessons::plugin,

@@ -6,8 +6,6 @@ use super::CurrentRun;
 use super::live_changes::{news_of, refusal_in_words};
 use crate::run::{OpenedRun, RunEvent};
 use crate::save::ExistingRun;
-use crate::studio::commands::{Command, StageCommand};
-use crate::studio::state::following::Following;
 use crate::studio::ui::notifications::Notices;
 
 pub(super) fn plugin(app: &mut App) {
@@ -21,9 +19,8 @@ fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     }
 }
 
-/// Handles events of the background run, and announces each generation that is better than all before it, unless the
-/// stage shows it anyway.
-fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, following: Res<Following>) {
+/// Handles events of the background run.
+fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     run.others.take_in();
     let Some(background) = &run.background else { return };
     let events: Vec<RunEvent> = std::iter::from_fn(|| background.poll()).collect();
@@ -62,18 +59,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, following:
             }
             RunEvent::Explored(exploration) => run.explore(exploration),
             RunEvent::Generation(report) => {
-                let is_better = run.note_milestone(&report);
-                if let Some(champion) = report.champion.as_ref().filter(|_| is_better)
-                    && !following.follows_evolution()
-                {
-                    let generation = report.generation;
-                    let text = format!(
-                        "Generation {generation} is the best so far: {}",
-                        champion.reached()
-                    );
-                    let show = Command::Stage(StageCommand::ShowGeneration(Some(generation)));
-                    notices.offer("best", text, [("Show it", show)]);
-                }
+                run.note_milestone(&report);
                 run.reports.push(*report);
             }
             RunEvent::Finished { run_hash } => {
@@ -125,7 +111,6 @@ mod tests {
         let mut app = App::new();
         app.insert_resource(CurrentRun::new(RunContext::new(&options)))
             .init_resource::<Notices>()
-            .init_resource::<Following>()
             .add_systems(Update, take_in);
         app
     }
@@ -170,7 +155,6 @@ mod tests {
                 )))
                 .insert_resource(prepared_run())
                 .init_resource::<Notices>()
-                .init_resource::<Following>()
                 .init_resource::<Calls>()
                 .add_plugins(plugin)
                 .add_systems(FixedUpdate, (|mut calls: ResMut<Calls>| calls.0 += 1).after(take_in));

@@ -1,12 +1,8 @@
 //! Offers, once after the start, to resume the run that was stopped last.
 
-use std::fs;
-use std::path::Path;
-use std::time::SystemTime;
-
 use bevy::prelude::*;
 
-use super::CurrentRun;
+use super::current_run::CurrentRun;
 use crate::save::RunSummary;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::run_context::RunContext;
@@ -36,16 +32,10 @@ fn offer(
     let Some(stopped) = run.stopped() else { return };
     *is_done = true;
     let begun = stopped.filter(|run| run.finished > 0);
-    if let Some(latest) = begun.max_by_key(|run| saved_at(&run.folder)) {
+    if let Some(latest) = begun.max_by_key(|run| run.saved_at) {
         let resume = Command::Run(RunCommand::Continue(latest.folder.clone()));
         notices.lasting_offer(offer_text(latest), "Resume", resume);
     }
-}
-
-/// Time of the last change of a run's log; the earliest time if it is unknown.
-fn saved_at(folder: &Path) -> SystemTime {
-    let log = fs::metadata(folder.join("log.jsonl"));
-    log.and_then(|log| log.modified()).unwrap_or(SystemTime::UNIX_EPOCH)
 }
 
 /// The run in a sentence: "climb, seed 1 stopped after generation 41 of 200."
@@ -91,14 +81,12 @@ mod tests {
         app.insert_resource(CurrentRun::new(context.clone()))
             .insert_resource(context)
             .init_resource::<Notices>()
-            .add_systems(Startup, list)
-            .add_systems(Update, offer);
-        while app.world().resource::<CurrentRun>().others.runs().is_none() {
+            .add_plugins(bevy::time::TimePlugin)
+            .add_plugins((crate::studio::state::current_run::plugin, plugin));
+        let began = std::time::Instant::now();
+        while app.world().resource::<Notices>().len() == 0 && began.elapsed().as_secs() < 30 {
             app.update();
-            app.world_mut().resource_mut::<CurrentRun>().others.take_in();
         }
-        app.update();
-        app.update();
         let notices = app.world().resource::<Notices>();
         assert_eq!(notices.last(), Some("test, seed 1 stopped after generation 1 of 3."));
         assert_eq!(notices.len(), 1);

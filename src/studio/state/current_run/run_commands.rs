@@ -1,0 +1,36 @@
+//! Executes commands to the current run.
+
+use super::CurrentRun;
+use crate::studio::commands::RunCommand;
+use crate::studio::commands::chart_export::ChartFormat;
+use crate::studio::state::chart_export;
+use crate::studio::state::new_file::{offer_path, offer_picture};
+use crate::studio::ui::notifications::Notices;
+
+impl CurrentRun {
+    /// Executes a command.
+    ///
+    /// # Errors
+    /// The run, its folder or the system does not allow it, with the reason.
+    pub fn apply(&mut self, command: &RunCommand, notices: &mut Notices) -> Result<(), String> {
+        match command {
+            RunCommand::Start => self.start(),
+            RunCommand::Pause => self.pause(),
+            RunCommand::SingleGeneration => self.single_generation(),
+            RunCommand::Reset => self.reset(),
+            RunCommand::Continue(folder) => self.go_on_with(folder),
+            RunCommand::SetThreads(threads) => self.set_threads(*threads),
+            RunCommand::ListRuns => self.list_runs(),
+            RunCommand::Compare(folder) => self.others.toggle(folder),
+            RunCommand::ExportChart(chart) => {
+                let path = chart_export::export(&self.context.saves, chart)?;
+                let text = format!("Chart saved to {}", path.display());
+                match chart.format {
+                    ChartFormat::Png => offer_picture(notices, text, &path),
+                    ChartFormat::Csv => offer_path(notices, "table", text, &path),
+                }
+                Ok(())
+            }
+        }
+    }
+}
