@@ -7,6 +7,7 @@ use std::time::Duration;
 use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
+use super::milestones::Milestone;
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -108,19 +109,22 @@ impl Following {
             FollowPlan::Nothing => None,
             FollowPlan::Evolution => {
                 let milestones = run.milestones();
-                // A run that begins is shown from its first generation on, however quickly better ones come.
-                let begins = milestones.iter().find(|first| self.is_new && first.is_whole());
-                let latest = begins.or(milestones.last())?;
-                let is_settled = self.shown.is_none() || is_over || self.shown_for >= LEAST_SHOWN;
-                if self.shown == Some(latest.generation) || !is_settled {
-                    return None;
-                }
+                let next = match self.shown {
+                    // A run that begins is shown from its first generation on, however quickly better ones come.
+                    None => {
+                        let begins =
+                            milestones.iter().find(|first| self.is_new && first.is_whole());
+                        begins.or(milestones.last())?
+                    }
+                    Some(_) if !is_over && self.shown_for < LEAST_SHOWN => return None,
+                    Some(shown) => next_of(milestones, shown)?,
+                };
                 self.is_new = false;
-                if latest.is_landed {
+                if next.is_landed {
                     // The goal is reached. Better ones are announced, and their landing can be watched in peace.
                     self.plan = FollowPlan::Nothing;
                 }
-                Some(latest.generation)
+                Some(next.generation)
             }
             FollowPlan::Story { generations, next } => {
                 let is_first = *next == 0;
@@ -136,6 +140,16 @@ impl Following {
             }
         }
     }
+}
+
+/// The milestone to show after the one of generation `shown`: the next one or, if several were found meanwhile, the one
+/// half way to the latest, or to the first landing.
+fn next_of(milestones: &[Milestone], shown: u32) -> Option<&Milestone> {
+    let begin = milestones.partition_point(|milestone| milestone.generation <= shown);
+    let left = milestones.get(begin..)?;
+    let landing = left.iter().position(|milestone| milestone.is_landed);
+    let left = &left[..landing.map_or(left.len(), |landing| landing + 1)];
+    left.get(left.len().saturating_sub(1) / 2)
 }
 
 pub(super) fn plugin(app: &mut App) {
@@ -218,6 +232,7 @@ fn announce(mut following: ResMut<Following>, run: Res<CurrentRun>, mut notices:
 mod tests {
     use super::*;
     use crate::studio::state::current_run::{explored_run, prepared_run};
+    use std::sync::Arc;
 
     #[test]
     fn a_new_run_is_shown_from_its_first_generation_and_then_from_the_latest() {
@@ -235,6 +250,28 @@ mod tests {
         assert_eq!(following.due(&run, true), None, "nothing better");
         following.follow_evolution();
         assert_eq!(following.due(&run, false), Some(last), "the user asked to see where it is");
+    }
+
+    #[test]
+    fn of_many_better_generations_some_are_shown_and_the_first_landing_always() {
+        let milestone = |generation, is_landed| Milestone {
+            generation,
+            fitness: generation as f32,
+            is_landed,
+            members: Arc::default(),
+            size: 0,
+        };
+        let found: Vec<Milestone> =
+            [1, 2, 3, 5, 6, 9].map(|generation| milestone(generation, generation >= 6)).into();
+        let mut shown = vec![1];
+        while let Some(next) = next_of(&found, shown[shown.len() - 1]) {
+            shown.push(next.generation);
+            if next.is_landed {
+                break;
+            }
+        }
+        assert_eq!(shown, [1, 3, 5, 6]);
+        assert!(next_of(&found, 9).is_none());
     }
 
     #[test]

@@ -23,9 +23,9 @@ struct TourStep {
 const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Stage,
-        title: "A snake that learned to climb",
-        text: "It has five blocks and four joints, and its movements evolved. Use the player below to \
-               pause, move through time or change the speed. Drag to turn the camera; drag a limb to pull it.",
+        title: "Snakes that learn to climb",
+        text: "A generation moves at once, its best snake in full colour. Their movements evolve. Use the player \
+               below to pause or move through time. Drag to turn the camera; drag a limb to pull it.",
         try_it: "Pause it with Space, or click in the strip below it",
         is_done_by: |command| {
             matches!(command, Command::Player(PlayerCommand::Toggle | PlayerCommand::Seek(_)))
@@ -35,7 +35,7 @@ const STEPS: [TourStep; 5] = [
         highlights: PanelKind::Run,
         title: "Evolution runs in the background",
         text: "Start and pause it here. Each generation tries many snakes and breeds from the best. \
-               When a snake beats all earlier ones, it appears on the stage.",
+               When one beats all earlier ones, its generation appears on the stage.",
         try_it: "Pause evolution, or start it",
         is_done_by: |command| {
             use RunCommand::{Pause, Reset, SingleGeneration, Start};
