@@ -12,7 +12,8 @@ use super::staged_champion::StagedChampion;
 use crate::run::{Lookahead, caught};
 use crate::score::{Evaluation, KeyframeHistory, Trial};
 use crate::world::{
-    BodyPlan, ContactForce, JointState, JointTorque, Pose, Pull, Simulation, Vector,
+    BodyPlan, ContactForce, Disqualification, JointState, JointTorque, Pose, Pull, Simulation,
+    Vector,
 };
 
 /// A lane, with the rollout that is scored.
@@ -41,6 +42,8 @@ pub(crate) struct Lane {
     detour_m: Vec<Vector>,
     /// Whether simulating this lane panicked. It then keeps its last state.
     is_broken: bool,
+    /// Whether a pull has broken a limit.
+    is_pull_over: bool,
     /// Whether the final state was compared with the champion's record.
     is_checked: bool,
 }
@@ -98,6 +101,7 @@ impl Lane {
             detour_m: Vec::new(),
             is_broken: false,
             is_checked: false,
+            is_pull_over: false,
         }
     }
 
@@ -261,6 +265,14 @@ impl Lane {
         let has_ended = self.replay.is_over() && !self.is_disturbed() && !self.is_checked;
         self.is_checked |= has_ended;
         has_ended
+    }
+
+    /// Returns once the limit that a pull broke, which has ended the trial.
+    pub fn limit_just_broken_by_pull(&mut self) -> Option<Disqualification> {
+        let broken = self.evaluation().disqualified;
+        let broken = broken.filter(|_| self.replay.is_over() && self.is_disturbed());
+        let was_told = std::mem::replace(&mut self.is_pull_over, broken.is_some());
+        broken.filter(|_| !was_told)
     }
 
     /// The simulated world after the last step; a recording has none.

@@ -15,6 +15,7 @@ use super::ui::notifications::Notices;
 use crate::ENGINE_VERSION;
 use crate::evolve::RunPlan;
 use crate::run::caught;
+use crate::world::{Disqualification, HealthLimits};
 
 use lane::{Lane, MAX_STEPS_PER_FRAME};
 use playback::Playback;
@@ -185,6 +186,7 @@ fn advance(
         return;
     }
     playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
+    let mut broken_at_s = None;
     for (entity, mut lane) in &mut lanes {
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
         let failed = lane.show(playback.time_s(), pull, most_steps).err();
@@ -193,6 +195,31 @@ fn advance(
         if lane.has_just_ended() {
             notices.problems(differs_from_record(&lane));
         }
+        if let Some(broken) = lane.limit_just_broken_by_pull() {
+            let limit = limit_in_words(broken, &lane.trial().health);
+            notices.info(format!(
+                "The pull broke a limit, which ends the trial: {limit}. Space plays it from the start."
+            ));
+            broken_at_s = Some(lane.end_s());
+        }
+    }
+    if let Some(broken_at_s) = broken_at_s {
+        // The moment stays in view instead of starting over without a word.
+        playback.hold_at(broken_at_s);
+    }
+}
+
+/// The limit whose excess disqualifies, with its value.
+fn limit_in_words(broken: Disqualification, health: &HealthLimits) -> String {
+    let reason = broken.words();
+    match broken {
+        Disqualification::TooFast => format!("{reason} ({} m/s)", health.speed_m_s),
+        Disqualification::JointBroke => format!("{reason} (by {} m)", health.joint_drift_m),
+        Disqualification::LeftArena => format!(
+            "{reason} ({} m sideways, {} m backward)",
+            health.arena_half_width_m, health.arena_back_m
+        ),
+        Disqualification::NotFinite | Disqualification::Crashed => reason.to_owned(),
     }
 }
 

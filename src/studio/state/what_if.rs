@@ -69,7 +69,7 @@ pub(crate) fn what_if(
     }
     let label = match change {
         WorldChange::Preset(name) => (*name).to_owned(),
-        WorldChange::Fields(_) => world_in_words(original.trial(), &trial),
+        WorldChange::Fields(_) => world_in_words(&original.champion().trial, &trial),
     };
     let changed = original.in_world(&trial, label);
     changed.check().map_err(|reason| {
@@ -143,6 +143,21 @@ mod tests {
         dropped(&mut run, &second.champions, &second.mode).expect("allowed");
         assert_eq!((run.next_seed(), run.next_settings().evolution.population), (77, 9));
         assert_eq!(run.next_settings().trial, plan.settings.trial);
+    }
+
+    #[test]
+    fn a_second_change_names_the_first_one_that_was_kept() {
+        let mut run = prepared_run();
+        let change = |field, text| WorldChange::Fields(vec![(field, text)]);
+        let first = change("surface.friction", "0.3");
+        let first = what_if(&mut run, &[saved(0)], &StageMode::Solo, &first);
+        let first = first.expect("allowed").expect("it matters");
+        let kept = kept(&first.champions, &first.mode).expect("kept");
+        let second = change("stairs.rise_m", "0.7");
+        let second = what_if(&mut run, &kept.champions, &kept.mode, &second);
+        let second = second.expect("allowed").expect("it matters");
+        let labels: Vec<&str> = second.champions.iter().map(StagedChampion::label).collect();
+        assert_eq!(labels, ["friction 0.3", "rise 0.7, friction 0.3"]);
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub(crate) fn followed(
     if trial == *original.trial() {
         return Ok(Some(Show::solo(original)));
     }
-    let label = world_in_words(original.trial(), &trial);
+    let label = world_in_words(&original.champion().trial, &trial);
     let restored = original.in_world(&trial, label);
     restored.check().map_err(|reason| unsuited(&reason.to_string()))?;
     if begins.is_none() && first.is_changed() {
