@@ -92,7 +92,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(UiDumpFile(options.places.clone()))
         .insert_resource(Workspace::new(tour_is_over))
         .insert_resource(OpeningChampions(saved))
-        // What the studio was opened with stays on the stage.
+        // Champions that the studio was opened with stay on the stage.
         .insert_resource(if has_champions { Following::default() } else { Following::from_start() })
         .insert_resource(OpenedComparison(options.comparison.clone()))
         .insert_resource(engine)

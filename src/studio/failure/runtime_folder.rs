@@ -4,8 +4,8 @@
 //! device selection) writes the same error to standard error each time devices are listed, twice at every start,
 //! although nothing is wrong.
 
-/// Starts this program again with the folder that the variable usually names, if it is missing. Then whoever looks for
-/// a socket there finds none, without a word. Says so in one line through `say`.
+/// Starts this program again with the folder that the variable usually names, if it is missing. Then each library that
+/// looks for a socket there finds none, without a word. Says so in one line through `say`.
 #[cfg(target_os = "linux")]
 pub fn name_runtime_folder(say: impl FnOnce(&str)) {
     use std::os::unix::fs::MetadataExt;

@@ -4,6 +4,7 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
+use super::props::recolor;
 use super::text::{TextMeshes, TextPlacement};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -61,11 +62,7 @@ impl FromWorld for Cloth {
 
 fn dress(theme: Res<Theme>, cloth: Res<Cloth>, mut materials: ResMut<Assets<StandardMaterial>>) {
     let palette = theme.palette();
-    for (handle, color) in [(&cloth.post, palette.metal), (&cloth.cloth, palette.flag)] {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
+    recolor(&mut materials, [(&cloth.post, palette.metal), (&cloth.cloth, palette.flag)]);
 }
 
 /// Reads the best distance from the run's champions.

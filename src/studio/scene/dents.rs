@@ -7,6 +7,7 @@ use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 
+use super::props::recolor;
 use super::surface_look::SurfaceLook;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -17,7 +18,7 @@ use crate::world::{Pose, Stairs};
 #[derive(Component, Debug)]
 struct Dent(usize);
 
-/// What patches share.
+/// Mesh and material of all patches.
 #[derive(Resource, Debug)]
 struct Patch {
     mesh: Handle<Mesh>,
@@ -67,9 +68,7 @@ impl FromWorld for Patch {
 }
 
 fn dress(theme: Res<Theme>, patch: Res<Patch>, mut materials: ResMut<Assets<StandardMaterial>>) {
-    if let Some(mut material) = materials.get_mut(&patch.material) {
-        material.base_color = theme.palette().dent;
-    }
+    recolor(&mut materials, [(&patch.material, theme.palette().dent)]);
 }
 
 /// A square of one metre that fades out towards its edges.

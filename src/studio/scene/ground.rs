@@ -5,6 +5,7 @@ use bevy::light::NotShadowCaster;
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 
+use super::props::recolor;
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::Theme;
 
@@ -57,11 +58,7 @@ fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, earth: Res<E
 
 fn dress(theme: Res<Theme>, earth: Res<Earth>, mut materials: ResMut<Assets<StandardMaterial>>) {
     let palette = theme.palette();
-    for (handle, color) in [(&earth.ground, palette.ground), (&earth.grid, palette.grid)] {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
+    recolor(&mut materials, [(&earth.ground, palette.ground), (&earth.grid, palette.grid)]);
 }
 
 /// Lines on the ground, one tread apart in both directions, which make distances visible. The grid fades out towards

@@ -1,4 +1,4 @@
-//! What makes the stairs a place worth reaching: a railing, a finish at the last step, a wall with a door at
+//! Fittings of the stairs: a railing, a finish at the last step, a wall with a door at
 //! its end. The door has the size of a door, which gives everything else its scale.
 //!
 //! The physics knows none of it; it stands beside and above the snake's way. A lane has three meshes, shared by lanes
@@ -8,6 +8,7 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
+use super::props::recolor;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
@@ -74,15 +75,14 @@ fn dress(
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     let palette = theme.palette();
-    for (handle, color) in [
-        (&fittings.wood, palette.wood),
-        (&fittings.wall, palette.wall),
-        (&fittings.white, palette.white),
-    ] {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
+    recolor(
+        &mut materials,
+        [
+            (&fittings.wood, palette.wood),
+            (&fittings.wall, palette.wall),
+            (&fittings.white, palette.white),
+        ],
+    );
 }
 
 /// Spawns the fittings of a new lane.

@@ -4,6 +4,7 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
+use super::props::recolor;
 use super::stairs::{STRIP_ASIDE_M, strip_y_m};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -52,12 +53,11 @@ fn dress(
     colors: Res<LaneColors>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    for (number, handle) in colors.0.iter().enumerate() {
-        if let Some(mut material) = materials.get_mut(handle) {
-            let [red, green, blue, _] = theme.palette().lane_color(number).to_array();
-            material.base_color = Color::srgb_u8(red, green, blue);
-        }
-    }
+    let of_lane = |(number, handle)| {
+        let [red, green, blue, _] = theme.palette().lane_color(number).to_array();
+        (handle, Color::srgb_u8(red, green, blue))
+    };
+    recolor(&mut materials, colors.0.iter().enumerate().map(of_lane));
 }
 
 /// Spawns the stripes of a new lane.

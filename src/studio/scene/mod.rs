@@ -34,7 +34,7 @@ use bevy::render::renderer::RenderAdapterInfo;
 use super::schedule::FrameSet;
 use super::ui::theme::Theme;
 
-use props::Props;
+use props::{Props, recolor};
 use quality::Quality;
 
 /// The scene of the window: all that is drawn, with the camera and the mouse.
@@ -136,16 +136,15 @@ fn dress(
     mut commands: Commands,
 ) {
     let palette = theme.palette();
-    for (handle, color) in [
-        (&props.red, palette.red_limb),
-        (&props.blue, palette.blue_limb),
-        (&props.red_ghost, palette.red_limb.with_alpha(GHOST_ALPHA)),
-        (&props.blue_ghost, palette.blue_limb.with_alpha(GHOST_ALPHA)),
-    ] {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
+    recolor(
+        &mut materials,
+        [
+            (&props.red, palette.red_limb),
+            (&props.blue, palette.blue_limb),
+            (&props.red_ghost, palette.red_limb.with_alpha(GHOST_ALPHA)),
+            (&props.blue_ghost, palette.blue_limb.with_alpha(GHOST_ALPHA)),
+        ],
+    );
     for mut sun in &mut suns {
         sun.color = palette.sun;
         sun.illuminance = palette.sun_lux;

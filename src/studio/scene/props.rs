@@ -37,6 +37,18 @@ impl FromWorld for Props {
     }
 }
 
+/// Gives materials the colours of the theme.
+pub(crate) fn recolor<'h>(
+    materials: &mut Assets<StandardMaterial>,
+    colors: impl IntoIterator<Item = (&'h Handle<StandardMaterial>, Color)>,
+) {
+    for (handle, color) in colors {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color;
+        }
+    }
+}
+
 /// A transform that scales the unit cube to a box.
 pub(crate) fn box_transform(centre: Vec3, size: Vec3) -> Transform {
     Transform::from_translation(centre).with_scale(size)

@@ -7,7 +7,7 @@ use bevy::prelude::*;
 
 use super::lane_marks::{LaneColors, LaneMark};
 use super::limb::LimbShape;
-use super::props::Props;
+use super::props::{Props, recolor};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
@@ -74,11 +74,7 @@ impl FromWorld for Trim {
 
 fn dress(theme: Res<Theme>, trim: Res<Trim>, mut materials: ResMut<Assets<StandardMaterial>>) {
     let palette = theme.palette();
-    for (handle, color) in [(&trim.white, palette.white), (&trim.dark, palette.metal)] {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
+    recolor(&mut materials, [(&trim.white, palette.white), (&trim.dark, palette.metal)]);
 }
 
 /// Spawns the limbs of a new lane.

@@ -4,7 +4,7 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
-use super::props::{Props, box_transform};
+use super::props::{Props, box_transform, recolor};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
@@ -53,15 +53,14 @@ impl FromWorld for Strips {
 
 fn dress(theme: Res<Theme>, strips: Res<Strips>, mut materials: ResMut<Assets<StandardMaterial>>) {
     let palette = theme.palette();
-    for (handle, color) in [
-        (&strips.dark, palette.step_edge),
-        (&strips.lit, palette.step_edge_lit),
-        (&strips.glow, palette.step_edge_lit),
-    ] {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
+    recolor(
+        &mut materials,
+        [
+            (&strips.dark, palette.step_edge),
+            (&strips.lit, palette.step_edge_lit),
+            (&strips.glow, palette.step_edge_lit),
+        ],
+    );
 }
 
 /// Spawns the strips of a new lane.

@@ -9,6 +9,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 
+use super::props::recolor;
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::Theme;
 
@@ -52,13 +53,10 @@ fn dress(
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
     let palette = theme.palette();
-    for (handle, color) in
-        [(&lettering.paint, palette.paint), (&lettering.on_flag, palette.flag_text)]
-    {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
+    recolor(
+        &mut materials,
+        [(&lettering.paint, palette.paint), (&lettering.on_flag, palette.flag_text)],
+    );
 }
 
 /// Builds one mesh from several texts.

@@ -7,14 +7,12 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 
+use super::readings::Readings;
 use super::replay::Replay;
 use super::staged_champion::StagedChampion;
 use crate::run::{Lookahead, caught};
 use crate::score::{Evaluation, KeyframeHistory, Trial};
-use crate::world::{
-    BodyPlan, ContactForce, Disqualification, JointState, JointTorque, Pose, Pull, Simulation,
-    Vector,
-};
+use crate::world::{BodyPlan, Disqualification, Pose, Pull, Simulation, Vector};
 
 /// A lane, with the rollout that is scored.
 #[derive(Component)]
@@ -46,19 +44,6 @@ pub(crate) struct Lane {
     is_pull_over: bool,
     /// Whether the final state was compared with the champion's record.
     is_checked: bool,
-}
-
-/// Contacts, torques and joints after the last step.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Readings {
-    /// Contact forces on the limbs.
-    pub contacts: Vec<ContactForce>,
-    /// Joint torques, from the head.
-    pub torques: Vec<JointTorque>,
-    /// Joint states, from the head.
-    pub joints: Vec<JointState>,
-    /// Speeds of the limbs' centres, from head to tail, in m/s.
-    pub speeds_m_s: Vec<f32>,
 }
 
 /// Maximum physics steps per frame over all lanes (about 60 ms on one core).
@@ -96,7 +81,7 @@ impl Lane {
             offset_x_m: 0.0,
             is_ghost: false,
             share: 1.0,
-            readings: readings_of(&replay),
+            readings: Readings::of(&replay),
             replay,
             detour_m: Vec::new(),
             is_broken: false,
@@ -269,8 +254,8 @@ impl Lane {
 
     /// Returns once the limit that a pull broke, which has ended the trial.
     pub fn limit_just_broken_by_pull(&mut self) -> Option<Disqualification> {
-        let broken = self.evaluation().disqualified;
-        let broken = broken.filter(|_| self.replay.is_over() && self.is_disturbed());
+        let is_pull_over = self.replay.is_over() && self.is_disturbed();
+        let broken = if is_pull_over { self.evaluation().disqualified } else { None };
         let was_told = std::mem::replace(&mut self.is_pull_over, broken.is_some());
         broken.filter(|_| !was_told)
     }
@@ -333,7 +318,7 @@ impl Lane {
                 self.go_on(step.min(now + most_steps));
             }
         });
-        self.readings = readings_of(&self.replay);
+        self.readings = Readings::of(&self.replay);
         self.is_broken = result.is_err();
         result
     }
@@ -378,7 +363,7 @@ impl Lane {
         let (step, share) = self.moment(time_s);
         self.share = share;
         self.go_on(step);
-        self.readings = readings_of(&self.replay);
+        self.readings = Readings::of(&self.replay);
     }
 
     /// Advances to the end of the rollout. Returns the poses at `moments` equally spaced times, starting with the
@@ -394,14 +379,4 @@ impl Lane {
         self.go_on(last);
         seen
     }
-}
-
-/// Reads contacts, torques and joints off the world of a replay.
-fn readings_of(replay: &Replay) -> Readings {
-    replay.simulation().map_or_else(Readings::default, |simulation| Readings {
-        contacts: simulation.contact_forces(),
-        torques: simulation.applied_torques().collect(),
-        joints: simulation.joint_states().collect(),
-        speeds_m_s: simulation.speeds_m_s().collect(),
-    })
 }

@@ -3,6 +3,7 @@
 pub mod lane;
 pub mod opening;
 pub mod playback;
+pub mod readings;
 pub mod replay;
 pub mod selection;
 pub mod staged_champion;

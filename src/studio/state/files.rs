@@ -167,7 +167,7 @@ impl Files {
     }
 }
 
-/// What the library is asked to do with the paths that answer a question.
+/// The library's task for the paths that answer a question.
 fn request(question: &FileQuestion, paths: &[PathBuf]) -> Option<LibraryCommand> {
     let first = paths.first()?;
     Some(match question {

@@ -1,6 +1,6 @@
 //! Shows the progress of evolution on the stage: each better generation of the current run, or its story.
 //!
-//! What the user chooses to watch stays until they choose again: every other command to the stage ends the following.
+//! The user's own choice stays until the next one: every other command to the stage ends the following.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use crate::studio::commands::{Command, StageCommand};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
-use crate::studio::stage::{Show, end_s};
+use crate::studio::stage::{Show, end_s, evenly};
 use crate::studio::ui::notifications::Notices;
 
 /// Decides which generation of the current run the stage shows.
@@ -33,10 +33,10 @@ pub(crate) struct Following {
     shown_for: Duration,
 }
 
-/// What comes onto the stage next.
+/// Plan of the next generations on the stage.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 enum FollowPlan {
-    /// What the user chose, until they choose again.
+    /// None: the user's choice stays.
     #[default]
     Nothing,
     /// Each generation that is better than all before it, until a snake lands.
@@ -95,8 +95,7 @@ impl Following {
         if milestones.len() < 2 {
             return Err("There is no story yet: wait for a second, better generation.".to_owned());
         }
-        let parts = STORY_PARTS.min(milestones.len());
-        let chosen = (0..parts).map(|part| part * (milestones.len() - 1) / (parts - 1));
+        let chosen = evenly(milestones.len(), STORY_PARTS, STORY_PARTS);
         let generations = chosen.map(|index| milestones[index].generation).collect();
         (self.plan, self.holds) = (FollowPlan::Story { generations, next: 0 }, false);
         Ok(())

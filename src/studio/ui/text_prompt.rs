@@ -11,11 +11,11 @@ use bevy_egui::egui::text::{CCursor, CCursorRange};
 pub(crate) struct TextPrompt {
     /// Text typed so far.
     pub text: String,
-    /// What to select when the field takes the focus, until it has done so.
+    /// Text to select when the field takes the focus, until it has done so.
     pending: Option<Select>,
 }
 
-/// What to select in a field that takes the focus.
+/// Text to select in a field that takes the focus.
 #[derive(Debug, Clone, Copy)]
 enum Select {
     /// The whole text, so that typing replaces it.

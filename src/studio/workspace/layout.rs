@@ -30,7 +30,7 @@ const LEFT: f32 = 384.0;
 /// Width of the right panels in a wide window, in points.
 const RIGHT: f32 = 420.0;
 
-/// What the default layout depends on.
+/// Properties of the window that decide the default layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct SizeClass {
     /// There is room on both sides of the stage.

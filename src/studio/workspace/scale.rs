@@ -11,7 +11,7 @@ pub const LEAST_WINDOW: egui::Vec2 = egui::vec2(800.0, 480.0);
 /// Scale of the panels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UiScale {
-    /// What a person has chosen. A window that becomes larger has it again.
+    /// The user's choice. A window that becomes larger has it again.
     chosen: f32,
     /// The largest one for which the window has room.
     largest: f32,

@@ -9,7 +9,7 @@ use crate::world::Stairs;
 pub(super) struct ClimbEvent {
     /// When, in simulated seconds.
     pub time_s: f64,
-    /// What.
+    /// Kind of the event.
     pub kind: ClimbEventKind,
 }
 
@@ -30,7 +30,7 @@ pub(super) enum ClimbEventKind {
 const STAYS_S: f64 = 0.25;
 
 impl ClimbEvent {
-    /// What happened, for a hover text.
+    /// Description of the event, for a hover text.
     pub fn words(self) -> String {
         let time_s = self.time_s;
         match self.kind {

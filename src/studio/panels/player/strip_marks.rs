@@ -47,7 +47,7 @@ pub(super) fn draw_events(
     }
 }
 
-/// What the event says that is nearest to the pointer at `x`, if one is near.
+/// Description of the event nearest to the pointer at `x`, if one is near.
 pub(super) fn event_at(events: &[ClimbEvent], x: f32, x_of: &dyn Fn(f64) -> f32) -> Option<String> {
     let near = events.iter().map(|event| (event, (x_of(event.time_s) - x).abs()));
     let nearest = near.min_by(|(_, a), (_, b)| a.total_cmp(b));

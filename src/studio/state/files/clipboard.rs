@@ -9,7 +9,7 @@ use bevy::platform::cell::SyncCell;
 use crate::run::BackgroundTask;
 use crate::save::{Picture, load_picture};
 
-/// What is copied.
+/// Content for the clipboard.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Copied {
     /// The picture in this file.
@@ -61,7 +61,7 @@ impl CopyTask {
         Ok(())
     }
 
-    /// What was copied, and whether that worked, once it is done.
+    /// Kind of the copied content and the result, once it is done.
     pub fn poll(&mut self) -> Option<(Copied, Result<(), String>)> {
         let result = self.running.as_ref()?.1.poll()?;
         let (copied, _) = self.running.take()?;

@@ -37,7 +37,7 @@ pub(crate) enum LessonScene {
         label: &'static str,
         /// Name of a built-in champion.
         champion: &'static str,
-        /// What to guess before the race.
+        /// Question to answer by a guess before the race.
         question: Option<Question>,
         /// Worlds, one per lane.
         lanes: &'static [Side],
@@ -46,7 +46,7 @@ pub(crate) enum LessonScene {
     Runs {
         /// Label of its button.
         label: &'static str,
-        /// What to guess before the runs.
+        /// Question to answer by a guess before the runs.
         question: Question,
         /// Runs.
         runs: &'static [Side],
@@ -61,7 +61,7 @@ impl LessonScene {
         }
     }
 
-    /// What to guess before its experiment.
+    /// Question to answer by a guess before its experiment.
     pub fn question(&self) -> Option<&Question> {
         match self {
             Self::Lanes { question, .. } => question.as_ref(),

@@ -12,11 +12,11 @@ pub(super) const EQUAL_M: f32 = 1.0;
 pub(crate) struct Question {
     /// The question.
     pub text: &'static str,
-    /// What the answer depends on.
+    /// Quantity that decides the answer.
     pub asks: Asks,
 }
 
-/// What the answer to a question depends on.
+/// Quantity that decides the answer to a question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Asks {
     /// Which lane ends furthest, or whether all end within [`EQUAL_M`].

@@ -9,7 +9,7 @@ use super::tests::result;
 use super::*;
 use crate::score::Evaluation;
 
-/// What a worksheet has beside the texts of its lesson.
+/// Contents of a worksheet beside the texts of its lesson.
 struct Sheet {
     /// Instructions, after "guess".
     steps: &'static [&'static str],

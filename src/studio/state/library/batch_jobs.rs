@@ -46,7 +46,7 @@ impl BatchTask {
         }
     }
 
-    /// What it does, as a whole: "Deleting saves", "Undoing".
+    /// Name of the whole operation: "Deleting saves", "Undoing".
     fn whole(&self) -> String {
         match self {
             Self::Act(verb) => format!("{} saves", verb.doing),
