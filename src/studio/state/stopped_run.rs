@@ -61,21 +61,24 @@ mod tests {
         let saves = SavesFolder::find(Some(folder.path()));
         let mut settings = Settings::default();
         settings.evolution.population = 4;
-        settings.evolution.generations = 3;
         settings.trial.duration_s = 0.5;
-        let source = |seed| {
-            let plan = RunPlan::new("test", seed, settings.clone());
+        let source = |seed, generations| {
+            let mut settings = settings.clone();
+            settings.evolution.generations = generations;
+            let plan = RunPlan::new("test", seed, settings);
             RunSource::in_saves(&saves, plan, ExistingRun::Keep)
         };
-        let mut earlier = source(1).open("a test").expect("opened");
+        let mut earlier = source(1, 3).open("a test").expect("opened");
         let pool = LocalPool::new(1).expect("threads");
         let report = earlier.experiment.run_generation(&pool, &RunControl::default());
         let report = report.expect("not cancelled");
         earlier.recorder.record_generation(&earlier.experiment, &report).expect("kept");
         drop(earlier);
-        assert_eq!(source(1).with_unused_seed(&saves).plan.seed, 2, "its own seed is used");
+        assert_eq!(source(1, 3).with_unused_seed(&saves).plan.seed, 2, "its own seed is used");
 
-        let options = Options { offers_stopped_run: true, ..Options::of_test(source(2), saves) };
+        // The run of the session is too long to end, and to say so, during the test.
+        let options =
+            Options { offers_stopped_run: true, ..Options::of_test(source(2, 10_000), saves) };
         let context = RunContext::new(&options);
         let mut app = App::new();
         app.insert_resource(CurrentRun::new(context.clone()))
