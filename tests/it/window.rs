@@ -12,6 +12,7 @@ mod library;
 mod panels;
 mod picture;
 mod places;
+mod screenshot_matrix;
 mod screenshots;
 mod settings;
 mod stage;

@@ -1,0 +1,150 @@
+//! Screenshots of every view in every size of window, at every scale that fits, in both themes: for a look at what is
+//! cut, covered or misaligned.
+//!
+//! `SNAKES_SCREENSHOTS=target/screenshots cargo test --test it views_at_every_size -- --ignored` takes them all, in half
+//! an hour or more. `SNAKES_SCREENSHOTS_SIZE=1280x720` and `SNAKES_SCREENSHOTS_SCALE=1.5` take those of one size or
+//! scale.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::display::{Studio, preferences};
+
+/// Sizes of the window, in pixels.
+const SIZES: [(u16, u16); 5] =
+    [(1024, 640), (1280, 720), (1600, 900), (2560, 1440), (3840, 2160)];
+const SCALES: [f32; 3] = [1.0, 1.5, 2.0];
+/// Least size of the window in the panels' units, below which the program reduces the scale.
+const LEAST: (f32, f32) = (800.0, 480.0);
+
+/// A run that ends in the first minute.
+const RUN: &str = "--preset climb --generations 30 --threads 2";
+
+/// The views, in an order in which each can follow the one before.
+const VIEWS: [(&str, fn(&Studio)); 8] = [
+    ("story", story),
+    ("main", main_view),
+    ("world", world),
+    ("sweep", sweep),
+    ("race", race),
+    ("charts", charts),
+    ("library", library),
+    ("lesson", lesson),
+];
+
+/// Pauses the stage at this fraction of the time.
+fn hold(studio: &Studio, share: f64) {
+    if !studio.title().contains(", stopped") {
+        studio.key("space");
+        studio.wait_for_title(", stopped");
+    }
+    studio.seek(share);
+}
+
+fn story(studio: &Studio) {
+    studio.key("s");
+    studio.place_with("Story, part 1");
+    hold(studio, 0.3);
+}
+
+fn main_view(studio: &Studio) {
+    studio.key("0");
+    studio.wait_for_title_without(", stopped");
+    hold(studio, 0.42);
+}
+
+fn world(studio: &Studio) {
+    studio.open_panel("World");
+    studio.drag_slider("Friction", 0.3);
+    studio.wait_for_title("what-if");
+    hold(studio, 0.5);
+}
+
+fn sweep(studio: &Studio) {
+    studio.key("Escape");
+    studio.wait_for_title_without("what-if");
+    studio.scroll_and_click("Button", "Sweep Friction");
+    studio.wait_for_title("showing a race of 5");
+    hold(studio, 0.5);
+}
+
+fn race(studio: &Studio) {
+    studio.open_panel("Champions");
+    studio.key("n");
+    studio.wait_for_title("showing a race of 6");
+    hold(studio, 0.55);
+}
+
+fn charts(studio: &Studio) {
+    studio.open_panel("Charts");
+    studio.place("Chart: Fitness by generation");
+}
+
+fn library(studio: &Studio) {
+    studio.open_panel("Library");
+    let is_read = || {
+        let places = studio.places();
+        let has = |part: &str| places.iter().any(|place| place.label.contains(part));
+        has(" saves") && !has("not read yet")
+    };
+    studio.wait(is_read, || "a library that is read".to_owned());
+    studio.click_at(studio.button_starting("robust, ").area.middle());
+    studio.place("Replay");
+}
+
+fn lesson(studio: &Studio) {
+    studio.open_panel("Lessons");
+    studio.click_label("Begin lesson 1");
+    studio.wait_for_title("showing a race of 3");
+    studio.scroll_and_click("Button", "Guess: original");
+    studio.wait_for_title_without(", stopped");
+    hold(studio, 0.6);
+}
+
+/// Takes the pictures of one size and scale in both themes; `None` where no window can be opened.
+fn take(folder: &Path, (width, height): (u16, u16), scale: f32) -> Option<()> {
+    let scratch = super::folder();
+    let path = scratch.path().join("studio.ron");
+    let fields = format!("ui_scale: {scale:.1}, tour_is_over: true");
+    std::fs::write(&path, preferences(&fields)).expect("written");
+    let (preferences, saves) = (path.display(), scratch.path().join("saves"));
+    let arguments =
+        format!("{RUN} --theme light --preferences {preferences} --saves {}", saves.display());
+    let studio = Studio::open_sized("matrix", &arguments, (width.into(), height.into()))?;
+    studio.wait_for_title("finished");
+    for (view, show) in VIEWS {
+        show(&studio);
+        for theme in ["light", "dark"] {
+            studio.step_aside();
+            // Messages disappear after eight seconds, and a camera moves for one.
+            let settling_s = if theme == "light" { 9 } else { 1 };
+            std::thread::sleep(Duration::from_secs(settling_s));
+            studio.wait_for_frames(3);
+            let name = format!("{width}x{height}-{scale:.1}-{view}-{theme}.png");
+            studio.picture().store(&folder.join(name));
+            studio.key("t");
+        }
+    }
+    Some(())
+}
+
+#[test]
+#[ignore = "takes half an hour or more; run it by hand after a change of what is drawn"]
+fn views_at_every_size() {
+    let folder = std::env::var_os("SNAKES_SCREENSHOTS").expect("SNAKES_SCREENSHOTS names a folder");
+    let folder = PathBuf::from(folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let is_wanted = |name: &str, value: String| {
+        std::env::var(format!("SNAKES_SCREENSHOTS_{name}")).map_or(true, |wanted| wanted == value)
+    };
+    for (width, height) in SIZES {
+        for scale in SCALES {
+            let fits = f32::from(width) / scale >= LEAST.0 && f32::from(height) / scale >= LEAST.1;
+            let is_wanted = is_wanted("SIZE", format!("{width}x{height}"))
+                && is_wanted("SCALE", format!("{scale:.1}"));
+            if fits && is_wanted {
+                let _skipped = take(&folder, (width, height), scale);
+            }
+        }
+    }
+}
