@@ -1,5 +1,6 @@
 //! `snakes compare`: several methods under equal budgets, as a table, CSV, RON and a picture.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,7 +9,7 @@ use super::args::{Args, CompareArgs};
 use super::error::CliError;
 use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
-use crate::evolve::{RunPlan, StrategyKind};
+use crate::evolve::{RunPlan, Settings, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::plot;
 use crate::run::compare::{PlannedRun, run_all};
@@ -32,9 +33,28 @@ fn kinds<K: Choices + PartialEq>(flag: &str, text: &str) -> Result<Vec<K>, Inval
     Ok(K::OPTIONS.iter().copied().filter(|kind| named.contains(kind)).collect())
 }
 
+/// Refuses changes of settings that a comparison sets itself.
+fn check_compared(preset: &Settings, settings: &Settings) -> Result<(), Invalid> {
+    let refused = |field, value: &dyn Display, allowed| Err(Invalid::new(field, value, allowed));
+    if settings.evolution.strategy != preset.evolution.strategy {
+        let allowed = "the preset's; --strategies selects strategies";
+        return refused("evolution.strategy", &settings.evolution.strategy, allowed);
+    }
+    if settings.genome.controller != preset.genome.controller {
+        let allowed = "the preset's; --controllers selects controllers";
+        return refused("genome.controller", &settings.genome.controller, allowed);
+    }
+    if settings.evolution.generations != preset.evolution.generations {
+        let allowed = "the preset's; --evaluations sets the budget";
+        return refused("evolution.generations", &settings.evolution.generations, allowed);
+    }
+    Ok(())
+}
+
 /// Performs the runs that the result's file does not have yet, and prints the result.
 pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     let (preset, settings) = args.settings()?;
+    check_compared(&args.preset()?.settings, &settings)?;
     let strategies: Vec<StrategyKind> = kinds("strategies", &compared.strategies)?;
     let controllers: Vec<ControllerKind> = kinds("controllers", &compared.controllers)?;
     within("seeds", compared.seeds, 1..=10_000)?;
@@ -132,6 +152,7 @@ fn show(args: &Args, comparison: &Comparison, files: [PathBuf; 3]) -> Result<(),
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::with_fields;
 
     #[test]
     fn a_list_of_names_is_read_and_an_unknown_one_refused() {
@@ -144,5 +165,21 @@ mod tests {
             error.starts_with("strategies is \"annealing\"; allowed: all, halving, ga"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_setting_that_a_comparison_sets_itself_is_refused() {
+        let preset = Settings::default();
+        for (field, value) in [
+            ("evolution.strategy", "cma_es"),
+            ("genome.controller", "gait"),
+            ("evolution.generations", "7"),
+        ] {
+            let changed = with_fields(&preset, [(field, value)]).expect("allowed");
+            let refusal = check_compared(&preset, &changed).expect_err("refused").to_string();
+            assert!(refusal.starts_with(field) && refusal.contains("; --"), "{refusal}");
+        }
+        let friction = with_fields(&preset, [("surface.friction", "0.5")]).expect("allowed");
+        assert!(check_compared(&preset, &friction).is_ok());
     }
 }

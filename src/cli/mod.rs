@@ -45,7 +45,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 }
 
 fn dispatch(args: Args) -> Result<(), CliError> {
-    args.check_evaluator()?;
     match &args.command {
         Some(Subcommand::Presets) => lists::print_presets(args.json),
         Some(Subcommand::Settings { markdown }) => lists::print_settings(&args, *markdown),

@@ -80,7 +80,7 @@ pub struct Args {
     #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
     pub(super) out: Option<PathBuf>,
     /// Folder of saved champions and runs [default: ./saves if it exists, else the platform's data folder]
-    #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
+    #[arg(long, global = true, value_name = "DIR", conflicts_with = "out", help_heading = FILES)]
     pub(super) saves: Option<PathBuf>,
     /// Open the window with the result of `snakes compare`, a .ron file
     #[arg(long, global = true, value_name = "FILE", help_heading = WINDOW)]

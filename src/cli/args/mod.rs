@@ -1,5 +1,6 @@
 //! The flags and subcommands, and how they override a preset.
 
+mod applicability;
 mod compare;
 mod flags;
 mod parse;

@@ -2,9 +2,10 @@
 
 use std::ffi::OsString;
 
-use clap::Parser;
 use clap::error::{ContextKind, ErrorKind};
+use clap::{CommandFactory, FromArgMatches};
 
+use super::applicability;
 use super::flags::Args;
 use crate::cli::error::CliError;
 use crate::evolve::{Settings, fields};
@@ -17,10 +18,15 @@ pub enum Parsed {
     Print(String),
 }
 
-/// Parses the arguments, and shortens clap's errors to one line.
+/// Parses the arguments, shortens clap's errors to one line, and refuses flags without effect.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, CliError> {
-    match Args::try_parse_from(arguments) {
-        Ok(args) => Ok(Parsed::Run(Box::new(args))),
+    let matches = Args::command().try_get_matches_from(arguments);
+    let parsed = matches.and_then(|matches| Ok((Args::from_arg_matches(&matches)?, matches)));
+    match parsed {
+        Ok((args, matches)) => {
+            applicability::check(&matches, &args)?;
+            Ok(Parsed::Run(Box::new(args)))
+        }
         Err(error) => match error.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
                 Ok(Parsed::Print(error.render().to_string()))

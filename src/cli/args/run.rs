@@ -200,16 +200,6 @@ mod tests {
         assert!(refusal.starts_with("evaluator is \"nosuch\"; allowed: threads"), "{refusal}");
     }
 
-    #[test]
-    fn an_evaluator_is_refused_where_it_has_no_effect() {
-        for (words, is_allowed) in
-            [("--no-render", true), ("verify", true), ("presets", false), ("bench", false)]
-        {
-            let checked = args_of(&format!("{words} --evaluator threads")).check_evaluator();
-            assert_eq!(checked.is_ok(), is_allowed, "{words}");
-        }
-    }
-
     #[cfg(feature = "studio")]
     #[test]
     fn a_theme_is_light_or_dark_if_it_is_given() {

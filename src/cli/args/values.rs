@@ -55,22 +55,6 @@ impl Args {
         self.evaluator_of(self.threads_or(available_cores().saturating_sub(1).max(1))?)
     }
 
-    /// Refuses `--evaluator` in modes that simulate without an evaluator, or do not simulate.
-    pub fn check_evaluator(&self) -> Result<(), CliError> {
-        use super::flags::Subcommand::{Compare, Replay, Table1, Verify};
-        let uses_it = match &self.command {
-            None | Some(Verify | Compare(_) | Table1 { .. }) => true,
-            Some(Replay { .. }) => !self.no_render,
-            Some(_) => false,
-        };
-        if self.evaluator.is_none() || uses_it {
-            return Ok(());
-        }
-        let problem =
-            "--evaluator has no effect here; it applies to runs, verify, compare and table1";
-        Err(CliError::Usage(format!("{problem} (see snakes --help)")))
-    }
-
     /// The evaluator that is named, else the default.
     fn evaluator_of(&self, workers: usize) -> Result<Arc<dyn Evaluator>, CliError> {
         let name = self.evaluator.as_deref().unwrap_or(EVALUATORS[0].name);

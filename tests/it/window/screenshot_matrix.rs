@@ -11,8 +11,7 @@ use std::time::Duration;
 use super::display::{Studio, preferences};
 
 /// Sizes of the window, in pixels.
-const SIZES: [(u16, u16); 5] =
-    [(1024, 640), (1280, 720), (1600, 900), (2560, 1440), (3840, 2160)];
+const SIZES: [(u16, u16); 5] = [(1024, 640), (1280, 720), (1600, 900), (2560, 1440), (3840, 2160)];
 const SCALES: [f32; 3] = [1.0, 1.5, 2.0];
 /// Least size of the window in the panels' units, below which the program reduces the scale.
 const LEAST: (f32, f32) = (800.0, 480.0);

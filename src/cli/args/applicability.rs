@@ -1,0 +1,226 @@
+//! Which flags have an effect in which task of the program. A flag without effect is refused.
+
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+
+use super::flags::{Args, Subcommand};
+use crate::cli::error::CliError;
+
+/// A task of the program, chosen by the subcommand and `--no-render`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Task {
+    Window,
+    Run,
+    ReplayInWindow,
+    CheckReplay,
+    Bench,
+    Verify,
+    Robust,
+    Compare,
+    Table1,
+    Figures,
+    Render,
+    Presets,
+    Settings,
+    SettingsAsMarkdown,
+}
+
+use Task::{
+    Bench, CheckReplay, Compare, Figures, Presets, Render, ReplayInWindow, Robust, Run, Settings,
+    SettingsAsMarkdown, Table1, Verify, Window,
+};
+
+/// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
+const FLAGS: [(&str, &[Task]); 22] = [
+    ("no_render", &[Run, CheckReplay]),
+    ("json", &[Run, CheckReplay, Bench, Verify, Robust, Compare, Table1, Presets, Settings]),
+    (
+        "preset",
+        &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
+    ),
+    ("seed", &[Window, Run, ReplayInWindow, Robust, Compare]),
+    ("population", &[Window, Run, ReplayInWindow, Compare, Table1, Settings, SettingsAsMarkdown]),
+    ("generations", &[Window, Run, ReplayInWindow, Table1, Settings, SettingsAsMarkdown]),
+    (
+        "duration",
+        &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
+    ),
+    ("fitness", &[Window, Run, ReplayInWindow, Compare, Table1, Settings, SettingsAsMarkdown]),
+    ("set", &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown]),
+    ("resume", &[Window, Run, ReplayInWindow]),
+    ("from", &[Window, Run]),
+    ("restart", &[Window, Run, ReplayInWindow, Compare]),
+    ("threads", &[Window, Run, ReplayInWindow, Bench, Verify, Robust, Compare, Table1]),
+    ("evaluator", &[Window, Run, ReplayInWindow, Verify, Compare, Table1]),
+    ("out", &[Window, Run, ReplayInWindow, Compare, Table1, Figures]),
+    ("saves", &[Window, Run, ReplayInWindow]),
+    ("comparison", &[Window, ReplayInWindow]),
+    ("window_size", &[Window, ReplayInWindow]),
+    ("theme", &[Window, ReplayInWindow, Render]),
+    ("preferences", &[Window, ReplayInWindow]),
+    ("places", &[Window, ReplayInWindow]),
+    ("exit_after_frames", &[Window, ReplayInWindow]),
+];
+
+impl Task {
+    fn of(args: &Args) -> Self {
+        match &args.command {
+            None if args.no_render => Run,
+            None => Window,
+            Some(Subcommand::Replay { .. }) if args.no_render => CheckReplay,
+            Some(Subcommand::Replay { .. }) => ReplayInWindow,
+            Some(Subcommand::Bench) => Bench,
+            Some(Subcommand::Verify) => Verify,
+            Some(Subcommand::Robust { .. }) => Robust,
+            Some(Subcommand::Compare(_)) => Compare,
+            Some(Subcommand::Table1 { .. }) => Table1,
+            Some(Subcommand::Figures { .. }) => Figures,
+            Some(Subcommand::Render(_)) => Render,
+            Some(Subcommand::Presets) => Presets,
+            Some(Subcommand::Settings { markdown: false }) => Settings,
+            Some(Subcommand::Settings { markdown: true }) => SettingsAsMarkdown,
+        }
+    }
+
+    /// The command, as it stands in messages.
+    fn words(self) -> &'static str {
+        match self {
+            Window => "the studio",
+            Run => "snakes --no-render",
+            ReplayInWindow => "snakes replay",
+            CheckReplay => "snakes replay --no-render",
+            Bench => "snakes bench",
+            Verify => "snakes verify",
+            Robust => "snakes robust",
+            Compare => "snakes compare",
+            Table1 => "snakes table1",
+            Figures => "snakes figures",
+            Render => "snakes render",
+            Presets => "snakes presets",
+            Settings => "snakes settings",
+            SettingsAsMarkdown => "snakes settings --markdown",
+        }
+    }
+
+    /// The same task with `--no-render` if it is without, and the other way round.
+    fn other_mode(self) -> Option<(Self, &'static str)> {
+        match self {
+            Window => Some((Run, "; add --no-render")),
+            ReplayInWindow => Some((CheckReplay, "; add --no-render")),
+            Run => Some((Window, "; leave out --no-render")),
+            CheckReplay => Some((ReplayInWindow, "; leave out --no-render")),
+            _ => None,
+        }
+    }
+}
+
+/// Refuses the first given flag that has no effect in the task that the arguments name.
+pub(super) fn check(matches: &ArgMatches, args: &Args) -> Result<(), CliError> {
+    let task = Task::of(args);
+    let is_given = |id: &str| matches.value_source(id) == Some(ValueSource::CommandLine);
+    let without_effect = FLAGS.iter().find(|(id, tasks)| is_given(id) && !tasks.contains(&task));
+    let Some((id, tasks)) = without_effect else { return Ok(()) };
+    let other = task.other_mode().filter(|(other, _)| tasks.contains(other));
+    let advice = other.map_or("", |(_, advice)| advice);
+    Err(CliError::Usage(format!(
+        "--{} has no effect with {}{advice} (see snakes --help)",
+        id.replace('_', "-"),
+        task.words()
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::args::{Parsed, parse};
+    use clap::CommandFactory;
+    use std::ffi::OsString;
+
+    /// Every task, as words of the command line.
+    const TASKS: [(Task, &str); 14] = [
+        (Window, ""),
+        (Run, "--no-render"),
+        (ReplayInWindow, "replay a.ron"),
+        (CheckReplay, "replay a.ron --no-render"),
+        (Bench, "bench"),
+        (Verify, "verify"),
+        (Robust, "robust a.ron"),
+        (Compare, "compare"),
+        (Table1, "table1"),
+        (Figures, "figures run"),
+        (Render, "render a.ron"),
+        (Presets, "presets"),
+        (Settings, "settings"),
+        (SettingsAsMarkdown, "settings --markdown"),
+    ];
+
+    fn parsed(words: &str) -> Result<Box<Args>, String> {
+        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
+        match parse(arguments.map(OsString::from)) {
+            Ok(Parsed::Run(args)) => Ok(args),
+            Ok(Parsed::Print(_)) => unreachable!("no help was asked for"),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// The flag with a value, if it takes one.
+    fn flag(id: &str) -> String {
+        let command = Args::command();
+        let argument = command.get_arguments().find(|argument| argument.get_id() == id);
+        let takes_value = argument.expect("a flag").get_action().takes_values();
+        format!("--{}{}", id.replace('_', "-"), if takes_value { " 1" } else { "" })
+    }
+
+    #[test]
+    fn every_flag_has_its_tasks() {
+        let command = Args::command();
+        let mut ids: Vec<&str> =
+            command.get_arguments().map(|argument| argument.get_id().as_str()).collect();
+        ids.retain(|id| !["help", "version"].contains(id));
+        let mut listed: Vec<&str> = FLAGS.iter().map(|(id, _)| *id).collect();
+        ids.sort_unstable();
+        listed.sort_unstable();
+        assert_eq!(listed, ids);
+        assert!(FLAGS.iter().all(|(_, tasks)| !tasks.is_empty()));
+    }
+
+    #[test]
+    fn every_pair_of_a_flag_and_a_task_is_accepted_or_refused_by_name() {
+        for (task, words) in TASKS {
+            assert_eq!(Task::of(&parsed(words).expect("allowed")), task, "{words}");
+            for (id, tasks) in FLAGS {
+                if id == "no_render" {
+                    continue;
+                }
+                // Before the subcommand, where all flags are known.
+                let line = format!("{} {words}", flag(id));
+                match parsed(&line) {
+                    Ok(_) => assert!(tasks.contains(&task), "{line}"),
+                    Err(message) => {
+                        assert!(!tasks.contains(&task), "{line}: {message}");
+                        let name = id.replace('_', "-");
+                        let start = format!("--{name} has no effect with {}", task.words());
+                        assert!(message.starts_with(&start), "{line}: {message}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_render_is_refused_where_no_window_opens() {
+        for words in ["bench", "verify", "robust a.ron", "compare", "table1", "presets"] {
+            let message = parsed(&format!("{words} --no-render")).expect_err("refused");
+            assert!(message.starts_with("--no-render has no effect with snakes"), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_flag_of_a_run_is_refused_by_the_check_of_a_replay() {
+        let message = parsed("replay a.ron --no-render --set physics.steps_per_s=240");
+        assert_eq!(
+            message.expect_err("refused"),
+            "--set has no effect with snakes replay --no-render; leave out --no-render (see snakes --help)"
+        );
+    }
+}
