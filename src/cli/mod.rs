@@ -46,6 +46,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn dispatch(args: Args) -> Result<(), CliError> {
     args.check_evaluator()?;
+    args.check_present()?;
     match &args.command {
         Some(Subcommand::Presets) => lists::print_presets(args.json),
         Some(Subcommand::Settings { markdown }) => lists::print_settings(&args, *markdown),
@@ -112,6 +113,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         theme: args.theme()?,
+        presents: args.present,
         preferences: args.preferences(),
         places: args.places.clone(),
         exit_after_frames: args.exit_after_frames()?,

@@ -210,6 +210,21 @@ mod tests {
         }
     }
 
+    #[test]
+    fn presenting_is_refused_where_no_window_opens() {
+        for (words, is_allowed) in [
+            ("", true),
+            ("replay climber.ron", true),
+            ("--no-render", false),
+            ("replay climber.ron --no-render", false),
+            ("presets", false),
+        ] {
+            let checked = args_of(&format!("{words} --present")).check_present();
+            assert_eq!(checked.is_ok(), is_allowed, "{words}");
+        }
+        assert!(args_of("--no-render").check_present().is_ok());
+    }
+
     #[cfg(feature = "studio")]
     #[test]
     fn a_theme_is_light_or_dark_if_it_is_given() {

@@ -71,6 +71,17 @@ impl Args {
         Err(CliError::Usage(format!("{problem} (see snakes --help)")))
     }
 
+    /// Refuses `--present` in modes that open no window.
+    pub fn check_present(&self) -> Result<(), CliError> {
+        use super::flags::Subcommand::Replay;
+        let opens_window = !self.no_render && matches!(&self.command, None | Some(Replay { .. }));
+        if !self.present || opens_window {
+            return Ok(());
+        }
+        let problem = "--present has no effect here; it applies to the window";
+        Err(CliError::Usage(format!("{problem} (see snakes --help)")))
+    }
+
     /// The evaluator that is named, else the default.
     fn evaluator_of(&self, workers: usize) -> Result<Arc<dyn Evaluator>, CliError> {
         let name = self.evaluator.as_deref().unwrap_or(EVALUATORS[0].name);
