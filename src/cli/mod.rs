@@ -111,6 +111,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         theme: args.theme()?,
+        presents: args.present,
         preferences: args.preferences(),
         places: args.places.clone(),
         exit_after_frames: args.exit_after_frames()?,

@@ -103,8 +103,7 @@ impl FinalState<'_> {
             Fitness::Centre => middle.y,
             Fitness::Climb => {
                 let is_up = self.stairs.steps_under(middle.to_array()) > 0;
-                let landing_y_m = self.stairs.riser_y_m(self.stairs.steps.saturating_sub(1));
-                let arrived_y_m = landing_y_m + self.body.length_m() / 2.0;
+                let arrived_y_m = self.stairs.landing_y_m() + self.body.length_m() / 2.0;
                 let max_y_m = if is_up { arrived_y_m } else { self.stairs.first_riser_y_m };
                 middle.y.min(max_y_m)
             }

@@ -90,7 +90,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(theme)
         .insert_resource(remembered)
         .insert_resource(UiDumpFile(options.places.clone()))
-        .insert_resource(Workspace::new(tour_is_over))
+        .insert_resource(Workspace::new(tour_is_over, options.presents))
         .insert_resource(OpeningChampions(saved))
         // Champions that the studio was opened with stay on the stage.
         .insert_resource(if has_champions { Following::default() } else { Following::from_start() })

@@ -69,6 +69,12 @@ impl Stairs {
         self.first_riser_y_m + index as f32 * self.tread_m
     }
 
+    /// Position from which on a snake's middle block is on the landing, on the y axis, in metres: the last riser. The
+    /// last tread is level with the landing and belongs to it. Without steps it is where the stairs would begin.
+    pub fn landing_y_m(&self) -> f32 {
+        self.riser_y_m(self.steps.saturating_sub(1))
+    }
+
     /// Position of the end of the landing on the y axis, in metres.
     pub fn end_y_m(&self) -> f32 {
         self.riser_y_m(self.steps) + self.landing_m
@@ -123,7 +129,7 @@ impl Stairs {
     pub fn meaning(&self, y_m: f64, start_y_m: f64, snake_length_m: f64) -> String {
         let to_first_riser_m = f64::from(self.first_riser_y_m) - snake_length_m / 2.0;
         let climbed = self.steps_climbed(y_m);
-        if self.steps > 0 && y_m >= f64::from(self.riser_y_m(self.steps)) {
+        if self.steps > 0 && climbed == self.steps {
             "stands on the landing".to_owned()
         } else if climbed == 1 {
             "climbs 1 step".to_owned()
@@ -165,8 +171,10 @@ mod tests {
             assert_eq!(stairs.meaning(mean_y_m, -7.23, 10.0), words, "at {mean_y_m}");
         }
         assert_eq!(stairs.meaning(-9.0, -7.23, 10.0), "moved backwards");
-        assert_eq!(stairs.meaning(22.9, -7.23, 10.0), "climbs 10 steps");
-        assert_eq!(stairs.meaning(23.0, -7.23, 10.0), "stands on the landing");
+        assert_eq!(stairs.meaning(20.9, -7.23, 10.0), "climbs 9 steps");
+        assert_eq!(stairs.landing_y_m(), 21.0);
+        assert_eq!(stairs.meaning(21.0, -7.23, 10.0), "stands on the landing");
+        assert_eq!(Stairs { steps: 0, ..stairs }.meaning(50.0, -7.23, 10.0), "reaches the stairs");
     }
 
     #[test]

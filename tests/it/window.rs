@@ -12,6 +12,7 @@ mod library;
 mod panels;
 mod picture;
 mod places;
+mod presenting;
 mod screenshot_matrix;
 mod screenshots;
 mod settings;
@@ -63,7 +64,7 @@ fn keys_start_pause_and_single_step_evolution() {
     studio.key("1");
     studio.wait_for_title("showing generation 1");
     studio.key("0");
-    studio.wait_for_title("showing saved champion");
+    studio.wait_for_title("showing climber");
     studio.key("e");
     studio.wait_for_title("running");
     studio.wait_for_generations(before + 3);
@@ -81,7 +82,7 @@ fn buttons_and_champion_list_control_run_and_stage() {
     studio.click_champion(1);
     studio.wait_for_title("showing generation 1");
     studio.click_champion(0);
-    studio.wait_for_title("showing saved champion");
+    studio.wait_for_title("showing climber");
     studio.click_label("Reset");
     studio.wait_for_title("0 of 1000 generations, ready");
     studio.click_label("Start");
@@ -116,14 +117,14 @@ fn a_typed_seed_starts_another_run() {
     studio.type_into("Seed", "77");
     studio.click_label("Reset");
     studio.wait_for_title("seed 77 - 0 of 4 generations, ready");
-    assert!(studio.title().ends_with("showing saved champion"), "{}", studio.title());
+    assert!(studio.title().ends_with("showing first-climber"), "{}", studio.title());
     // Stage shortcuts must ignore text typed into a field: the key for generation 1 must not show it.
     studio.click_label("Start");
     studio.wait_for_title("4 of 4 generations, finished");
     studio.key("0");
-    studio.wait_for_title("showing saved champion");
+    studio.wait_for_title("showing first-climber");
     studio.type_into("Seed", "1");
-    assert!(studio.title().ends_with("showing saved champion"), "{}", studio.title());
+    assert!(studio.title().ends_with("showing first-climber"), "{}", studio.title());
 }
 
 #[test]
@@ -199,7 +200,7 @@ fn what_was_chosen_stays_and_a_better_generation_is_offered() {
     let arguments = format!("replay {REPORTS_CLIMBER} --preset quick --seed 3 --generations 1000");
     let Some(studio) = Studio::open("chosen", &arguments) else { return };
     studio.wait_for_generations(2);
-    assert!(studio.title().ends_with("showing saved champion"), "{}", studio.title());
+    assert!(studio.title().ends_with("showing first-climber"), "{}", studio.title());
     studio.click_label("Show it");
     studio.wait_for_title("showing generation ");
 }
@@ -231,7 +232,7 @@ fn a_saved_champion_opens_in_the_studio() {
     let Some(studio) = Studio::open("replay", &arguments) else {
         return;
     };
-    studio.wait_for_title("showing saved champion");
+    studio.wait_for_title("showing first-climber");
 }
 
 #[test]
@@ -242,12 +243,12 @@ fn a_champion_of_another_engine_is_shown_as_recorded_and_can_be_simulated() {
     std::fs::write(&save, text).expect("written");
     let arguments = format!("replay {} --preset quick", save.display());
     let Some(studio) = Studio::open("recorded", &arguments) else { return };
-    studio.wait_for_title("showing saved champion as recorded");
+    studio.wait_for_title("showing elsewhere as recorded");
     studio.pause_evolution();
     studio.click_label("Simulate again");
     studio.wait_for_title_without("as recorded");
     studio.click_label("As recorded");
-    studio.wait_for_title("showing saved champion as recorded");
+    studio.wait_for_title("showing elsewhere as recorded");
 }
 
 /// A run that takes hours, so that only the test ends it.

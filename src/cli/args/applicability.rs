@@ -31,7 +31,7 @@ use Task::{
 };
 
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
-const FLAGS: [(&str, &[Task]); 22] = [
+const FLAGS: [(&str, &[Task]); 23] = [
     ("no_render", &[Run, CheckReplay]),
     ("json", &[Run, CheckReplay, Bench, Verify, Robust, Compare, Table1, Presets, Settings]),
     (
@@ -58,6 +58,7 @@ const FLAGS: [(&str, &[Task]); 22] = [
     ("window_size", &[Window, ReplayInWindow]),
     ("theme", &[Window, ReplayInWindow, Render]),
     ("preferences", &[Window, ReplayInWindow]),
+    ("present", &[Window, ReplayInWindow]),
     ("places", &[Window, ReplayInWindow]),
     ("exit_after_frames", &[Window, ReplayInWindow]),
 ];

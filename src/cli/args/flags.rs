@@ -91,6 +91,9 @@ pub struct Args {
     /// Colour theme: light or dark [default: the last one used; light at first]
     #[arg(long, global = true, value_name = "NAME", help_heading = WINDOW)]
     pub(super) theme: Option<String>,
+    /// Present on the full screen: the stage alone, with a large caption; Escape returns to the window
+    #[arg(long, global = true, help_heading = WINDOW)]
+    pub present: bool,
     /// File for window preferences, or "none" [default: a file in the platform's settings folder]
     #[arg(long, global = true, value_name = "FILE", help_heading = WINDOW)]
     pub(super) preferences: Option<PathBuf>,

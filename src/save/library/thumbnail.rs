@@ -1,7 +1,7 @@
 //! A small picture of a champion's movement from the side, as points for a later drawing.
 
 use crate::evolve::Champion;
-use crate::score::{Recording, Trial};
+use crate::score::{KeyframeHistory, Recording, Trial};
 use crate::world::{Pose, Vector};
 
 /// A champion's movement, seen from the side. All points are y and z, in metres.
@@ -47,6 +47,24 @@ impl Thumbnail {
             }
         }
         Self { way_m, limbs_m, ..empty }
+    }
+
+    /// The stairs and the simulated motion of a champion. It simulates up to one keyframe's distance.
+    pub fn of_history(champion: &Champion, history: &KeyframeHistory) -> Self {
+        let empty = Self::of_trial(&champion.trial);
+        let middles = history.middles_m();
+        let Some(last) = middles.len().checked_sub(1) else { return empty };
+        let mut samples: Vec<usize> =
+            (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();
+        samples.dedup();
+        let end = history.rollout_at(history.evaluation().steps);
+        let limbs = champion.body().limbs;
+        let quads = end.poses().iter().zip(&limbs).map(|(pose, limb)| quad(pose, limb.size_m()));
+        Self {
+            way_m: samples.into_iter().map(|sample| side(middles[sample])).collect(),
+            limbs_m: quads.collect(),
+            ..empty
+        }
     }
 }
 
@@ -102,6 +120,13 @@ mod tests {
         assert_eq!(limbs_m.len(), 5);
         let middle = limbs_m[2].iter().fold([0.0, 0.0], |[y, z], at| [y + at[0], z + at[1]]);
         assert!((middle[0] / 4.0 - way_m[19][0]).abs() < 0.01, "about its centre");
+        let history = KeyframeHistory::of(&loaded.champion.genome, trial, |_| true);
+        let simulated = Thumbnail::of_history(&loaded.champion, &history.expect("not cancelled"));
+        assert_eq!(simulated.way_m.len(), 20);
+        for (recorded, found) in limbs_m.iter().flatten().zip(simulated.limbs_m.iter().flatten()) {
+            let is_near = recorded.iter().zip(found).all(|(a, b)| (a - b).abs() < 0.01);
+            assert!(is_near, "the same end: {found:?} instead of {recorded:?}");
+        }
         let without = Thumbnail::of_champion(&loaded.champion, None);
         assert_eq!((without.way_m.len(), without.limbs_m.len()), (0, 0), "nothing is simulated");
     }

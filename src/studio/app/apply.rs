@@ -30,7 +30,7 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 /// Executes the commands in the order in which they were sent.
-fn apply(
+pub(super) fn apply(
     mut commands: MessageReader<Command>,
     mut run: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,

@@ -58,7 +58,7 @@ impl Held {
     /// everywhere, but "?" can be typed.
     fn is_for_panel(self, key: &Key, is_typing: bool, is_steering: bool) -> bool {
         match key {
-            Key::F1 => false,
+            Key::F1 | Key::F11 => false,
             // With Ctrl it types no character.
             key if is_typing => !self.is_command(key),
             Key::Character(text) if text == "?" => false,
@@ -84,6 +84,7 @@ fn name_of(key: &Key, held: Held) -> Option<String> {
         Key::ArrowRight => ("Right".to_owned(), true),
         Key::Escape => ("Esc".to_owned(), true),
         Key::F1 => ("F1".to_owned(), true),
+        Key::F11 => ("F11".to_owned(), true),
         Key::Character(text) => (text.to_uppercase(), text.chars().all(char::is_alphabetic)),
         _ => return None,
     };
@@ -130,6 +131,7 @@ mod tests {
             "Right" => Key::ArrowRight,
             "Esc" => Key::Escape,
             "F1" => Key::F1,
+            "F11" => Key::F11,
             text => character(&text.to_lowercase()),
         };
         (key, Held { control, shift })

@@ -163,17 +163,19 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         .iter()
         .next()
         .map(|window| (logical(window.width()), logical(window.height())));
+    // The presenting mode has a size of its own, and loops.
+    let presents = chosen.workspace.is_presenting();
     let is_smooth = chosen.is_smooth();
     let has_chosen = before.smooth_edges.is_some() || is_smooth != remembered.was_smooth;
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
     let now = Preferences {
         theme: chosen.theme.name().to_owned(),
         ui_scale: chosen.workspace.scale.chosen(),
-        window_size: window_size.or(before.window_size),
+        window_size: window_size.filter(|_| !presents).or(before.window_size),
         layout: chosen.workspace.layout.to_text(),
         overlays: shown.map(|overlay| overlay.words().0.to_owned()).collect(),
         speed: chosen.playback.speed(),
-        loops: chosen.playback.loops(),
+        loops: if presents { before.loops } else { chosen.playback.loops() },
         smooth_edges: is_smooth.filter(|_| has_chosen),
         tour_is_over: chosen.workspace.tour_is_over,
         recent: chosen.files.recent.to_texts(),
@@ -186,6 +188,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::commands::WindowCommand;
     use bevy::window::WindowResolution;
 
     fn app(file: &PreferencesFile) -> App {
@@ -239,6 +242,20 @@ mod tests {
         let app = app(&file);
         assert_eq!(app.world().resource::<Notices>().len(), 1);
         assert!(folder.path().join("studio.ron.unreadable").exists());
+    }
+
+    #[test]
+    fn the_size_of_a_presentation_is_not_remembered() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = PreferencesFile::at(&folder.path().join("studio.ron"));
+        let mut app = app(&file);
+        let resolution = WindowResolution::new(3840, 2160);
+        app.world_mut().spawn((Window { resolution, ..default() }, PrimaryWindow));
+        let mut workspace = app.world_mut().resource_mut::<Workspace>();
+        workspace.apply(&WindowCommand::TogglePresenting);
+        app.world_mut().write_message(AppExit::Success);
+        app.update();
+        assert_eq!(StoredPreferences::read(&file).chosen().window_size, None);
     }
 
     #[test]

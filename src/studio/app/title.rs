@@ -37,7 +37,7 @@ fn update(
             let generation = lane.staged().generation();
             let what = match lane.staged().source() {
                 ChampionSource::Opened(_) | ChampionSource::Library(_) => {
-                    "saved champion".to_owned()
+                    lane.staged().name().to_owned()
                 }
                 ChampionSource::Lesson => "a lesson".to_owned(),
                 ChampionSource::Run(number) if number == run.number() => {

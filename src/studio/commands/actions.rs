@@ -59,7 +59,7 @@ pub(crate) struct Situation {
     pub is_what_if: bool,
     /// The stage shows a race or a whole generation.
     pub is_race: bool,
-    /// A modal view is open, or the panels are hidden.
+    /// A modal view is open, the panels are hidden, or the stage is presented on the full screen.
     pub is_covered: bool,
     /// There is a change to undo.
     pub can_undo: bool,
@@ -239,6 +239,9 @@ pub(crate) const ACTIONS: &[Action] = &[
     }),
     action(Menu::View, "Show only the stage", &["H"], |_| {
         Some(Command::Window(WindowCommand::TogglePanels))
+    }),
+    action(Menu::View, "Present on the full screen", &["F11"], |_| {
+        Some(Command::Window(WindowCommand::TogglePresenting))
     }),
     action(Menu::Panels, "Run", &["Ctrl 1"], |_| {
         Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Run)))

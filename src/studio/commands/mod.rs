@@ -208,6 +208,8 @@ pub(super) enum WindowCommand {
     ResetLayout,
     /// Hide all panels, or show them again.
     TogglePanels,
+    /// Fill the screen with the stage and a large caption, or return to the window.
+    TogglePresenting,
     /// Select the next larger or smaller UI scale.
     ChangeScale {
         /// Larger, or else smaller.

@@ -1,13 +1,13 @@
 //! The best snake of every generation, newest first. A click replays it.
 
+mod climbs;
 mod columns;
-mod landing_times;
 
 use std::sync::Arc;
 
 use bevy_egui::egui;
 
-use super::shown::ShownChampion;
+use super::shown::{ShownChampion, ShownLane};
 use crate::evolve::Champion;
 use crate::run::GenerationReport;
 use crate::studio::commands::pick::Pick;
@@ -15,9 +15,10 @@ use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::theme;
 
-use columns::{cells, heads};
-use landing_times::{LandingTime, LandingTimes};
+use climbs::{Climb, Climbs, LandingTime};
+use columns::{ChampionRowStyle, cells, heads, rows_width};
 
 /// List of champions.
 #[derive(Debug, Default)]
@@ -26,7 +27,7 @@ pub(super) struct ChampionsPanel {
     summary: Option<((usize, u64), ReportSummary)>,
     /// Whether only generations that improved on all before are listed.
     lists_better_only: bool,
-    times: LandingTimes,
+    climbs: Climbs,
 }
 
 /// Summary that is computed once for each new report instead of in every frame.
@@ -69,13 +70,13 @@ impl ChampionsPanel {
         ui: &mut egui::Ui,
         opening: &[NamedChampion],
         reports: &[GenerationReport],
-        shown: &[ShownChampion],
+        shown: &[ShownLane],
         leaders: impl Fn(Option<u32>) -> usize,
         mut follows: bool,
         commands: &mut Vec<Command>,
     ) {
         let ReportSummary { champions, best, better } = self.summary(reports);
-        self.times.poll();
+        self.climbs.poll();
         ui.horizontal_wrapped(|ui| {
             for (name, hint, is_on, needed, command) in [
                 (
@@ -125,23 +126,26 @@ impl ChampionsPanel {
         if reports.is_empty() {
             explain(ui, "The best snake of each generation will appear here.");
         }
-        let height = ui.spacing().interact_size.y;
+        let height = theme::CHAMPION_ROW_HEIGHT;
         let listed = if self.lists_better_only { better.len() } else { reports.len() };
         let rows = opening.len() + listed;
-        heads(ui);
+        let width = rows_width(ui);
+        heads(ui, width);
         let area = egui::ScrollArea::vertical().auto_shrink(false);
         // A run may have thousands of generations, so only visible rows are drawn.
         area.show_rows(ui, height, rows, |ui, seen| {
+            ui.set_max_width(width);
             for index in seen {
                 if let Some(saved) = opening.get(index) {
-                    let is_shown = shown.contains(&ShownChampion::Opening(index));
-                    let champion = &saved.loaded.champion;
-                    // Another engine would reach the top at another time.
-                    let time = match saved.loaded.is_of_this_engine() {
-                        true => self.times.of(champion),
-                        false => LandingTime::None,
+                    let is_it =
+                        |shown: &&ShownLane| shown.champion == ShownChampion::Opening(index);
+                    let row = ChampionRow {
+                        shown: shown.iter().find(is_it),
+                        name: &saved.name,
+                        champion: &saved.loaded.champion,
+                        climb: self.climbs.of_save(&saved.loaded),
+                        has_time: saved.loaded.is_of_this_engine(),
                     };
-                    let row = ChampionRow { is_shown, name: &saved.name, champion, time };
                     entry(ui, row, Pick::Opened(index), None, commands);
                     continue;
                 }
@@ -154,17 +158,23 @@ impl ChampionsPanel {
                 let Some(champion) = &report.champion else {
                     let cells = ["disqualified", "-", "-"].map(str::to_owned);
                     let hint = "All snakes of this generation were disqualified";
-                    columns::row(ui, false, &name, &cells).on_hover_text(hint);
+                    columns::row(ui, ChampionRowStyle::default(), &name, &cells)
+                        .on_hover_text(hint);
                     continue;
                 };
                 let individual = champion.origin.individual;
-                let is_shown = shown.iter().any(|shown| shown.is(generation, individual));
+                let is_it = |shown: &&ShownLane| shown.champion.is(generation, individual);
                 let pick = Pick::Generation(generation);
                 let is_best = best == Some(generation);
                 let name = if is_best { format!("{name}, best") } else { name };
                 let race = (leaders(Some(generation)) > 1).then_some(generation);
-                let time = self.times.of(champion);
-                let row = ChampionRow { is_shown, name: &name, champion, time };
+                let row = ChampionRow {
+                    shown: shown.iter().find(is_it),
+                    name: &name,
+                    champion,
+                    climb: self.climbs.of(champion),
+                    has_time: true,
+                };
                 entry(ui, row, pick, race, commands);
             }
         });
@@ -183,22 +193,31 @@ impl ChampionsPanel {
 
 /// Row of a champion.
 struct ChampionRow<'r> {
-    is_shown: bool,
+    /// How it is on the stage, if it is.
+    shown: Option<&'r ShownLane>,
     name: &'r str,
     champion: &'r Champion,
-    time: LandingTime,
+    climb: Option<&'r Climb>,
+    /// Whether the time of its landing can be known: another engine would reach the top at another time.
+    has_time: bool,
 }
 
 /// Draws the row of a champion. A click shows it alone; Shift or Control adds it to the stage. Its context menu starts
 /// the next run from it, or races the best ten of its generation.
 fn entry(
     ui: &mut egui::Ui,
-    ChampionRow { is_shown, name, champion, time }: ChampionRow<'_>,
+    ChampionRow { shown, name, champion, climb, has_time }: ChampionRow<'_>,
     pick: Pick,
     race: Option<u32>,
     commands: &mut Vec<Command>,
 ) {
-    let response = columns::row(ui, is_shown, name, &cells(champion, time));
+    let time = if has_time { LandingTime::of(champion, climb) } else { LandingTime::None };
+    let style = ChampionRowStyle {
+        is_shown: shown.is_some(),
+        lane_color: shown.and_then(|shown| shown.color(theme::of(ui))),
+        picture: climb.map(|climb| &climb.picture),
+    };
+    let response = columns::row(ui, style, name, &cells(champion, time));
     let response = response.on_hover_ui(|ui| {
         ui.label(format!("{name}: {}", champion.reached()));
         if let LandingTime::Known(time_s) = time {
@@ -283,7 +302,7 @@ mod tests {
                     ui,
                     &opening,
                     &reports,
-                    &[ShownChampion::Opening(0)],
+                    &[ShownLane { champion: ShownChampion::Opening(0), lane: None }],
                     |_| 2,
                     false,
                     commands,

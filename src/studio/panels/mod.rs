@@ -15,6 +15,7 @@ mod run;
 mod settings;
 mod shown;
 mod tab_names;
+mod thumbnail;
 mod undo_buttons;
 mod world;
 
@@ -26,9 +27,9 @@ use egui_dock::{DockArea, TabStyle, TabViewer};
 use super::commands::Command;
 use super::commands::actions::Situation;
 use super::commands::modal::Modal;
-use super::stage::end_s;
 use super::stage::lane::Lane;
 use super::stage::opening::OpeningChampions;
+use super::stage::staged_champion::ChampionSource;
 use super::state::current_run::CurrentRun;
 use super::state::files::Files;
 use super::state::lessons::{LESSONS, Lessons};
@@ -38,6 +39,7 @@ use super::ui::theme;
 use super::ui::viewport::StageArea;
 use super::workspace::Workspace;
 use super::workspace::layout::style;
+use super::workspace::scale::UiScale;
 
 use champions::ChampionsPanel;
 use charts::{ChartsPanel, FitnessChart};
@@ -50,9 +52,10 @@ use lessons::lessons;
 use library::LibraryPanel;
 use on_stage::OnStage;
 use player::cards::{around_stage, lesson_card};
-use player::timeline::TimelinePanel;
+use player::presented_caption::{PresentedCaption, caption_band};
+use player::timeline::{TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
-use shown::ShownChampion;
+use shown::ShownLane;
 use tab_names::{small_tabs, tab_name};
 use world::WorldPanel;
 
@@ -134,8 +137,12 @@ fn draw(
     }
     theme::show(&context, *data.theme);
     workspace.scale.fit(context.content_rect().size() * context.zoom_factor());
-    let scale = workspace.scale.shown();
-    panels.letters.warm_up(&context, scale);
+    let is_presenting = workspace.is_presenting();
+    let scale = match is_presenting {
+        true => UiScale::presenting(context.content_rect().size() * context.zoom_factor()),
+        false => workspace.scale.shown(),
+    };
+    panels.letters.warm_up(&context, scale, is_presenting);
     set_click_limits(&context);
     // A new scale takes effect in the next frame.
     let is_settled = context.zoom_factor() == scale;
@@ -167,6 +174,8 @@ fn draw(
     };
     if is_first && !is_settled {
         // In the first frame the saved layout would be measured at the wrong scale.
+    } else if is_presenting {
+        viewer.presented_stage(&mut root);
     } else if workspace.is_bare {
         viewer.stage(&mut root);
     } else {
@@ -194,19 +203,20 @@ fn draw(
             .show_inside(&mut root, &mut viewer);
     }
     if let Some(stage) = viewer.stage {
-        let mut board = None;
-        if let Some(lane) = focused(&lanes, &data.on_stage) {
-            let theme = (*data.theme, data.run.progress());
+        let (mut board, mut messages_end) = (None, stage.bottom());
+        if let Some(lane) = focused(&lanes, &data.on_stage).filter(|_| !is_presenting) {
+            let is_touring = matches!(workspace.modal(), Some(Modal::Tour(_)));
+            let theme = (*data.theme, data.run.progress(), is_touring);
             let around =
                 around_stage(&context, stage, &data.on_stage, &lanes, lane, theme, &mut commands);
-            board = around.board;
+            (board, messages_end) = (around.board, around.messages_end);
             let is_in_sight =
                 panels.panel_rects.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
             if let Some(view) = data.lessons.view().filter(|_| !is_in_sight) {
                 lesson_card(&context, around.below_bar, view.index, &mut commands);
             }
         }
-        area.set(&context, stage, board);
+        area.set(&context, stage, board, messages_end);
     }
     match workspace.modal() {
         Some(Modal::Keys) => key_overlay(&context, &mut commands),
@@ -259,11 +269,25 @@ impl Viewer<'_, '_, '_> {
                 .resizable(false)
                 .frame(egui::Frame::new().fill(fill).inner_margin(margin))
                 .show(ui, |ui| {
-                    let ends_s = end_s(self.lanes.iter().copied());
+                    let lanes = self.lanes.iter().copied();
+                    let is_of_lesson = lane.staged().source() == ChampionSource::Lesson;
+                    let span =
+                        TimelineSpan::of(lanes, is_of_lesson && self.data.lessons.hides_result());
                     let run = self.data.run.number();
-                    self.panels.timeline.ui(ui, lane, playback, ends_s, run, self.commands);
+                    self.panels.timeline.ui(ui, lane, playback, span, run, self.commands);
                 });
         }
+        self.reserve_stage(ui);
+    }
+
+    /// Draws the caption of the presenting mode at the bottom and reserves the rest for the stage.
+    fn presented_stage(&mut self, ui: &mut egui::Ui) {
+        let caption = PresentedCaption::of(self.lanes, &self.data.on_stage, &self.data.run);
+        caption_band(ui, &caption);
+        self.reserve_stage(ui);
+    }
+
+    fn reserve_stage(&mut self, ui: &mut egui::Ui) {
         let stage = ui.available_rect_before_wrap();
         // The stage is not an egui widget, but accessibility tools and tests need its name and rectangle.
         let place = ui.interact(stage, ui.id().with("the stage"), egui::Sense::hover());
@@ -271,24 +295,18 @@ impl Viewer<'_, '_, '_> {
         self.stage = Some(stage);
     }
 
-    /// Champions of the list that are on the stage.
-    fn shown(&self) -> Vec<ShownChampion> {
-        let run = self.data.run.number();
-        self.lanes.iter().filter_map(|lane| ShownChampion::of(lane.staged(), run)).collect()
-    }
-
     fn panel(&mut self, ui: &mut egui::Ui, kind: PanelKind) {
-        let shown = self.shown();
+        let shown = ShownLane::all(self.lanes, self.data.run.number());
         let PanelData { run, opening, .. } = self.data;
         let (panels, commands) = (&mut *self.panels, &mut *self.commands);
         match kind {
             PanelKind::Stage => {}
             PanelKind::Run => {
                 panels.evolution.ui(ui, run, commands);
-                panels.fitness.ui(ui, run, theme::CHART_HEIGHT, shown.first().copied(), commands);
+                panels.fitness.ui(ui, run, theme::CHART_HEIGHT, &shown, commands);
             }
             PanelKind::World => panels.world.ui(ui, run, &self.data.on_stage.history, commands),
-            PanelKind::Charts => panels.charts.ui(ui, run, shown.first().copied(), commands),
+            PanelKind::Charts => panels.charts.ui(ui, run, &shown, commands),
             PanelKind::Champions => {
                 let reports = run.reports();
                 let leaders = |generation| run.leaders(generation).len();

@@ -1,7 +1,11 @@
-//! Entries of the champion list that are on the stage.
+//! Entries of the champion list that are on the stage, with the colours of their lanes.
 
-use crate::evolve::Origin;
+use bevy_egui::egui::Color32;
+
+use crate::evolve::{IndividualId, Origin};
+use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
+use crate::studio::ui::theme::Palette;
 
 /// Entry of the champion list that is on the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,5 +37,58 @@ impl ShownChampion {
     /// Whether this is the given individual of the current run.
     pub(crate) fn is(self, generation: u32, individual: u32) -> bool {
         self == Self::Found { generation, individual }
+    }
+
+    /// Its place in the current run, if it is of that.
+    pub(crate) fn place(self) -> Option<IndividualId> {
+        match self {
+            Self::Found { generation, individual } => Some(IndividualId { generation, individual }),
+            Self::Opening(_) => None,
+        }
+    }
+}
+
+/// A champion of the list that is on the stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct ShownLane {
+    /// The champion.
+    pub champion: ShownChampion,
+    /// Its lane, if several lanes are side by side and have colours; the first is 0.
+    pub lane: Option<usize>,
+}
+
+impl ShownLane {
+    /// The champions of the list that are on the stage, without ghosts; `run` is the number of the current run.
+    pub(crate) fn all(lanes: &[&Lane], run: u32) -> Vec<Self> {
+        let racers = || lanes.iter().filter(|lane| !lane.is_ghost());
+        let are_many = racers().nth(1).is_some();
+        let shown = racers().filter_map(|lane| {
+            let champion = ShownChampion::of(lane.staged(), run)?;
+            Some(Self { champion, lane: are_many.then_some(lane.number()) })
+        });
+        shown.collect()
+    }
+
+    /// The colour of its lane, as in the leaderboard; `None` for a snake alone.
+    pub(crate) fn color(self, palette: &Palette) -> Option<Color32> {
+        self.lane.map(|lane| palette.lane_color(lane))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+
+    #[test]
+    fn lanes_side_by_side_have_their_colours_and_ghosts_or_a_snake_alone_none() {
+        let loaded = shipped_champion().expect("well formed");
+        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let shown = |lanes: &[&Lane]| -> Vec<Option<usize>> {
+            ShownLane::all(lanes, 0).into_iter().map(|shown| shown.lane).collect()
+        };
+        assert_eq!(shown(&[&lane(0)]), [None]);
+        assert_eq!(shown(&[&lane(0), &lane(1).into_ghost()]), [None]);
+        assert_eq!(shown(&[&lane(0), &lane(1)]), [Some(0), Some(1)]);
     }
 }

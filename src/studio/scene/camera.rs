@@ -3,6 +3,7 @@
 //! The world keeps the core's axes, so the camera has z up instead of everything being turned.
 
 pub mod mouse;
+pub mod setup;
 pub mod view;
 
 use bevy::camera::visibility::RenderLayers;
@@ -299,7 +300,8 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     }
 }
 
-/// Moves towards the target view, and far enough away to see all lanes if the camera follows all.
+/// Moves towards the target view: far enough away to see all lanes if the camera follows all, and so that no card over
+/// the stage covers the followed snakes.
 fn glide(
     mut rig: ResMut<CameraRig>,
     lanes: Query<&Lane>,
@@ -307,7 +309,7 @@ fn glide(
     time: Res<Time<Real>>,
     mut camera: Single<&mut Transform, With<StageCamera>>,
     // Kept from frame to frame, so that no frame allocates.
-    (mut points, mut snakes): (Local<Vec<Vec3>>, Local<Vec<Vec3>>),
+    (mut points, mut snakes, mut covers): (Local<Vec<Vec3>>, Local<Vec<Vec3>>, Local<Vec<Rect>>),
 ) {
     let mut goal = rig.view;
     if rig.frames_all() {
@@ -322,7 +324,19 @@ fn glide(
         }
         points.extend(snakes.iter());
         let anchor = rig.anchor.unwrap_or_default();
-        goal = goal.framing(anchor, &points, &snakes, area.aspect(), area.card());
+        covers.clear();
+        covers.extend(area.covers());
+        goal = goal.framing(anchor, &points, &snakes, area.aspect(), &covers);
+    } else if rig.follows {
+        snakes.clear();
+        covers.clear();
+        covers.extend(area.covers());
+        let followed = lanes.iter().filter(|lane| !lane.is_ghost());
+        for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number())) {
+            snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
+        }
+        let anchor = rig.anchor.unwrap_or_default();
+        goal = goal.beside(anchor, &snakes, area.aspect(), &covers);
     }
     let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
     rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };

@@ -230,7 +230,7 @@ fn squares(solid: &mut MeshBuilder, middle: Vec3, right: Vec3, up: Vec3) {
 /// Position of the finish on the y axis, in metres: behind the edge of the last step. A snake whose middle block is on
 /// that has landed.
 pub(crate) fn finish_y_m(stairs: &Stairs) -> f32 {
-    stairs.riser_y_m(stairs.steps.saturating_sub(1)) + BEHIND_EDGE_M
+    stairs.landing_y_m() + BEHIND_EDGE_M
 }
 
 /// Whether the landing is deep enough for a finish.

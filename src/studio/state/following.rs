@@ -25,6 +25,8 @@ pub(crate) struct Following {
     holds: bool,
     /// Number of the run that is followed.
     run: u32,
+    /// Whether a story begins again after its end, and follows the first landing.
+    repeats: bool,
     /// The generation on the stage.
     shown: Option<u32>,
     /// The latest generation that came onto the stage or was announced.
@@ -41,6 +43,8 @@ enum FollowPlan {
     Nothing,
     /// Each generation that is better than all before it, until a snake lands.
     Evolution,
+    /// Evolution was followed until a snake landed, which stays.
+    Landed,
     /// These generations in turn; `next` is the index of the one that follows.
     Story { generations: Vec<u32>, next: usize },
 }
@@ -72,7 +76,7 @@ impl Following {
     pub fn story_part(&self) -> Option<(usize, usize)> {
         match &self.plan {
             FollowPlan::Story { generations, next } => Some((*next, generations.len())),
-            FollowPlan::Nothing | FollowPlan::Evolution => None,
+            FollowPlan::Nothing | FollowPlan::Evolution | FollowPlan::Landed => None,
         }
     }
 
@@ -84,6 +88,12 @@ impl Following {
     /// Leaves on the stage what the user has chosen.
     pub fn stop(&mut self) {
         (self.plan, self.holds) = (FollowPlan::Nothing, false);
+    }
+
+    /// Repeats the story for as long as this is set, also after evolution has reached the landing. What the user
+    /// chose stays.
+    pub fn set_repeats(&mut self, repeats: bool) {
+        self.repeats = repeats;
     }
 
     /// Shows the first, the middle and the latest of the better generations in turn.
@@ -106,6 +116,10 @@ impl Following {
     fn due(&mut self, run: &CurrentRun, is_over: bool) -> Option<u32> {
         match &mut self.plan {
             FollowPlan::Nothing => None,
+            FollowPlan::Landed => {
+                let goes_on = self.repeats && is_over && self.tell_story(run).is_ok();
+                if goes_on { self.due(run, is_over) } else { None }
+            }
             FollowPlan::Evolution => {
                 let milestones = run.milestones();
                 let next = match self.shown {
@@ -121,7 +135,7 @@ impl Following {
                 self.is_new = false;
                 if next.is_landed {
                     // The goal is reached. Better ones are announced, and their landing can be watched in peace.
-                    self.plan = FollowPlan::Nothing;
+                    self.plan = FollowPlan::Landed;
                 }
                 Some(next.generation)
             }
@@ -130,12 +144,14 @@ impl Following {
                 if !(is_first || is_over || self.shown_for >= STORY_PART) {
                     return None;
                 }
-                let generation = generations.get(*next).copied();
-                match generation {
-                    Some(_) => *next += 1,
-                    None => self.plan = FollowPlan::Nothing,
+                if let Some(generation) = generations.get(*next).copied() {
+                    *next += 1;
+                    return Some(generation);
                 }
-                generation
+                self.plan = FollowPlan::Nothing;
+                // The next one has the generations that were better meanwhile.
+                let begins_again = self.repeats && self.tell_story(run).is_ok();
+                if begins_again { self.due(run, is_over) } else { None }
             }
         }
     }
@@ -297,5 +313,24 @@ mod tests {
         assert_eq!(told.last(), run.milestones().last().map(|last| &last.generation));
         assert_eq!(following.due(&run, true), None);
         assert_eq!(following.story_part(), None, "it is over");
+    }
+
+    #[test]
+    fn a_repeated_story_begins_again_until_repeating_ends() {
+        let run = explored_run();
+        let mut following = Following::default();
+        following.set_repeats(true);
+        assert_eq!(following.due(&run, true), None, "what was chosen stays");
+        following.tell_story(&run).expect("two better generations");
+        let parts = following.story_part().expect("a story").1;
+        let told: Vec<_> = (0..2 * parts).map(|_| following.due(&run, true)).collect();
+        assert!(told[0].is_some());
+        assert_eq!(told[..parts], told[parts..]);
+        following.plan = FollowPlan::Landed;
+        assert_eq!(following.due(&run, false), None, "the landing is watched to its end");
+        assert_eq!(following.due(&run, true), told[0]);
+        following.set_repeats(false);
+        following.plan = FollowPlan::Landed;
+        assert_eq!(following.due(&run, true), None);
     }
 }

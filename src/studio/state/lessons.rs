@@ -109,6 +109,15 @@ impl Lessons {
         })
     }
 
+    /// Whether the result of the selected scene must not be seen yet: it answers the scene's question, and the
+    /// experiment was not watched to its end.
+    pub fn hides_result(&self) -> bool {
+        self.current.as_ref().is_some_and(|current| {
+            let asks = current.scene().is_some_and(|scene| scene.question().is_some());
+            asks && current.progress.get(current.scene).is_some_and(|of| !of.is_revealed)
+        })
+    }
+
     /// Whether the selected scene waits for a guess.
     pub fn awaits_guess(&self) -> bool {
         self.current.as_ref().is_some_and(Current::awaits_guess)

@@ -30,6 +30,8 @@ pub struct Options {
     pub window_size: Option<(u32, u32)>,
     /// Colour theme; `None`: as last time.
     pub theme: Option<Theme>,
+    /// Whether the stage is presented on the full screen from the start.
+    pub presents: bool,
     /// File of the window preferences.
     pub preferences: PreferencesFile,
     /// File to which the panels' texts and positions are written, for scripts and tests.
@@ -51,6 +53,7 @@ impl Options {
             comparison: None,
             window_size: None,
             theme: None,
+            presents: false,
             preferences: PreferencesFile::nowhere(),
             places: None,
             exit_after_frames: None,

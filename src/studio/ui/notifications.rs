@@ -7,11 +7,16 @@ use bevy_egui::egui::accesskit::{Live, Role};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 use super::theme;
+use super::viewport::StageArea;
 use crate::studio::commands::Command;
 
 /// Displayed messages, the oldest first.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Notices(Vec<Notice>);
+pub(crate) struct Notices {
+    list: Vec<Notice>,
+    /// Whether only problems and important news are drawn.
+    is_quiet: bool,
+}
 
 #[derive(Debug)]
 struct Notice {
@@ -21,6 +26,8 @@ struct Notice {
     /// Buttons: their labels, and the commands that they send.
     offers: Vec<(String, Command)>,
     is_problem: bool,
+    /// Whether it is drawn in a presentation, too.
+    is_important: bool,
     /// Display time.
     lasts: Duration,
     shown_for: Duration,
@@ -42,6 +49,7 @@ impl Notice {
             subject: None,
             offers: Vec::new(),
             is_problem: false,
+            is_important: false,
             lasts: NEWS,
             shown_for: Duration::ZERO,
         }
@@ -56,6 +64,16 @@ impl Notices {
     /// Shows a message.
     pub fn info(&mut self, text: String) {
         self.push(Notice::new(text));
+    }
+
+    /// Shows a message that a presentation does not hide.
+    pub fn important(&mut self, text: String) {
+        self.push(Notice { is_important: true, ..Notice::new(text) });
+    }
+
+    /// Draws only problems and important news, or all messages again.
+    pub fn set_quiet(&mut self, is_quiet: bool) {
+        self.is_quiet = is_quiet;
     }
 
     /// Shows a message that replaces earlier ones about the same subject.
@@ -84,7 +102,12 @@ impl Notices {
     /// Shows and logs a problem.
     pub fn problem(&mut self, text: String) {
         error!("{text}");
-        self.push(Notice { is_problem: true, lasts: PROBLEM, ..Notice::new(text) });
+        self.push(Notice {
+            is_problem: true,
+            is_important: true,
+            lasts: PROBLEM,
+            ..Notice::new(text)
+        });
     }
 
     /// Shows and logs a problem, if there is one.
@@ -95,53 +118,65 @@ impl Notices {
     /// Number of displayed messages.
     #[cfg(test)]
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.list.len()
     }
 
     /// The latest message.
     #[cfg(test)]
     pub fn last(&self) -> Option<&str> {
-        self.0.last().map(|notice| notice.text.as_str())
+        self.list.last().map(|notice| notice.text.as_str())
     }
 
     /// The buttons of the latest message.
     #[cfg(test)]
     pub fn last_offers(&self) -> &[(String, Command)] {
-        self.0.last().map_or(&[], |notice| &notice.offers)
+        self.list.last().map_or(&[], |notice| &notice.offers)
+    }
+
+    /// The messages to draw, with their indices.
+    fn drawn(&self) -> impl DoubleEndedIterator<Item = (usize, &Notice)> {
+        let all = self.list.iter().enumerate();
+        all.filter(|(_, notice)| !self.is_quiet || notice.is_important)
     }
 
     fn push(&mut self, new: Notice) {
         // A repeated message replaces the earlier one and restarts its display time.
         let is_same = |notice: &Notice| new.subject.is_some() && notice.subject == new.subject;
-        self.0.retain(|notice| notice.text != new.text && !is_same(notice));
-        self.0.push(new);
-        let surplus = self.0.len().saturating_sub(MAX_NOTICES);
-        self.0.drain(..surplus);
+        self.list.retain(|notice| notice.text != new.text && !is_same(notice));
+        self.list.push(new);
+        let surplus = self.list.len().saturating_sub(MAX_NOTICES);
+        self.list.drain(..surplus);
     }
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Notices>().add_systems(EguiPrimaryContextPass, draw);
+    app.init_resource::<Notices>()
+        .init_resource::<StageArea>()
+        .add_systems(EguiPrimaryContextPass, draw);
 }
 
 fn draw(
     mut contexts: EguiContexts,
     mut notices: ResMut<Notices>,
     time: Res<Time<Real>>,
+    mut area: ResMut<StageArea>,
     mut send: MessageWriter<Command>,
 ) -> Result {
-    notices.0.iter_mut().for_each(|notice| notice.shown_for += time.delta());
-    notices.0.retain(|notice| !notice.is_over());
+    notices.list.iter_mut().for_each(|notice| notice.shown_for += time.delta());
+    notices.list.retain(|notice| !notice.is_over());
     let context = contexts.ctx_mut()?;
     let mut taken = None;
-    egui::Area::new(egui::Id::new("notices"))
-        .anchor(egui::Align2::RIGHT_TOP, [-theme::GAP * 2.0, theme::NOTICES_TOP])
+    // The stairs rise to the upper right, so there is most room over the ground at the lower right.
+    let corner = area.messages_corner() - egui::Vec2::splat(theme::GAP * 1.5);
+    let shown = egui::Area::new(egui::Id::new("notices"))
+        .pivot(egui::Align2::RIGHT_BOTTOM)
+        .fixed_pos(corner)
         // Without a button, clicks reach the stage behind the messages.
-        .interactable(notices.0.iter().any(|notice| !notice.offers.is_empty()))
+        .interactable(notices.drawn().any(|(_, notice)| !notice.offers.is_empty()))
         .show(context, |ui| {
             ui.spacing_mut().item_spacing.y = theme::GAP;
             ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
-                for (index, notice) in notices.0.iter().enumerate().rev() {
+                for (index, notice) in notices.drawn().rev() {
                     let palette = theme::of(ui);
                     let edge = if notice.is_problem { palette.problem } else { palette.accent };
                     palette.card(edge).show(ui, |ui| {
@@ -171,8 +206,10 @@ fn draw(
                 }
             });
         });
+    let is_empty = notices.drawn().next().is_none();
+    area.set_messages((!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0)));
     if let Some((index, command)) = taken {
-        notices.0.remove(index);
+        notices.list.remove(index);
         send.write(command);
     }
     Ok(())
@@ -189,7 +226,7 @@ mod tests {
             notices.info(number.to_string());
         }
         notices.info("7".to_owned());
-        let texts: Vec<&str> = notices.0.iter().map(|notice| notice.text.as_str()).collect();
+        let texts: Vec<&str> = notices.list.iter().map(|notice| notice.text.as_str()).collect();
         assert_eq!(texts, ["6", "8", "9", "7"]);
     }
 
@@ -199,9 +236,23 @@ mod tests {
         notices.update("undo", "Deleted a save".to_owned());
         notices.info("Something else".to_owned());
         notices.offer("undo", "Restored".to_owned(), [("Redo", Command::Redo)]);
-        let texts: Vec<&str> = notices.0.iter().map(|notice| notice.text.as_str()).collect();
+        let texts: Vec<&str> = notices.list.iter().map(|notice| notice.text.as_str()).collect();
         assert_eq!(texts, ["Something else", "Restored"]);
-        notices.0[1].shown_for = NEWS;
-        assert!(!notices.0[1].is_over(), "a button takes time to reach");
+        notices.list[1].shown_for = NEWS;
+        assert!(!notices.list[1].is_over(), "a button takes time to reach");
+    }
+    #[test]
+    fn a_presentation_hides_news_but_neither_problems_nor_important_news() {
+        let mut notices = Notices::default();
+        notices.info("small news".to_owned());
+        notices.important("the run is finished".to_owned());
+        notices.problem("it failed".to_owned());
+        let drawn =
+            |notices: &Notices| -> Vec<usize> { notices.drawn().map(|(index, _)| index).collect() };
+        assert_eq!(drawn(&notices), [0, 1, 2]);
+        notices.set_quiet(true);
+        assert_eq!(drawn(&notices), [1, 2]);
+        notices.set_quiet(false);
+        assert_eq!(drawn(&notices), [0, 1, 2]);
     }
 }

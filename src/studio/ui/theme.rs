@@ -101,6 +101,14 @@ pub const HEADING_SIZE: f32 = 22.0;
 pub const TITLE_SIZE: f32 = 15.0;
 /// Size of captions over the stage that are read from across a room, in points.
 pub const CAPTION_SIZE: f32 = 22.0;
+/// Sizes of the presenting mode's caption, in points: the largest one at which it fits is used.
+pub const PRESENTED_SIZES: [f32; 4] = [40.0, 34.0, 29.0, 25.0];
+/// Size of the line below that caption, in points.
+pub const PRESENTED_DETAIL_SIZE: f32 = 21.0;
+/// Height of the band with both, in points.
+pub const PRESENTED_BAND: f32 = 112.0;
+/// Diameter of the dot in the colour of a lane, in points.
+pub const LANE_DOT: f32 = 10.0;
 /// Width of a field for a number, in points.
 pub const FIELD_WIDTH: f32 = 64.0;
 /// Width of a combo box, in points.
@@ -118,9 +126,6 @@ pub const PALETTE_WIDTH: f32 = 480.0;
 pub const TOUR_WIDTH: f32 = 332.0;
 /// Width of a column in the list of shortcuts, in points.
 pub const KEY_COLUMN_WIDTH: f32 = 320.0;
-/// Distance of messages from the top of the window, in points: below the bar over the stage, which reaches under them
-/// in a narrow window.
-pub const NOTICES_TOP: f32 = 84.0;
 /// Width of a message over the stage, in points.
 pub const NOTICE_WIDTH: f32 = 340.0;
 /// Height of the torque strip under the stage, in points.
@@ -156,6 +161,10 @@ pub const SMALL_SIZE: f32 = 11.0;
 pub const LIBRARY_ROW_HEIGHT: f32 = 44.0;
 /// Size of a thumbnail in a row of the library, in points.
 pub const THUMBNAIL_SIZE: egui::Vec2 = egui::vec2(76.0, 36.0);
+/// Height of a row in the list of champions, in points.
+pub const CHAMPION_ROW_HEIGHT: f32 = 32.0;
+/// Size of a thumbnail in that list, in points.
+pub const CHAMPION_THUMBNAIL: egui::Vec2 = egui::vec2(46.0, 26.0);
 /// Height of the picture of the selected save, in points.
 pub const PICTURE_HEIGHT: f32 = 64.0;
 /// Stage width below which cards are compact, in points.

@@ -10,30 +10,40 @@ use super::text_prompt;
 pub(crate) struct StageArea {
     /// Rectangle of the stage, in egui points.
     rect: egui::Rect,
-    /// Card over the stage, as fractions of its width and height from the upper left corner.
-    card: Option<Rect>,
+    /// Card over the stage, in egui points.
+    card: Option<egui::Rect>,
+    /// Messages over the stage, in egui points.
+    messages: Option<egui::Rect>,
+    /// Where the lower right corner of the messages is to be, in egui points.
+    messages_corner: egui::Pos2,
     /// The egui context, which knows the layers over the stage.
     context: egui::Context,
 }
 
 impl Default for StageArea {
     fn default() -> Self {
-        Self { rect: egui::Rect::ZERO, card: None, context: egui::Context::default() }
+        Self {
+            rect: egui::Rect::ZERO,
+            card: None,
+            messages: None,
+            messages_corner: egui::Pos2::ZERO,
+            context: egui::Context::default(),
+        }
     }
 }
 
 impl StageArea {
     /// Sets the stage's rectangle, and the rectangle of a card over it that must cover no snake, in points.
-    pub fn set(&mut self, context: &egui::Context, rect: egui::Rect, card: Option<egui::Rect>) {
-        self.rect = rect;
-        self.card = card.map(|card| {
-            let size = rect.size().max(egui::Vec2::splat(1.0));
-            let share = |at: egui::Pos2| {
-                let from_corner = (at - rect.min) / size;
-                Vec2::new(from_corner.x, from_corner.y)
-            };
-            Rect::from_corners(share(card.min), share(card.max))
-        });
+    /// Messages end at the height `messages_end`.
+    pub fn set(
+        &mut self,
+        context: &egui::Context,
+        rect: egui::Rect,
+        card: Option<egui::Rect>,
+        messages_end: f32,
+    ) {
+        (self.rect, self.card) = (rect, card);
+        self.messages_corner = egui::pos2(rect.right(), messages_end);
         // Cloning a context only clones a handle.
         self.context = context.clone();
     }
@@ -70,9 +80,26 @@ impl StageArea {
         self.context.text_edit_focused() || text_prompt::is_open(&self.context)
     }
 
-    /// Card over the stage, as fractions of its width and height from the upper left corner.
-    pub fn card(&self) -> Option<Rect> {
-        self.card
+    /// Where the lower right corner of the messages is to be, in egui points.
+    pub fn messages_corner(&self) -> egui::Pos2 {
+        self.messages_corner
+    }
+
+    /// Sets the rectangle of the messages, in points.
+    pub fn set_messages(&mut self, rect: Option<egui::Rect>) {
+        self.messages = rect;
+    }
+
+    /// Card and messages over the stage, as fractions of its width and height from the upper left corner.
+    pub fn covers(&self) -> impl Iterator<Item = Rect> {
+        let size = self.rect.size().max(egui::Vec2::splat(1.0));
+        let share = move |at: egui::Pos2| {
+            let from_corner = (at - self.rect.min) / size;
+            Vec2::new(from_corner.x, from_corner.y)
+        };
+        let covers = [self.card, self.messages].into_iter().flatten();
+        let over_stage = covers.filter(|cover| cover.intersects(self.rect));
+        over_stage.map(move |cover| Rect::from_corners(share(cover.min), share(cover.max)))
     }
 
     /// Ratio of width to height.
@@ -91,7 +118,7 @@ mod tests {
     fn letters_belong_to_an_open_prompt_even_if_no_widget_has_the_focus() {
         let context = egui::Context::default();
         let mut area = StageArea::default();
-        area.set(&context, egui::Rect::EVERYTHING, None);
+        area.set(&context, egui::Rect::EVERYTHING, None, 0.0);
         let mut prompt = TextPrompt::new("my-ice".to_owned());
         let mut pass = |is_open: bool| {
             let _ = context.run_ui(egui::RawInput::default(), |ui| {
@@ -110,11 +137,18 @@ mod tests {
     }
 
     #[test]
-    fn the_card_is_known_as_a_share_of_the_stage() {
+    fn card_and_messages_are_known_as_shares_of_the_stage() {
         let mut area = StageArea::default();
         let stage = egui::Rect::from_min_size(egui::pos2(300.0, 40.0), egui::vec2(800.0, 400.0));
         let card = egui::Rect::from_min_size(egui::pos2(300.0, 240.0), egui::vec2(200.0, 200.0));
-        area.set(&egui::Context::default(), stage, Some(card));
-        assert_eq!(area.card(), Some(Rect::new(0.0, 0.5, 0.25, 1.0)));
+        area.set(&egui::Context::default(), stage, Some(card), 440.0);
+        assert_eq!(area.messages_corner(), egui::pos2(1100.0, 440.0));
+        let messages = egui::Rect::from_min_max(egui::pos2(900.0, 340.0), area.messages_corner());
+        area.set_messages(Some(messages));
+        let covers: Vec<Rect> = area.covers().collect();
+        assert_eq!(covers, [Rect::new(0.0, 0.5, 0.25, 1.0), Rect::new(0.75, 0.75, 1.0, 1.0)]);
+        let above = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(900.0, 30.0));
+        area.set_messages(Some(above));
+        assert_eq!(area.covers().count(), 1, "beside the stage");
     }
 }

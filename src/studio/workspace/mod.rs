@@ -31,6 +31,8 @@ pub(super) struct Workspace {
     pub tour_is_over: bool,
     /// Titles of the sections whose advanced settings are unfolded.
     pub unfolded: BTreeSet<String>,
+    /// Whether the stage is presented on the full screen.
+    is_presenting: bool,
     /// Label of the setting to scroll to, until the settings panel has handled it.
     pub sought: Option<&'static str>,
     modal: Option<Modal>,
@@ -44,6 +46,7 @@ impl Default for Workspace {
             is_bare: false,
             tour_is_over: true,
             unfolded: BTreeSet::new(),
+            is_presenting: false,
             sought: None,
             modal: None,
         }
@@ -51,14 +54,19 @@ impl Default for Workspace {
 }
 
 impl Workspace {
-    /// The initial state, with or without the tour.
-    pub fn new(tour_is_over: bool) -> Self {
-        Self { tour_is_over, ..Self::default() }
+    /// The initial state, with or without the tour, and with or without the presenting mode.
+    pub fn new(tour_is_over: bool, is_presenting: bool) -> Self {
+        Self { tour_is_over, is_presenting, ..Self::default() }
     }
 
-    /// The open modal view.
+    /// The open modal view. The tour, which points at panels, waits for the end of the presenting mode.
     pub fn modal(&self) -> Option<Modal> {
-        self.modal
+        self.modal.filter(|modal| !self.is_presenting || !matches!(modal, Modal::Tour(_)))
+    }
+
+    /// Whether the stage is presented on the full screen: without panels and cards, under a large caption.
+    pub fn is_presenting(&self) -> bool {
+        self.is_presenting
     }
 
     /// Executes a command. Returns a message if there is nothing to do.
@@ -71,7 +79,10 @@ impl Workspace {
             }
             WindowCommand::ClosePanel => self.layout.close_front(),
             WindowCommand::ResetLayout => self.layout.reset(),
+            // The presenting mode shows no panel anyway, and its end brings back what was visible before it.
+            WindowCommand::TogglePanels if self.is_presenting => {}
             WindowCommand::TogglePanels => self.is_bare = !self.is_bare,
+            WindowCommand::TogglePresenting => self.is_presenting = !self.is_presenting,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
             WindowCommand::ResetScale => self.scale.choose(1.0),
             WindowCommand::FoldAdvanced { section, is_open: true } => {
@@ -81,15 +92,16 @@ impl Workspace {
                 self.unfolded.remove(*section);
             }
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
-            WindowCommand::CloseModal if self.modal.is_none() => self.is_bare = false,
-            WindowCommand::CloseModal => self.close_modal(),
+            WindowCommand::CloseModal if self.modal().is_some() => self.close_modal(),
+            WindowCommand::CloseModal if self.is_presenting => self.is_presenting = false,
+            WindowCommand::CloseModal => self.is_bare = false,
         }
         None
     }
 
     /// Brings a panel to the front, and shows the panels if they are hidden.
     pub fn open(&mut self, kind: PanelKind) {
-        self.is_bare = false;
+        (self.is_bare, self.is_presenting) = (false, false);
         self.layout.open(kind);
     }
 
@@ -149,5 +161,31 @@ mod tests {
         assert_eq!(workspace.modal(), Some(Modal::Tour(1)));
         workspace.close_modal();
         assert!(workspace.modal().is_none() && workspace.tour_is_over);
+    }
+
+    #[test]
+    fn the_end_of_the_presenting_mode_brings_back_what_was_visible_before() {
+        for is_bare in [false, true] {
+            let mut workspace =
+                Workspace { is_bare, modal: Some(Modal::Tour(2)), ..Workspace::default() };
+            workspace.apply(&WindowCommand::TogglePresenting);
+            assert!(workspace.is_presenting() && workspace.modal().is_none());
+            workspace.apply(&WindowCommand::TogglePanels);
+            workspace.apply(&WindowCommand::ToggleModal(Modal::Keys));
+            workspace.modal = Some(Modal::Tour(2));
+            workspace.apply(&WindowCommand::CloseModal);
+            assert!(!workspace.is_presenting(), "Escape ends it");
+            assert_eq!((workspace.is_bare, workspace.modal()), (is_bare, Some(Modal::Tour(2))));
+        }
+    }
+
+    #[test]
+    fn escape_closes_a_view_over_the_presented_stage_first_and_a_panel_ends_presenting() {
+        let mut workspace = Workspace::new(true, true);
+        workspace.apply(&WindowCommand::ToggleModal(Modal::Keys));
+        workspace.apply(&WindowCommand::CloseModal);
+        assert!(workspace.is_presenting() && workspace.modal().is_none());
+        workspace.apply(&WindowCommand::OpenPanel(PanelKind::World));
+        assert!(!workspace.is_presenting());
     }
 }

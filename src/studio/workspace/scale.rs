@@ -8,6 +8,9 @@ use crate::save::UI_SCALES;
 /// it. A scale that would leave fewer points is not used.
 pub const LEAST_WINDOW: egui::Vec2 = egui::vec2(800.0, 480.0);
 
+/// Size of a window, in logical pixels, in which the presenting mode has the scale 1.
+const PRESENTED: egui::Vec2 = egui::vec2(1000.0, 625.0);
+
 /// Scale of the panels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UiScale {
@@ -46,6 +49,14 @@ impl UiScale {
             points.x >= LEAST_WINDOW.x && points.y >= LEAST_WINDOW.y
         };
         self.largest = UI_SCALES.iter().rev().find(has_room).copied().unwrap_or(UI_SCALES[0]);
+    }
+
+    /// Scale of the presenting mode in a window of this size, in logical pixels: its texts have the same share of every
+    /// screen.
+    pub fn presenting(window: egui::Vec2) -> f32 {
+        let share = window / PRESENTED;
+        // In twentieths, so that a window that is being resized does not rasterize its letters in every frame.
+        ((share.x.min(share.y) * 20.0).floor() / 20.0).max(UI_SCALES[0])
     }
 
     /// Chooses the next larger or smaller scale.
@@ -95,6 +106,23 @@ mod tests {
         assert_eq!(scale.shown(), UI_SCALES[UI_SCALES.len() - 1]);
         while scale.change(false).is_ok() {}
         assert_eq!(scale.shown(), UI_SCALES[0]);
+    }
+
+    #[test]
+    fn presented_texts_have_the_same_share_of_every_screen() {
+        for (width, height) in [
+            (1024.0, 640.0),
+            (1280.0, 720.0),
+            (1600.0, 900.0),
+            (2560.0, 1440.0),
+            (3840.0, 2160.0),
+            (1200.0, 1920.0),
+        ] {
+            let points = egui::vec2(width, height) / UiScale::presenting(egui::vec2(width, height));
+            assert!(points.x > 999.9 && points.y > 624.9, "{width} x {height}: {points}");
+            assert!(points.x < 1050.0 || points.y < 660.0, "{width} x {height}: {points}");
+        }
+        assert_eq!(UiScale::presenting(egui::vec2(320.0, 240.0)), UI_SCALES[0]);
     }
 
     #[test]

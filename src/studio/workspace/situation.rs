@@ -37,7 +37,9 @@ impl Situation {
             is_running: run.status() == RunStatus::Running,
             is_what_if: matches!(mode, StageMode::WhatIf { .. }),
             is_race: matches!(mode, StageMode::Race | StageMode::Generation { .. }),
-            is_covered: workspace.modal().is_some() || workspace.is_bare,
+            is_covered: workspace.modal().is_some()
+                || workspace.is_bare
+                || workspace.is_presenting(),
             can_undo: history.next(UndoDirection::Back).is_some(),
             can_redo: history.next(UndoDirection::Forth).is_some(),
             digit: None,

@@ -200,7 +200,9 @@ impl Studio {
             );
         }
         self.key("0");
-        self.wait_for_title("showing saved champion");
+        let shows_another =
+            || ["showing generation ", "showing a "].iter().any(|of| self.title().contains(of));
+        self.wait(|| !shows_another(), || format!("the saved champion in {:?}", self.title()));
     }
 
     /// Time at which the stage is paused, in simulated seconds, from the title.

@@ -23,7 +23,7 @@ fn a_slider_starts_a_what_if_and_can_be_undone_and_redone() {
     studio.open_panel("World");
     let before = studio.value_of("TextInput", "Friction");
     studio.drag_slider("Friction", 0.25);
-    studio.wait_for_title("showing saved champion with a what-if copy");
+    studio.wait_for_title("showing climber with a what-if copy");
     let after = studio.value_of("TextInput", "Friction");
     assert_ne!(before, after);
     studio.step_aside();
@@ -32,7 +32,7 @@ fn a_slider_starts_a_what_if_and_can_be_undone_and_redone() {
     studio.wait_for_title_without("what-if");
     studio.key("ctrl+shift+z");
     studio.wait_for_value("TextInput", "Friction", &after);
-    studio.wait_for_title("showing saved champion with a what-if copy");
+    studio.wait_for_title("showing climber with a what-if copy");
 }
 
 #[test]

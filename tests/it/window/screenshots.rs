@@ -86,7 +86,7 @@ impl Album {
         self.keep(&studio, "race");
 
         studio.key("0");
-        studio.wait_for_title("showing saved champion");
+        studio.wait_for_title("showing climber");
         studio.open_panel("World");
         studio.drag_slider("Friction", 0.3);
         studio.wait_for_title("what-if");

@@ -64,11 +64,11 @@ fn a_race_starts_by_key_or_click_and_ends_by_key() {
     // The race selects its best snake, of whichever generation.
     studio.wait_for_title("showing generation ");
     studio.click_champion(0);
-    studio.wait_for_title("showing saved champion");
+    studio.wait_for_title("showing climber");
     studio.shift_click_champion(1);
     studio.wait_for_title("showing a race of 2");
     studio.shift_click_champion(1);
-    studio.wait_for_title("showing saved champion");
+    studio.wait_for_title("showing climber");
     studio.key("m");
     studio.wait_for_title("showing a race of 10");
 }
@@ -79,17 +79,17 @@ fn a_changed_world_is_shown_beside_the_original_and_kept_or_discarded() {
     studio.pause_evolution();
     studio.open_panel("World");
     studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("showing saved champion with a what-if copy");
+    studio.wait_for_title("showing climber with a what-if copy");
     studio.click_label("Discard");
     studio.wait_for_title_without("what-if");
     studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("showing saved champion with a what-if copy");
+    studio.wait_for_title("showing climber with a what-if copy");
     studio.click_label("Keep");
-    studio.wait_for_title("showing saved champion in another world");
+    studio.wait_for_title("showing climber in another world");
     studio.scroll_and_click("CheckBox", "The ground has its own surface");
     studio.wait_for_title("what-if");
     studio.key("Escape");
-    studio.wait_for_title("showing saved champion in another world");
+    studio.wait_for_title("showing climber in another world");
 }
 
 #[test]

@@ -2,14 +2,16 @@
 
 use bevy_egui::egui;
 
-use super::landing_times::LandingTime;
+use super::climbs::LandingTime;
 use crate::evolve::Champion;
+use crate::save::library::Thumbnail;
+use crate::studio::panels::thumbnail::thumbnail;
 use crate::studio::ui::theme;
 
 /// Widths of the columns fitness, time and energy, in points.
-const WIDTHS: [f32; 3] = [68.0, 56.0, 62.0];
-/// Width that stays for the names, in points.
-const NAME_WIDTH: f32 = 136.0;
+const WIDTHS: [f32; 3] = [62.0, 54.0, 54.0];
+/// Width that stays for pictures and names, in points.
+const NAME_WIDTH: f32 = 170.0;
 /// Names of the columns and their hover texts.
 const HEADS: [(&str, &str); 3] = [
     ("Fitness", "What the run rewards: see Fitness in the Run panel"),
@@ -38,9 +40,14 @@ pub(super) fn cells(champion: &Champion, time: LandingTime) -> [String; 3] {
     [champion.score(), time, energy.unwrap_or_else(|| "-".to_owned())]
 }
 
-/// Draws the names of the columns.
-pub(super) fn heads(ui: &mut egui::Ui) {
-    let width = ui.available_width();
+/// Width of the rows of a list over the available width: the scroll bar has room beside them, so that the columns do
+/// not move when it appears.
+pub(super) fn rows_width(ui: &egui::Ui) -> f32 {
+    ui.available_width() - ui.spacing().scroll.allocated_width()
+}
+
+/// Draws the names of the columns above rows of this width.
+pub(super) fn heads(ui: &mut egui::Ui, width: f32) {
     let size = egui::vec2(width, theme::SMALL_SIZE + 4.0);
     let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
     for (index, cell) in places(rect, count(width)).into_iter().enumerate() {
@@ -52,16 +59,29 @@ pub(super) fn heads(ui: &mut egui::Ui) {
     }
 }
 
+/// How a row is drawn.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct ChampionRowStyle<'r> {
+    /// Whether its champion is on the stage.
+    pub is_shown: bool,
+    /// The colour of its lane, if it is one of several.
+    pub lane_color: Option<egui::Color32>,
+    /// Its climb, once that is known.
+    pub picture: Option<&'r Thumbnail>,
+}
+
 /// Draws a clickable row over the whole width: name at the left, columns at the right.
 pub(super) fn row(
     ui: &mut egui::Ui,
-    is_shown: bool,
+    ChampionRowStyle { is_shown, lane_color, picture }: ChampionRowStyle<'_>,
     name: &str,
     cells: &[String; 3],
 ) -> egui::Response {
     let width = ui.available_width();
     let count = count(width);
-    let button = egui::Button::new("").selected(is_shown).min_size(egui::vec2(width, 0.0));
+    let button = egui::Button::new("")
+        .selected(is_shown)
+        .min_size(egui::vec2(width, theme::CHAMPION_ROW_HEIGHT));
     let response = ui.add(button);
     let label = std::iter::once(name).chain(cells[..count].iter().map(String::as_str));
     let label = label.collect::<Vec<_>>().join(", ");
@@ -74,7 +94,18 @@ pub(super) fn row(
     let places = places(rect, count);
     let names_end = places.first().map_or(rect.right(), |first| first.left());
     let room = egui::Rect::from_min_max(rect.min, egui::pos2(names_end, rect.bottom()));
-    let at = egui::pos2(rect.left() + theme::GAP, rect.center().y);
+    let mut at = rect.left_center() + egui::vec2(theme::GAP / 2.0, 0.0);
+    let size = theme::CHAMPION_THUMBNAIL;
+    if let Some(picture) = picture {
+        let place = egui::Rect::from_min_size(at - egui::vec2(0.0, size.y / 2.0), size);
+        thumbnail(ui.painter(), place, picture, palette);
+    }
+    at.x += size.x + theme::GAP;
+    if let Some(color) = lane_color {
+        let radius = theme::LANE_DOT / 2.0;
+        ui.painter().circle_filled(at + egui::vec2(radius, 0.0), radius, color);
+        at.x += theme::LANE_DOT + theme::GAP / 2.0;
+    }
     let align = egui::Align2::LEFT_CENTER;
     ui.painter().with_clip_rect(room.intersect(ui.clip_rect())).text(
         at,
@@ -113,9 +144,9 @@ mod tests {
 
     #[test]
     fn a_narrow_list_drops_energy_first_and_keeps_the_fitness() {
-        let counts = [400.0, 300.0, 220.0, 100.0].map(count);
+        let counts = [400.0, 320.0, 260.0, 100.0].map(count);
         assert_eq!(counts, [3, 2, 1, 1]);
-        let row = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(340.0, 24.0));
+        let row = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(370.0, 24.0));
         let places = places(row, 3);
         assert!(places.windows(2).all(|pair| pair[0].right() == pair[1].left()));
         assert!(places[0].left() >= NAME_WIDTH && places[2].right() < row.right());

@@ -3,10 +3,10 @@
 use bevy_egui::egui;
 
 use super::legend::click_hint;
-use crate::evolve::{Archive, Descriptor};
+use crate::evolve::{Archive, Descriptor, Elite};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
-use crate::studio::panels::shown::ShownChampion;
+use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::plot_axes::{number, y_title};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -16,7 +16,7 @@ pub(crate) fn archive_map(
     ui: &mut egui::Ui,
     archive: &Archive,
     unit: &str,
-    shown: Option<ShownChampion>,
+    shown: &[ShownLane],
     height: f32,
     commands: &mut Vec<Command>,
 ) {
@@ -47,19 +47,18 @@ pub(crate) fn archive_map(
         let share = (elite.fitness - min) / (max - min).max(f32::MIN_POSITIVE);
         painter.rect_filled(cell_rect(map, archive, cell), 0.0, theme::palette::ramp(share));
     }
-    let is_shown =
-        |generation, individual| shown.is_some_and(|shown| shown.is(generation, individual));
-    let on_stage = archive.elites().find(|(_, elite)| is_shown(elite.generation, elite.individual));
+    let on_stage = shown.iter().filter_map(|shown| {
+        let is_it = |of: &Elite| shown.champion.is(of.generation, of.individual);
+        let (cell, _) = archive.elites().find(|(_, elite)| is_it(elite))?;
+        Some((cell, shown.color(palette).unwrap_or(palette.text)))
+    });
     let hovered = response.hover_pos().and_then(|at| cell_at(map, archive, at));
     let hovered_elite = hovered.filter(|cell| archive.elite(*cell).is_some());
-    for (cell, color) in
-        [(hovered_elite, palette.text_weak), (on_stage.map(|(cell, _)| cell), palette.text)]
-    {
-        if let Some(cell) = cell {
-            let stroke = egui::Stroke::new(2.0, color);
-            let rect = cell_rect(map, archive, cell);
-            painter.rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Outside);
-        }
+    let hovered_one = hovered_elite.map(|cell| (cell, palette.text_weak));
+    for (cell, color) in hovered_one.into_iter().chain(on_stage) {
+        let stroke = egui::Stroke::new(2.0, color);
+        let rect = cell_rect(map, archive, cell);
+        painter.rect_stroke(rect, 0.0, stroke, egui::StrokeKind::Outside);
     }
     let line = egui::TextStyle::Small.resolve(ui.style()).size + 2.0;
     let (below, _) = ui.allocate_exact_size(egui::vec2(area.width(), line), egui::Sense::hover());
@@ -170,7 +169,7 @@ mod tests {
     fn clicked(archive: &Archive, cell: u32) -> (Vec<Command>, bool) {
         let size = egui::vec2(theme::PANEL_WIDTH, 500.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| archive_map(ui, archive, " m", None, theme::MAP_HEIGHT, commands),
+            |ui, commands| archive_map(ui, archive, " m", &[], theme::MAP_HEIGHT, commands),
             Vec::new(),
         );
         harness.run();

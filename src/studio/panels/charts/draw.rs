@@ -10,9 +10,9 @@ use egui_plot::{
 use super::downsample::DrawnSeries;
 use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::IndividualId;
 use crate::plot::{Chart, Role, Series, Shape, beside_line};
 use crate::studio::commands::{Command, StageCommand};
+use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
@@ -24,13 +24,13 @@ const MARK_PADDING: egui::Vec2 = egui::vec2(4.0, 1.0);
 /// Maximum number of points on a line that are marked individually.
 const MAX_MARKED_POINTS: usize = 30;
 
-/// Draws a view over the available width and height. `shown` is the individual on the stage.
+/// Draws a view over the available width and height. `shown` are the individuals on the stage.
 pub(super) fn draw(
     ui: &mut egui::Ui,
     id: &str,
     view: &ChartView,
     height: f32,
-    shown: Option<IndividualId>,
+    shown: &[ShownLane],
     commands: &mut Vec<Command>,
 ) {
     legend(ui, view);
@@ -82,7 +82,7 @@ impl ChartPart<'_> {
         ui: &mut egui::Ui,
         hits: &[ChartHit],
         height: f32,
-        shown: Option<IndividualId>,
+        shown: &[ShownLane],
         commands: &mut Vec<Command>,
     ) {
         let chart = self.chart;
@@ -121,9 +121,15 @@ impl ChartPart<'_> {
         });
         let painter = ui.painter_at(response.rect);
         self.mark_labels(&painter, &plot.transform, palette);
-        let on_stage = hits.iter().find(|hit| shown.is_some() && hit.place == shown);
-        if let Some(hit) = on_stage {
-            ring(&painter, &plot.transform, hit, palette.second);
+        for shown in shown {
+            let place = shown.champion.place();
+            let Some(hit) = hits.iter().find(|hit| place.is_some() && hit.place == place) else {
+                continue;
+            };
+            match shown.color(palette) {
+                Some(color) => lane_mark(&painter, &plot.transform, hit, color, palette),
+                None => ring(&painter, &plot.transform, hit, palette.second),
+            }
         }
         let at = response.interact_pointer_pos().or(response.hover_pos());
         let Some(hit) = at.and_then(|at| nearest(hits, &plot.transform, at)) else { return };
@@ -249,6 +255,28 @@ fn nearest<'a>(hits: &'a [ChartHit], transform: &PlotTransform, at: Pos2) -> Opt
     };
     let near = hits.iter().filter_map(|hit| Some((hit, distance(hit)?)));
     near.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(hit, _)| hit)
+}
+
+/// Marks an individual that is on the stage beside others by the dot of its lane, as in the leaderboard.
+fn lane_mark(
+    painter: &egui::Painter,
+    transform: &PlotTransform,
+    hit: &ChartHit,
+    color: Color32,
+    palette: &Palette,
+) {
+    let ([x, y], is_area) = match hit.target {
+        HitShape::Point(at) | HitShape::Column(at) => (at, false),
+        HitShape::Area([left, right, bottom, top]) => {
+            ([(left + right) / 2.0, (bottom + top) / 2.0], true)
+        }
+    };
+    if is_area {
+        ring(painter, transform, hit, color);
+    }
+    let at = transform.position_from_point(&PlotPoint::new(x, y));
+    // The edge keeps the dot apart from curves of a similar colour.
+    painter.circle(at, theme::LANE_DOT / 2.0, color, Stroke::new(1.5, palette.panel));
 }
 
 /// Draws a ring around the hovered target, or around the individual on the stage.

@@ -99,7 +99,7 @@ impl ChartBounds {
         // Only a distance can be compared with positions on the stairs.
         if trial.fitness.is_along_y() {
             let first_riser_m = f64::from(trial.stairs.first_riser_y_m);
-            let landing_m = f64::from(trial.stairs.riser_y_m(trial.stairs.steps));
+            let landing_m = f64::from(trial.stairs.landing_y_m());
             marks.push(("first step", first_riser_m));
             min = min.min(f64::from(trial.start_y_m));
             if max > landing_m - LANDING_SHOWN_BELOW_M && trial.stairs.steps > 0 {
@@ -149,7 +149,7 @@ mod tests {
         assert!(early.y.contains(&-7.2) && early.y.contains(&3.0));
         let late = of(120, &[-7.0, 12.0, 29.0]);
         assert!(late.x.contains(&120.0) && late.y.contains(&29.0));
-        assert_eq!(late.marks, [("first step", 3.0), ("landing", 23.0)]);
+        assert_eq!(late.marks, [("first step", 3.0), ("landing", 21.0)]);
         assert_eq!(of(20, &[10.0]).marks.len(), 1, "far below the landing");
         let height = late.y.end() - late.y.start();
         assert!(late.y.end() - 29.0 > height * 0.09, "the best line keeps off the frame: {late:?}");

@@ -20,8 +20,7 @@ use std::sync::Arc;
 
 use bevy_egui::egui;
 
-use super::shown::ShownChampion;
-use crate::evolve::IndividualId;
+use super::shown::ShownLane;
 use crate::plot::Figure;
 use crate::save::Comparison;
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
@@ -154,7 +153,7 @@ impl ChartsPanel {
         &mut self,
         ui: &mut egui::Ui,
         run: &CurrentRun,
-        shown: Option<ShownChampion>,
+        shown: &[ShownLane],
         commands: &mut Vec<Command>,
     ) {
         ui.horizontal_wrapped(|ui| {
@@ -185,7 +184,7 @@ impl ChartsPanel {
         run: &CurrentRun,
         kind: ChartKind,
         height: f32,
-        shown: Option<ShownChampion>,
+        shown: &[ShownLane],
         commands: &mut Vec<Command>,
     ) {
         if kind == ChartKind::Runs && !self.has_listed_runs {
@@ -198,7 +197,7 @@ impl ChartsPanel {
         }
         let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
         let view = view.filter(|view| !view.figure.is_empty()).ok_or(kind.empty_text());
-        view_or_reason(ui, kind, view, height, place(shown), commands);
+        view_or_reason(ui, kind, view, height, shown, commands);
         if kind == ChartKind::Runs {
             runs::run_list(ui, run, commands);
         }
@@ -209,17 +208,20 @@ impl ChartsPanel {
         ui: &mut egui::Ui,
         run: &CurrentRun,
         height: f32,
-        shown: Option<ShownChampion>,
+        shown: &[ShownLane],
         commands: &mut Vec<Command>,
     ) {
-        let view = match self.torques.update(run, place(shown)) {
+        let view = match self
+            .torques
+            .update(run, shown.first().and_then(|shown| shown.champion.place()))
+        {
             Ok(()) => {
                 self.torques.view(&run.settings().trial).ok_or(ChartKind::Torques.empty_text())
             }
             Err(missing) => Err(missing),
         };
         // No individual is highlighted, because the chart shows only the one on the stage.
-        view_or_reason(ui, ChartKind::Torques, view, height, None, commands);
+        view_or_reason(ui, ChartKind::Torques, view, height, &[], commands);
     }
 
     /// Draws the front or the archive.
@@ -228,7 +230,7 @@ impl ChartsPanel {
         ui: &mut egui::Ui,
         run: &CurrentRun,
         height: f32,
-        shown: Option<ShownChampion>,
+        shown: &[ShownLane],
         commands: &mut Vec<Command>,
     ) {
         let (kind, version) = (self.kind, run.version());
@@ -286,7 +288,7 @@ fn view_or_reason(
     kind: ChartKind,
     view: Result<&ChartView, &str>,
     height: f32,
-    shown: Option<IndividualId>,
+    shown: &[ShownLane],
     commands: &mut Vec<Command>,
 ) {
     match view {
@@ -314,7 +316,7 @@ impl FitnessChart {
         ui: &mut egui::Ui,
         run: &CurrentRun,
         height: f32,
-        shown: Option<ShownChampion>,
+        shown: &[ShownLane],
         commands: &mut Vec<Command>,
     ) {
         let version = run.version();
@@ -323,7 +325,7 @@ impl FitnessChart {
         }
         let Some((_, view)) = &self.known else { return };
         header(ui, &view.figure, ChartKind::Fitness.file_name(), commands);
-        draw::draw(ui, "fitness alone", view, height, place(shown), commands);
+        draw::draw(ui, "fitness alone", view, height, shown, commands);
     }
 }
 
@@ -338,16 +340,6 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),
         ChartKind::Torques | ChartKind::Front | ChartKind::Archive | ChartKind::Methods => None,
-    }
-}
-
-/// Place of the champion on the stage, if it belongs to the current run.
-fn place(shown: Option<ShownChampion>) -> Option<IndividualId> {
-    match shown? {
-        ShownChampion::Found { generation, individual } => {
-            Some(IndividualId { generation, individual })
-        }
-        ShownChampion::Opening(_) => None,
     }
 }
 

@@ -9,7 +9,7 @@ use super::legend::click_hint;
 use crate::evolve::{Front, FrontMember};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
-use crate::studio::panels::shown::ShownChampion;
+use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, number, padded_range, x_title, y_title};
 use crate::studio::ui::theme;
 
@@ -17,7 +17,7 @@ use crate::studio::ui::theme;
 pub(crate) fn front_plot(
     ui: &mut egui::Ui,
     front: &Front,
-    shown: Option<ShownChampion>,
+    shown: &[ShownLane],
     height: f32,
     commands: &mut Vec<Command>,
 ) {
@@ -26,9 +26,10 @@ pub(crate) fn front_plot(
     let Some((x_range, y_range)) = ranges(&points) else { return };
     click_hint(ui, "Click any point to replay that snake.");
     y_title(ui, "Energy (kJ)");
-    let shown_point = members
-        .iter()
-        .position(|of| shown.is_some_and(|shown| shown.is(of.generation, of.individual)));
+    let shown_points = shown.iter().filter_map(|shown| {
+        let is_it = |of: &&FrontMember| shown.champion.is(of.generation, of.individual);
+        Some((*shown, members.iter().position(is_it)?))
+    });
     let label = |position: &HoverPosition<'_>| match position {
         HoverPosition::NearDataPoint { index, .. } => members.get(*index).map(|of| hover_text(of)),
         HoverPosition::Elsewhere { .. } => None,
@@ -39,9 +40,10 @@ pub(crate) fn front_plot(
         let line = Line::new("line", PlotPoints::from(points.clone()));
         plot.line(line.color(palette.text_weak.gamma_multiply(0.6)).allow_hover(false));
         plot.points(Points::new("front", points.clone()).color(palette.accent).radius(4.0));
-        if let Some(index) = shown_point {
-            let ring = Points::new("shown", vec![points[index]]).color(palette.second);
-            plot.points(ring.radius(6.5).allow_hover(false));
+        for (shown, index) in shown_points {
+            let color = shown.color(palette).unwrap_or(palette.second);
+            let dot = Points::new("shown", vec![points[index]]).color(color);
+            plot.points(dot.radius(6.5).allow_hover(false));
         }
     });
     x_title(ui, "Final distance (m)");
@@ -106,7 +108,7 @@ mod tests {
     fn sent(front: &Front, at: [f64; 2], off: egui::Vec2) -> Vec<Command> {
         let size = egui::vec2(theme::PANEL_WIDTH, 400.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| front_plot(ui, front, None, theme::PLOT_HEIGHT, commands),
+            |ui, commands| front_plot(ui, front, &[], theme::PLOT_HEIGHT, commands),
             Vec::new(),
         );
         harness.run();

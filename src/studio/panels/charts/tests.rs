@@ -4,10 +4,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
-use crate::evolve::Settings;
+use crate::evolve::{IndividualId, Settings};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::panels::shown::ShownChampion;
 use crate::studio::state::current_run::{compared_run, explored_run, prepared_run};
 
 /// Result of `act` and the commands sent, in a panel of this width.
@@ -20,7 +21,7 @@ fn with<T>(
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
     let mut harness = Harness::builder()
         .with_size(egui::vec2(width, 700.0))
-        .build_ui_state(|ui, commands| panel.ui(ui, run, None, commands), Vec::new());
+        .build_ui_state(|ui, commands| panel.ui(ui, run, &[], commands), Vec::new());
     harness.run();
     // Opening a chart may request the list of runs.
     harness.state_mut().clear();
@@ -219,7 +220,7 @@ fn a_long_name_in_a_legend_wraps() {
     let figure = Arc::make_mut(&mut view.figure);
     figure.charts[0].series[0].name = "a run of a preset with quite a long name: median ".repeat(3);
     let mut harness = Harness::builder().with_size(egui::vec2(300.0, 700.0)).build_ui_state(
-        |ui, commands| draw::draw(ui, "long", &view, 400.0, None, commands),
+        |ui, commands| draw::draw(ui, "long", &view, 400.0, &[], commands),
         Vec::new(),
     );
     harness.run();
@@ -262,5 +263,30 @@ fn a_legend_says_what_a_click_does() {
         with(&run, kind, 365.0, |harness| {
             assert!(harness.query_all_by_label(hint).next().is_some(), "{kind:?}: {hint}");
         });
+    }
+}
+
+#[test]
+fn an_individual_in_a_lane_has_the_dot_of_that_lane() {
+    let run = explored_run();
+    let origin = run.reports()[1].champion.as_ref().expect("a healthy snake").origin.clone();
+    let champion = ShownChampion::Found { generation: 2, individual: origin.individual };
+    let view = view_of(ChartKind::Fitness, &run).expect("explored");
+    for lane in [Some(3), None] {
+        let shown = [ShownLane { champion, lane }];
+        let mut harness = Harness::builder().with_size(egui::vec2(500.0, 500.0)).build_ui_state(
+            |ui, commands| draw::draw(ui, "lanes", &view, 300.0, &shown, commands),
+            Vec::new(),
+        );
+        harness.run();
+        let color = theme::of_context(&harness.ctx).lane_color(3);
+        let is_dot = |shape: &egui::Shape| match shape {
+            egui::Shape::Circle(circle) => {
+                circle.fill == color && circle.radius == theme::LANE_DOT / 2.0
+            }
+            _ => false,
+        };
+        let dots = harness.output().shapes.iter().filter(|of| is_dot(&of.shape)).count();
+        assert_eq!(dots, usize::from(lane.is_some()), "{lane:?}");
     }
 }

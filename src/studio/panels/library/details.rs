@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use bevy_egui::egui;
 
 use super::actions::{LibraryAction, LibraryActionKind};
-use super::thumbnail::{sparkline, thumbnail};
 use crate::save::library::{RunDetails, SavePlace};
 use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
+use crate::studio::panels::thumbnail::{sparkline, thumbnail};
 use crate::studio::state::library::{LibraryItem, fitness_text};
 use crate::studio::ui::text_rows::{explain, row};
 use crate::studio::ui::theme;

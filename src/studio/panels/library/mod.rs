@@ -13,7 +13,6 @@ mod row;
 mod selection;
 #[cfg(test)]
 mod tests;
-mod thumbnail;
 
 use std::path::PathBuf;
 

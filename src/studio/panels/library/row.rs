@@ -5,7 +5,7 @@ use bevy_egui::egui::epaint::text::LayoutJob;
 use bevy_egui::egui::{Align, FontId, Rect, Response, Sense, WidgetInfo, WidgetType};
 
 use super::order::SortKey;
-use super::thumbnail::thumbnail;
+use crate::studio::panels::thumbnail::thumbnail;
 use crate::studio::state::library::LibraryItem;
 use crate::studio::ui::theme;
 

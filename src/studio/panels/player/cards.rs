@@ -43,20 +43,24 @@ pub(crate) fn lesson_card(
 pub(crate) struct AroundStage {
     /// Position for another card below the camera bar.
     pub below_bar: egui::Pos2,
-    /// The leaderboard, in points. The camera keeps the snakes out of it.
+    /// The leaderboard or the card of a generation, in points. The camera keeps the snakes out of it.
     pub board: Option<egui::Rect>,
+    /// Height at which messages above the lower right corner end.
+    pub messages_end: f32,
 }
 
-/// Draws the cards over the edges of the stage. `progress` has the evaluated and all snakes of the current generation.
+/// Draws the cards over the edges of the stage. `progress` has the evaluated and all snakes of the current generation;
+/// `is_touring` says that a card of the tour covers the upper left corner.
 pub(crate) fn around_stage(
     context: &egui::Context,
     stage: egui::Rect,
     on_stage: &OnStage,
     lanes: &[&Lane],
     focused: &Lane,
-    (theme, progress): (theme::Theme, (u32, u32)),
+    (theme, progress, is_touring): (theme::Theme, (u32, u32), bool),
     commands: &mut Vec<Command>,
 ) -> AroundStage {
+    let whole = stage;
     let stage = stage.shrink(theme::GAP * 1.5);
     let palette = theme::of_context(context);
     let card = |name: &str, pivot: egui::Align2, at: egui::Pos2| {
@@ -77,43 +81,57 @@ pub(crate) fn around_stage(
             );
         });
     });
+    let below = |rect: egui::Rect| rect.left_bottom() + egui::vec2(0.0, theme::GAP);
+    let mut below_bar = below(bar.response.rect);
     let is_narrow = stage.width() < theme::NARROW_STAGE;
     let mut board = None;
-    if *on_stage.mode != StageMode::Solo {
-        // With several lanes, the default camera shows few snakes in the lower left corner, and leaves it free.
-        let place = card("board", egui::Align2::LEFT_BOTTOM, stage.left_bottom());
-        let shown = place.show(context, |ui| {
+    // With several lanes, the default camera shows few snakes in the lower left corner, and leaves it free.
+    let low = (egui::Align2::LEFT_BOTTOM, stage.left_bottom());
+    // One lane rises from the lower left to the upper right, so the sky at the upper left is free.
+    let high = (egui::Align2::LEFT_TOP, below_bar);
+    let (pivot, at) = if is_touring { low } else { high };
+    let mut corner = None;
+    if let (StageMode::Generation { .. }, Some(best)) = (&*on_stage.mode, lanes.first()) {
+        let (mode, following) = (&*on_stage.mode, &on_stage.following);
+        let shown = card("generation", pivot, at).show(context, |ui| {
+            frame.show(ui, |ui| generation_card(ui, mode, following, best, lanes.len(), commands));
+        });
+        corner = Some(shown.response.rect);
+    } else if *on_stage.mode != StageMode::Solo {
+        let (mode, focus) = (&*on_stage.mode, focused.number());
+        let time_s = on_stage.playback.time_s();
+        let shown = card("board", low.0, low.1).show(context, |ui| {
             frame.show(ui, |ui| {
-                let time_s = on_stage.playback.time_s();
-                let (mode, focus) = (&*on_stage.mode, focused.number());
-                if let (StageMode::Generation { .. }, Some(best)) = (mode, lanes.first()) {
-                    let following = &on_stage.following;
-                    return generation_card(ui, mode, following, best, lanes.len(), commands);
-                }
                 leaderboard(ui, lanes, mode, focus, time_s, is_narrow, commands);
             });
         });
         board = Some(shown.response.rect.expand(theme::GAP));
     } else if on_stage.following.awaits_first() {
-        let place = card("waiting", egui::Align2::LEFT_BOTTOM, stage.left_bottom());
-        place.show(context, |ui| {
+        let shown = card("waiting", pivot, at).show(context, |ui| {
             frame.show(ui, |ui| waiting_card(ui, progress, commands));
         });
+        corner = Some(shown.response.rect);
     }
+    if let Some(corner) = corner {
+        board = Some(corner.expand(theme::GAP));
+        if !is_touring {
+            below_bar = below(corner);
+        }
+    }
+    let mut messages_end = whole.bottom();
     if let Some(limb) = on_stage.selection.limb {
         // The card ignores the pointer, because the snake may be behind it.
         let place = card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom());
-        place.interactable(false).show(context, |ui| {
+        let shown = place.interactable(false).show(context, |ui| {
             frame.show(ui, |ui| limb_card(ui, focused, limb));
         });
+        messages_end = shown.response.rect.top();
     }
-    let below = |rect: egui::Rect| rect.left_bottom() + egui::vec2(0.0, theme::GAP);
-    let mut below_bar = below(bar.response.rect);
     if on_stage.overlays.shows(Overlay::Torques) {
         // The legend ignores the pointer, because the snake may be behind it.
         let place = card("torques", egui::Align2::LEFT_TOP, below_bar).interactable(false);
         let shown = place.show(context, |ui| frame.show(ui, torque_legend));
         below_bar = below(shown.response.rect);
     }
-    AroundStage { below_bar, board }
+    AroundStage { below_bar, board, messages_end }
 }

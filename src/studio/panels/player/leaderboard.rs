@@ -11,19 +11,25 @@ use crate::world::Stairs;
 
 /// State of a lane in the ranking.
 #[derive(Debug, Clone, PartialEq)]
-struct RankedLane {
-    lane: usize,
-    name: String,
+pub(super) struct RankedLane {
+    /// Number of the lane; the first is 0.
+    pub lane: usize,
+    /// Label of the lane.
+    pub name: String,
     /// Time of landing, in simulated seconds.
-    landed_s: Option<f64>,
+    pub landed_s: Option<f64>,
     is_disqualified: bool,
     /// Whether the snake was pulled by hand, which disqualifies it from the ranking.
     is_disturbed: bool,
-    y_m: f32,
+    /// Distance of the middle block, in metres.
+    pub y_m: f32,
 }
 
 /// The lanes in ranking order: landed lanes by time, then lanes by distance, then pulled and disqualified ones.
-fn ranking<'a>(lanes: impl IntoIterator<Item = &'a Lane>, time_s: f64) -> Vec<RankedLane> {
+pub(super) fn ranking<'a>(
+    lanes: impl IntoIterator<Item = &'a Lane>,
+    time_s: f64,
+) -> Vec<RankedLane> {
     let mut ranking: Vec<RankedLane> = lanes
         .into_iter()
         .map(|lane| {
@@ -53,7 +59,7 @@ fn order(ranking: &mut [RankedLane]) {
 
 impl RankedLane {
     /// Whether its result counts.
-    fn counts(&self) -> bool {
+    pub fn counts(&self) -> bool {
         !self.is_disqualified && !self.is_disturbed
     }
 }
@@ -93,11 +99,10 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     });
 }
 
-/// The dot in the colour of a lane.
-fn dot(ui: &mut egui::Ui, color: egui::Color32) {
-    let (rect, _) =
-        ui.allocate_exact_size(egui::Vec2::splat(theme::GAP * 1.25), egui::Sense::hover());
-    ui.painter().circle_filled(rect.center(), theme::GAP * 0.6, color);
+/// The dot in the colour of a lane, of this diameter, in points.
+pub(super) fn dot(ui: &mut egui::Ui, color: egui::Color32, diameter: f32) {
+    let (rect, _) = ui.allocate_exact_size(egui::Vec2::splat(diameter), egui::Sense::hover());
+    ui.painter().circle_filled(rect.center(), diameter / 2.0, color);
 }
 
 /// Marks the winner by the accent below the text: the panels' font has no bold weight.
@@ -141,7 +146,7 @@ pub(crate) fn leaderboard(
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
                 let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
                 ui.label(marked_if(is_winner, rank.color(palette.text_weak), palette));
-                dot(ui, palette.lane_color(ranked.lane));
+                dot(ui, palette.lane_color(ranked.lane), theme::LANE_DOT);
                 let hint = "Show the numbers and torques of this snake below";
                 let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
                 if name.on_hover_text(hint).clicked() {

@@ -6,6 +6,7 @@ mod climb_events;
 pub mod generation_card;
 pub mod leaderboard;
 pub mod limb_card;
+pub mod presented_caption;
 mod strip_marks;
 pub mod timeline;
 pub mod torque_legend;

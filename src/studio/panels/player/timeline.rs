@@ -5,11 +5,33 @@ use bevy_egui::egui;
 use super::torque_strip::TorqueStrip;
 use crate::score::Fitness;
 use crate::studio::commands::{Command, PlayerCommand, StageCommand};
+use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::{Playback, SPEED_RANGE};
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::ui::icons::{Icon, icon_button};
 use crate::studio::ui::theme;
+
+/// What the time line shows of the time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TimelineSpan {
+    /// Its end, in simulated seconds.
+    pub end_s: f64,
+    /// Whether nothing after the present may be seen, nor the result: it answers the question of a lesson.
+    pub hides_future: bool,
+}
+
+impl TimelineSpan {
+    /// The time of all lanes. With a hidden future the end is that of the trial, because an earlier end would tell that
+    /// all snakes are disqualified.
+    pub fn of<'a>(lanes: impl Iterator<Item = &'a Lane>, hides_future: bool) -> Self {
+        let end_s = match hides_future {
+            true => lanes.map(|lane| f64::from(lane.trial().duration_s)).fold(0.0, f64::max),
+            false => end_s(lanes),
+        };
+        Self { end_s, hides_future }
+    }
+}
 
 /// The panel with its cached drawing.
 #[derive(Default)]
@@ -23,32 +45,38 @@ const MORE_WIDTH: f32 = 40.0;
 const CHARACTER_WIDTH: f32 = 7.4;
 
 impl TimelinePanel {
-    /// Draws the panel and collects the user's commands. `run` is the number of the current run, `end_s` the end time
-    /// of the longest lane.
+    /// Draws the panel and collects the user's commands. `run` is the number of the current run.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
         lane: &Lane,
         playback: &Playback,
-        end_s: f64,
+        span: TimelineSpan,
         run: u32,
         commands: &mut Vec<Command>,
     ) {
-        self.caption(ui, lane, run, commands);
+        self.caption(ui, lane, span, run, commands);
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            player(ui, playback, end_s, commands);
+            player(ui, playback, span.end_s, commands);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 readings(ui, lane);
             });
         });
         let height = theme::TORQUE_STRIP_HEIGHT;
-        let moment = self.torque_strip.ui(ui, lane, playback.time_s(), end_s, height);
+        let moment = self.torque_strip.ui(ui, lane, playback.time_s(), span, height);
         commands.extend(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))));
     }
 
     /// Caption of the replay, with buttons for recordings.
-    fn caption(&self, ui: &mut egui::Ui, lane: &Lane, run: u32, commands: &mut Vec<Command>) {
+    fn caption(
+        &self,
+        ui: &mut egui::Ui,
+        lane: &Lane,
+        span: TimelineSpan,
+        run: u32,
+        commands: &mut Vec<Command>,
+    ) {
         let staged = lane.staged();
         ui.horizontal(|ui| {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -71,7 +99,10 @@ impl TimelinePanel {
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                     let is_earlier = matches!(staged.source(), ChampionSource::Run(of) if of != run);
                     let prefix = if is_earlier { "Earlier run: " } else { "" };
-                    let text = format!("{prefix}{}", staged.caption());
+                    let text = match span.hides_future {
+                        true => staged.label().to_owned(),
+                        false => format!("{prefix}{}", staged.caption()),
+                    };
                     let text = egui::RichText::new(text).size(theme::TITLE_SIZE).strong();
                     ui.add(egui::Label::new(text).truncate());
                 });
@@ -220,6 +251,8 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
+    const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
+
     /// Commands sent after `act` in a panel of this width.
     fn sent(width: f32, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
         let loaded = shipped_champion().expect("well formed");
@@ -227,7 +260,7 @@ mod tests {
         let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
         let size = egui::vec2(width, 200.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| panel.ui(ui, &lane, &playback, 15.0, 0, commands),
+            |ui, commands| panel.ui(ui, &lane, &playback, SPAN, 0, commands),
             Vec::new(),
         );
         act(&mut harness);
@@ -245,6 +278,30 @@ mod tests {
             ("Loop", Command::Player(PlayerCommand::ToggleLoop)),
         ] {
             assert_eq!(sent(900.0, |harness| harness.get_by_label(label).click()), [command]);
+        }
+    }
+
+    #[test]
+    fn before_a_lesson_was_watched_neither_caption_nor_time_reveals_its_result() {
+        let loaded = shipped_champion().expect("well formed");
+        let lesson = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
+        let mut trial = lesson.trial().clone();
+        // A speed limit that the climber breaks on its way.
+        trial.health.speed_m_s = 6.0;
+        let mut lane = Lane::new(lesson.in_world(&trial, "a low limit".to_owned()), 0);
+        lane.finish_lookahead();
+        assert!(lane.end_s() < 14.0, "it is disqualified after {} s", lane.end_s());
+        for hides_future in [true, false] {
+            let span = TimelineSpan::of(std::iter::once(&lane), hides_future);
+            let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
+            let size = egui::vec2(900.0, 200.0);
+            let mut harness = Harness::builder().with_size(size).build_ui_state(
+                |ui, commands| panel.ui(ui, &lane, &playback, span, 0, commands),
+                Vec::new(),
+            );
+            harness.run();
+            assert_eq!(harness.query_by_label_contains("26.00 m").is_none(), hides_future);
+            assert_eq!(harness.query_by_label_contains("of 15.00 s").is_some(), hides_future);
         }
     }
 

@@ -7,9 +7,9 @@ use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke};
 
 use super::climb_events::{ClimbEvent, events};
 use super::strip_marks::{draw_events, event_at, legend};
+use super::timeline::TimelineSpan;
 use crate::score::KeyframeHistory;
 use crate::studio::stage::lane::Lane;
-use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::ui::theme;
 use crate::world::JointTorque;
 
@@ -53,7 +53,7 @@ impl TorqueStrip {
         ui: &mut egui::Ui,
         lane: &Lane,
         now_s: f64,
-        end_s: f64,
+        TimelineSpan { end_s, hides_future }: TimelineSpan,
         height: f32,
     ) -> Option<f64> {
         let is_wide = ui.available_width() >= WIDE;
@@ -87,7 +87,9 @@ impl TorqueStrip {
         match lane.history() {
             Some(history) => {
                 let drawn = self.drawn(history, lane, plot, end_s, ui.visuals().dark_mode);
-                painter.extend(drawn.shapes.iter().cloned());
+                let seen = if hides_future { played } else { rect };
+                let seen = painter.with_clip_rect(seen.intersect(painter.clip_rect()));
+                seen.extend(drawn.shapes.iter().cloned());
                 // A pulled snake climbs otherwise than its undisturbed rollout.
                 if !lane.is_disturbed() {
                     climb.clone_from(&drawn.events);
@@ -107,7 +109,7 @@ impl TorqueStrip {
                 painter.text(rect.center(), align, text, font, palette.text_weak);
             }
         }
-        if lane.staged().source() == ChampionSource::Lesson {
+        if hides_future {
             // Later marks would give away the result that the reader is to guess.
             climb.retain(|event| event.time_s <= now_s);
         }
@@ -125,7 +127,8 @@ impl TorqueStrip {
         let requested_s = pointed.map(at);
         if let Some(hovered) = response.hover_pos().filter(|_| !response.dragged()) {
             let event = event_at(&climb, hovered.x, &x_of).map(|words| words + "\n");
-            let text = event.unwrap_or_default() + &hover_text(lane, at(hovered));
+            let is_known = !hides_future || at(hovered) <= now_s;
+            let text = event.unwrap_or_default() + &hover_text(lane, at(hovered), is_known);
             response.on_hover_text_at_pointer(text);
         }
         requested_s
@@ -253,10 +256,10 @@ fn shapes(
     shapes
 }
 
-/// Torques at a time, as hover text.
-fn hover_text(lane: &Lane, time_s: f64) -> String {
+/// Time under the pointer and, unless they are to be seen later (`is_known == false`), the torques then, as hover text.
+fn hover_text(lane: &Lane, time_s: f64, is_known: bool) -> String {
     let mut text = format!("{time_s:.2} s: click or drag to go there");
-    let Some(history) = lane.history() else { return text };
+    let Some(history) = lane.history().filter(|_| is_known) else { return text };
     let sample = (time_s / (lane.step_s() * f64::from(history.sample_steps()))) as usize;
     if let Some(torques) = history.torques().nth(sample) {
         for (joint, torque) in (1..).zip(torques) {
@@ -281,6 +284,8 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
+    const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
+
     #[test]
     fn a_click_or_a_drag_seeks_to_the_time_under_the_pointer() {
         let loaded = shipped_champion().expect("well formed");
@@ -288,7 +293,7 @@ mod tests {
         let mut strip_panel = TorqueStrip::default();
         let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
             |ui, commands: &mut Vec<f64>| {
-                commands.extend(strip_panel.ui(ui, &lane, 1.0, 15.0, 60.0))
+                commands.extend(strip_panel.ui(ui, &lane, 1.0, SPAN, 60.0))
             },
             Vec::new(),
         );
@@ -319,7 +324,7 @@ mod tests {
             let mut strip_panel = TorqueStrip::default();
             let mut harness =
                 Harness::builder().with_size(egui::vec2(width, 140.0)).build_ui(|ui| {
-                    strip_panel.ui(ui, &lane, 1.0, 15.0, theme::TORQUE_STRIP_HEIGHT);
+                    strip_panel.ui(ui, &lane, 1.0, SPAN, theme::TORQUE_STRIP_HEIGHT);
                 });
             harness.run();
             let legend = harness.get_by_label_contains("Legend: ").rect();
@@ -338,16 +343,17 @@ mod tests {
     }
 
     #[test]
-    fn in_a_lesson_marks_appear_only_once_they_have_happened() {
+    fn with_a_hidden_future_marks_and_torques_appear_only_once_they_have_happened() {
         let loaded = shipped_champion().expect("well formed");
         let mut lane = Lane::new(StagedChampion::from_lesson(&loaded.champion), 0);
         lane.finish_lookahead();
         let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
+        let span = TimelineSpan { hides_future: true, ..SPAN };
         for (now_s, is_seen) in [(1.0, false), (landed_s + 0.1, true)] {
             let mut strip_panel = TorqueStrip::default();
             let mut harness =
                 Harness::builder().with_size(egui::vec2(600.0, 140.0)).build_ui(|ui| {
-                    strip_panel.ui(ui, &lane, now_s, 15.0, theme::TORQUE_STRIP_HEIGHT);
+                    strip_panel.ui(ui, &lane, now_s, span, theme::TORQUE_STRIP_HEIGHT);
                 });
             harness.run();
             let strip = harness.get_by_label("Time, in simulated seconds").rect();
@@ -356,6 +362,8 @@ mod tests {
             harness.run();
             let hover = harness.query_by_label_contains("Top of the stairs reached");
             assert_eq!(hover.is_some(), is_seen, "at {now_s} s");
+            let torques = harness.query_by_label_contains("Joint 4 (tail): bend");
+            assert_eq!(torques.is_some(), is_seen, "at {now_s} s");
         }
     }
 }

@@ -68,48 +68,96 @@ impl CameraView {
             && self.offset.distance(other.offset) < 2.0e-3
     }
 
-    /// Moves back and aside until all points are in view and none of the snakes' is below the card: `card` covers a
-    /// part of the picture from its left edge on, in fractions from the upper left corner. `aspect` is width over
-    /// height. The previous distance acts as a zoom relative to [`Self::DEFAULT_M`].
+    /// Moves back and aside until all points are in view and none of the snakes' is below a cover. `covers` are parts of
+    /// the picture at its left or right edge, in fractions from the upper left corner. `aspect` is width over height.
+    /// The previous distance acts as a zoom relative to [`Self::DEFAULT_M`].
     pub fn framing(
         self,
         target: Vec3,
         points: &[Vec3],
         snakes: &[Vec3],
         aspect: f32,
-        card: Option<Rect>,
+        covers: &[Rect],
     ) -> Self {
-        let beside = |left_share: f32| self.framing_beside(target, points, aspect, left_share);
-        let Some(card) = card else { return beside(0.0) };
-        let is_covered = |view: &Self| {
-            snakes.iter().any(|at| {
-                let place = view.share_of_picture(target + view.offset, *at, aspect);
-                place.x < card.max.x + CARD_MARGIN
-                    && place.y > card.min.y - CARD_MARGIN
-                    && place.y < card.max.y + CARD_MARGIN
-            })
+        let at_left = || covers.iter().filter(|cover| cover.center().x < 0.5);
+        let at_right = || covers.iter().filter(|cover| cover.center().x >= 0.5);
+        let widest = |ends: f32| (ends + CARD_MARGIN).min(MAX_ASIDE);
+        let left = widest(at_left().map(|cover| cover.max.x).fold(-CARD_MARGIN, f32::max));
+        let right = widest(at_right().map(|cover| 1.0 - cover.min.x).fold(-CARD_MARGIN, f32::max));
+        let bottom = widest(at_right().map(|cover| 1.0 - cover.min.y).fold(-CARD_MARGIN, f32::max));
+        // The nearest view whose margins keep the snakes clear of the covers, each no wider than needed.
+        let view = |margins: FreeMargins| self.framing_beside(target, points, aspect, margins);
+        let clear = |most: FreeMargins, covers: &[Rect]| -> Option<Self> {
+            let is_clear = |view: &Self| !view.covers_any(target, snakes, aspect, covers);
+            let nearest = view(FreeMargins::default());
+            if is_clear(&nearest) {
+                return Some(nearest);
+            }
+            let (mut too_little, mut enough) = (0.0, 1.0);
+            for _ in 0..SEARCH_STEPS {
+                let share = (too_little + enough) / 2.0;
+                if is_clear(&view(most * share)) { enough = share } else { too_little = share }
+            }
+            Some(view(most * enough)).filter(is_clear)
         };
-        // The narrowest strip at the left that has to stay free of everything.
-        let (mut covered, mut free) = (0.0, (card.max.x + CARD_MARGIN).min(MAX_ASIDE));
-        if !is_covered(&beside(covered)) {
-            return beside(covered);
+        let beside_left = FreeMargins { left, ..FreeMargins::default() };
+        let alone: Vec<Rect> = at_left().copied().collect();
+        let without_messages = clear(beside_left, &alone).unwrap_or_else(|| view(beside_left));
+        if at_right().next().is_none() {
+            return without_messages;
         }
-        for _ in 0..SEARCH_STEPS {
-            let middle = (covered + free) / 2.0;
-            if is_covered(&beside(middle)) { covered = middle } else { free = middle }
-        }
-        beside(free)
+        // Messages at the lower right: the snakes go above them or beside them, whichever keeps them larger.
+        let margins = [(0.0, bottom), (right, 0.0), (right, bottom)].into_iter().flat_map(
+            |(right, bottom)| [0.0, left].map(|left| FreeMargins { left, right, bottom }),
+        );
+        let views = margins.filter_map(|margins| clear(margins, covers));
+        let nearest = views.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        // Messages pass; tiny snakes would be worse than one that is covered for some seconds.
+        let most_m = without_messages.distance_m * MAX_FURTHER;
+        nearest.filter(|view| view.distance_m <= most_m).unwrap_or(without_messages)
     }
 
-    /// Moves back and aside until all points are in view and none is in the leftmost `left_share` of the picture.
-    fn framing_beside(self, target: Vec3, points: &[Vec3], aspect: f32, left_share: f32) -> Self {
+    /// Moves aside, without changing the distance, as little as is needed for no point of the snakes to be below a
+    /// cover. If that is not possible, the view stays.
+    pub fn beside(self, target: Vec3, snakes: &[Vec3], aspect: f32, covers: &[Rect]) -> Self {
+        if covers.is_empty() {
+            return self;
+        }
+        let half_width_m = self.distance_m * libm::tanf(VERTICAL_VIEW_RAD / 2.0) * aspect.max(0.1);
+        let right = self.turn() * Vec3::Y;
+        let moved =
+            |share: f32| Self { offset: self.offset + right * (half_width_m * share), ..self };
+        let is_free = |view: &Self| {
+            let is_in_sight = |at: &Vec3| {
+                let place = view.share_of_picture(target + view.offset, *at, aspect);
+                (0.0..=1.0).contains(&place.x)
+            };
+            snakes.iter().all(is_in_sight) && !view.covers_any(target, snakes, aspect, covers)
+        };
+        let steps = (0..=SHIFTS).flat_map(|step| [step as f32, -(step as f32)]);
+        let mut views = steps.map(|step| moved(step * MAX_ASIDE / SHIFTS as f32));
+        views.find(is_free).unwrap_or(self)
+    }
+
+    /// Whether a point of the snakes is below a cover, or close to its edge.
+    fn covers_any(&self, target: Vec3, snakes: &[Vec3], aspect: f32, covers: &[Rect]) -> bool {
+        snakes.iter().any(|at| {
+            let place = self.share_of_picture(target + self.offset, *at, aspect);
+            covers.iter().any(|cover| cover.inflate(CARD_MARGIN).contains(place))
+        })
+    }
+
+    /// Moves back and aside until all points are in view and none is in the free margins.
+    fn framing_beside(self, target: Vec3, points: &[Vec3], aspect: f32, free: FreeMargins) -> Self {
         let zoom = self.distance_m / Self::DEFAULT_M;
         let target = target + self.offset;
         let points = points.iter().copied();
-        let distance_m = self.distance_beside(target, points, aspect, left_share) * zoom;
-        let half_width_m = distance_m * libm::tanf(VERTICAL_VIEW_RAD / 2.0) * aspect;
-        let right = self.turn() * Vec3::Y;
-        Self { distance_m, offset: self.offset - right * (half_width_m * left_share), ..self }
+        let distance_m = self.distance_beside(target, points, aspect, free) * zoom;
+        let half_height_m = distance_m * libm::tanf(VERTICAL_VIEW_RAD / 2.0);
+        // It puts the target into the middle between the margins.
+        let aside = Vec3::Y * (aspect * (free.left - free.right)) + Vec3::Z * free.bottom;
+        let offset = self.offset - self.turn() * aside * half_height_m;
+        Self { distance_m, offset, ..self }
     }
 
     /// Where a point is in the picture of a view of `target`, in fractions from the upper left corner.
@@ -129,37 +177,63 @@ impl CameraView {
         points: impl IntoIterator<Item = Vec3>,
         aspect: f32,
     ) -> f32 {
-        self.distance_beside(target, points, aspect, 0.0)
+        self.distance_beside(target, points, aspect, FreeMargins::default())
     }
 
-    /// As [`Self::distance_to_see`], with the leftmost `left_share` of the picture free: the camera is moved to the left
-    /// by that share of half the picture's width at the target.
+    /// As [`Self::distance_to_see`], with free margins: the target is in the middle between them.
     fn distance_beside(
         &self,
         target: Vec3,
         points: impl IntoIterator<Item = Vec3>,
         aspect: f32,
-        left_share: f32,
+        free: FreeMargins,
     ) -> f32 {
         let into_view = self.turn().inverse();
         let upright = libm::tanf(VERTICAL_VIEW_RAD / 2.0);
         let across = upright * aspect.max(0.1);
-        // Edges of the content, in halves of the picture's width from its middle.
-        let (right, left) = (1.0 / MARGIN, 2.0 * left_share - 1.0 / MARGIN);
-        let room = across * (right - left_share);
+        // Edges of the content, in halves of the picture's width and height from its middle, and the room to each side
+        // of the target.
+        let edge = 1.0 / MARGIN;
+        let (right, left) = (edge - 2.0 * free.right, 2.0 * free.left - edge);
+        let (top, bottom) = (edge, 2.0 * free.bottom - edge);
+        let wide = across * (edge - free.left - free.right);
+        let high = upright * (edge - free.bottom);
         let needed = points.into_iter().map(|point| {
             // In the view's frame x points at the eye, y to the right, z up.
             let at = into_view * (point - target);
-            let to_right = (at.y + right * across * at.x) / room;
-            let to_left = (-at.y - left * across * at.x) / room;
-            to_right.max(to_left).max(at.x + at.z.abs() * MARGIN / upright)
+            let to_right = (at.y + right * across * at.x) / wide;
+            let to_left = (-at.y - left * across * at.x) / wide;
+            let up = (at.z + top * upright * at.x) / high;
+            let down = (-at.z - bottom * upright * at.x) / high;
+            to_right.max(to_left).max(up).max(down)
         });
         needed.fold(*Self::DISTANCE_M.start(), f32::max).min(*Self::DISTANCE_M.end())
     }
 }
 
-/// Maximum fraction of the picture that is left free for a card.
+/// Margins of the picture in which no point is to be, as fractions of its width or height.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct FreeMargins {
+    left: f32,
+    right: f32,
+    bottom: f32,
+}
+
+impl std::ops::Mul<f32> for FreeMargins {
+    type Output = Self;
+
+    fn mul(self, share: f32) -> Self {
+        let Self { left, right, bottom } = self;
+        Self { left: left * share, right: right * share, bottom: bottom * share }
+    }
+}
+
+/// Maximum fraction of the picture that is left free at a side.
 const MAX_ASIDE: f32 = 0.42;
+/// Maximum ratio of the distances with and without messages over the stage.
+const MAX_FURTHER: f32 = 1.4;
+/// Number of shifts to each side that [`CameraView::beside`] tries.
+const SHIFTS: u32 = 28;
 /// Distance between a card and the centre of the nearest limb, as a fraction of the picture.
 const CARD_MARGIN: f32 = 0.035;
 /// Halvings of the strip that is left free: to a hundredth of the picture.
@@ -197,18 +271,32 @@ mod tests {
     }
 
     #[test]
-    fn the_left_of_the_picture_can_stay_free() {
+    fn margins_of_the_picture_can_stay_free() {
         let points = [Vec3::new(12.0, -7.0, 0.0), Vec3::new(-12.0, 21.0, 5.0), Vec3::ZERO];
         let (target, aspect) = (Vec3::new(0.0, 7.0, 2.0), 1.6);
         for camera_mode in CameraMode::ALL {
-            for left_share in [0.0, 0.1, 0.25] {
-                let view = CameraView::of(camera_mode, 6)
-                    .framing_beside(target, &points, aspect, left_share);
+            for (left, right, bottom) in [
+                (0.0, 0.0, 0.0),
+                (0.25, 0.0, 0.0),
+                (0.1, 0.3, 0.0),
+                (0.0, 0.2, 0.3),
+                (0.2, 0.0, 0.4),
+            ] {
+                let view = CameraView::of(camera_mode, 6).framing_beside(
+                    target,
+                    &points,
+                    aspect,
+                    FreeMargins { left, right, bottom },
+                );
                 let places =
                     points.map(|point| view.share_of_picture(target + view.offset, point, aspect));
-                let left = places.iter().map(|at| at.x).fold(1.0, f32::min);
-                let right = places.iter().map(|at| at.x).fold(0.0, f32::max);
-                assert!(left > left_share && right < 1.0, "{camera_mode:?}: {left} to {right}");
+                let from = places.iter().map(|at| at.x).fold(1.0, f32::min);
+                let to = places.iter().map(|at| at.x).fold(0.0, f32::max);
+                assert!(from > left && to < 1.0 - right, "{camera_mode:?}: {from} to {to}");
+                let (least, most) = places.iter().fold((1.0_f32, 0.0_f32), |(least, most), at| {
+                    (least.min(at.y), most.max(at.y))
+                });
+                assert!(least > 0.0 && most < 1.0 - bottom, "{camera_mode:?}: {least} to {most}");
             }
         }
     }
@@ -226,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn no_snake_of_a_race_is_behind_the_leaderboard() {
+    fn no_snake_of_a_race_is_behind_the_leaderboard_or_messages() {
         let (target, aspect) = (Vec3::new(0.0, 7.0, 2.0), 1.6);
         // Ten lanes, whose snakes have come between 0 and 21 m.
         let snakes: Vec<Vec3> = (0..10)
@@ -235,16 +323,17 @@ mod tests {
                 [Vec3::new(x, y - 9.0, 0.5), Vec3::new(x, y, 1.5)]
             })
             .collect();
-        let card = Rect::new(0.01, 0.35, 0.3, 0.98);
+        let covers = [Rect::new(0.01, 0.35, 0.3, 0.98), Rect::new(0.72, 0.7, 0.99, 0.98)];
         for camera_mode in CameraMode::ALL {
             let start = CameraView::of(camera_mode, 10);
-            let view = start.framing(target, &snakes, &snakes, aspect, Some(card));
+            let view = start.framing(target, &snakes, &snakes, aspect, &covers);
             for snake in &snakes {
                 let at = view.share_of_picture(target + view.offset, *snake, aspect);
-                assert!(!card.contains(at), "{camera_mode:?}: {snake} is at {at}");
+                let is_covered = covers.iter().any(|cover| cover.contains(at));
+                assert!(!is_covered, "{camera_mode:?}: {snake} is at {at}");
                 assert!((0.0..=1.0).contains(&at.x) && (0.0..=1.0).contains(&at.y), "{at}");
             }
-            let plain = start.framing(target, &snakes, &snakes, aspect, None);
+            let plain = start.framing(target, &snakes, &snakes, aspect, &[]);
             assert!(view.distance_m >= plain.distance_m);
         }
     }
@@ -254,11 +343,34 @@ mod tests {
         let snakes = [Vec3::new(0.0, 7.0, 6.0), Vec3::new(0.0, 8.0, 6.0)];
         let view = CameraView::of(CameraMode::Side, 2);
         let target = Vec3::new(0.0, 7.0, 5.0);
-        let card = Some(Rect::new(0.0, 0.9, 0.2, 1.0));
+        let card = Rect::new(0.0, 0.9, 0.2, 1.0);
         assert_eq!(
-            view.framing(target, &snakes, &snakes, 1.6, card),
-            view.framing(target, &snakes, &snakes, 1.6, None)
+            view.framing(target, &snakes, &snakes, 1.6, &[card]),
+            view.framing(target, &snakes, &snakes, 1.6, &[])
         );
+    }
+
+    #[test]
+    fn the_camera_steps_aside_for_messages_over_a_snake_alone_and_only_then() {
+        let (target, aspect) = (Vec3::new(0.0, -7.0, 0.5), 1.5);
+        let snake: Vec<Vec3> =
+            (0..5).map(|limb| Vec3::new(0.0, -11.0 + 2.0 * limb as f32, 0.5)).collect();
+        let view = CameraView::of(CameraMode::Follow, 1);
+        let elsewhere = Rect::new(0.0, 0.0, 0.4, 0.2);
+        assert_eq!(view.beside(target, &snake, aspect, &[elsewhere]), view);
+        let places = |view: &CameraView| -> Vec<Vec2> {
+            snake
+                .iter()
+                .map(|at| view.share_of_picture(target + view.offset, *at, aspect))
+                .collect()
+        };
+        // From the head of the snake to the right edge.
+        let head = places(&view)[4];
+        let over_it = Rect::new(head.x - 0.1, head.y - 0.1, 1.0, 1.0);
+        let aside = view.beside(target, &snake, aspect, &[over_it]);
+        assert_eq!(aside.distance_m, view.distance_m);
+        assert!(places(&aside).iter().all(|at| !over_it.contains(*at) && at.x > 0.0), "{aside:?}");
+        assert_eq!(view.beside(target, &snake, aspect, &[Rect::new(0.0, 0.0, 1.0, 1.0)]), view);
     }
 
     #[test]

@@ -67,7 +67,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
                 // Changes requested too late apply to the next run only.
                 run.pending.clear();
                 run.context.set_run_folder(None);
-                notices.info("The run is finished; \"New run\" starts another.".to_owned());
+                notices.important("The run is finished; \"New run\" starts another.".to_owned());
             }
             RunEvent::Failed => {
                 let problem = "The run stopped because of a program error. Press E to resume from what was saved.";

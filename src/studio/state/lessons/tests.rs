@@ -152,10 +152,11 @@ fn apply(lessons: &mut Lessons, run: &mut CurrentRun, command: LessonCommand) ->
 #[test]
 fn a_race_waits_for_a_guess_and_starts_after_it() {
     let (mut lessons, mut run) = first_lesson();
-    assert!(lessons.awaits_guess());
+    assert!(lessons.awaits_guess() && lessons.hides_result());
     let race = apply(&mut lessons, &mut run, LessonCommand::Guess(1)).expect("a race");
     assert_eq!(race.champions.len(), 3);
     assert!(!lessons.awaits_guess());
+    assert!(lessons.hides_result(), "the race was not watched yet");
     apply(&mut lessons, &mut run, LessonCommand::Guess(0));
     assert_eq!(lessons.view().expect("begun").progress.guess, Some(1), "a first guess stands");
 }
@@ -171,6 +172,7 @@ fn the_result_appears_once_all_lanes_of_the_scene_were_watched_to_their_end() {
     }
     lessons.see(&names);
     assert!(is_revealed(&lessons), "watched without a guess");
+    assert!(!lessons.hides_result());
     assert!(lessons.view().expect("begun").shows_conclusion);
     // The scene without a result does not inherit it.
     apply(&mut lessons, &mut run, LessonCommand::ShowScene(1));

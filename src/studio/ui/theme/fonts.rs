@@ -6,34 +6,38 @@ use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 use bevy_egui::egui::epaint::text::{LayoutJob, TextOptions, layout};
 
-use super::{HEADING_SIZE, SMALL_SIZE, TAG_SIZE, TITLE_SIZE};
+use super::{
+    HEADING_SIZE, PRESENTED_DETAIL_SIZE, PRESENTED_SIZES, SMALL_SIZE, TAG_SIZE, TITLE_SIZE,
+};
 
 /// Keeps every character in egui's font texture at the size that is drawn. A new character would be missing for a
 /// frame, because the texture reaches the graphics card one frame after the text.
 #[derive(Debug, Default)]
 pub struct GlyphWarmUp {
-    /// Text options and pixels per point of the loaded glyphs.
-    drawn: Option<(TextOptions, f32)>,
+    /// Text options and pixels per point of the loaded glyphs, and whether those of the presenting mode are among them.
+    drawn: Option<(TextOptions, f32, bool)>,
 }
 
 impl GlyphWarmUp {
     /// Rasterizes every character at the scale of the next frame, unless it is loaded. Call it after [`super::apply`]
     /// has taken effect and after every change of the scale.
-    pub fn warm_up(&mut self, context: &egui::Context, scale: f32) {
+    pub fn warm_up(&mut self, context: &egui::Context, scale: f32, is_presenting: bool) {
         let pixels_per_point = scale * context.native_pixels_per_point().unwrap_or(1.0);
         let options = context.fonts(|fonts| *fonts.options());
-        let now = Some((options, pixels_per_point));
+        let now = Some((options, pixels_per_point, is_presenting));
         if self.drawn != now {
             self.drawn = now;
-            draw_letters(context, pixels_per_point);
+            draw_letters(context, pixels_per_point, is_presenting);
         }
     }
 }
 
-fn draw_letters(context: &egui::Context, pixels_per_point: f32) {
+fn draw_letters(context: &egui::Context, pixels_per_point: f32, is_presenting: bool) {
     let letters: String = (' '..='~').chain(['·', '²', '³', '±', '×', '°', '−', '…']).collect();
     let style = context.global_style();
     let sizes = [TITLE_SIZE, HEADING_SIZE, TAG_SIZE, SMALL_SIZE - 1.0];
+    let large = PRESENTED_SIZES.into_iter().chain([PRESENTED_DETAIL_SIZE]);
+    let sizes = sizes.into_iter().chain(large.filter(|_| is_presenting));
     let others = [
         egui::TextStyle::Body,
         egui::TextStyle::Monospace,
@@ -42,7 +46,7 @@ fn draw_letters(context: &egui::Context, pixels_per_point: f32) {
     ];
     let others = others.map(|of| of.resolve(&style));
     context.fonts_mut(|view| {
-        for font in sizes.map(egui::FontId::proportional).into_iter().chain(others) {
+        for font in sizes.map(egui::FontId::proportional).chain(others) {
             let job = LayoutJob::simple_singleline(letters.clone(), font, Color32::WHITE);
             layout(view.fonts, pixels_per_point, Arc::new(job));
         }
@@ -64,7 +68,7 @@ mod tests {
             if letters.drawn.is_none() {
                 apply(&context);
             }
-            letters.warm_up(&context, scale);
+            letters.warm_up(&context, scale, false);
             context.set_zoom_factor(scale);
             let font = egui::TextStyle::Body.resolve(&context.global_style());
             context.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, Color32::WHITE));

@@ -1,4 +1,4 @@
-//! Thumbnail of a save: stairs, path of the middle limb and final pose. It is drawn from shapes, without textures.
+//! Thumbnail of a champion: stairs, path of the middle limb and final pose. It is drawn from shapes, without textures.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Pos2, Rect, Shape, Stroke};

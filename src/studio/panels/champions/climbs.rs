@@ -1,0 +1,137 @@
+//! The climbs of the champions in the list: when each first reached the top of the stairs, and a small picture. Records
+//! lack both, so they are simulated in the background: one champion at a time, and only those whose rows are seen.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use crate::evolve::Champion;
+use crate::run::Lookahead;
+use crate::save::LoadedChampion;
+use crate::save::library::Thumbnail;
+
+/// Climbs that are known or being computed.
+#[derive(Default)]
+pub(super) struct Climbs {
+    /// By the hash of the trace: champions that survive unchanged share it.
+    known: BTreeMap<u64, Climb>,
+    under_way: Option<(Champion, Lookahead)>,
+}
+
+/// A champion's climb.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Climb {
+    /// Simulated time of the first arrival at the top, in seconds.
+    landed_s: Option<f64>,
+    /// The path and the end, from the side.
+    pub picture: Thumbnail,
+}
+
+/// Time of a landing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum LandingTime {
+    /// In simulated seconds.
+    Known(f64),
+    /// It does not end on the landing.
+    None,
+    /// Not computed yet.
+    Pending,
+}
+
+impl fmt::Debug for Climbs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Climbs").field("known", &self.known).finish_non_exhaustive()
+    }
+}
+
+impl LandingTime {
+    /// The time of a champion whose climb is known or not.
+    pub fn of(champion: &Champion, climb: Option<&Climb>) -> Self {
+        match climb {
+            _ if !champion.evaluation.is_on_landing(&champion.trial.stairs) => Self::None,
+            None => Self::Pending,
+            Some(climb) => climb.landed_s.map_or(Self::None, Self::Known),
+        }
+    }
+}
+
+impl Climbs {
+    /// The climb of a champion. Computes it, unless another is being computed.
+    pub fn of(&mut self, champion: &Champion) -> Option<&Climb> {
+        let key = champion.evaluation.trace_hash;
+        if self.under_way.is_none() && !self.known.contains_key(&key) {
+            let lookahead = Lookahead::begin(&champion.genome, &champion.trial);
+            self.under_way = Some((champion.clone(), lookahead));
+        }
+        self.known.get(&key)
+    }
+
+    /// The climb of a saved champion. One of another engine is drawn from its recording, because this engine would move
+    /// it otherwise; it has no time.
+    pub fn of_save(&mut self, saved: &LoadedChampion) -> Option<&Climb> {
+        if saved.is_of_this_engine() {
+            return self.of(&saved.champion);
+        }
+        let key = saved.champion.evaluation.trace_hash;
+        let recorded = || Thumbnail::of_champion(&saved.champion, saved.recording.as_ref());
+        let climb = || Climb { landed_s: None, picture: recorded() };
+        Some(self.known.entry(key).or_insert_with(climb))
+    }
+
+    /// Takes over a climb that was computed.
+    pub fn poll(&mut self) {
+        let Some((champion, lookahead)) = &mut self.under_way else { return };
+        lookahead.poll();
+        if lookahead.steps_done().is_some() {
+            return;
+        }
+        let climb = match lookahead.history() {
+            Some(history) => {
+                let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
+                Climb {
+                    landed_s: history.landed_at_step().map(|step| f64::from(step) * step_s),
+                    picture: Thumbnail::of_history(champion, history),
+                }
+            }
+            None => Climb { landed_s: None, picture: Thumbnail::of_trial(&champion.trial) },
+        };
+        self.known.insert(champion.evaluation.trace_hash, climb);
+        self.under_way = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::stage::lane::Lane;
+    use crate::studio::stage::staged_champion::StagedChampion;
+
+    #[test]
+    fn time_and_picture_are_those_of_the_replay_and_a_snake_below_has_no_time() {
+        let loaded = shipped_champion().expect("well formed");
+        let champion = &loaded.champion;
+        let mut climbs = Climbs::default();
+        assert_eq!(LandingTime::of(champion, climbs.of(champion)), LandingTime::Pending);
+        while climbs.of(champion).is_none() {
+            climbs.poll();
+        }
+        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        lane.finish_lookahead();
+        let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
+        let climb = climbs.of(champion).expect("it is known");
+        assert_eq!(LandingTime::of(champion, Some(climb)), LandingTime::Known(landed_s));
+        assert_eq!(climb.picture.limbs_m.len(), 5);
+        let mut below = loaded.champion;
+        below.evaluation.behaviour = None;
+        assert_eq!(LandingTime::of(&below, None), LandingTime::None);
+    }
+
+    #[test]
+    fn a_save_of_another_engine_is_drawn_from_its_recording() {
+        let mut loaded = shipped_champion().expect("well formed");
+        loaded.engine += 1;
+        let picture = Climbs::default().of_save(&loaded).expect("at once").picture.clone();
+        assert_eq!(picture, Thumbnail::of_champion(&loaded.champion, loaded.recording.as_ref()));
+        assert!(!picture.way_m.is_empty(), "it has a recording");
+    }
+}

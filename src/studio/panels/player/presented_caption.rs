@@ -1,0 +1,309 @@
+//! Caption of the presenting mode: one large line about what is on the stage, and a smaller one below it, in a band
+//! that no part of the picture lies behind.
+
+use bevy_egui::egui;
+
+use super::leaderboard::{RankedLane, dot, ranking};
+use crate::studio::panels::on_stage::OnStage;
+use crate::studio::stage::StageMode;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::staged_champion::ChampionSource;
+use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::ui::theme;
+
+/// Number of snakes that a race's caption names: the leader and those behind it.
+const NAMED: usize = 3;
+/// Least difference of a what-if that is called one, in metres.
+const EQUAL_M: f32 = 0.05;
+
+/// What the caption says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct PresentedCaption {
+    /// The large line, with the lane whose dot stands before it.
+    title: CaptionPart,
+    /// Parts of the line below.
+    details: Vec<CaptionPart>,
+}
+
+/// A text of the caption.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct CaptionPart {
+    /// Lane whose dot stands before the text; the first is 0.
+    lane: Option<usize>,
+    text: String,
+}
+
+impl CaptionPart {
+    fn plain(text: String) -> Self {
+        Self { lane: None, text }
+    }
+}
+
+impl PresentedCaption {
+    /// The caption of what is on the stage now. It tells nothing that has not been seen yet.
+    pub fn of(lanes: &[&Lane], on_stage: &OnStage, run: &CurrentRun) -> Self {
+        let Some(first) = lanes.first() else { return Self::default() };
+        if on_stage.following.awaits_first() {
+            let (done, all) = run.progress();
+            let title = format!("Generation 1: {done} of {all} random snakes tried");
+            let details = vec![CaptionPart::plain("They appear here in a moment.".to_owned())];
+            return Self { title: CaptionPart::plain(title), details };
+        }
+        let time_s = on_stage.playback.time_s();
+        let mut caption = match &*on_stage.mode {
+            StageMode::Solo | StageMode::Generation { .. } => {
+                let generation = first.staged().generation();
+                let is_first_landing = run
+                    .milestones()
+                    .iter()
+                    .find(|milestone| milestone.is_landed)
+                    .is_some_and(|milestone| milestone.generation == generation)
+                    && first.staged().source() == ChampionSource::Run(run.number());
+                Self::of_one(first, time_s, is_first_landing)
+            }
+            StageMode::Race => {
+                let racers = lanes.iter().copied().filter(|lane| !lane.is_ghost());
+                Self::of_race(&ranking(racers, time_s))
+            }
+            StageMode::WhatIf { .. } => Self::of_what_if(lanes, time_s),
+        };
+        if let StageMode::Generation { size, .. } = &*on_stage.mode {
+            caption.details.push(CaptionPart::plain(match lanes.len() == *size as usize {
+                true => format!("All {size} snakes at once"),
+                false => format!("{} of {size} snakes", lanes.len()),
+            }));
+        }
+        if let Some((part, parts)) = on_stage.following.story_part().filter(|(_, parts)| *parts > 1)
+        {
+            caption.details.push(CaptionPart::plain(format!("Story, part {part} of {parts}")));
+        }
+        if matches!(*on_stage.mode, StageMode::Solo | StageMode::Generation { .. }) {
+            caption.details.extend(evolution(run).map(CaptionPart::plain));
+        }
+        caption
+    }
+
+    fn of_one(lane: &Lane, time_s: f64, is_first_landing: bool) -> Self {
+        let name = lane.staged().label();
+        let title = match lane.landed_s(time_s) {
+            Some(_) if is_first_landing => format!("First landing! {name} has reached the top"),
+            _ => format!("{name}: {}", progress(lane, time_s)),
+        };
+        Self { title: CaptionPart::plain(title), details: Vec::new() }
+    }
+
+    fn of_race(ranking: &[RankedLane]) -> Self {
+        let result = |ranked: &RankedLane| match ranked.landed_s {
+            _ if !ranked.counts() => "out".to_owned(),
+            Some(landed_s) => format!("landed after {landed_s:.1} s"),
+            None => format!("{:.1} m", ranked.y_m),
+        };
+        let Some(leader) = ranking.first() else { return Self::default() };
+        let title = match leader.landed_s.filter(|_| leader.counts()) {
+            Some(_) => format!("{} wins: {}", leader.name, result(leader)),
+            None => format!("{} leads: {}", leader.name, result(leader)),
+        };
+        let behind = ranking.iter().enumerate().take(NAMED).skip(1).map(|(place, ranked)| {
+            let text = format!("{}. {}  {}", place + 1, ranked.name, result(ranked));
+            CaptionPart { lane: Some(ranked.lane), text }
+        });
+        Self {
+            title: CaptionPart { lane: Some(leader.lane), text: title },
+            details: behind.collect(),
+        }
+    }
+
+    /// The changed snake beside the original: the first lane is the original, the last the latest change.
+    fn of_what_if(lanes: &[&Lane], time_s: f64) -> Self {
+        let racers: Vec<&&Lane> = lanes.iter().filter(|lane| !lane.is_ghost()).collect();
+        let (Some(original), Some(changed)) = (racers.first(), racers.last()) else {
+            return Self::default();
+        };
+        let ahead_m = changed.drawn_middle().y - original.drawn_middle().y;
+        let difference = match ahead_m {
+            _ if ahead_m.abs() < EQUAL_M => "level with the original".to_owned(),
+            ahead_m if ahead_m > 0.0 => format!("{ahead_m:.1} m ahead"),
+            _ => format!("{:.1} m behind", -ahead_m),
+        };
+        let details = [original, changed].map(|lane| CaptionPart {
+            lane: Some(lane.number()),
+            text: format!("{}: {}", lane.staged().label(), progress(lane, time_s)),
+        });
+        Self {
+            title: CaptionPart {
+                lane: Some(changed.number()),
+                text: format!("{}: {difference}", changed.staged().label()),
+            },
+            details: details.into(),
+        }
+    }
+}
+
+/// How far a snake has come by now.
+fn progress(lane: &Lane, time_s: f64) -> String {
+    let stairs = &lane.trial().stairs;
+    let middle = lane.drawn_middle();
+    let is_disqualified = lane.is_over() && lane.evaluation().disqualified.is_some();
+    match (lane.landed_s(time_s), stairs.steps_under(middle.to_array())) {
+        _ if is_disqualified => "disqualified".to_owned(),
+        _ if stairs.steps == 0 => format!("at {:.1} m", middle.y),
+        (Some(landed_s), climbed) if climbed == stairs.steps => {
+            format!("at the top after {landed_s:.1} s")
+        }
+        (_, 0) if lane.is_over() => "climbed no step".to_owned(),
+        (_, 0) => "no step climbed yet".to_owned(),
+        (_, climbed) => format!("climbed {climbed} of {} steps", stairs.steps),
+    }
+}
+
+/// State of the run behind the stage, if it is the user's own.
+fn evolution(run: &CurrentRun) -> Option<String> {
+    if run.is_lent() {
+        return None;
+    }
+    let (done, all) = (run.reports().len(), run.settings().evolution.generations);
+    match run.status() {
+        RunStatus::Running => Some(format!("Evolution: generation {} of {all}", done + 1)),
+        RunStatus::Paused => Some(format!("Evolution paused after generation {done}")),
+        RunStatus::Finished => Some(format!("Evolution finished: {done} generations")),
+        RunStatus::Ready => None,
+    }
+}
+
+/// Draws the caption in a band at the bottom.
+pub(crate) fn caption_band(ui: &mut egui::Ui, caption: &PresentedCaption) {
+    let palette = theme::of(ui);
+    let margin = egui::Margin::symmetric(theme::GAP as i8 * 3, theme::GAP as i8);
+    let frame = egui::Frame::new().fill(palette.panel).inner_margin(margin);
+    egui::Panel::bottom("presented caption")
+        .resizable(false)
+        .exact_size(theme::PRESENTED_BAND)
+        .frame(frame)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = theme::GAP / 2.0;
+            let width = ui.available_width() - theme::PRESENTED_SIZES[0];
+            let fits = |size: &f32| width_of(ui, &caption.title.text, *size) <= width;
+            let sizes = theme::PRESENTED_SIZES;
+            let size = sizes.into_iter().find(fits).unwrap_or(sizes[sizes.len() - 1]);
+            line(ui, theme::PRESENTED_SIZES[0] * LINE, |ui| {
+                part(ui, &caption.title, size, palette.text)
+            });
+            line(ui, theme::PRESENTED_DETAIL_SIZE * LINE, |ui| {
+                ui.spacing_mut().item_spacing.x = theme::GAP * 3.0;
+                for detail in &caption.details {
+                    part(ui, detail, theme::PRESENTED_DETAIL_SIZE, palette.text);
+                }
+            });
+        });
+}
+
+/// Height of a line as a multiple of the size of its text.
+const LINE: f32 = 1.25;
+
+/// Draws a line of this height from left to right.
+fn line(ui: &mut egui::Ui, height: f32, draw: impl FnOnce(&mut egui::Ui)) {
+    let size = egui::vec2(ui.available_width(), height);
+    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.set_min_height(height);
+        draw(ui);
+    });
+}
+
+fn part(ui: &mut egui::Ui, part: &CaptionPart, size: f32, color: egui::Color32) {
+    ui.horizontal(|ui| {
+        // The dot is drawn first, and stands in the middle of the line.
+        ui.set_height(size * LINE);
+        ui.spacing_mut().item_spacing.x = size * 0.4;
+        if let Some(lane) = part.lane {
+            dot(ui, theme::of(ui).lane_color(lane), size * 0.6);
+        }
+        let text = egui::RichText::new(&part.text).size(size).color(color);
+        ui.add(egui::Label::new(text).truncate().selectable(false));
+    });
+}
+
+fn width_of(ui: &egui::Ui, text: &str, size: f32) -> f32 {
+    let font = egui::FontId::proportional(size);
+    ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE).size().x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::stage::staged_champion::StagedChampion;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// The shipped climber in this lane, at this time.
+    fn lane(number: usize, name: &str, time_s: f64) -> Lane {
+        let loaded = shipped_champion().expect("well formed");
+        let mut lane = Lane::new(StagedChampion::from_file(&loaded, number, name), number);
+        lane.finish_lookahead();
+        lane.skip_to(time_s);
+        lane
+    }
+
+    #[test]
+    fn one_snake_is_named_with_the_steps_that_it_has_climbed_by_now() {
+        let title = |time_s: f64, is_first: bool| {
+            PresentedCaption::of_one(&lane(0, "climber", time_s), time_s, is_first).title.text
+        };
+        assert_eq!(title(0.0, true), "climber: no step climbed yet");
+        let half_way = title(6.0, false);
+        assert!(half_way.starts_with("climber: climbed "), "{half_way}");
+        assert!(half_way.ends_with(" of 10 steps"), "{half_way}");
+        assert!(title(14.0, false).starts_with("climber: at the top after "));
+        assert_eq!(title(14.0, true), "First landing! climber has reached the top");
+    }
+
+    #[test]
+    fn a_race_names_its_leader_and_those_behind_with_the_dots_of_their_lanes() {
+        let lanes = [lane(0, "late", 2.0), lane(1, "early", 9.0), lane(2, "third", 0.5)];
+        let four = lane(3, "fourth", 0.0);
+        let lanes: Vec<&Lane> = lanes.iter().chain([&four]).collect();
+        let caption = PresentedCaption::of_race(&ranking(lanes.iter().copied(), 2.0));
+        assert_eq!(caption.title.lane, Some(1));
+        assert!(caption.title.text.starts_with("early leads: "), "{caption:?}");
+        let behind: Vec<_> = caption.details.iter().map(|of| (of.lane, &of.text[..2])).collect();
+        assert_eq!(behind, [(Some(0), "2."), (Some(2), "3.")]);
+        let winner = PresentedCaption::of_race(&ranking([lanes[1]], 15.0)).title.text;
+        assert!(winner.starts_with("early wins: landed after "), "{winner}");
+    }
+
+    #[test]
+    fn a_what_if_tells_the_difference_of_its_snakes() {
+        let (original, changed) = (lane(0, "original", 6.0), lane(1, "friction 0.1", 1.0));
+        let caption = PresentedCaption::of_what_if(&[&original, &changed], 6.0);
+        assert!(caption.title.text.starts_with("friction 0.1: "), "{caption:?}");
+        assert!(caption.title.text.ends_with(" m behind"), "{caption:?}");
+        assert_eq!((caption.title.lane, caption.details.len()), (Some(1), 2));
+        let equal = PresentedCaption::of_what_if(&[&original, &original], 6.0);
+        assert!(equal.title.text.ends_with(": level with the original"));
+    }
+
+    #[test]
+    fn the_band_has_one_height_and_shrinks_a_long_caption() {
+        let band = |text: &str| {
+            let caption = PresentedCaption {
+                title: CaptionPart { lane: Some(2), text: text.to_owned() },
+                details: vec![CaptionPart::plain("All 30 snakes at once".to_owned())],
+            };
+            let size = egui::vec2(1000.0, 625.0);
+            let mut harness = Harness::builder().with_size(size).build_ui(|ui| {
+                caption_band(ui, &caption);
+                let left = ui.available_rect_before_wrap();
+                ui.put(left, egui::Label::new("the stage"));
+            });
+            harness.run();
+            let title = harness.get_by_label(text).rect();
+            let below = harness.get_by_label("All 30 snakes at once").rect();
+            assert!(title.right() <= 1000.0 && below.bottom() <= 625.0, "{title} {below}");
+            (title.height(), below.top())
+        };
+        let (short, long) =
+            ("Generation 12", "a champion with a name of many letters leads: landed after 12.3 s");
+        assert!(band(short).0 > band(long).0 * 1.2);
+        assert_eq!(band(short).1, band(long).1);
+    }
+}
