@@ -146,8 +146,7 @@ impl SettingGroup for AgentSettings {
 
 impl AgentSettings {
     /// The section of the material of the limbs.
-    pub const SKIN: Section =
-        Section { title: "Skin", about: "Material of the snake's blocks." };
+    pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
 
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {

@@ -23,8 +23,8 @@ pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
 pub use simulation::{
-    ContactForce, ContactPatch, JointState, JointTorque, Simulation, SurfaceDamping, TouchedSurface,
-    WorldPlan,
+    ContactForce, ContactPatch, EnergyLost, JointState, JointTorque, Simulation, SurfaceDamping,
+    TouchedSurface, WorldPlan,
 };
 pub use stairs::{StairBox, Stairs};
 pub use surface::{Skin, Surface};

@@ -18,6 +18,7 @@ use super::{
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 use energy::EnergyBalance;
+pub use energy::EnergyLost;
 pub use observe::{ContactForce, JointState};
 pub use patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 
@@ -147,7 +148,7 @@ impl Simulation {
             health: plan.health.clone(),
             arena_front_y_m: plan.stairs.end_y_m() + 10.0,
         };
-        simulation.balance.start_j = simulation.mechanical_energy_j();
+        simulation.begin_balance();
         simulation
     }
 
@@ -158,11 +159,9 @@ impl Simulation {
     /// The reason for which this step disqualified the agent. The world must not be stepped further then.
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
-        let power_before_w = self.joint_power_w();
+        let joint_power_before_w = self.joint_power_w();
         self.advance();
-        let mean_power_w = (power_before_w + self.joint_power_w()) / 2.0;
-        self.balance.joint_work_j +=
-            mean_power_w * f64::from(self.physics.integration_parameters.dt);
+        self.add_to_balance(joint_power_before_w);
         let mut effort = self.check_health()?;
         effort.energy_j = self.energy_j();
         self.effort = self.effort.and(effort);

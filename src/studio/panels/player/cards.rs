@@ -104,7 +104,7 @@ pub(crate) fn around_stage(
         // The card ignores the pointer, because the snake may be behind it.
         let place = card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom());
         place.interactable(false).show(context, |ui| {
-            frame.show(ui, |ui| limb_card(ui, focused, limb));
+            frame.show(ui, |ui| limb_card(ui, focused, limb, on_stage.playback.is_playing()));
         });
     }
     let below = |rect: egui::Rect| rect.left_bottom() + egui::vec2(0.0, theme::GAP);

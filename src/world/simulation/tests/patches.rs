@@ -86,8 +86,7 @@ fn a_block_on_soft_ground_dents_it_by_its_weight_over_the_stiffness() {
 
 #[test]
 fn a_block_that_spins_flat_on_the_ground_uses_all_grip_and_loses_its_rotation_to_friction() {
-    let mut simulation =
-        Simulation::new(&block(Surface { friction: 0.2, ..Default::default() }));
+    let mut simulation = Simulation::new(&block(Surface { friction: 0.2, ..Default::default() }));
     run(&mut simulation, 1.0);
     body(&mut simulation).set_angvel(Vector::new(0.0, 0.0, 6.0), true);
     simulation.step(&[]).expect("healthy");
