@@ -53,7 +53,7 @@ pub(crate) fn limb_card(ui: &mut egui::Ui, lane: &Lane, limb: usize, is_playing:
             let surface = readings.meter.limb(is_playing, limb, |_| true);
             let slip = surface.map(|surface| format!("{:.2} m/s", surface.slip_m_s));
             let grip = surface.and_then(|surface| surface.grip_share).map(in_percent);
-            let known = |value: Option<String>| value.unwrap_or_else(|| "–".to_owned());
+            let known = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
             rows.extend([("Slip speed", known(slip)), ("Grip used", known(grip))]);
         }
     }

@@ -1,14 +1,18 @@
 //! What the snakes on the stage do on a surface at the shown moment, above the settings of that surface.
 
+mod lane_column;
+
 use bevy_egui::egui;
 
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::stage::StageMode;
-use crate::studio::stage::contact_meter::SurfaceReading;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
 use crate::world::TouchedSurface;
+
+use lane_column::LaneColumn;
+pub(crate) use lane_column::in_percent;
 
 /// The lanes whose contacts are read.
 #[derive(Clone, Default)]
@@ -40,8 +44,11 @@ struct ReadoutLine {
     hint: &'static str,
 }
 
-const CONTACT: ReadoutLine =
-    ReadoutLine { name: "Contact", term: "", hint: "Limbs that touch it in the last 0.25 s" };
+const CONTACT: ReadoutLine = ReadoutLine {
+    name: "Contact",
+    term: "",
+    hint: "Limbs that touch it: the most at once in the last 0.25 s",
+};
 const SLIP: ReadoutLine = ReadoutLine {
     name: "Slip speed",
     term: "",
@@ -60,32 +67,24 @@ const DENT: ReadoutLine = ReadoutLine {
     hint: "Greatest depth to which a limb has sunk in during the last 0.25 s. A hard surface stays near 0",
 };
 const POWER: ReadoutLine = ReadoutLine {
-    name: "Rubbed away",
-    term: "friction loss",
+    name: "Lost here",
+    term: "dissipation",
     hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's damping \
            takes. Mean of the last 0.25 s. Impacts and dents are not in it",
 };
 const LOST: ReadoutLine = ReadoutLine {
     name: "Lost so far",
-    term: "dissipation",
+    term: "contacts, stops",
     hint: "Energy lost since the start in all contacts (friction, impacts, dents) and at the stops of the joints: work of the \
            joints, minus the gain in motion and height, minus what the damping of joints and rotation took",
 };
 
-/// Height of the bar, in points.
-const BAR_HEIGHT: f32 = theme::GAP;
-/// Largest width of the bar, in points.
-const BAR_WIDTH: f32 = theme::GAP * 15.0;
-/// Room for the text beside a bar, in points.
-const PERCENT_WIDTH: f32 = theme::GAP * 5.0;
 /// Width of the names, in points.
 const NAME_WIDTH: f32 = theme::GAP * 11.0;
 /// Panel width from which the names have the terms of the field beside them, in points.
 const WIDTH_FOR_TERMS: f32 = theme::GAP * 35.0;
 /// Width of a name with its term, in points.
 const TERM_WIDTH: f32 = theme::GAP * 21.0;
-/// Share from which a contact counts as sliding: the engine stays a little below 1.
-const SLIDES_FROM: f32 = 0.995;
 
 impl<'l> ReadLanes<'l> {
     /// The lanes to read out of those on the stage.
@@ -149,7 +148,7 @@ impl<'l> ReadLanes<'l> {
             return;
         }
         let columns: Vec<LaneColumn> =
-            self.lanes.iter().map(|lane| self.column(lane, is_meant)).collect();
+            self.lanes.iter().map(|lane| LaneColumn::of(lane, self.is_playing, is_meant)).collect();
         let has_terms = columns.len() == 1 && ui.available_width() >= WIDTH_FOR_TERMS;
         let names_width = if has_terms { TERM_WIDTH } else { NAME_WIDTH };
         let gaps = theme::GAP * columns.len() as f32;
@@ -175,37 +174,14 @@ impl<'l> ReadLanes<'l> {
                 ui.end_row();
             }
             table.line(ui, &CONTACT, is_meant, |ui, column| column.contact(ui));
-            table.line(ui, &SLIP, is_meant, |ui, column| {
-                column.value(ui, |reading| format!("{:.2} m/s", reading.slip_m_s));
-            });
+            table.line(ui, &SLIP, is_meant, |ui, column| column.slip(ui));
             table.line(ui, &GRIP, is_meant, |ui, column| column.grip(ui));
-            table.line(ui, &DENT, is_meant, |ui, column| {
-                column.value(ui, |reading| in_mm(reading.depth_m));
-            });
-            table.line(ui, &POWER, is_meant, |ui, column| {
-                column.value(ui, |reading| in_watts(reading.lost_w));
-            });
+            table.line(ui, &DENT, is_meant, |ui, column| column.dent(ui));
+            table.line(ui, &POWER, is_meant, |ui, column| column.power(ui));
             if surface == ReadSurface::Stairs {
-                table.line(ui, &LOST, is_meant, |ui, column| {
-                    let lost = column.lane.readings().energy_lost;
-                    let lost = lost.map(|lost| in_joules(lost.elsewhere_j()));
-                    number(ui, lost.as_deref().unwrap_or(UNKNOWN));
-                });
+                table.line(ui, &LOST, is_meant, |ui, column| column.lost(ui));
             }
         });
-    }
-
-    fn column<'c>(
-        &self,
-        lane: &'c Lane,
-        is_meant: impl Fn(TouchedSurface) -> bool,
-    ) -> LaneColumn<'c> {
-        let meter = &lane.readings().meter;
-        LaneColumn {
-            lane,
-            reading: meter.surface(self.is_playing, is_meant),
-            is_playing: self.is_playing,
-        }
     }
 }
 
@@ -237,7 +213,10 @@ impl ReadoutTable<'_> {
             ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(line.hint);
         });
         for column in &self.columns {
-            self.cell(ui, |ui| value(ui, column))
+            let cell = self.cell(ui, |ui| value(ui, column));
+            // Above the number, which would keep the pointer from the cell.
+            let id = ui.id().with((line.name, column.lane.number()));
+            ui.interact(cell.rect, id, egui::Sense::hover())
                 .on_hover_ui(|ui| column.explain(ui, line, is_meant));
         }
         ui.end_row();
@@ -256,142 +235,5 @@ impl ReadoutTable<'_> {
     }
 }
 
-/// A lane with its reading on one surface.
-struct LaneColumn<'l> {
-    lane: &'l Lane,
-    /// `None` if no limb touches the surface.
-    reading: Option<SurfaceReading>,
-    is_playing: bool,
-}
-
-impl LaneColumn<'_> {
-    fn contact(&self, ui: &mut egui::Ui) {
-        let text = match (self.lane.simulation(), self.reading) {
-            (None, _) => "recording".to_owned(),
-            (_, None) => "none".to_owned(),
-            (_, Some(reading)) => {
-                format!("{} of {} limbs", reading.limbs, self.lane.body().limbs.len())
-            }
-        };
-        number(ui, &text);
-    }
-
-    fn value(&self, ui: &mut egui::Ui, text: impl Fn(&SurfaceReading) -> String) {
-        number(ui, self.reading.as_ref().map(text).as_deref().unwrap_or(UNKNOWN));
-    }
-
-    /// Draws the share of the friction as a bar with its number.
-    fn grip(&self, ui: &mut egui::Ui) {
-        let Some(share) = self.reading.and_then(|reading| reading.grip_share) else {
-            let is_frictionless = self.reading.is_some();
-            number(ui, if is_frictionless { "no friction" } else { UNKNOWN });
-            return;
-        };
-        let palette = theme::of(ui);
-        let width = (ui.available_width() - PERCENT_WIDTH - theme::GAP).clamp(0.0, BAR_WIDTH);
-        let (bar, response) =
-            ui.allocate_exact_size(egui::vec2(width, BAR_HEIGHT), egui::Sense::hover());
-        let percent = in_percent(share);
-        response.widget_info(|| {
-            let said = format!("Grip used: {percent}");
-            egui::WidgetInfo::labeled(egui::WidgetType::ProgressIndicator, true, said)
-        });
-        let full = egui::Rect::from_min_size(bar.min, bar.size() * egui::vec2(share, 1.0));
-        let color = if share >= SLIDES_FROM { palette.second } else { palette.accent };
-        let corner = BAR_HEIGHT / 2.0;
-        ui.painter().rect_filled(bar, corner, palette.empty_cell);
-        ui.painter().with_clip_rect(full).rect_filled(bar, corner, color);
-        number(ui, &format!("{percent:>5}"));
-    }
-
-    /// The tooltip of a value: its meaning, and slip and grip of each limb that touches the surface.
-    fn explain(
-        &self,
-        ui: &mut egui::Ui,
-        line: &ReadoutLine,
-        is_meant: impl Fn(TouchedSurface) -> bool,
-    ) {
-        ui.set_max_width(theme::NOTICE_WIDTH);
-        ui.label(line.hint);
-        if line.name == LOST.name {
-            self.explain_energy(ui);
-            return;
-        }
-        let Some(reading) = self.reading else { return };
-        if line.name == SLIP.name {
-            ui.label(format!("Fastest point: {:.2} m/s", reading.top_slip_m_s));
-        }
-        let grid = egui::Grid::new("limbs").num_columns(4).spacing([theme::GAP, 0.0]);
-        grid.show(ui, |ui| {
-            for limb in 0..self.lane.body().limbs.len() {
-                let meter = &self.lane.readings().meter;
-                let Some(reading) = meter.limb(self.is_playing, limb, &is_meant) else { continue };
-                ui.label(format!("Limb {}", limb + 1));
-                for text in [
-                    format!("{:5.2} m/s", reading.slip_m_s),
-                    reading.grip_share.map_or(UNKNOWN.to_owned(), in_percent),
-                    in_mm(reading.depth_m),
-                ] {
-                    ui.label(egui::RichText::new(format!("{text:>6}")).monospace());
-                }
-                ui.end_row();
-            }
-        });
-    }
-}
-
-impl LaneColumn<'_> {
-    /// Lists where the energy went.
-    fn explain_energy(&self, ui: &mut egui::Ui) {
-        let Some(lost) = self.lane.readings().energy_lost else {
-            if self.lane.is_disturbed() {
-                ui.label("Unknown, because the mouse has pulled the snake.");
-            }
-            return;
-        };
-        egui::Grid::new("energy").num_columns(2).spacing([theme::GAP, 0.0]).show(ui, |ui| {
-            for (name, energy_j) in [
-                ("Contacts and stops of joints", lost.elsewhere_j()),
-                ("Damping of joints", lost.joint_damping_j),
-                ("Damping of rotation", lost.rotation_damping_j),
-                ("Sum", lost.total_j),
-            ] {
-                ui.label(name);
-                let text = format!("{:>8}", in_joules(energy_j));
-                ui.label(egui::RichText::new(text).monospace());
-                ui.end_row();
-            }
-        });
-    }
-}
-
-/// Stands for a value that there is not.
-const UNKNOWN: &str = "–";
-
-fn number(ui: &mut egui::Ui, text: &str) {
-    let text = egui::RichText::new(text).monospace();
-    ui.add(egui::Label::new(text).truncate());
-}
-
-/// A share as whole percents.
-pub(crate) fn in_percent(share: f32) -> String {
-    format!("{:.0} %", share * 100.0)
-}
-
-fn in_mm(depth_m: f32) -> String {
-    format!("{:.0} mm", depth_m * 1000.0)
-}
-
-fn in_watts(power_w: f32) -> String {
-    if power_w < 9.95 { format!("{power_w:.1} W") } else { format!("{power_w:.0} W") }
-}
-
-fn in_joules(energy_j: f32) -> String {
-    // Rounding must not leave "-0 J" at the start.
-    let energy_j = energy_j.max(0.0);
-    if energy_j < 999.5 {
-        format!("{energy_j:.0} J")
-    } else {
-        format!("{:.2} kJ", energy_j / 1000.0)
-    }
-}
+#[cfg(test)]
+mod tests;
