@@ -60,7 +60,7 @@ impl SettingGroup for AgentSettings {
             angular_damping_per_s,
             skin,
         } = self;
-        walk.section(Section { title: "Skin", about: "Material of the snake's blocks." });
+        walk.section(Self::SKIN);
         walk.group("skin", skin);
         walk.section(Section { title: "Body", about: "Number, size and weight of the blocks." });
         settings! { walk,
@@ -145,6 +145,9 @@ impl SettingGroup for AgentSettings {
 }
 
 impl AgentSettings {
+    /// The section of the material of the limbs.
+    pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
+
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {
         self.limbs.saturating_sub(1) as usize

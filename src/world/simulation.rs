@@ -5,17 +5,22 @@
 use rapier3d::prelude::*;
 
 mod build;
+mod energy;
 mod observe;
+mod patches;
 
 use super::bounce::{LimbVelocity, finish_bounce};
-use super::contact::{ContactHooks, ContactLaws, other_collider, soften};
+use super::contact::{ContactHooks, ContactLaws, soften};
 use super::surface::ContactLaw;
 use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld,
     Pull, Skin, Stairs, Surface,
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
+use energy::EnergyBalance;
+pub use energy::EnergyLost;
 pub use observe::{ContactForce, JointState};
+pub use patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
 /// in every bit.
@@ -68,6 +73,7 @@ pub struct Simulation {
     /// step after clamping.
     applied: Vec<(Rotation, JointTorque)>,
     effort: Effort,
+    balance: EnergyBalance,
     /// The user's pull on a limb, and whether there was one in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
@@ -122,7 +128,7 @@ impl Simulation {
         let limbs = insert_limbs(&mut physics, plan, &laws.limbs);
         insert_joints(&mut physics, &limbs, plan);
 
-        Self {
+        let mut simulation = Self {
             physics,
             contacts: ContactSettings {
                 laws,
@@ -134,13 +140,16 @@ impl Simulation {
             torques_in_world: vec![Vector::ZERO; limbs.len()],
             applied: vec![(Rotation::IDENTITY, JointTorque::default()); plan.body.joints.len()],
             effort: Effort::default(),
+            balance: EnergyBalance::default(),
             pull: None,
             was_pulled: false,
             limbs,
             body: plan.body.clone(),
             health: plan.health.clone(),
             arena_front_y_m: plan.stairs.end_y_m() + 10.0,
-        }
+        };
+        simulation.begin_balance();
+        simulation
     }
 
     /// Applies the torques, one per joint, clamped to each joint's limits, and advances the world by one
@@ -150,7 +159,9 @@ impl Simulation {
     /// The reason for which this step disqualified the agent. The world must not be stepped further then.
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
+        let joint_power_before_w = self.joint_power_w();
         self.advance();
+        self.add_to_balance(joint_power_before_w);
         let mut effort = self.check_health()?;
         effort.energy_j = self.energy_j();
         self.effort = self.effort.and(effort);
@@ -210,25 +221,10 @@ impl Simulation {
 
     /// Slows each limb that touches a damping surface, once, by the strongest damping that it touches.
     fn dampen(&mut self) {
-        let ContactSettings { laws, ground, .. } = &self.contacts;
         let step_s = self.physics.integration_parameters.dt;
-        for &limb in &self.limbs {
-            let collider = self.physics.bodies[limb].colliders()[0];
-            let touched = self.physics.narrow_phase.contact_pairs_with(collider);
-            let dampen_per_s = touched
-                .filter(|pair| pair.has_any_active_contact())
-                .map(|pair| {
-                    let other = other_collider(pair, collider);
-                    if other == *ground {
-                        laws.ground.dampen_per_s
-                    } else if self.physics.colliders[other].parent().is_none() {
-                        laws.stairs.dampen_per_s
-                    } else {
-                        0.0
-                    }
-                })
-                .fold(0.0, f32::max);
-            if dampen_per_s > 0.0 {
+        for limb in 0..self.limbs.len() {
+            let limb = self.limbs[limb];
+            if let Some((_, dampen_per_s)) = self.strongest_damping(limb) {
                 let factor = 1.0 - dampen_per_s * step_s;
                 let body = &mut self.physics.bodies[limb];
                 body.set_linvel(body.linvel() * factor, false);
@@ -372,6 +368,7 @@ impl Clone for Simulation {
             torques_in_world: self.torques_in_world.clone(),
             applied: self.applied.clone(),
             effort: self.effort,
+            balance: self.balance,
             pull: self.pull,
             was_pulled: self.was_pulled,
         }

@@ -58,6 +58,7 @@ use run::EvolutionPanel;
 use shown::ShownLane;
 use tab_names::{small_tabs, tab_name};
 use world::WorldPanel;
+use world::surface_readout::ReadLanes;
 
 pub(super) use super::commands::panel::PanelKind;
 pub(super) use help::tour::highlighted_panel;
@@ -305,7 +306,12 @@ impl Viewer<'_, '_, '_> {
                 panels.evolution.ui(ui, run, commands);
                 panels.fitness.ui(ui, run, theme::CHART_HEIGHT, &shown, commands);
             }
-            PanelKind::World => panels.world.ui(ui, run, &self.data.on_stage.history, commands),
+            PanelKind::World => {
+                let on_stage = &self.data.on_stage;
+                let focused = focused(self.lanes, on_stage);
+                let read = ReadLanes::of(self.lanes, focused, on_stage);
+                panels.world.ui(ui, run, &on_stage.history, &read, commands);
+            }
             PanelKind::Charts => panels.charts.ui(ui, run, &shown, commands),
             PanelKind::Champions => {
                 let reports = run.reports();

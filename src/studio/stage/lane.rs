@@ -76,12 +76,12 @@ impl Lane {
             step_s: 1.0 / f64::from(staged.trial().physics.steps_per_s),
             lookahead,
             body: staged.body(),
+            readings: Readings::new(&replay, staged.trial().physics.steps_per_s),
             staged,
             number,
             offset_x_m: 0.0,
             is_ghost: false,
             share: 1.0,
-            readings: Readings::of(&replay),
             replay,
             detour_m: Vec::new(),
             is_broken: false,
@@ -318,7 +318,7 @@ impl Lane {
                 self.go_on(step.min(now + most_steps));
             }
         });
-        self.readings = Readings::of(&self.replay);
+        self.readings.update(&self.replay);
         self.is_broken = result.is_err();
         result
     }
@@ -341,6 +341,9 @@ impl Lane {
         while self.replay.step() < step && !self.replay.is_over() {
             self.before.copy_from_slice(self.replay.poses());
             let goes_on = self.replay.advance();
+            if goes_on && !self.is_ghost {
+                self.readings.meter.note(&self.replay, step);
+            }
             if goes_on && self.replay.is_disturbed() {
                 let middle = self.replay.poses()[self.before.len() / 2].translation;
                 self.detour_m.push(middle);
@@ -353,7 +356,9 @@ impl Lane {
 
     fn jump(&mut self, step: u32, history: Option<&KeyframeHistory>) {
         self.detour_m.clear();
-        self.replay.go_to(step.saturating_sub(1), &self.staged, history);
+        // The steps before the moment are noted on the way.
+        let noted = self.readings.meter.restart();
+        self.replay.go_to(step.saturating_sub(noted), &self.staged, history);
         self.before.copy_from_slice(self.replay.poses());
         self.go_on(step);
     }
@@ -363,7 +368,7 @@ impl Lane {
         let (step, share) = self.moment(time_s);
         self.share = share;
         self.go_on(step);
-        self.readings = Readings::of(&self.replay);
+        self.readings.update(&self.replay);
     }
 
     /// Advances to the end of the rollout. Returns the poses at `moments` equally spaced times, starting with the

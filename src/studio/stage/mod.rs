@@ -1,5 +1,6 @@
 //! The stage: lanes side by side that show a replay, a race or a what-if.
 
+pub mod contact_meter;
 pub mod lane;
 pub mod opening;
 pub mod playback;

@@ -1,10 +1,11 @@
 //! Contacts, torques and joints of a lane, for panels and overlays.
 
+use super::contact_meter::ContactMeter;
 use super::replay::Replay;
-use crate::world::{ContactForce, JointState, JointTorque};
+use crate::world::{ContactForce, EnergyLost, JointState, JointTorque};
 
 /// Contacts, torques and joints after the last step.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug)]
 pub(crate) struct Readings {
     /// Contact forces on the limbs.
     pub contacts: Vec<ContactForce>,
@@ -14,16 +15,35 @@ pub(crate) struct Readings {
     pub joints: Vec<JointState>,
     /// Speeds of the limbs' centres, from head to tail, in m/s.
     pub speeds_m_s: Vec<f32>,
+    /// Energy that the snake has lost since the start; unknown for a recording and after a pull.
+    pub energy_lost: Option<EnergyLost>,
+    /// What the limbs did on the surfaces in the last moments; empty for a recording and for a ghost.
+    pub meter: ContactMeter,
 }
 
 impl Readings {
-    /// Reads them off the world of a replay; a recording has none.
-    pub fn of(replay: &Replay) -> Self {
-        replay.simulation().map_or_else(Self::default, |simulation| Self {
-            contacts: simulation.contact_forces(),
-            torques: simulation.applied_torques().collect(),
-            joints: simulation.joint_states().collect(),
-            speeds_m_s: simulation.speeds_m_s().collect(),
-        })
+    /// Readings at the start of a replay with this number of physics steps per second.
+    pub fn new(replay: &Replay, steps_per_s: u32) -> Self {
+        let mut readings = Self {
+            contacts: Vec::new(),
+            torques: Vec::new(),
+            joints: Vec::new(),
+            speeds_m_s: Vec::new(),
+            energy_lost: None,
+            meter: ContactMeter::new(steps_per_s),
+        };
+        readings.update(replay);
+        readings
+    }
+
+    /// Reads the world of a replay after a step; a recording has none. The meter is left as it is, because it notes
+    /// each step by itself.
+    pub fn update(&mut self, replay: &Replay) {
+        let Some(simulation) = replay.simulation() else { return };
+        self.contacts = simulation.contact_forces();
+        self.torques = simulation.applied_torques().collect();
+        self.joints = simulation.joint_states().collect();
+        self.speeds_m_s = simulation.speeds_m_s().collect();
+        self.energy_lost = (!replay.is_disturbed()).then(|| simulation.energy_lost());
     }
 }

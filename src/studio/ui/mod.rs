@@ -2,6 +2,7 @@
 
 pub mod check_box;
 pub mod icons;
+pub mod lane_dot;
 pub mod notifications;
 pub mod number_field;
 pub mod plot_axes;

@@ -2,6 +2,7 @@
 
 use rapier3d::prelude::*;
 
+use super::patches::solved_points;
 use super::{JointTorque, Simulation};
 use crate::world::contact::other_collider;
 
@@ -94,11 +95,12 @@ impl Simulation {
                 let first = self.physics.colliders[pair.collider1].position();
                 // The normal points from the first collider to the second; the tangent impulse acts on the first.
                 let side = if pair.collider1 == collider { -1.0 } else { 1.0 };
-                for manifold in &pair.manifolds {
-                    let carries =
-                        |point: &&TrackedContact<ContactData>| point.data.warmstart_impulse > 0.0;
-                    let shared_by = manifold.points.iter().filter(carries).count() as f32;
-                    for point in manifold.points.iter().filter(carries) {
+                for manifold in pair.solver_manifolds() {
+                    let loaded = || {
+                        solved_points(manifold).filter(|point| point.data.warmstart_impulse > 0.0)
+                    };
+                    let shared_by = loaded().count() as f32;
+                    for point in loaded() {
                         let friction = point.data.warmstart_tangent_world / shared_by;
                         let impulse =
                             manifold.data.normal * point.data.warmstart_impulse - friction;

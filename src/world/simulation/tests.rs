@@ -1,6 +1,8 @@
 //! The world compared with the report and with closed forms.
 
+mod energy;
 mod observe;
+mod patches;
 mod surface;
 
 use super::super::LimbPlan;

@@ -123,7 +123,7 @@ pub(crate) fn around_stage(
         // The card ignores the pointer, because the snake may be behind it.
         let place = card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom());
         let shown = place.interactable(false).show(context, |ui| {
-            frame.show(ui, |ui| limb_card(ui, focused, limb));
+            frame.show(ui, |ui| limb_card(ui, focused, limb, on_stage.playback.is_playing()));
         });
         messages_end = shown.response.rect.top();
     }

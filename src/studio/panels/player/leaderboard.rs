@@ -6,6 +6,7 @@ use crate::score::KeyframeHistory;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
+use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
 use crate::world::Stairs;
 
@@ -99,12 +100,6 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     });
 }
 
-/// The dot in the colour of a lane, of this diameter, in points.
-pub(super) fn dot(ui: &mut egui::Ui, color: egui::Color32, diameter: f32) {
-    let (rect, _) = ui.allocate_exact_size(egui::Vec2::splat(diameter), egui::Sense::hover());
-    ui.painter().circle_filled(rect.center(), diameter / 2.0, color);
-}
-
 /// Marks the winner by the accent below the text: the panels' font has no bold weight.
 fn marked_if(is_winner: bool, text: egui::RichText, palette: &theme::Palette) -> egui::RichText {
     if is_winner {
@@ -146,7 +141,7 @@ pub(crate) fn leaderboard(
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
                 let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
                 ui.label(marked_if(is_winner, rank.color(palette.text_weak), palette));
-                dot(ui, palette.lane_color(ranked.lane), theme::LANE_DOT);
+                lane_dot(ui, ranked.lane, theme::LANE_DOT);
                 let hint = "Show the numbers and torques of this snake below";
                 let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
                 if name.on_hover_text(hint).clicked() {

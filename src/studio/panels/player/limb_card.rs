@@ -2,12 +2,14 @@
 
 use bevy_egui::egui;
 
+use crate::studio::panels::world::surface_readout::in_percent;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
 use crate::world::JointState;
 
-/// Draws the readings of a limb; the head is 0.
-pub(crate) fn limb_card(ui: &mut egui::Ui, lane: &Lane, limb: usize) {
+/// Draws the readings of a limb; the head is 0. While the stage plays (`is_playing`), those of its contacts change a few
+/// times per second only.
+pub(crate) fn limb_card(ui: &mut egui::Ui, lane: &Lane, limb: usize, is_playing: bool) {
     let body = lane.body();
     let (Some(pose), Some(plan)) = (lane.last_poses().get(limb), body.limbs.get(limb)) else {
         return;
@@ -47,6 +49,13 @@ pub(crate) fn limb_card(ui: &mut egui::Ui, lane: &Lane, limb: usize) {
             points => format!("{points} points, {:.0} N", force_n.length()),
         };
         rows.push(("Contact", touch));
+        if !lane.is_ghost() {
+            let surface = readings.meter.limb(is_playing, limb, |_| true);
+            let slip = surface.map(|surface| format!("{:.2} m/s", surface.slip_m_s));
+            let grip = surface.and_then(|surface| surface.grip_share).map(in_percent);
+            let known = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+            rows.extend([("Slip speed", known(slip)), ("Grip used", known(grip))]);
+        }
     }
     let joint = |index: usize| {
         let state: &JointState = readings.joints.get(index)?;

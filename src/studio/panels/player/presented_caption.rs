@@ -3,12 +3,13 @@
 
 use bevy_egui::egui;
 
-use super::leaderboard::{RankedLane, dot, ranking};
+use super::leaderboard::{RankedLane, ranking};
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
 
 /// Number of snakes that a race's caption names: the leader and those behind it.
@@ -215,7 +216,7 @@ fn part(ui: &mut egui::Ui, part: &CaptionPart, size: f32, color: egui::Color32) 
         ui.set_height(size * LINE);
         ui.spacing_mut().item_spacing.x = size * 0.4;
         if let Some(lane) = part.lane {
-            dot(ui, theme::of(ui).lane_color(lane), size * 0.6);
+            lane_dot(ui, lane, size * 0.6);
         }
         let text = egui::RichText::new(&part.text).size(size).color(color);
         ui.add(egui::Label::new(text).truncate().selectable(false));

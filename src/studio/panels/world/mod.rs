@@ -1,6 +1,7 @@
 //! World and snake of the next run, section by section, with a search over all settings.
 
 pub mod presets;
+pub mod surface_readout;
 
 use std::collections::BTreeSet;
 
@@ -9,7 +10,7 @@ use bevy_egui::egui;
 use super::settings::Sheet;
 use super::undo_buttons::undo_buttons;
 use crate::schema::{ListedSetting, Section, SettingKind};
-use crate::score::Trial;
+use crate::score::{AgentSettings, Trial};
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::undo::UndoHistory;
@@ -18,6 +19,7 @@ use crate::studio::ui::text_rows::{explain, title_and};
 use crate::studio::ui::theme;
 
 use presets::PresetChoice;
+use surface_readout::{ReadLanes, ReadSurface};
 
 /// The panel with its search text and fields.
 #[derive(Debug, Default)]
@@ -35,6 +37,7 @@ impl WorldPanel {
         ui: &mut egui::Ui,
         run: &CurrentRun,
         history: &UndoHistory,
+        on_stage: &ReadLanes,
         commands: &mut Vec<Command>,
     ) {
         self.sheet.begin(ui, run);
@@ -43,7 +46,7 @@ impl WorldPanel {
         next_run(ui, run, commands);
         self.search_field(ui);
         if self.search.trim().is_empty() {
-            self.sections(ui, run, commands);
+            self.sections(ui, run, on_stage, commands);
         } else {
             self.search_results(ui, run, commands);
         }
@@ -82,7 +85,13 @@ impl WorldPanel {
         });
     }
 
-    fn sections(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    fn sections(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        on_stage: &ReadLanes,
+        commands: &mut Vec<Command>,
+    ) {
         for section in self.sheet.sections("trial.") {
             ui.add_space(theme::GAP / 2.0);
             let name = egui::RichText::new(section.title).size(theme::TITLE_SIZE).strong();
@@ -91,6 +100,9 @@ impl WorldPanel {
             let shown = header.show_unindented(ui, |ui| {
                 if section == Trial::GROUND {
                     ground_switch(ui, run, commands);
+                }
+                if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
+                    on_stage.ui(ui, *surface);
                 }
                 self.sheet.section(ui, run, section, commands);
             });
@@ -124,6 +136,13 @@ impl WorldPanel {
 
 /// Sections that are open when the panel is shown for the first time.
 const OPEN_AT_FIRST: [Section; 3] = [Trial::SURFACE, Trial::GROUND, Trial::REWARD];
+
+/// Sections with a read-out of the surfaces that they are about.
+const READ_OUT: [(Section, ReadSurface); 3] = [
+    (Trial::SURFACE, ReadSurface::Stairs),
+    (Trial::GROUND, ReadSurface::Ground),
+    (AgentSettings::SKIN, ReadSurface::Skin),
+];
 
 /// Draws the switch for a separate ground surface.
 fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
@@ -188,7 +207,7 @@ mod tests {
             .build_ui_state(
                 |ui, commands| {
                     theme::apply(ui.ctx());
-                    panel.ui(ui, run, history, commands);
+                    panel.ui(ui, run, history, &ReadLanes::default(), commands);
                 },
                 Vec::new(),
             );

@@ -3,15 +3,15 @@
 use super::*;
 
 /// One block, 1 by 2 by 1 m and 5 kg, lying on the ground far from the stairs.
-fn block(surface: Surface) -> WorldPlan {
+pub(super) fn block(surface: Surface) -> WorldPlan {
     WorldPlan { ground: surface.clone(), surface, start_y_m: -20.0, ..plan(1) }
 }
 
-fn body(simulation: &mut Simulation) -> &mut RigidBody {
+pub(super) fn body(simulation: &mut Simulation) -> &mut RigidBody {
     &mut simulation.physics.bodies[simulation.limbs[0]]
 }
 
-fn run(simulation: &mut Simulation, seconds: f32) {
+pub(super) fn run(simulation: &mut Simulation, seconds: f32) {
     let steps = (seconds / simulation.physics.integration_parameters.dt).round() as u32;
     (0..steps).for_each(|_| simulation.step(&[]).expect("healthy"));
 }

@@ -1,0 +1,239 @@
+//! What the snakes on the stage do on a surface at the shown moment, above the settings of that surface.
+
+mod lane_column;
+
+use bevy_egui::egui;
+
+use crate::studio::panels::on_stage::OnStage;
+use crate::studio::stage::StageMode;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::lane_dot::lane_dot;
+use crate::studio::ui::theme;
+use crate::world::TouchedSurface;
+
+use lane_column::LaneColumn;
+pub(crate) use lane_column::in_percent;
+
+/// The lanes whose contacts are read.
+#[derive(Clone, Default)]
+pub(crate) struct ReadLanes<'l> {
+    /// The selected lane, or both lanes of a what-if.
+    pub lanes: Vec<&'l Lane>,
+    /// Whether they stand beside others, so that their names must be shown.
+    pub are_named: bool,
+    /// Whether the stage plays. Readings then change a few times per second only.
+    pub is_playing: bool,
+}
+
+/// Surfaces that a section of the panel is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ReadSurface {
+    /// The stairs, and the ground where it shares their surface.
+    Stairs,
+    /// The ground with a surface of its own.
+    Ground,
+    /// The skin, where limbs touch each other.
+    Skin,
+}
+
+/// A line of the read-out.
+struct ReadoutLine {
+    name: &'static str,
+    /// The term of the field.
+    term: &'static str,
+    hint: &'static str,
+}
+
+const CONTACT: ReadoutLine = ReadoutLine {
+    name: "Contact",
+    term: "",
+    hint: "Limbs that touch it: the most at once in the last 0.25 s",
+};
+const SLIP: ReadoutLine = ReadoutLine {
+    name: "Slip speed",
+    term: "",
+    hint: "Speed of the contacts along the surface: mean of the last 0.25 s, in which hard-pressed limbs count most. Near 0 \
+           the limbs hold",
+};
+const GRIP: ReadoutLine = ReadoutLine {
+    name: "Grip used",
+    term: "friction cone",
+    hint: "Share of the friction that is used: sideways force divided by friction times the force pressing down. Mean of \
+           all contacts in the last 0.25 s. At 100 % everything that touches slides",
+};
+const DENT: ReadoutLine = ReadoutLine {
+    name: "Dent",
+    term: "penetration",
+    hint: "Greatest depth to which a limb has sunk in during the last 0.25 s. A hard surface stays near 0",
+};
+const POWER: ReadoutLine = ReadoutLine {
+    name: "Lost here",
+    term: "dissipation",
+    hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's damping \
+           takes. Mean of the last 0.25 s. Impacts and dents are not in it",
+};
+const LOST: ReadoutLine = ReadoutLine {
+    name: "Lost so far",
+    term: "contacts, stops",
+    hint: "Energy lost since the start in all contacts (friction, impacts, dents) and at the stops of the joints: work of the \
+           joints, minus the gain in motion and height, minus what the damping of joints and rotation took",
+};
+
+/// Width of the names, in points.
+const NAME_WIDTH: f32 = theme::GAP * 11.0;
+/// Panel width from which the names have the terms of the field beside them, in points.
+const WIDTH_FOR_TERMS: f32 = theme::GAP * 35.0;
+/// Width of a name with its term, in points.
+const TERM_WIDTH: f32 = theme::GAP * 21.0;
+
+impl<'l> ReadLanes<'l> {
+    /// The lanes to read out of those on the stage.
+    pub fn of(lanes: &[&'l Lane], focused: Option<&'l Lane>, on_stage: &OnStage) -> Self {
+        let lanes = match *on_stage.mode {
+            // To see what a change does, one needs both values.
+            StageMode::WhatIf { .. } => lanes.to_vec(),
+            StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => {
+                focused.into_iter().collect()
+            }
+        };
+        let are_named = matches!(*on_stage.mode, StageMode::WhatIf { .. } | StageMode::Race);
+        Self { lanes, are_named, is_playing: on_stage.playback.is_playing() }
+    }
+
+    /// Draws the read-out of a surface; nothing without lanes, or for a ground that shares the surface of the stairs.
+    pub(super) fn ui(&self, ui: &mut egui::Ui, surface: ReadSurface) {
+        let has_own_ground = self.lanes.iter().any(|lane| lane.trial().ground.is_some());
+        if self.lanes.is_empty() || (surface == ReadSurface::Ground && !has_own_ground) {
+            return;
+        }
+        let title = match (surface, has_own_ground) {
+            (ReadSurface::Stairs, false) => "On stairs and ground now",
+            (ReadSurface::Stairs, true) => "On the stairs now",
+            (ReadSurface::Ground, _) => "On the ground now",
+            (ReadSurface::Skin, _) => "Between limbs now",
+        };
+        let palette = theme::of(ui);
+        let header = egui::RichText::new(title).color(palette.text_weak);
+        let fold = egui::CollapsingHeader::new(header)
+            .id_salt(("read-out", title))
+            .default_open(surface != ReadSurface::Skin);
+        let is_meant = |touched: TouchedSurface| match (surface, touched) {
+            (ReadSurface::Stairs, TouchedSurface::Stairs)
+            | (ReadSurface::Ground, TouchedSurface::Ground)
+            | (ReadSurface::Skin, TouchedSurface::Limb(_)) => true,
+            (ReadSurface::Stairs, TouchedSurface::Ground) => !has_own_ground,
+            _ => false,
+        };
+        let shown = fold.show_unindented(ui, |ui| self.table(ui, surface, is_meant));
+        let hint = "What the snake on the stage does there at the shown moment";
+        shown.header_response.on_hover_text(hint);
+    }
+
+    fn table(
+        &self,
+        ui: &mut egui::Ui,
+        surface: ReadSurface,
+        is_meant: impl Fn(TouchedSurface) -> bool + Copy,
+    ) {
+        let palette = theme::of(ui);
+        let missing = if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
+            Some("Not available in a recording")
+        } else if self.lanes.iter().any(|lane| lane.is_ghost()) {
+            Some("Not available for a ghost")
+        } else {
+            None
+        };
+        if let Some(missing) = missing {
+            ui.label(egui::RichText::new(missing).color(palette.text_weak));
+            return;
+        }
+        let columns: Vec<LaneColumn> =
+            self.lanes.iter().map(|lane| LaneColumn::of(lane, self.is_playing, is_meant)).collect();
+        let has_terms = columns.len() == 1 && ui.available_width() >= WIDTH_FOR_TERMS;
+        let names_width = if has_terms { TERM_WIDTH } else { NAME_WIDTH };
+        let gaps = theme::GAP * columns.len() as f32;
+        let room = (ui.available_width() - names_width - gaps) / columns.len() as f32;
+        let table = ReadoutTable { columns, has_terms, names_width, room };
+        let gap = theme::GAP;
+        let grid = egui::Grid::new(("read-out", surface as u8))
+            .min_col_width(0.0)
+            .min_row_height(gap * 2.25)
+            .spacing([gap, gap / 8.0]);
+        grid.show(ui, |ui| {
+            if self.are_named {
+                ui.label("");
+                for column in &table.columns {
+                    table.cell(ui, |ui| {
+                        let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
+                        let label = column.lane.staged().label();
+                        let name = egui::RichText::new(label).color(palette.text_weak);
+                        ui.add(egui::Label::new(name).truncate()).on_hover_text(label);
+                        dot.on_hover_text(label);
+                    });
+                }
+                ui.end_row();
+            }
+            table.line(ui, &CONTACT, is_meant, |ui, column| column.contact(ui));
+            table.line(ui, &SLIP, is_meant, |ui, column| column.slip(ui));
+            table.line(ui, &GRIP, is_meant, |ui, column| column.grip(ui));
+            table.line(ui, &DENT, is_meant, |ui, column| column.dent(ui));
+            table.line(ui, &POWER, is_meant, |ui, column| column.power(ui));
+            if surface == ReadSurface::Stairs {
+                table.line(ui, &LOST, is_meant, |ui, column| column.lost(ui));
+            }
+        });
+    }
+}
+
+/// The lines of a read-out with a column for each lane.
+struct ReadoutTable<'l> {
+    columns: Vec<LaneColumn<'l>>,
+    has_terms: bool,
+    /// Widths of the names and of a column, in points.
+    names_width: f32,
+    room: f32,
+}
+
+impl ReadoutTable<'_> {
+    fn line(
+        &self,
+        ui: &mut egui::Ui,
+        line: &ReadoutLine,
+        is_meant: impl Fn(TouchedSurface) -> bool + Copy,
+        value: impl Fn(&mut egui::Ui, &LaneColumn),
+    ) {
+        let palette = theme::of(ui);
+        let name = match line.term {
+            term if self.has_terms && !term.is_empty() => format!("{} ({term})", line.name),
+            _ => line.name.to_owned(),
+        };
+        let size = egui::vec2(self.names_width, theme::GAP * 2.25);
+        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.set_width(self.names_width);
+            ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(line.hint);
+        });
+        for column in &self.columns {
+            let cell = self.cell(ui, |ui| value(ui, column));
+            // Above the number, which would keep the pointer from the cell.
+            let id = ui.id().with((line.name, column.lane.number()));
+            ui.interact(cell.rect, id, egui::Sense::hover())
+                .on_hover_ui(|ui| column.explain(ui, line, is_meant));
+        }
+        ui.end_row();
+    }
+
+    /// Draws a cell of fixed width, so that nothing moves while the values change.
+    fn cell(&self, ui: &mut egui::Ui, content: impl FnOnce(&mut egui::Ui)) -> egui::Response {
+        let size = egui::vec2(self.room, theme::GAP * 2.25);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
+            ui.set_width(self.room);
+            ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
+            content(ui);
+        });
+        shown.response
+    }
+}
+
+#[cfg(test)]
+mod tests;

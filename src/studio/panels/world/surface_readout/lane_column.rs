@@ -1,0 +1,185 @@
+//! A column of the read-out: the readings of one lane on one surface.
+
+use bevy_egui::egui;
+
+use super::{LOST, ReadoutLine, SLIP};
+use crate::studio::stage::contact_meter::SurfaceReading;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::theme;
+use crate::world::TouchedSurface;
+
+/// Height of the bar, in points.
+const BAR_HEIGHT: f32 = theme::GAP;
+/// Largest width of the bar, in points.
+const BAR_WIDTH: f32 = theme::GAP * 15.0;
+/// Room for the text beside a bar, in points.
+const PERCENT_WIDTH: f32 = theme::GAP * 5.0;
+/// Share from which a contact counts as sliding: the engine stays a little below 1.
+const SLIDES_FROM: f32 = 0.995;
+
+/// A lane with its reading on one surface.
+pub(super) struct LaneColumn<'l> {
+    pub lane: &'l Lane,
+    /// `None` if no limb touches the surface.
+    reading: Option<SurfaceReading>,
+    is_playing: bool,
+}
+
+impl<'l> LaneColumn<'l> {
+    /// The readings of a lane on the surfaces for which `is_meant` holds.
+    pub fn of(lane: &'l Lane, is_playing: bool, is_meant: impl Fn(TouchedSurface) -> bool) -> Self {
+        let reading = lane.readings().meter.surface(is_playing, is_meant);
+        Self { lane, reading, is_playing }
+    }
+
+    /// Draws the slip speed.
+    pub fn slip(&self, ui: &mut egui::Ui) {
+        self.value(ui, |reading| format!("{:.2} m/s", reading.slip_m_s));
+    }
+
+    /// Draws the depth of the dents.
+    pub fn dent(&self, ui: &mut egui::Ui) {
+        self.value(ui, |reading| in_mm(reading.depth_m));
+    }
+
+    /// Draws the power of friction and damping.
+    pub fn power(&self, ui: &mut egui::Ui) {
+        self.value(ui, |reading| in_watts(reading.lost_w));
+    }
+
+    /// Draws the energy lost so far in contacts and at the stops of the joints.
+    pub fn lost(&self, ui: &mut egui::Ui) {
+        let lost = self.lane.readings().energy_lost;
+        let lost = lost.map(|lost| in_joules(lost.elsewhere_j()));
+        number(ui, lost.as_deref().unwrap_or(UNKNOWN));
+    }
+
+    /// Draws how many limbs touch the surface.
+    pub fn contact(&self, ui: &mut egui::Ui) {
+        let text = match (self.lane.simulation(), self.reading) {
+            (None, _) => "recording".to_owned(),
+            (_, None) => "none".to_owned(),
+            (_, Some(reading)) => {
+                format!("{} of {} limbs", reading.limbs, self.lane.body().limbs.len())
+            }
+        };
+        number(ui, &text);
+    }
+
+    fn value(&self, ui: &mut egui::Ui, text: impl Fn(&SurfaceReading) -> String) {
+        number(ui, self.reading.as_ref().map(text).as_deref().unwrap_or(UNKNOWN));
+    }
+
+    /// Draws the share of the friction as a bar with its number.
+    pub fn grip(&self, ui: &mut egui::Ui) {
+        let Some(share) = self.reading.and_then(|reading| reading.grip_share) else {
+            let is_frictionless = self.reading.is_some();
+            number(ui, if is_frictionless { "no friction" } else { UNKNOWN });
+            return;
+        };
+        let palette = theme::of(ui);
+        let width = (ui.available_width() - PERCENT_WIDTH - theme::GAP).clamp(0.0, BAR_WIDTH);
+        let (bar, response) =
+            ui.allocate_exact_size(egui::vec2(width, BAR_HEIGHT), egui::Sense::hover());
+        let percent = in_percent(share);
+        response.widget_info(|| {
+            let said = format!("Grip used: {percent}");
+            egui::WidgetInfo::labeled(egui::WidgetType::ProgressIndicator, true, said)
+        });
+        let full = egui::Rect::from_min_size(bar.min, bar.size() * egui::vec2(share, 1.0));
+        let color = if share >= SLIDES_FROM { palette.second } else { palette.accent };
+        let corner = BAR_HEIGHT / 2.0;
+        ui.painter().rect_filled(bar, corner, palette.empty_cell);
+        ui.painter().with_clip_rect(full).rect_filled(bar, corner, color);
+        number(ui, &format!("{percent:>5}"));
+    }
+
+    /// The tooltip of a value: its meaning, and slip and grip of each limb that touches the surface.
+    pub fn explain(
+        &self,
+        ui: &mut egui::Ui,
+        line: &ReadoutLine,
+        is_meant: impl Fn(TouchedSurface) -> bool,
+    ) {
+        ui.set_max_width(theme::NOTICE_WIDTH);
+        ui.label(line.hint);
+        if line.name == LOST.name {
+            self.explain_energy(ui);
+            return;
+        }
+        let Some(reading) = self.reading else { return };
+        if line.name == SLIP.name {
+            ui.label(format!("Fastest point: {:.2} m/s", reading.top_slip_m_s));
+        }
+        let grid = egui::Grid::new("limbs").num_columns(4).spacing([theme::GAP, 0.0]);
+        grid.show(ui, |ui| {
+            for limb in 0..self.lane.body().limbs.len() {
+                let meter = &self.lane.readings().meter;
+                let Some(reading) = meter.limb(self.is_playing, limb, &is_meant) else { continue };
+                ui.label(format!("Limb {}", limb + 1));
+                for text in [
+                    format!("{:5.2} m/s", reading.slip_m_s),
+                    reading.grip_share.map_or(UNKNOWN.to_owned(), in_percent),
+                    in_mm(reading.depth_m),
+                ] {
+                    ui.label(egui::RichText::new(format!("{text:>6}")).monospace());
+                }
+                ui.end_row();
+            }
+        });
+    }
+
+    /// Lists where the energy went.
+    fn explain_energy(&self, ui: &mut egui::Ui) {
+        let Some(lost) = self.lane.readings().energy_lost else {
+            if self.lane.is_disturbed() {
+                ui.label("Unknown, because the mouse has pulled the snake.");
+            }
+            return;
+        };
+        egui::Grid::new("energy").num_columns(2).spacing([theme::GAP, 0.0]).show(ui, |ui| {
+            for (name, energy_j) in [
+                ("Contacts and stops of joints", lost.elsewhere_j()),
+                ("Damping of joints", lost.joint_damping_j),
+                ("Damping of rotation", lost.rotation_damping_j),
+                ("Sum", lost.total_j),
+            ] {
+                ui.label(name);
+                let text = format!("{:>8}", in_joules(energy_j));
+                ui.label(egui::RichText::new(text).monospace());
+                ui.end_row();
+            }
+        });
+    }
+}
+
+/// Stands for a value that there is not.
+const UNKNOWN: &str = "-";
+
+fn number(ui: &mut egui::Ui, text: &str) {
+    let text = egui::RichText::new(text).monospace();
+    ui.add(egui::Label::new(text).truncate());
+}
+
+/// A share as whole percents.
+pub(crate) fn in_percent(share: f32) -> String {
+    format!("{:.0} %", share * 100.0)
+}
+
+pub(super) fn in_mm(depth_m: f32) -> String {
+    format!("{:.0} mm", depth_m * 1000.0)
+}
+
+pub(super) fn in_watts(power_w: f32) -> String {
+    if power_w < 9.95 { format!("{power_w:.1} W") } else { format!("{power_w:.0} W") }
+}
+
+pub(super) fn in_joules(energy_j: f32) -> String {
+    // Rounding must not leave "-0 J" at the start.
+    let energy_j = energy_j.max(0.0);
+    if energy_j < 999.5 {
+        format!("{energy_j:.0} J")
+    } else {
+        format!("{:.2} kJ", energy_j / 1000.0)
+    }
+}

@@ -1,0 +1,131 @@
+//! The read-out of surfaces, drawn in panels of several widths.
+
+use super::lane_column::{in_joules, in_mm, in_watts};
+use super::*;
+use crate::save::{LoadedChampion, shipped_champion};
+use crate::score::Recording;
+use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::world::Surface;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+fn shipped() -> LoadedChampion {
+    shipped_champion().expect("well formed")
+}
+
+/// A lane of a snake at a time at which it touches the ground, and that lane on ice.
+fn on_stone_and_ice() -> [Lane; 2] {
+    let stone = StagedChampion::from_file(&shipped(), 0, "climber");
+    let mut trial = stone.trial().clone();
+    trial.surface.friction = 0.03;
+    let ice = stone.in_world(&trial, "a long name of a changed world".to_owned());
+    [(stone, 0), (ice, 1)].map(|(staged, number)| {
+        let mut lane = Lane::new(staged, number);
+        lane.show(0.9, None, 3000).expect("healthy");
+        assert!(lane.readings().meter.surface(false, |_| true).is_some());
+        lane
+    })
+}
+
+fn panel<'a>(lanes: Vec<&'a Lane>, surface: ReadSurface, width: f32) -> Harness<'a> {
+    let are_named = lanes.len() > 1;
+    let read = ReadLanes { lanes, are_named, is_playing: false };
+    let size = egui::vec2(width, 400.0);
+    let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
+        theme::apply(ui.ctx());
+        read.ui(ui, surface);
+    });
+    harness.run();
+    harness
+}
+
+fn shows(panel: &Harness<'_>, label: &str) -> bool {
+    panel.query_all_by_label_contains(label).next().is_some()
+}
+
+#[test]
+fn the_numbers_are_those_of_the_shown_moment() {
+    let [lane, _] = on_stone_and_ice();
+    let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
+    let panel = panel(vec![&lane], ReadSurface::Stairs, 320.0);
+    let grip = in_percent(reading.grip_share.expect("friction"));
+    for label in [
+        "On stairs and ground now".to_owned(),
+        format!("{:.2} m/s", reading.slip_m_s),
+        format!("Grip used: {grip}"),
+        in_mm(reading.depth_m),
+        in_watts(reading.lost_w),
+        in_joules(lane.readings().energy_lost.expect("undisturbed").elsewhere_j()),
+    ] {
+        assert!(shows(&panel, &label), "{label}");
+    }
+}
+
+#[test]
+fn a_what_if_has_both_snakes_side_by_side_and_fits_at_every_width() {
+    let lanes = on_stone_and_ice();
+    for width in [280.0, 348.0, 600.0] {
+        let panel = panel(lanes.iter().collect(), ReadSurface::Stairs, width);
+        let [left, right] = [&lanes[0], &lanes[1]].map(|lane| {
+            let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
+            let label = format!("{:.2} m/s", reading.slip_m_s);
+            panel.get_by_label(&label).rect()
+        });
+        assert!(left.right() < right.left() && left.center().y == right.center().y);
+        assert!(shows(&panel, "climber") && shows(&panel, "a long name"));
+        assert_nothing_is_wider_than(&panel, width);
+    }
+}
+
+#[test]
+fn pointing_at_a_number_explains_it_limb_by_limb() {
+    let [lane, _] = on_stone_and_ice();
+    let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
+    let mut panel = panel(vec![&lane], ReadSurface::Stairs, 420.0);
+    let slip = panel.get_by_label(&format!("{:.2} m/s", reading.slip_m_s)).rect();
+    panel.hover_at(slip.center());
+    panel.run_steps(60);
+    assert!(shows(&panel, &format!("Fastest point: {:.2} m/s", reading.top_slip_m_s)));
+    let limbs = (1..=5).filter(|limb| shows(&panel, &format!("Limb {limb}"))).count();
+    assert_eq!(
+        limbs,
+        (0..5).filter(|limb| lane.readings().meter.limb(false, *limb, |_| true).is_some()).count()
+    );
+    assert!(limbs > 0);
+}
+
+#[test]
+fn terms_of_the_field_are_shown_where_there_is_room() {
+    let [lane, _] = on_stone_and_ice();
+    assert!(shows(&panel(vec![&lane], ReadSurface::Stairs, 420.0), "Grip used (friction cone)"));
+    let narrow = panel(vec![&lane], ReadSurface::Stairs, 260.0);
+    assert!(!shows(&narrow, "friction cone") && shows(&narrow, "Dent"));
+}
+
+#[test]
+fn without_contact_it_says_none_and_a_recording_has_no_readings() {
+    let start = Lane::new(StagedChampion::from_file(&shipped(), 0, "climber"), 0);
+    let at_start = panel(vec![&start], ReadSurface::Stairs, 320.0);
+    assert!(shows(&at_start, "none") && shows(&at_start, "Slip speed"));
+    let mut loaded = shipped();
+    loaded.recording = Some(Recording::of(&loaded.champion.genome, &loaded.champion.trial));
+    loaded.engine = 1;
+    let recorded = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+    let panel = panel(vec![&recorded], ReadSurface::Stairs, 320.0);
+    assert!(shows(&panel, "Not available in a recording") && !shows(&panel, "Slip speed"));
+}
+
+#[test]
+fn a_ground_of_its_own_has_readings_of_its_own() {
+    let [shared, _] = on_stone_and_ice();
+    assert!(!shows(&panel(vec![&shared], ReadSurface::Ground, 320.0), "On the ground now"));
+    let mut trial = shared.trial().clone();
+    trial.ground = Some(Surface { friction: 0.5, ..Default::default() });
+    let mut own = Lane::new(shared.staged().in_world(&trial, "own".to_owned()), 0);
+    own.show(0.9, None, 3000).expect("healthy");
+    let ground = panel(vec![&own], ReadSurface::Ground, 320.0);
+    assert!(shows(&ground, "On the ground now") && shows(&ground, "of 5 limbs"));
+    let stairs = panel(vec![&own], ReadSurface::Stairs, 320.0);
+    assert!(shows(&stairs, "On the stairs now") && shows(&stairs, "none"), "far from them");
+}

@@ -1,0 +1,202 @@
+//! Contact patches: how fast a limb slips on a surface, how much of the friction it uses, how deep it dents the surface,
+//! and the power that friction and surface damping take from it.
+//!
+//! Everything is computed from the state after a step. Reading changes nothing.
+
+use rapier3d::geometry::NEW_CONTACT_BIT;
+use rapier3d::prelude::*;
+
+use super::Simulation;
+use crate::world::contact::other_collider;
+
+/// A surface that a limb touches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TouchedSurface {
+    /// A step of the stairs.
+    Stairs,
+    /// The ground.
+    Ground,
+    /// Another limb, by its index.
+    Limb(usize),
+}
+
+/// Contact of a limb with one surface: up to four points, which share one friction force. It presses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPatch {
+    /// Index of the limb; the head is 0. Where two limbs touch, the one nearer to the head.
+    pub limb: usize,
+    /// The surface.
+    pub touched: TouchedSurface,
+    /// Normal force N in the last substep, in N: the sum over the points.
+    pub normal_n: f32,
+    /// Greatest tangential force that friction could give, in N: friction coefficient μ times N.
+    pub friction_limit_n: f32,
+    /// Share of the friction that is used, from 0 to 1; at 1 the patch slides. By Coulomb's law `|F| / (μ N)` for the
+    /// tangential force F. The engine also limits the torque T with which a patch resists being turned on the spot, to
+    /// `μ Σ N_i d_i`, where `d_i` is the distance of a point from the patch's centre; the larger of both shares counts.
+    /// 0 where there is no friction.
+    pub grip_share: f32,
+    /// Largest speed of a loaded point along the surface, relative to the surface, in m/s.
+    pub slip_m_s: f32,
+    /// Depth to which the deepest loaded point has sunk in, in metres. Negative while the engine stops a hard contact
+    /// just before it touches.
+    pub depth_m: f32,
+    /// Power that friction turns into heat at the end of the step, in W: `-(F · v + T ω)` for the force F and the torque
+    /// T of the last substep, the velocity v of the patch along the surface and the rate ω at which it turns on it.
+    pub friction_w: f32,
+}
+
+/// Power that a damping surface takes from a limb.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceDamping {
+    /// The surface that damps the limb.
+    pub touched: TouchedSurface,
+    /// Kinetic energy that the limb lost through damping in the last step, divided by the step, in W.
+    pub power_w: f32,
+}
+
+/// The points of a manifold that the solver has just solved. A manifold also holds points that are only near, with the
+/// impulses of their last touch.
+pub(super) fn solved_points(
+    manifold: &ContactManifold,
+) -> impl Iterator<Item = &TrackedContact<ContactData>> {
+    manifold.data.solver_contacts.iter().filter_map(|contact| {
+        manifold.points.get((contact.contact_id[0] & !NEW_CONTACT_BIT) as usize)
+    })
+}
+
+/// Part of `whole` that `part` is, at most 1; 0 if there is no whole.
+fn share(part: f32, whole: f32) -> f32 {
+    if whole > 0.0 { (part / whole).min(1.0) } else { 0.0 }
+}
+
+impl Simulation {
+    /// The contact patches after the last step, the head's first. Patches between limbs are listed once.
+    ///
+    /// Forces are those of the last substep: see [`Self::contact_forces`]. Speeds are those at the end of the step.
+    pub fn contact_patches(&self) -> Vec<ContactPatch> {
+        let mut patches = Vec::new();
+        for (limb, &body) in self.limbs.iter().enumerate() {
+            let collider = self.physics.bodies[body].colliders()[0];
+            for pair in self.physics.narrow_phase.contact_pairs_with(collider) {
+                let touched = self.touched(other_collider(pair, collider));
+                if matches!(touched, TouchedSurface::Limb(other) if other < limb) {
+                    continue;
+                }
+                let manifolds = pair.solver_manifolds().iter();
+                patches.extend(manifolds.filter_map(|of| self.patch(pair, of, limb, touched)));
+            }
+        }
+        patches
+    }
+
+    /// Power that damping surfaces took from the limbs in the last step.
+    ///
+    /// Damping multiplies a limb's velocities by `f = 1 - dampen · h` in a step of length h, so that with the kinetic
+    /// energy E after the step the loss is `E (1/f² - 1) / h`. If the damping stops limbs within one step (f is 0),
+    /// they have no speed from which to read it, and the loss counts as 0.
+    pub fn surface_damping(&self) -> impl Iterator<Item = SurfaceDamping> + '_ {
+        let step_s = self.physics.integration_parameters.dt;
+        self.limbs.iter().filter_map(move |&limb| {
+            let (touched, dampen_per_s) = self.strongest_damping(limb)?;
+            let factor = 1.0 - dampen_per_s * step_s;
+            let kept_j = self.physics.bodies[limb].kinetic_energy();
+            let lost_j = kept_j * (1.0 / (factor * factor) - 1.0);
+            let power_w = if factor > 0.0 { lost_j / step_s } else { 0.0 };
+            Some(SurfaceDamping { touched, power_w })
+        })
+    }
+
+    /// The strongest damping of the surfaces that a limb touches, in 1/s; `None` if none of them damps.
+    pub(super) fn strongest_damping(&self, limb: RigidBodyHandle) -> Option<(TouchedSurface, f32)> {
+        let laws = &self.contacts.laws;
+        let collider = self.physics.bodies[limb].colliders()[0];
+        let touching = self.physics.narrow_phase.contact_pairs_with(collider);
+        touching
+            .filter(|pair| pair.has_any_active_contact())
+            .filter_map(|pair| match self.touched(other_collider(pair, collider)) {
+                TouchedSurface::Ground => Some((TouchedSurface::Ground, laws.ground.dampen_per_s)),
+                TouchedSurface::Stairs => Some((TouchedSurface::Stairs, laws.stairs.dampen_per_s)),
+                TouchedSurface::Limb(_) => None,
+            })
+            .filter(|(_, dampen_per_s)| *dampen_per_s > 0.0)
+            .max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
+    /// The surface that a collider belongs to.
+    fn touched(&self, collider: ColliderHandle) -> TouchedSurface {
+        if collider == self.contacts.ground {
+            return TouchedSurface::Ground;
+        }
+        let parent = self.physics.colliders[collider].parent();
+        let limb = self.limbs.iter().position(|&limb| Some(limb) == parent);
+        limb.map_or(TouchedSurface::Stairs, TouchedSurface::Limb)
+    }
+
+    /// The patch of a manifold; `None` if nothing presses there.
+    fn patch(
+        &self,
+        pair: &ContactPair,
+        manifold: &ContactManifold,
+        limb: usize,
+        touched: TouchedSurface,
+    ) -> Option<ContactPatch> {
+        let colliders =
+            [pair.collider1, pair.collider2].map(|handle| &self.physics.colliders[handle]);
+        let [first, second] = colliders.map(|collider| {
+            let body = collider.parent().map(|body| &self.physics.bodies[body]);
+            (collider.position(), body)
+        });
+        let velocity = |body: Option<&RigidBody>, at: Vector| {
+            body.map_or(Vector::ZERO, |body| body.velocity_at_point(at))
+        };
+        let turn = |body: Option<&RigidBody>| body.map_or(Vector::ZERO, |body| body.angvel());
+
+        let at_m = |point: &TrackedContact<ContactData>| *first.0 * point.local_p1;
+        let (mut count, mut centre_m, mut pressed_ns) = (0.0, Vector::ZERO, 0.0);
+        let (mut friction_ns, mut twist_nms) = (Vector::ZERO, 0.0);
+        for point in solved_points(manifold) {
+            count += 1.0;
+            centre_m += at_m(point);
+            pressed_ns += point.data.warmstart_impulse;
+            // Each point holds the friction of the whole patch, which acts on the first body.
+            friction_ns = point.data.warmstart_tangent_world;
+            twist_nms = point.data.warmstart_twist_impulse;
+        }
+        if pressed_ns <= 0.0 {
+            return None;
+        }
+        centre_m /= count;
+        // It points from the first body to the second.
+        let normal = manifold.data.normal;
+        let sliding = |at: Vector| {
+            let relative = velocity(first.1, at) - velocity(second.1, at);
+            relative - normal * relative.dot(normal)
+        };
+        let (mut slip_m_s, mut depth_m, mut lever_nms) = (0.0_f32, f32::NEG_INFINITY, 0.0);
+        for point in solved_points(manifold).filter(|point| point.data.warmstart_impulse > 0.0) {
+            let at = at_m(point);
+            slip_m_s = slip_m_s.max(sliding(at).length());
+            depth_m = depth_m.max((at - *second.0 * point.local_p2).dot(normal));
+            lever_nms += point.data.warmstart_impulse * at.distance(centre_m);
+        }
+        // The engine's factor may be lower for this step, where a surface creeps; the share is one of the material's.
+        let friction = colliders[0].friction() * colliders[1].friction();
+        let substep_s =
+            self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
+        let spin_rad_s = (turn(first.1) - turn(second.1)).dot(normal);
+        // The twist acts on the first body about the opposite of the normal.
+        let friction_j = twist_nms * spin_rad_s - friction_ns.dot(sliding(centre_m));
+        Some(ContactPatch {
+            limb,
+            touched,
+            normal_n: pressed_ns / substep_s,
+            friction_limit_n: friction * pressed_ns / substep_s,
+            grip_share: share(friction_ns.length(), friction * pressed_ns)
+                .max(share(twist_nms.abs(), friction * lever_nms)),
+            slip_m_s,
+            depth_m,
+            friction_w: friction_j / substep_s,
+        })
+    }
+}

@@ -1,0 +1,93 @@
+//! The energy balance compared with closed forms.
+
+use super::surface::{block, body, run};
+use super::*;
+
+#[test]
+fn a_block_that_slides_to_rest_loses_its_kinetic_energy() {
+    let mut simulation = Simulation::new(&block(Surface { friction: 0.5, ..Default::default() }));
+    run(&mut simulation, 1.0);
+    body(&mut simulation).set_linvel(Vector::new(0.0, -4.0, 0.0), true);
+    let before_j = simulation.energy_lost().total_j;
+    run(&mut simulation, 2.0);
+    let lost_j = simulation.energy_lost().total_j - before_j;
+    assert!((lost_j - 0.5 * 5.0 * 16.0).abs() < 0.5, "{lost_j} J");
+}
+
+#[test]
+fn a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_leaves() {
+    for bounce in [0.0, 0.6] {
+        let mut plan = block(Surface { bounce, ..Default::default() });
+        plan.physics.steps_per_s = 240;
+        let mut simulation = Simulation::new(&plan);
+        let above = body(&mut simulation).translation() + Vector::new(0.0, 0.0, 1.0);
+        body(&mut simulation).set_translation(above, true);
+        let before_j = simulation.energy_lost().total_j;
+        run(&mut simulation, 0.4);
+        let falling_j = simulation.energy_lost().total_j - before_j;
+        assert!(falling_j.abs() < 0.1, "{falling_j} J in the air");
+        run(&mut simulation, 0.1);
+        let lost_j = simulation.energy_lost().total_j - before_j;
+        // (1 - bounce²) m g h
+        let expected_j = (1.0 - bounce * bounce) * 5.0 * 9.81;
+        assert!((lost_j - expected_j).abs() < 1.5, "{lost_j} J for {expected_j} J");
+    }
+}
+
+#[test]
+fn frictionless_joints_lose_nothing_of_the_work_that_drives_them() {
+    let (_, mut simulation) = weightless(2);
+    for _ in 0..20 {
+        simulation.step(&[JointTorque { bend_nm: 4.0, twist_nm: 0.0 }]).expect("healthy");
+    }
+    let work_j = simulation.balance.joint_work_j as f32;
+    let lost_j = simulation.energy_lost().total_j;
+    assert!(work_j > 0.5, "{work_j} J");
+    assert!(lost_j.abs() < 0.02 * work_j, "{lost_j} of {work_j} J");
+}
+
+#[test]
+fn a_joint_stopped_by_its_limits_loses_the_work_that_drove_it() {
+    let (_, mut simulation) = weightless(2);
+    for _ in 0..240 {
+        simulation.step(&[JointTorque { bend_nm: 4.0, twist_nm: 0.0 }]).expect("healthy");
+    }
+    // To the limit of 1 rad, where it rests.
+    let lost = simulation.energy_lost();
+    assert!((lost.total_j - 4.0).abs() < 0.2 && lost.elsewhere_j() == lost.total_j, "{lost:?}");
+}
+
+#[test]
+fn without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_is_lost() {
+    for (damping_nms_per_rad, angular_damping_per_s) in
+        [(30.0, 0.0), (5.0, 0.0), (5.0, 2.0), (0.0, 2.0)]
+    {
+        let (mut plan, _) = weightless(5);
+        plan.body.angular_damping_per_s = angular_damping_per_s;
+        for joint in &mut plan.body.joints {
+            joint.damping_nms_per_rad = damping_nms_per_rad;
+        }
+        let mut simulation = Simulation::new(&plan);
+        for limb in simulation.limbs.clone() {
+            let body = &mut simulation.physics.bodies[limb];
+            let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
+            body.set_translation(above, true);
+        }
+        for step in 0..300 {
+            let phase_rad = step as f32 * 0.2;
+            let torques = [0.0, 1.2, 2.4, 3.6].map(|behind_rad| JointTorque {
+                bend_nm: 10.0 * libm::sinf(phase_rad - behind_rad),
+                twist_nm: 0.0,
+            });
+            simulation.step(&torques).expect("healthy");
+        }
+        let lost = simulation.energy_lost();
+        let work_j = simulation.balance.joint_work_j as f32;
+        let case =
+            format!("{damping_nms_per_rad}, {angular_damping_per_s}: {lost:?} of {work_j} J");
+        assert!(lost.total_j > 1.0, "{case}");
+        assert!(lost.elsewhere_j().abs() < 0.05 * work_j, "{case}");
+        assert_eq!(lost.joint_damping_j > 0.5, damping_nms_per_rad > 0.0, "{case}");
+        assert_eq!(lost.rotation_damping_j > 0.5, angular_damping_per_s > 0.0, "{case}");
+    }
+}
