@@ -133,7 +133,8 @@ impl CameraView {
                 let place = view.share_of_picture(target + view.offset, *at, aspect);
                 (0.0..=1.0).contains(&place.x)
             };
-            snakes.iter().all(is_in_sight) && !view.covers_any(target, snakes, aspect, covers.iter())
+            snakes.iter().all(is_in_sight)
+                && !view.covers_any(target, snakes, aspect, covers.iter())
         };
         let steps = (0..=SHIFTS).flat_map(|step| [step as f32, -(step as f32)]);
         let mut views = steps.map(|step| moved(step * MAX_ASIDE / SHIFTS as f32));
