@@ -116,13 +116,15 @@ impl ChampionsPanel {
                 }
             }
         });
-        let hint = "Show each better generation as soon as it is found (W)";
-        if check_box(ui, &mut follows, "Follow evolution").on_hover_text(hint).clicked() {
-            commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
-        }
-        let hint =
-            "List only the generations whose best snake beat those of all generations before";
-        check_box(ui, &mut self.lists_better_only, "Better ones only").on_hover_text(hint);
+        ui.horizontal_wrapped(|ui| {
+            let hint = "Show each better generation as soon as it is found (W)";
+            if check_box(ui, &mut follows, "Follow evolution").on_hover_text(hint).clicked() {
+                commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
+            }
+            let hint =
+                "List only the generations whose best snake beat those of all generations before";
+            check_box(ui, &mut self.lists_better_only, "Better ones only").on_hover_text(hint);
+        });
         if reports.is_empty() {
             explain(ui, "The best snake of each generation will appear here.");
         }

@@ -300,6 +300,15 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     }
 }
 
+/// What has to be in view, kept from frame to frame, so that no frame allocates.
+#[derive(Debug, Default)]
+struct InView {
+    points: Vec<Vec3>,
+    snakes: Vec<Vec3>,
+    /// Cards over the stage: see [`StageArea::covers`].
+    covers: Vec<Rect>,
+}
+
 /// Moves towards the target view: far enough away to see all lanes if the camera follows all, and so that no card over
 /// the stage covers the followed snakes.
 fn glide(
@@ -308,13 +317,15 @@ fn glide(
     area: Res<StageArea>,
     time: Res<Time<Real>>,
     mut camera: Single<&mut Transform, With<StageCamera>>,
-    // Kept from frame to frame, so that no frame allocates.
-    (mut points, mut snakes, mut covers): (Local<Vec<Vec3>>, Local<Vec<Vec3>>, Local<Vec<Rect>>),
+    mut in_view: Local<InView>,
 ) {
     let mut goal = rig.view;
+    let InView { points, snakes, covers } = &mut *in_view;
+    points.clear();
+    snakes.clear();
+    covers.clear();
+    covers.extend(area.covers());
     if rig.frames_all() {
-        points.clear();
-        snakes.clear();
         for lane in lanes.iter().filter(|lane| !lane.is_ghost()) {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
             let middle = lane.drawn_middle() + lane.offset();
@@ -324,19 +335,14 @@ fn glide(
         }
         points.extend(snakes.iter());
         let anchor = rig.anchor.unwrap_or_default();
-        covers.clear();
-        covers.extend(area.covers());
-        goal = goal.framing(anchor, &points, &snakes, area.aspect(), &covers);
+        goal = goal.framing(anchor, points, snakes, area.aspect(), covers);
     } else if rig.follows {
-        snakes.clear();
-        covers.clear();
-        covers.extend(area.covers());
         let followed = lanes.iter().filter(|lane| !lane.is_ghost());
         for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number())) {
             snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
         }
         let anchor = rig.anchor.unwrap_or_default();
-        goal = goal.beside(anchor, &snakes, area.aspect(), &covers);
+        goal = goal.beside(anchor, snakes, area.aspect(), covers);
     }
     let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
     rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };

@@ -162,9 +162,9 @@ pub const LIBRARY_ROW_HEIGHT: f32 = 44.0;
 /// Size of a thumbnail in a row of the library, in points.
 pub const THUMBNAIL_SIZE: egui::Vec2 = egui::vec2(76.0, 36.0);
 /// Height of a row in the list of champions, in points.
-pub const CHAMPION_ROW_HEIGHT: f32 = 32.0;
+pub const CHAMPION_ROW_HEIGHT: f32 = 28.0;
 /// Size of a thumbnail in that list, in points.
-pub const CHAMPION_THUMBNAIL: egui::Vec2 = egui::vec2(46.0, 26.0);
+pub const CHAMPION_THUMBNAIL: egui::Vec2 = egui::vec2(44.0, 24.0);
 /// Height of the picture of the selected save, in points.
 pub const PICTURE_HEIGHT: f32 = 64.0;
 /// Stage width below which cards are compact, in points.

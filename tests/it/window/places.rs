@@ -218,11 +218,14 @@ impl Studio {
     /// A row of the list of champions: 0 is the saved one, 1 the first generation's.
     pub fn champion(&self, row: u32) -> Place {
         let tab = self.place("Panel Champions").area;
+        // A row that is half scrolled behind the names of the columns cannot be clicked in its middle.
+        let head = self.find(|place| place.label == "Energy" && place.area.top > tab.bottom);
+        let top = head.map_or(tab.bottom, |head| head.area.bottom);
         let generation = format!("Generation {row}");
         let is_it = |place: &Place| {
             let rest = place.label.strip_prefix(if row == 0 { "climber" } else { &generation });
             let is_named = rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
-            let is_here = place.area.top > tab.bottom && place.area.right < self.stage().left;
+            let is_here = place.area.middle().1 > top && place.area.right < self.stage().left;
             place.role == "Button" && is_named && is_here
         };
         let bottom = self.size().1;

@@ -186,14 +186,13 @@ pub(crate) fn caption_band(ui: &mut egui::Ui, caption: &PresentedCaption) {
             let fits = |size: &f32| width_of(ui, &caption.title.text, *size) <= width;
             let sizes = theme::PRESENTED_SIZES;
             let size = sizes.into_iter().find(fits).unwrap_or(sizes[sizes.len() - 1]);
-            line(ui, theme::PRESENTED_SIZES[0] * LINE, |ui| {
-                part(ui, &caption.title, size, palette.text)
-            });
-            line(ui, theme::PRESENTED_DETAIL_SIZE * LINE, |ui| {
+            // The line below stays where it is when the title shrinks.
+            let height = sizes[0] * LINE;
+            ui.horizontal(|ui| part(ui, &caption.title, size, height));
+            ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = theme::GAP * 3.0;
-                for detail in &caption.details {
-                    part(ui, detail, theme::PRESENTED_DETAIL_SIZE, palette.text);
-                }
+                let size = theme::PRESENTED_DETAIL_SIZE;
+                caption.details.iter().for_each(|detail| part(ui, detail, size, size * LINE));
             });
         });
 }
@@ -201,24 +200,16 @@ pub(crate) fn caption_band(ui: &mut egui::Ui, caption: &PresentedCaption) {
 /// Height of a line as a multiple of the size of its text.
 const LINE: f32 = 1.25;
 
-/// Draws a line of this height from left to right.
-fn line(ui: &mut egui::Ui, height: f32, draw: impl FnOnce(&mut egui::Ui)) {
-    let size = egui::vec2(ui.available_width(), height);
-    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-        ui.set_min_height(height);
-        draw(ui);
-    });
-}
-
-fn part(ui: &mut egui::Ui, part: &CaptionPart, size: f32, color: egui::Color32) {
+/// Draws a dot and a text in a line of this height, in points.
+fn part(ui: &mut egui::Ui, part: &CaptionPart, size: f32, height: f32) {
     ui.horizontal(|ui| {
         // The dot is drawn first, and stands in the middle of the line.
-        ui.set_height(size * LINE);
+        ui.set_height(height);
         ui.spacing_mut().item_spacing.x = size * 0.4;
         if let Some(lane) = part.lane {
             lane_dot(ui, lane, size * 0.6);
         }
-        let text = egui::RichText::new(&part.text).size(size).color(color);
+        let text = egui::RichText::new(&part.text).size(size);
         ui.add(egui::Label::new(text).truncate().selectable(false));
     });
 }

@@ -79,16 +79,18 @@ impl CameraView {
         aspect: f32,
         covers: &[Rect],
     ) -> Self {
-        let at_left = || covers.iter().filter(|cover| cover.center().x < 0.5);
-        let at_right = || covers.iter().filter(|cover| cover.center().x >= 0.5);
+        let is_at_left: fn(&Rect) -> bool = |cover| cover.center().x < 0.5;
+        let at_left = || covers.iter().filter(|cover| is_at_left(cover));
+        let at_right = || covers.iter().filter(|cover| !is_at_left(cover));
         let widest = |ends: f32| (ends + CARD_MARGIN).min(MAX_ASIDE);
         let left = widest(at_left().map(|cover| cover.max.x).fold(-CARD_MARGIN, f32::max));
         let right = widest(at_right().map(|cover| 1.0 - cover.min.x).fold(-CARD_MARGIN, f32::max));
         let bottom = widest(at_right().map(|cover| 1.0 - cover.min.y).fold(-CARD_MARGIN, f32::max));
         // The nearest view whose margins keep the snakes clear of the covers, each no wider than needed.
         let view = |margins: FreeMargins| self.framing_beside(target, points, aspect, margins);
-        let clear = |most: FreeMargins, covers: &[Rect]| -> Option<Self> {
-            let is_clear = |view: &Self| !view.covers_any(target, snakes, aspect, covers);
+        let clear = |most: FreeMargins, counts: fn(&Rect) -> bool| -> Option<Self> {
+            let covers = covers.iter().filter(|cover| counts(cover));
+            let is_clear = |view: &Self| !view.covers_any(target, snakes, aspect, covers.clone());
             let nearest = view(FreeMargins::default());
             if is_clear(&nearest) {
                 return Some(nearest);
@@ -101,8 +103,7 @@ impl CameraView {
             Some(view(most * enough)).filter(is_clear)
         };
         let beside_left = FreeMargins { left, ..FreeMargins::default() };
-        let alone: Vec<Rect> = at_left().copied().collect();
-        let without_messages = clear(beside_left, &alone).unwrap_or_else(|| view(beside_left));
+        let without_messages = clear(beside_left, is_at_left).unwrap_or_else(|| view(beside_left));
         if at_right().next().is_none() {
             return without_messages;
         }
@@ -110,7 +111,7 @@ impl CameraView {
         let margins = [(0.0, bottom), (right, 0.0), (right, bottom)].into_iter().flat_map(
             |(right, bottom)| [0.0, left].map(|left| FreeMargins { left, right, bottom }),
         );
-        let views = margins.filter_map(|margins| clear(margins, covers));
+        let views = margins.filter_map(|margins| clear(margins, |_| true));
         let nearest = views.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
         // Messages pass; tiny snakes would be worse than one that is covered for some seconds.
         let most_m = without_messages.distance_m * MAX_FURTHER;
@@ -132,7 +133,8 @@ impl CameraView {
                 let place = view.share_of_picture(target + view.offset, *at, aspect);
                 (0.0..=1.0).contains(&place.x)
             };
-            snakes.iter().all(is_in_sight) && !view.covers_any(target, snakes, aspect, covers)
+            snakes.iter().all(is_in_sight)
+                && !view.covers_any(target, snakes, aspect, covers.iter())
         };
         let steps = (0..=SHIFTS).flat_map(|step| [step as f32, -(step as f32)]);
         let mut views = steps.map(|step| moved(step * MAX_ASIDE / SHIFTS as f32));
@@ -140,10 +142,16 @@ impl CameraView {
     }
 
     /// Whether a point of the snakes is below a cover, or close to its edge.
-    fn covers_any(&self, target: Vec3, snakes: &[Vec3], aspect: f32, covers: &[Rect]) -> bool {
+    fn covers_any<'c>(
+        &self,
+        target: Vec3,
+        snakes: &[Vec3],
+        aspect: f32,
+        covers: impl Iterator<Item = &'c Rect> + Clone,
+    ) -> bool {
         snakes.iter().any(|at| {
             let place = self.share_of_picture(target + self.offset, *at, aspect);
-            covers.iter().any(|cover| cover.inflate(CARD_MARGIN).contains(place))
+            covers.clone().any(|cover| cover.inflate(CARD_MARGIN).contains(place))
         })
     }
 
