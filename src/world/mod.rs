@@ -8,6 +8,7 @@ mod body;
 mod bounce;
 mod contact;
 mod effort;
+mod energy;
 mod health;
 mod physics;
 mod pull;
@@ -17,13 +18,14 @@ mod surface;
 
 pub use body::{BodyPlan, JointPlan, LimbPlan};
 pub use effort::Effort;
+pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
 pub use physics::PhysicsSettings;
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
 pub use simulation::{
-    ContactForce, ContactPatch, EnergyLost, JointState, JointTorque, Simulation, SurfaceDamping,
+    ContactForce, ContactPatch, JointState, JointTorque, Simulation, SurfaceDamping,
     TouchedSurface, WorldPlan,
 };
 pub use stairs::{StairBox, Stairs};

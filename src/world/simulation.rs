@@ -4,21 +4,20 @@
 
 use rapier3d::prelude::*;
 
+mod balance;
 mod build;
-mod energy;
 mod observe;
 mod patches;
 
 use super::bounce::{LimbVelocity, finish_bounce};
 use super::contact::{ContactHooks, ContactLaws, soften};
+use super::energy::EnergyBalance;
 use super::surface::ContactLaw;
 use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld,
     Pull, Skin, Stairs, Surface,
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
-use energy::EnergyBalance;
-pub use energy::EnergyLost;
 pub use observe::{ContactForce, JointState};
 pub use patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 

@@ -1,0 +1,51 @@
+//! Energy balance of the snake: the work of its joints, its mechanical energy, and what was lost.
+
+/// Terms of the energy balance that only stepping knows, since the start. They never act back on the simulation.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct EnergyBalance {
+    /// Mechanical energy at the start, in J.
+    pub start_j: f64,
+    /// Work of the joint torques, in J: positive where they drive, negative where they brake.
+    pub joint_work_j: f64,
+    /// What the damping of the joints took, in J.
+    pub joint_damping_j: f64,
+    /// What the damping of the limbs' rotation took, in J.
+    pub rotation_damping_j: f64,
+    /// Powers after the last step.
+    pub damping: DampingPower,
+}
+
+/// Power that damping takes away, in W.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct DampingPower {
+    /// Of the joints.
+    pub joints_w: f32,
+    /// Of the limbs' rotation.
+    pub rotation_w: f32,
+}
+
+/// Mechanical energy that the snake has lost since the start.
+///
+/// The parts are computed with the trapezoidal rule over each step, which is accurate to a few hundredths of the joints'
+/// work. The work of a user's pull is not counted: after a pull the numbers say nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EnergyLost {
+    /// Everything that turned into heat, in J: `E(0) + W - E(t)`, with the kinetic and potential energy E of all limbs and
+    /// the work W of the joint torques. A dent or a soft joint under load holds a little of it, which may come back.
+    pub total_j: f32,
+    /// The part of the joints' damping, in J: the integral of `c ω²` over all joint axes, for the damping c and the
+    /// rate ω.
+    pub joint_damping_j: f32,
+    /// The part of the damping of the limbs' rotation, in J: the integral of `2 d E_rot`, for the rate d at which
+    /// rotation is damped and the energy of rotation.
+    pub rotation_damping_j: f32,
+}
+
+impl EnergyLost {
+    /// What neither damping took, in J: the loss in contacts (friction, impacts, dents, damping of surfaces) and at the
+    /// stops of the joints. The balance cannot separate these; [`super::Simulation::contact_patches`] has the power of
+    /// friction.
+    pub fn elsewhere_j(&self) -> f32 {
+        self.total_j - self.joint_damping_j - self.rotation_damping_j
+    }
+}
