@@ -22,6 +22,6 @@ pub use physics::PhysicsSettings;
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
-pub use simulation::{ContactForce, JointState, JointTorque, Simulation, WorldPlan};
+pub use simulation::{ContactForce, Discontinuity, JointState, JointTorque, Simulation, WorldPlan};
 pub use stairs::{StairBox, Stairs};
 pub use surface::{Skin, Surface};

@@ -5,6 +5,7 @@
 use rapier3d::prelude::*;
 
 mod build;
+mod continued;
 mod observe;
 
 use super::bounce::{LimbVelocity, finish_bounce};
@@ -15,6 +16,7 @@ use super::{
     Pull, Skin, Stairs, Surface,
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
+pub use continued::Discontinuity;
 pub use observe::{ContactForce, JointState};
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
