@@ -18,7 +18,6 @@ use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::library::Library;
-use crate::studio::state::plan_commands::apply_to_plan;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
@@ -56,10 +55,7 @@ fn apply(
                 run.apply(command, notices)
             }
             Command::Plan(command) => {
-                let (on_show, mode) = (stage.champions_to_change(), stage.mode.clone());
-                let (saves, on_show) = ((&*library, &*opening), (&*on_show, &mode));
-                apply_to_plan(command, &mut run, saves, on_show, notices)
-                    .map(|show| stage.present(show))
+                stage.apply_to_plan(command, &mut run, (&library, &opening), &history, notices)
             }
             Command::Stage(command) => stage.apply(command, &run, &opening, notices),
             Command::Player(command) => {
@@ -116,7 +112,7 @@ fn apply(
                     Some(UndoStep::Plan(step)) => {
                         notices.update(UNDO_SUBJECT, step.message(way));
                         history.complete(way, Some(UndoStep::Plan(step.clone())), None);
-                        stage.step(&mut run, &step, way)
+                        stage.step(&mut run, &step, way, &history)
                     }
                     Some(UndoStep::Files { label, steps }) => {
                         library.step(way, label, steps, &mut history, notices)

@@ -1,14 +1,45 @@
-//! Sliders of settings. A slider takes effect when it is released or rests.
+//! Sliders of settings. A slider takes effect while it is dragged, if it changes the world, and else when it rests or is
+//! released.
 
 use bevy_egui::egui;
 
-use super::form::{Changing, Sheet};
+use super::form::Sheet;
 use super::number::Control;
 use super::scale::Scale;
 use super::values::rounded;
 
 /// Time without movement after which a slider takes effect, in seconds.
 const REST_S: f64 = 0.35;
+/// The same for a setting of the world, whose effect is seen on the stage.
+const SETTLED_S: f64 = 0.12;
+/// Time after which a setting of the world takes effect even while its slider moves, in seconds: long enough to see
+/// the snake react.
+const MOVING_S: f64 = 0.3;
+
+/// A slider being dragged.
+#[derive(Debug)]
+pub(super) struct Changing {
+    /// Id of the control.
+    pub id: String,
+    /// Current value.
+    pub so_far: f32,
+    /// Time of the last change, in seconds.
+    moved_s: f64,
+    /// Time at which it last took effect or, if it has not, of its first change, in seconds.
+    effective_s: f64,
+    /// Whether the current value has taken effect.
+    is_effective: bool,
+}
+
+impl Changing {
+    /// Whether the current value takes effect now although the slider is still held.
+    fn takes_effect(&self, now_s: f64) -> bool {
+        let is_of_world = self.id.starts_with("trial.");
+        let is_settled = now_s - self.moved_s > if is_of_world { SETTLED_S } else { REST_S };
+        let is_due = is_of_world && now_s - self.effective_s > MOVING_S;
+        !self.is_effective && (is_settled || is_due)
+    }
+}
 
 impl Sheet {
     /// A slider with marks. Returns the setting's text on release or rest.
@@ -41,28 +72,29 @@ impl Sheet {
             so_far = scale.settled(so_far, before, is_dragged);
             // Within the part of the rail that stands for zero, the pointer moves and the value rests.
             if so_far != before {
-                let id = control.id.to_owned();
-                self.changing = Some(Changing { id, so_far, since_s: now_s });
+                let earlier = self.changing.take().filter(|changing| changing.id == control.id);
+                self.changing = Some(Changing {
+                    id: control.id.to_owned(),
+                    so_far,
+                    moved_s: now_s,
+                    effective_s: earlier.map_or(now_s, |changing| changing.effective_s),
+                    is_effective: false,
+                });
             }
         }
-        let since_s = match &self.changing {
-            Some(changing) if changing.id == control.id => changing.since_s,
-            _ => return None,
-        };
+        let changing = self.changing.as_mut().filter(|changing| changing.id == control.id)?;
         // With the arrow keys it has the focus and is never released.
         let is_held = response.dragged() || response.has_focus();
-        let rests = is_held && now_s - since_s > REST_S;
+        if is_held && !changing.takes_effect(now_s) {
+            return None;
+        }
+        (changing.effective_s, changing.is_effective) = (now_s, true);
         if !is_held {
             self.changing = None;
         }
         let text = rounded(so_far);
-        if (is_held && !rests) || text == rounded(value) {
+        if text == rounded(value) {
             return None;
-        }
-        if rests {
-            // Only once, until it is moved again.
-            let id = control.id.to_owned();
-            self.changing = Some(Changing { id, so_far, since_s: f64::INFINITY });
         }
         match (control.check)(&text) {
             Ok(text) => {
