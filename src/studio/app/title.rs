@@ -75,9 +75,9 @@ fn update(
 
 /// The copies of a what-if: " with a what-if copy, from 5.20 s on".
 fn copies_in_words(lanes: &Query<&Lane>) -> String {
-    let copies = match lanes.iter().len() - 1 {
-        1 => "a what-if copy".to_owned(),
-        several => format!("{several} what-if copies"),
+    let copies = match lanes.iter().len() {
+        ..=2 => "a what-if copy".to_owned(),
+        lanes => format!("{} what-if copies", lanes - 1),
     };
     let latest = lanes.iter().max_by_key(|lane| lane.number());
     let beginning = latest.and_then(|lane| lane.staged().beginning_in_words());

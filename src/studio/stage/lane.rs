@@ -1,7 +1,7 @@
 //! A lane of the stage: one snake on its stairs, shown at the time of the stage's clock.
 //!
-//! A replay has one lane, a what-if two to five, a race several. The rollout takes whole constant steps; the clock only decides
-//! how many. The limbs are drawn between the last two steps.
+//! A replay has one lane, a what-if two to five, a race several. The rollout takes whole constant steps; the clock only
+//! decides how many. The limbs are drawn between the last two steps.
 
 mod renewed;
 

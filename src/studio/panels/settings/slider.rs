@@ -88,12 +88,13 @@ impl Sheet {
         if is_held && !changing.takes_effect(now_s) {
             return None;
         }
-        (changing.effective_s, changing.is_effective) = (now_s, true);
+        let was_effective = std::mem::replace(&mut changing.is_effective, true);
+        changing.effective_s = now_s;
         if !is_held {
             self.changing = None;
         }
         let text = rounded(so_far);
-        if text == rounded(value) {
+        if was_effective || text == rounded(value) {
             return None;
         }
         match (control.check)(&text) {
@@ -106,5 +107,77 @@ impl Sheet {
                 None
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::commands::{Command, PlanCommand};
+    use crate::studio::panels::settings::sections_of;
+    use crate::studio::state::current_run::{CurrentRun, prepared_run};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Drags a setting's slider for this number of frames, a sixtieth of a second each, of which the first `moving`
+    /// move it. Returns the values that took effect while it was held, and those after it was released.
+    fn dragged(field: &'static str, label: &str, moving: usize, frames: usize) -> [Vec<f32>; 2] {
+        type State = (CurrentRun, Vec<f32>);
+        let mut sheet = Sheet::default();
+        let ui = move |ui: &mut egui::Ui, (run, taken): &mut State| {
+            sheet.begin(ui, run);
+            let mut commands = Vec::new();
+            let listed = sheet.values.listed().iter().filter(|listed| listed.path == field);
+            for section in sections_of(listed) {
+                sheet.entries(ui, run, section, |listed| listed.path == field, &mut commands);
+            }
+            for command in commands {
+                let Command::Plan(PlanCommand::SetField { field, text }) = command else {
+                    panic!("{command:?}")
+                };
+                run.set_field(&field, &text).expect("allowed");
+                taken.push(text.parse().expect("a number"));
+            }
+        };
+        let builder = Harness::builder().with_size(egui::vec2(400.0, 200.0));
+        let mut harness =
+            builder.with_step_dt(1.0 / 60.0).build_ui_state(ui, (prepared_run(), Vec::new()));
+        let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, label).rect();
+        let at = |share: f32| rail.lerp_inside(egui::vec2(share, 0.5));
+        harness.drag_at(at(0.2));
+        harness.run_steps(1);
+        for frame in 0..frames {
+            let share = 0.2 + 0.6 * (frame.min(moving) as f32 / moving as f32);
+            harness.hover_at(at(share));
+            harness.run_steps(1);
+        }
+        let held = std::mem::take(&mut harness.state_mut().1);
+        harness.drop_at(at(0.8));
+        harness.run_steps(4);
+        [held, harness.state().1.clone()]
+    }
+
+    #[test]
+    fn a_setting_of_the_world_takes_effect_while_its_slider_moves() {
+        let [held, released] = dragged("trial.surface.bounce", "Bounce", 60, 60);
+        assert!((3..=4).contains(&held.len()), "about three times in a second: {held:?}");
+        assert!(held.windows(2).all(|pair| pair[0] < pair[1]), "it follows: {held:?}");
+        assert_eq!(released.len(), 1, "and the last value on release");
+        assert!(released[0] > held[held.len() - 1]);
+    }
+
+    #[test]
+    fn a_setting_of_the_world_takes_effect_once_when_its_slider_rests() {
+        let [held, released] = dragged("trial.surface.bounce", "Bounce", 6, 20);
+        assert_eq!((held.len(), released.len()), (1, 0), "{held:?}, {released:?}");
+    }
+
+    #[test]
+    fn other_settings_wait_until_their_slider_rests_or_is_released() {
+        let field = "evolution.cma_es.step";
+        let [held, released] = dragged(field, "Initial step size", 60, 60);
+        assert_eq!((held.len(), released.len()), (0, 1));
+        let [held, released] = dragged(field, "Initial step size", 6, 40);
+        assert_eq!((held.len(), released.len()), (1, 0));
     }
 }

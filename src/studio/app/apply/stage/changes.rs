@@ -4,6 +4,7 @@
 //! after it take the same, so that their effects can be compared, until the user goes to another moment.
 
 use super::StageParams;
+use crate::run::caught;
 use crate::score::Rollout;
 use crate::studio::commands::PlanCommand;
 use crate::studio::stage::opening::OpeningChampions;
@@ -95,20 +96,25 @@ impl StageParams<'_, '_> {
         if step == 0 || is_over {
             return at_start;
         }
-        let time_s = f64::from(step) * lane.step_s();
-        TriedMoment { time_s, rollout: Some(lane.rollout_at(step)) }
+        // A genome whose simulation panics is tried from the start, where the stage reports that.
+        let Ok(rollout) = caught(|| lane.rollout_at(step)) else { return at_start };
+        TriedMoment { time_s: f64::from(step) * lane.step_s(), rollout: Some(rollout) }
     }
 
     /// Shows the effect of a change from its moment on.
     fn present_change(&mut self, show: Option<Show>, moment: &TriedMoment) {
         let Some(show) = show else { return };
-        self.following.stop();
         let current = match show.mode {
             StageMode::WhatIf { current, .. } => show.champions.get(current),
-            _ => None,
+            // The original stays alone.
+            _ if matches!(*self.mode, StageMode::WhatIf { .. }) => show.champions.first(),
+            // A kept copy gets another world.
+            _ => return self.present(Some(show)),
         };
+        self.following.stop();
+        let is_original = current.is_none_or(|staged| Some(staged) == show.champions.first());
         let is_from_moment =
-            current.is_none_or(|staged| !staged.is_changed() || staged.changes_at_step().is_some());
+            is_original || current.is_some_and(|staged| staged.changes_at_step().is_some());
         let start_s = if is_from_moment { moment.time_s } else { 0.0 };
         self.playback.play_change(start_s, moment.time_s);
         self.show.write(show);
