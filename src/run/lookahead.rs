@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::background_task::BackgroundTask;
 use crate::genome::Genome;
-use crate::score::{KeyframeHistory, Trial};
+use crate::score::{KeyframeHistory, Rollout, Trial};
 
 /// The history of a rollout, in progress or complete. Dropping this ends the work.
 #[derive(Default)]
@@ -18,12 +18,21 @@ impl Lookahead {
     /// the simulation panics, there will be no history.
     pub fn begin(genome: &Genome, trial: &Trial) -> Self {
         let (genome, trial) = (genome.clone(), trial.clone());
-        let task = BackgroundTask::start_counted(trial.steps() as usize, move |progress| {
+        Self::run(trial.steps(), move || Rollout::new(&genome, &trial))
+    }
+
+    /// The same for a rollout at its start.
+    pub fn of(rollout: Rollout) -> Self {
+        Self::run(rollout.last_step(), || rollout)
+    }
+
+    fn run(steps: u32, begin: impl FnOnce() -> Rollout + Send + 'static) -> Self {
+        let task = BackgroundTask::start_counted(steps as usize, move |progress| {
             let goes_on = |step: u32| {
                 progress.set_done(step as usize);
                 !progress.is_cancelled()
             };
-            KeyframeHistory::of(&genome, &trial, goes_on)
+            KeyframeHistory::of_rollout(begin(), goes_on)
         });
         Self { task: task.ok(), history: None }
     }

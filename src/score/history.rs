@@ -3,7 +3,7 @@
 
 use super::{Evaluation, Rollout, Trial};
 use crate::genome::Genome;
-use crate::world::{JointTorque, Stairs, Vector};
+use crate::world::{JointTorque, Vector};
 
 /// A rollout from its start to its end, with keyframes for seeking.
 pub struct KeyframeHistory {
@@ -32,13 +32,13 @@ const MAX_SAMPLES: u32 = 6000;
 impl KeyframeHistory {
     /// Runs a genome's rollout to its end. Both must have passed their checks. `goes_on` is called after every
     /// step with the step's number; if it returns `false`, the result is `None`.
-    pub fn of(
-        genome: &Genome,
-        trial: &Trial,
-        mut goes_on: impl FnMut(u32) -> bool,
-    ) -> Option<Self> {
-        let mut rollout = Rollout::new(genome, trial);
-        let steps = trial.steps();
+    pub fn of(genome: &Genome, trial: &Trial, goes_on: impl FnMut(u32) -> bool) -> Option<Self> {
+        Self::of_rollout(Rollout::new(genome, trial), goes_on)
+    }
+
+    /// The same for a rollout at its start.
+    pub fn of_rollout(mut rollout: Rollout, mut goes_on: impl FnMut(u32) -> bool) -> Option<Self> {
+        let steps = rollout.last_step();
         let keyframe_steps = steps.div_ceil(MAX_KEYFRAMES).max(MIN_STEPS_BETWEEN_KEYFRAMES);
         let sample_steps = steps.div_ceil(MAX_SAMPLES);
         let mut history = Self {
@@ -69,7 +69,7 @@ impl KeyframeHistory {
             if history.landed_at_step.is_none() && rollout.is_on_landing() {
                 history.landed_at_step = Some(step);
             }
-            if history.touched_stairs_at_step.is_none() && touches_stairs(&rollout, &trial.stairs) {
+            if history.touched_stairs_at_step.is_none() && touches_stairs(&rollout) {
                 history.touched_stairs_at_step = Some(step);
             }
         }
@@ -127,7 +127,8 @@ impl KeyframeHistory {
 const RISER_MARGIN_M: f32 = 0.02;
 
 /// Whether a limb touches the stairs now.
-fn touches_stairs(rollout: &Rollout, stairs: &Stairs) -> bool {
+fn touches_stairs(rollout: &Rollout) -> bool {
+    let stairs = rollout.stairs();
     let is_on_stairs = |at_m: Vector| {
         let is_behind_riser = at_m.y >= stairs.first_riser_y_m - RISER_MARGIN_M;
         stairs.steps > 0

@@ -1,10 +1,14 @@
 //! One genome in one trial, step by step.
 
+mod continued;
+
+use std::sync::Arc;
+
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::behaviour::BehaviourObserver;
 use super::fitness::FinalState;
-use super::{Behaviour, Fitness, Perturbation, Trial};
+use super::{Behaviour, Perturbation, Trial};
 use crate::control::ControlLoop;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
@@ -12,6 +16,7 @@ use crate::world::{
     BodyPlan, Disqualification, Effort, JointTorque, Pose, Pull, Simulation, Stairs, Vector,
     WorldPlan,
 };
+use continued::{Conditions, TrialChange};
 
 /// The result of a rollout.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,21 +73,22 @@ impl Evaluation {
 }
 
 /// A rollout in progress. A clone continues with the bits of the original.
+///
+/// A what-if changes its trial on the way: see [`Rollout::changing_at`].
 #[derive(Clone)]
 pub struct Rollout {
     simulation: Simulation,
     control: ControlLoop,
     torques: Vec<JointTorque>,
     poses: Vec<Pose>,
-    fitness: Fitness,
-    energy_cost_per_kj: f32,
+    conditions: Arc<Conditions>,
+    /// The change of its conditions that is still to come.
+    change: Option<TrialChange>,
     frequency_hz: f32,
     observer: BehaviourObserver,
-    stairs: Stairs,
     furthest_y_m: f32,
     trace: Xxh3Default,
     step: u32,
-    last_step: u32,
     disqualified: Option<Disqualification>,
     is_disturbed: bool,
 }
@@ -107,15 +113,13 @@ impl Rollout {
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
             simulation,
-            fitness: trial.fitness,
-            energy_cost_per_kj: trial.energy_cost_per_kj,
+            conditions: Arc::new(Conditions::of(trial, plan)),
+            change: None,
             frequency_hz: genome.controller.frequency_hz(),
             observer: BehaviourObserver::default(),
-            stairs: plan.stairs,
             furthest_y_m: f32::MIN,
             trace: Xxh3Default::new(),
             step: 0,
-            last_step: trial.steps(),
             disqualified: None,
             is_disturbed: false,
         };
@@ -128,6 +132,7 @@ impl Rollout {
         if self.is_over() {
             return false;
         }
+        self.enter_change();
         self.control.act(self.step, &self.simulation, &mut self.torques);
         if let Err(reason) = self.simulation.step(&self.torques) {
             self.disqualified = Some(reason);
@@ -145,13 +150,13 @@ impl Rollout {
             self.trace.update(&bytes);
         }
         self.furthest_y_m = self.furthest_y_m.max(self.middle_m().y);
-        self.observer.observe(&self.simulation, &self.stairs);
+        self.observer.observe(&self.simulation, &self.conditions.world.stairs);
         true
     }
 
     /// Whether the trial's time is up or the agent is disqualified.
     pub fn is_over(&self) -> bool {
-        self.step >= self.last_step || self.disqualified.is_some()
+        self.step >= self.last_step() || self.disqualified.is_some()
     }
 
     /// The poses of the limbs after the last healthy step, head first.
@@ -170,14 +175,15 @@ impl Rollout {
             body: self.body(),
             poses: &self.poses,
             furthest_y_m: self.furthest_y_m,
-            stairs: &self.stairs,
+            stairs: self.stairs(),
         };
         let effort = self.simulation.effort();
         let middle = self.middle_m();
-        let cost = self.energy_cost_per_kj * effort.energy_j / 1000.0;
-        let behaviour = self.observer.behaviour(&self.stairs, middle.to_array(), self.frequency_hz);
+        let cost = self.conditions.energy_cost_per_kj * effort.energy_j / 1000.0;
+        let behaviour =
+            self.observer.behaviour(self.stairs(), middle.to_array(), self.frequency_hz);
         Evaluation {
-            fitness: state.score(self.fitness) - cost,
+            fitness: state.score(self.conditions.fitness) - cost,
             centre_y_m: middle.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
@@ -201,7 +207,13 @@ impl Rollout {
 
     /// Number of steps of the whole rollout, unless the agent is disqualified before.
     pub fn last_step(&self) -> u32 {
-        self.last_step
+        // The last conditions decide.
+        self.change.as_ref().map_or(self.conditions.last_step, TrialChange::last_step)
+    }
+
+    /// The stairs on which the snake is now.
+    pub fn stairs(&self) -> &Stairs {
+        &self.conditions.world.stairs
     }
 
     /// The built body.
@@ -216,8 +228,8 @@ impl Rollout {
 
     /// Whether all steps of the stairs are under the middle limb now.
     pub fn is_on_landing(&self) -> bool {
-        let steps = self.stairs.steps;
-        steps > 0 && self.stairs.steps_under(self.middle_m().to_array()) == steps
+        let steps = self.stairs().steps;
+        steps > 0 && self.stairs().steps_under(self.middle_m().to_array()) == steps
     }
 
     /// The world, for reading.

@@ -25,7 +25,7 @@ pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
 pub use simulation::{
-    ContactForce, ContactPatch, JointState, JointTorque, Simulation, SurfaceDamping,
+    ContactForce, ContactPatch, Discontinuity, JointState, JointTorque, Simulation, SurfaceDamping,
     TouchedSurface, WorldPlan,
 };
 pub use stairs::{StairBox, Stairs};

@@ -6,6 +6,7 @@ use rapier3d::prelude::*;
 
 mod balance;
 mod build;
+mod continued;
 mod observe;
 mod patches;
 
@@ -18,6 +19,7 @@ use super::{
     Pull, Skin, Stairs, Surface,
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
+pub use continued::Discontinuity;
 pub use observe::{ContactForce, JointState};
 pub use patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 

@@ -18,7 +18,6 @@ use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::library::Library;
-use crate::studio::state::plan_commands::apply_to_plan;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
@@ -56,10 +55,7 @@ pub(super) fn apply(
                 run.apply(command, notices)
             }
             Command::Plan(command) => {
-                let (on_show, mode) = (stage.champions_to_change(), stage.mode.clone());
-                let (saves, on_show) = ((&*library, &*opening), (&*on_show, &mode));
-                apply_to_plan(command, &mut run, saves, on_show, notices)
-                    .map(|show| stage.present(show))
+                stage.apply_to_plan(command, &mut run, (&library, &opening), &history, notices)
             }
             Command::Stage(command) => stage.apply(command, &run, &opening, notices),
             Command::Player(command) => {
@@ -116,7 +112,7 @@ pub(super) fn apply(
                     Some(UndoStep::Plan(step)) => {
                         notices.update(UNDO_SUBJECT, step.message(way));
                         history.complete(way, Some(UndoStep::Plan(step.clone())), None);
-                        stage.step(&mut run, &step, way)
+                        stage.step(&mut run, &step, way, &history)
                     }
                     Some(UndoStep::Files { label, steps }) => {
                         library.step(way, label, steps, &mut history, notices)
@@ -183,6 +179,7 @@ mod tests {
     use crate::studio::commands::screenshot_area::ScreenshotArea;
     use crate::studio::scene::camera::CameraRig;
     use crate::studio::scene::overlays::Overlays;
+    use crate::studio::stage::lane::Lane;
     use crate::studio::stage::opening::NamedChampion;
     use crate::studio::stage::playback::Playback;
     use crate::studio::stage::selection::Selection;
@@ -250,6 +247,45 @@ mod tests {
         assert_eq!(friction_after(&mut app, &[Command::Redo, Command::Redo]), 0.2);
         let said = app.world().resource::<Notices>();
         assert_eq!((said.len(), said.last()), (1, Some("Redone: friction 0.2")), "the latest");
+    }
+
+    #[test]
+    fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
+        let mut app = app();
+        let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
+        app.world_mut().spawn(Lane::new(staged, 0));
+        let mut tried = |friction: &str, act: &dyn Fn(&mut Playback)| {
+            act(&mut app.world_mut().resource_mut::<Playback>());
+            app.world_mut().write_message(Command::Plan(PlanCommand::SetField {
+                field: "trial.surface.friction".to_owned(),
+                text: friction.to_owned(),
+            }));
+            app.world_mut().resource_mut::<UndoHistory>().settle();
+            app.update();
+            let show = app.world_mut().resource_mut::<Messages<Show>>().drain().last();
+            let Show { champions, mode } = show.expect("a what-if");
+            let current = champions.last().expect("a copy");
+            let step = current.changes_at_step();
+            *app.world_mut().resource_mut::<StageMode>() = mode;
+            let playback = app.world().resource::<Playback>();
+            assert!(playback.is_playing(), "or there would be nothing to see");
+            (step, playback.time_s())
+        };
+        let goes_to = |time_s| {
+            move |playback: &mut Playback| {
+                playback.apply(&PlayerCommand::Seek(time_s), 1.0 / 60.0, 15.0);
+            }
+        };
+        assert_eq!(tried("0.3", &|playback| playback.hold_at(5.0)), (Some(300), 5.0));
+        let plays_on = |playback: &mut Playback| {
+            (0..8).for_each(|_| {
+                playback.pass(0.5, 1.0, 15.0);
+            })
+        };
+        assert_eq!(tried("0.4", &plays_on), (Some(300), 5.0));
+        assert_eq!(tried("0.5", &goes_to(3.0)), (Some(180), 3.0));
+        assert_eq!(tried("0.6", &plays_on), (Some(180), 3.0));
+        assert_eq!(tried("0.7", &goes_to(15.0)), (None, 0.0), "nothing follows the end");
     }
 
     #[test]

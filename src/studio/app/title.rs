@@ -47,10 +47,10 @@ fn update(
             };
             let is_what_if = matches!(mode, StageMode::WhatIf { .. });
             let manner = match (lane.staged().is_changed(), lane.staged().recording()) {
-                _ if is_what_if => " with a what-if copy",
-                (true, _) => " in another world",
-                (false, Some(_)) => " as recorded",
-                (false, None) => "",
+                _ if is_what_if => copies_in_words(&lanes),
+                (true, _) => " in another world".to_owned(),
+                (false, Some(_)) => " as recorded".to_owned(),
+                (false, None) => String::new(),
             };
             let disturbed = if lane.is_disturbed() { ", pulled" } else { "" };
             format!("{what}{manner}{disturbed}")
@@ -71,4 +71,15 @@ fn update(
     if window.title != title {
         window.title = title;
     }
+}
+
+/// The copies of a what-if: " with a what-if copy, from 5.20 s on".
+fn copies_in_words(lanes: &Query<&Lane>) -> String {
+    let copies = match lanes.iter().len() {
+        ..=2 => "a what-if copy".to_owned(),
+        lanes => format!("{} what-if copies", lanes - 1),
+    };
+    let latest = lanes.iter().max_by_key(|lane| lane.number());
+    let beginning = latest.and_then(|lane| lane.staged().beginning_in_words());
+    format!(" with {copies}{}", beginning.map(|words| format!(", {words}")).unwrap_or_default())
 }

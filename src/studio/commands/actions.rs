@@ -57,6 +57,8 @@ pub(crate) struct Situation {
     pub is_running: bool,
     /// The stage shows a what-if.
     pub is_what_if: bool,
+    /// The latest lane of the what-if can stay beside another one.
+    pub can_try_another: bool,
     /// The stage shows a race or a whole generation.
     pub is_race: bool,
     /// A modal view is open, the panels are hidden, or the stage is presented on the full screen.
@@ -171,6 +173,9 @@ pub(crate) const ACTIONS: &[Action] = &[
     }),
     action(Menu::Edit, "Keep this change", &[], |now| {
         now.is_what_if.then_some(Command::Stage(StageCommand::KeepChange))
+    }),
+    action(Menu::Edit, "Try another change beside this one", &[], |now| {
+        now.can_try_another.then_some(Command::Stage(StageCommand::TryAnother))
     }),
     action(Menu::Edit, "Leave race / Discard change", &["Esc"], |now| match now {
         Situation { is_covered: true, .. } => Some(Command::Window(WindowCommand::CloseModal)),

@@ -110,7 +110,9 @@ pub(super) enum PlanCommand {
     StartFromSave(SavePlace),
     /// Start from random genomes again.
     ForgetFounder,
-    /// Discard the change of a what-if.
+    /// Keep only this changed lane of a what-if, and its world for the next run; the first lane is 0.
+    KeepLane(usize),
+    /// Discard the latest change of a what-if.
     DropChange,
     /// Use the world of the selected lane for the next run.
     UseWorldOfLane,
@@ -137,6 +139,8 @@ pub(super) enum StageCommand {
     Sweep(String),
     /// Accept the change of a what-if: only the changed lane stays.
     KeepChange,
+    /// Leave the changed lane of a what-if as it is: the next change makes another lane beside it.
+    TryAnother,
     /// Keep only the selected lane.
     Single,
     /// Show the snake in the world in which it was found.

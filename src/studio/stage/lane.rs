@@ -1,7 +1,9 @@
 //! A lane of the stage: one snake on its stairs, shown at the time of the stage's clock.
 //!
-//! A replay has one lane, a what-if two, a race several. The rollout takes whole constant steps; the clock only decides
-//! how many. The limbs are drawn between the last two steps.
+//! A replay has one lane, a what-if two to five, a race several. The rollout takes whole constant steps; the clock only
+//! decides how many. The limbs are drawn between the last two steps.
+
+mod renewed;
 
 use std::sync::Arc;
 
@@ -57,7 +59,7 @@ impl Lane {
         let lookahead = match staged.recording() {
             // A recording needs no lookahead.
             Some(_) => Lookahead::default(),
-            None => Lookahead::begin(&staged.champion().genome, staged.trial()),
+            None => Lookahead::of(staged.rollout()),
         };
         Self::with(staged, number, lookahead)
     }
@@ -324,7 +326,7 @@ impl Lane {
     }
 
     /// The last step that has begun at a time, and the fraction of it that has passed.
-    fn moment(&self, time_s: f64) -> (u32, f32) {
+    pub fn moment(&self, time_s: f64) -> (u32, f32) {
         // Rounding can move a time slightly off the step that it means.
         let place = time_s / self.step_s;
         let step = libm::ceil(place - f64::from(ON_STEP)).max(0.0);

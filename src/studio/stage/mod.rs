@@ -41,10 +41,14 @@ pub(super) enum StageMode {
     Solo,
     /// Several snakes side by side.
     Race,
-    /// The same snake in its own world and in a changed one.
+    /// The same snake in its own world and in changed ones, in the order of the changes.
     WhatIf {
         /// Plan of the next run before the first change.
         before: Box<RunPlan>,
+        /// Plans of the changed lanes that stay while the next change makes another one, from lane 1 on.
+        beside: Vec<RunPlan>,
+        /// The lane whose world the next run has. If it is the one after those that stay, the next change replaces it.
+        current: usize,
     },
     /// Snakes of one generation on the same stairs: its best, and the others as ghosts.
     Generation {
@@ -57,6 +61,8 @@ pub(super) enum StageMode {
 
 /// Maximum number of lanes side by side. More could neither be told apart nor simulated within a frame.
 pub const MAX_LANES: usize = 10;
+/// Maximum number of lanes of a what-if, the original included. More would not leave room for their labels.
+pub const MAX_WHAT_IF_LANES: usize = 5;
 /// Maximum number of snakes of a generation on the stage: a generation of 30 as a whole, and some of a larger one.
 pub const MAX_GENERATION: usize = 40;
 /// Distance between two lanes, in metres.
@@ -72,6 +78,20 @@ impl Show {
     pub fn race(champions: Vec<StagedChampion>) -> Self {
         let mode = if champions.len() > 1 { StageMode::Race } else { StageMode::Solo };
         Self { champions, mode }
+    }
+}
+
+impl StageMode {
+    /// A what-if of one change, beside the original, for tests.
+    #[cfg(test)]
+    pub fn what_if(before: RunPlan) -> Self {
+        Self::WhatIf { before: Box::new(before), beside: Vec::new(), current: 1 }
+    }
+
+    /// Whether the latest lane of a what-if can stay beside a further one.
+    pub fn can_try_another(&self) -> bool {
+        let Self::WhatIf { beside, current, .. } = self else { return false };
+        *current > beside.len() && current + 1 < MAX_WHAT_IF_LANES
     }
 }
 
@@ -100,15 +120,30 @@ pub(super) fn end_s<'a>(lanes: impl IntoIterator<Item = &'a Lane>) -> f64 {
 /// # Errors
 /// Each champion that cannot be shown, with the reason.
 pub(super) fn lanes(champions: Vec<StagedChampion>, mode: &StageMode) -> (Vec<Lane>, Vec<String>) {
+    lanes_after(champions, mode, &mut [])
+}
+
+/// The same with what earlier lanes have computed.
+fn lanes_after(
+    champions: Vec<StagedChampion>,
+    mode: &StageMode,
+    earlier: &mut [Mut<Lane>],
+) -> (Vec<Lane>, Vec<String>) {
     let is_generation = matches!(mode, StageMode::Generation { .. });
     let mut problems = Vec::new();
     let mut lanes: Vec<Lane> = Vec::new();
     for staged in champions {
         let name = staged.name().to_owned();
+        let number = lanes.len();
+        let same = earlier.iter_mut().find(|lane| lane.number() == number && lane.suits(&staged));
         let built = staged.check().map_err(|invalid| invalid.to_string()).and_then(|()| {
-            let build = if is_generation && !lanes.is_empty() { Lane::ghost } else { Lane::new };
-            caught(|| build(staged, lanes.len()))
-                .map_err(|message| format!("its simulation failed: {message}"))
+            caught(|| match (same, lanes.first()) {
+                (_, Some(_)) if is_generation => Lane::ghost(staged, number),
+                (Some(same), _) => same.renewed(),
+                (None, Some(original)) => Lane::new(staged, number).after_change(original),
+                (None, None) => Lane::new(staged, number),
+            })
+            .map_err(|message| format!("its simulation failed: {message}"))
         });
         match built {
             Ok(lane) => lanes.push(lane),
@@ -145,7 +180,7 @@ fn show_opening(
 /// Replaces the lanes of the stage.
 fn put_on_stage(
     mut requests: MessageReader<Show>,
-    earlier: Query<Entity, With<Lane>>,
+    mut earlier: Query<(Entity, &mut Lane)>,
     mut commands: Commands,
     mut notices: ResMut<Notices>,
     mut on_stage: ResMut<StageMode>,
@@ -153,15 +188,24 @@ fn put_on_stage(
     // Only the last request of a frame would be visible.
     let Some(Show { champions, mode }) = requests.read().last().cloned() else { return };
     champions.iter().for_each(|staged| explain_other_engine(staged, &mut notices));
-    let (lanes, problems) = lanes(champions, &mode);
+    let (entities, mut earlier): (Vec<Entity>, Vec<Mut<Lane>>) = earlier.iter_mut().unzip();
+    let (lanes, problems) = lanes_after(champions, &mode, &mut earlier);
     problems.into_iter().for_each(|problem| notices.problem(problem));
     if lanes.is_empty() {
         // Keep the earlier lanes if none of the new ones can be built.
         return;
     }
-    earlier.iter().for_each(|lane| commands.entity(lane).despawn());
+    let mut outdated: Vec<(Entity, Mut<Lane>)> = entities.into_iter().zip(earlier).collect();
     *on_stage = if lanes.len() > 1 { mode } else { StageMode::Solo };
-    lanes.into_iter().for_each(|lane| spawn(&mut commands, lane));
+    for lane in lanes {
+        // What surrounds a lane of a what-if stays on the stage while another lane changes.
+        let stays = matches!(*on_stage, StageMode::WhatIf { .. });
+        match outdated.iter().position(|(_, earlier)| stays && earlier.is_like(&lane)) {
+            Some(index) => *outdated.swap_remove(index).1 = lane,
+            None => spawn(&mut commands, lane),
+        }
+    }
+    outdated.into_iter().for_each(|(lane, _)| commands.entity(lane).despawn());
 }
 
 /// Spawns a lane at its place beside the others.

@@ -20,6 +20,9 @@ pub(crate) struct Playback {
     rested_s: f32,
     /// Set for one frame after a seek, so that this exact time is drawn.
     is_sought: bool,
+    /// Moment from which changes of the world were tried last, in simulated seconds; `None` if the user has gone to
+    /// another one since, or watches something else.
+    tried_from_s: Option<f64>,
 }
 
 /// Playback speed, in simulated seconds per second.
@@ -41,6 +44,7 @@ impl Default for Playback {
             loops: true,
             rested_s: 0.0,
             is_sought: false,
+            tried_from_s: None,
         }
     }
 }
@@ -68,6 +72,9 @@ impl Playback {
 
     /// Executes a command, given the length of a physics step and of the show, in simulated seconds.
     pub fn apply(&mut self, command: &PlayerCommand, step_s: f64, end_s: f64) {
+        if matches!(command, PlayerCommand::Seek(_) | PlayerCommand::Step { .. }) {
+            self.tried_from_s = None;
+        }
         match command {
             PlayerCommand::Toggle => self.toggle(end_s),
             PlayerCommand::Restart => self.restart(),
@@ -78,6 +85,25 @@ impl Playback {
             PlayerCommand::ChangeSpeed { faster } => self.change_speed(*faster),
             PlayerCommand::ToggleLoop => self.toggle_loop(),
         }
+    }
+
+    /// Plays other champions from the start.
+    pub fn begin(&mut self) {
+        self.tried_from_s = None;
+        self.restart();
+    }
+
+    /// Plays from `start_s` on after a change of the world was tried from the moment `tried_from_s` on, both in
+    /// simulated seconds.
+    pub fn play_change(&mut self, start_s: f64, tried_from_s: f64) {
+        (self.time_s, self.rested_s, self.is_playing) = (start_s, 0.0, true);
+        (self.is_sought, self.tried_from_s) = (true, Some(tried_from_s));
+    }
+
+    /// Moment from which changes of the world were tried last, in simulated seconds, unless the user has gone to
+    /// another one since.
+    pub fn tried_from_s(&self) -> Option<f64> {
+        self.tried_from_s
     }
 
     /// Plays from the start at the current speed.

@@ -34,10 +34,7 @@ impl Replay {
                 last_step: staged.trial().steps(),
                 middle_limb: staged.body().middle_limb(),
             }),
-            None => {
-                let rollout = Rollout::new(&staged.champion().genome, staged.trial());
-                Self::Simulated(Box::new(rollout))
-            }
+            None => Self::Simulated(Box::new(staged.rollout())),
         }
     }
 
@@ -63,7 +60,7 @@ impl Replay {
             Self::Simulated(rollout) => {
                 **rollout = match history {
                     Some(history) => history.rollout_at(step),
-                    None => Rollout::new(&staged.champion().genome, staged.trial()),
+                    None => staged.rollout(),
                 };
                 while rollout.step() < step && rollout.advance() {}
             }
@@ -72,6 +69,27 @@ impl Replay {
                 recorded.poses = recorded.recording.at(recorded.step as f32);
             }
         }
+    }
+
+    /// The rollout after `step` steps without any pull, simulated by this engine.
+    pub fn rollout_at(
+        &self,
+        step: u32,
+        staged: &StagedChampion,
+        history: Option<&KeyframeHistory>,
+    ) -> Rollout {
+        if let Self::Simulated(rollout) = self
+            && rollout.step() == step
+            && !rollout.is_disturbed()
+        {
+            return (**rollout).clone();
+        }
+        let mut rollout = match history {
+            Some(history) => return history.rollout_at(step),
+            None => staged.rollout(),
+        };
+        while rollout.step() < step && rollout.advance() {}
+        rollout
     }
 
     /// Sets or clears the pull on a limb. A recording ignores it.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use crate::check::Invalid;
 use crate::evolve::Champion;
 use crate::save::LoadedChampion;
-use crate::score::{Recording, Trial};
-use crate::world::BodyPlan;
+use crate::score::{Recording, Rollout, Trial};
+use crate::world::{BodyPlan, Discontinuity};
 
 /// A champion on the stage, with its caption.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StagedChampion {
     champion: Champion,
     name: String,
@@ -39,8 +39,28 @@ enum ShownAs {
     Found,
     /// Simulated by this engine in the champion's own world.
     Simulated,
-    /// Simulated by this engine in another world, with a description of the difference.
-    Changed(Box<Trial>, String),
+    /// Simulated by this engine in another world.
+    Changed(Box<ChangedWorld>),
+}
+
+/// A world that differs from the one in which a champion was found.
+#[derive(Debug, Clone, PartialEq)]
+struct ChangedWorld {
+    trial: Trial,
+    /// Description of the difference.
+    what_is_other: String,
+    beginning: Beginning,
+}
+
+/// Moment from which a champion is shown in a changed world.
+#[derive(Debug, Clone, PartialEq)]
+enum Beginning {
+    /// From the start.
+    Start,
+    /// From the start, because its state at the moment of the change does not fit the changed world.
+    StartBecause(Discontinuity),
+    /// From this physics step on, with its state at that moment; before it, in this trial.
+    Step(u32, Trial),
 }
 
 impl StagedChampion {
@@ -87,8 +107,85 @@ impl StagedChampion {
         if *trial == self.champion.trial {
             return self.as_found();
         }
-        let shown_as = ShownAs::Changed(Box::new(trial.clone()), what_is_other);
-        Self { shown_as, ..self.clone() }
+        self.changed(trial, what_is_other, Beginning::Start)
+    }
+
+    /// The same champion in another world from a moment of its rollout on; from the start without one, or if the state
+    /// at that moment does not fit the other world.
+    pub fn in_world_from(
+        &self,
+        moment: Option<&Rollout>,
+        trial: &Trial,
+        what_is_other: String,
+    ) -> Self {
+        let Some(moment) = moment else { return self.in_world(trial, what_is_other) };
+        let beginning = match moment.can_continue(&self.champion.genome, trial) {
+            Ok(()) => Beginning::Step(moment.step(), self.trial().clone()),
+            Err(reason) => Beginning::StartBecause(reason),
+        };
+        let is_own = *trial == self.champion.trial;
+        let what = if is_own { "its own world".to_owned() } else { what_is_other };
+        self.changed(trial, what, beginning)
+    }
+
+    fn changed(&self, trial: &Trial, what_is_other: String, beginning: Beginning) -> Self {
+        let world = ChangedWorld { trial: trial.clone(), what_is_other, beginning };
+        Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
+    }
+
+    /// The same champion in the same world from the start.
+    pub fn from_start(&self) -> Self {
+        match &self.shown_as {
+            ShownAs::Changed(world) => self.in_world(&world.trial, world.what_is_other.clone()),
+            ShownAs::Found | ShownAs::Simulated => self.clone(),
+        }
+    }
+
+    /// The physics step at which its world changes, if that is not its start.
+    pub fn changes_at_step(&self) -> Option<u32> {
+        match &self.shown_as {
+            ShownAs::Changed(world) => match world.beginning {
+                Beginning::Step(step, _) => Some(step),
+                Beginning::Start | Beginning::StartBecause(_) => None,
+            },
+            ShownAs::Found | ShownAs::Simulated => None,
+        }
+    }
+
+    /// The moment from which it is shown in a changed world, in words: "from 5.20 s on". `None` if that is simply the
+    /// start.
+    pub fn beginning_in_words(&self) -> Option<String> {
+        let ShownAs::Changed(world) = &self.shown_as else { return None };
+        match &world.beginning {
+            Beginning::Start => None,
+            Beginning::StartBecause(reason) => {
+                Some(format!("from the start, because {}", reason.words()))
+            }
+            Beginning::Step(step, _) => {
+                let time_s = f64::from(*step) / f64::from(world.trial.physics.steps_per_s);
+                Some(format!("from {time_s:.2} s on"))
+            }
+        }
+    }
+
+    /// Its rollout at the start; the champion must have passed [`Self::check`].
+    pub fn rollout(&self) -> Rollout {
+        let genome = &self.champion.genome;
+        if let ShownAs::Changed(world) = &self.shown_as
+            && let Beginning::Step(step, earlier) = &world.beginning
+            // It fitted when the moment was chosen.
+            && let Ok(rollout) =
+                Rollout::new(genome, earlier).changing_at(*step, genome, &world.trial)
+        {
+            return rollout;
+        }
+        Rollout::new(genome, self.trial())
+    }
+
+    /// Its rollout at the moment of its change, continued from that of the unchanged champion.
+    pub fn continued_from(&self, original: Rollout) -> Option<Rollout> {
+        let step = self.changes_at_step().filter(|step| *step == original.step())?;
+        original.changing_at(step, &self.champion.genome, self.trial()).ok()
     }
 
     /// Checks that the genome fits the world in which it is shown.
@@ -113,7 +210,7 @@ impl StagedChampion {
 
     /// Whether it is shown in a changed world.
     pub fn is_changed(&self) -> bool {
-        matches!(self.shown_as, ShownAs::Changed(..))
+        matches!(self.shown_as, ShownAs::Changed(_))
     }
 
     /// The recording to play instead of simulating, if any.
@@ -157,7 +254,7 @@ impl StagedChampion {
     /// The world in which it is shown.
     pub fn trial(&self) -> &Trial {
         match &self.shown_as {
-            ShownAs::Changed(trial, _) => trial,
+            ShownAs::Changed(world) => &world.trial,
             ShownAs::Found | ShownAs::Simulated => &self.champion.trial,
         }
     }
@@ -185,7 +282,7 @@ impl StagedChampion {
     /// Label that distinguishes it from other lanes: its name, or the difference of its world.
     pub fn label(&self) -> &str {
         match &self.shown_as {
-            ShownAs::Changed(_, what_is_other) => what_is_other,
+            ShownAs::Changed(world) => &world.what_is_other,
             ShownAs::Found | ShownAs::Simulated => &self.name,
         }
     }
@@ -194,9 +291,13 @@ impl StagedChampion {
     pub fn caption(&self) -> String {
         let name = &self.name;
         let shown_as = match (&self.shown_as, self.other_engine()) {
-            (ShownAs::Changed(_, what), _) => {
-                // The description of the reached position belongs to the original world.
-                return format!("{name}, tried with {what} (originally {})", self.champion.score());
+            // The description of the reached position belongs to the original world.
+            (ShownAs::Changed(world), _) => {
+                let (what, score) = (&world.what_is_other, self.champion.score());
+                return match self.beginning_in_words() {
+                    Some(beginning) => format!("What if: {what}, {beginning} ({name})"),
+                    None => format!("{name}, tried with {what} (originally {score})"),
+                };
             }
             (_, None) => ": ".to_owned(),
             (_, Some(engine)) if self.recording().is_some() => {

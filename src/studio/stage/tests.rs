@@ -1,5 +1,7 @@
 //! The stage without a window, frame by frame.
 
+mod what_if;
+
 use std::time::Duration;
 
 use bevy::time::TimeUpdateStrategy;

@@ -4,11 +4,10 @@ use super::current_run::CurrentRun;
 use super::library::{Library, founder_of};
 use super::lineup::champion_of;
 use super::sweep::changes_of;
-use super::what_if::{WorldChange, dropped, kept, what_if};
+use super::what_if::{ChangedStage, WorldChange, dropped, kept, kept_lane, what_if};
 use crate::studio::commands::PlanCommand;
+use crate::studio::stage::Show;
 use crate::studio::stage::opening::OpeningChampions;
-use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{Show, StageMode};
 use crate::studio::ui::notifications::Notices;
 
 /// Executes a command; returns what the stage shows then, if that changes.
@@ -19,22 +18,23 @@ pub(crate) fn apply_to_plan(
     command: &PlanCommand,
     run: &mut CurrentRun,
     (library, opening): (&Library, &OpeningChampions),
-    (on_show, mode): (&[StagedChampion], &StageMode),
+    stage: ChangedStage,
     notices: &mut Notices,
 ) -> Result<Option<Show>, String> {
+    let ChangedStage { on_show, mode, .. } = stage;
     match command {
         PlanCommand::SetSeed(seed) => run.set_seed(*seed)?,
         PlanCommand::SetPopulation(population) => run.set_population(*population)?,
         PlanCommand::SetField { field, text } => {
             let change = WorldChange::Fields(vec![(field, text)]);
-            return what_if(run, on_show, mode, &change);
+            return what_if(run, stage, &change);
         }
         PlanCommand::SetFields(changes) => {
             let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
-            return what_if(run, on_show, mode, &WorldChange::Fields(changes.collect()));
+            return what_if(run, stage, &WorldChange::Fields(changes.collect()));
         }
         PlanCommand::SetPreset(name) => {
-            return what_if(run, on_show, mode, &WorldChange::Preset(name));
+            return what_if(run, stage, &WorldChange::Preset(name));
         }
         PlanCommand::StorePreset(name) => run.store_preset(name)?,
         PlanCommand::ListPresets => run.list_presets(),
@@ -60,6 +60,7 @@ pub(crate) fn apply_to_plan(
             run.set_fields(&texts.collect::<Vec<_>>())?;
             notices.info("The next run uses this world.".to_owned());
         }
+        PlanCommand::KeepLane(lane) => return kept_lane(run, on_show, mode, *lane),
         PlanCommand::DropChange => return dropped(run, on_show, mode),
     }
     Ok(None)

@@ -152,6 +152,11 @@ impl UndoHistory {
         }
     }
 
+    /// Whether a further change of the same setting would belong to the latest step.
+    pub fn is_open(&self) -> bool {
+        !self.is_settled
+    }
+
     /// Makes the next change a step of its own.
     pub fn settle(&mut self) {
         self.is_settled = true;
@@ -211,6 +216,7 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
             PlanCommand::SetPreset(name) | PlanCommand::StorePreset(name) => {
                 ("preset", format!("preset {name}"))
             }
+            PlanCommand::KeepLane(_) => ("keep", format!("kept {}", changes())),
             PlanCommand::DropChange => (DISCARD, "discarded changes".to_owned()),
             PlanCommand::StartFrom(_) | PlanCommand::StartFromSave(_) => {
                 let name = after.founder.as_ref().map_or("a champion", |founder| founder.name());

@@ -1,11 +1,14 @@
-//! What-if: a copy of the champion in a changed world, beside the original.
+//! What-if: copies of the champion in changed worlds, beside the original.
+//!
+//! A change acts on the latest copy, which starts over from the moment of the change. A copy that stays beside the next
+//! one no longer changes.
 
 use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
 use super::wording::world_in_words;
-use crate::evolve::{Settings, with_fields};
-use crate::score::Trial;
+use crate::evolve::{RunPlan, Settings, with_fields};
+use crate::score::{Rollout, Trial};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 
@@ -18,32 +21,88 @@ pub(crate) enum WorldChange<'a> {
     Preset(&'a str),
 }
 
-/// Applies a change to the next run. Returns the first champion on the stage, unchanged and in the changed world;
+/// The champions on the stage, and the moment from which a change of their world is tried.
+#[derive(Clone, Copy)]
+pub(crate) struct ChangedStage<'a> {
+    /// The champions, by lane; the first is the original.
+    pub on_show: &'a [StagedChampion],
+    /// How the lanes are related.
+    pub mode: &'a StageMode,
+    /// The rollout of the original at that moment; `None` for its start.
+    pub moment: Option<&'a Rollout>,
+}
+
+impl ChangedStage<'_> {
+    /// The champion whose world the next run has: that of the current lane in a what-if, else the original.
+    pub fn current(&self) -> Option<&StagedChampion> {
+        match self.mode {
+            StageMode::WhatIf { current, .. } => self.on_show.get(*current),
+            _ => self.on_show.first(),
+        }
+    }
+
+    /// The stage after the world of the current lane became `trial`: a new copy in the place of the latest one, or
+    /// none if a lane that stays has that world. `before` is the plan of the next run without any change.
+    ///
+    /// # Errors
+    /// The champion does not fit that world.
+    pub fn with_world(
+        &self,
+        before: &RunPlan,
+        trial: &Trial,
+        label: String,
+    ) -> Result<Show, String> {
+        let (before, beside) = match self.mode {
+            StageMode::WhatIf { before, beside, .. } => (before.clone(), beside.clone()),
+            _ => (Box::new(before.clone()), Vec::new()),
+        };
+        // All lanes are simulated, so that only the change makes a difference.
+        let staying = self.on_show.iter().take(1 + beside.len()).map(StagedChampion::simulated);
+        let mut champions: Vec<StagedChampion> = staying.collect();
+        let Some(original) = champions.first().cloned() else {
+            return Err("There is no snake on the stage.".to_owned());
+        };
+        if let Some(current) = champions.iter().position(|staged| staged.trial() == trial) {
+            return Ok(what_if_of(champions, before, beside, current));
+        }
+        let changed = original.in_world_from(self.moment, trial, label);
+        changed.check().map_err(|reason| {
+            format!("The snake on the stage stays in its world, because it does not fit the new one: {reason}")
+        })?;
+        champions.push(changed);
+        let current = champions.len() - 1;
+        Ok(what_if_of(champions, before, beside, current))
+    }
+}
+
+/// A what-if, or the original alone if nothing stands beside it.
+fn what_if_of(
+    champions: Vec<StagedChampion>,
+    before: Box<RunPlan>,
+    beside: Vec<RunPlan>,
+    current: usize,
+) -> Show {
+    let is_alone = champions.len() < 2;
+    let mode =
+        if is_alone { StageMode::Solo } else { StageMode::WhatIf { before, beside, current } };
+    Show { champions, mode }
+}
+
+/// Applies a change to the next run. Returns the first champion on the stage, unchanged and in the changed worlds;
 /// `None` if the change does not affect it.
 pub(crate) fn what_if(
     run: &mut CurrentRun,
-    on_show: &[StagedChampion],
-    mode: &StageMode,
+    stage: ChangedStage,
     change: &WorldChange,
 ) -> Result<Option<Show>, String> {
-    let before = match mode {
-        StageMode::WhatIf { before } => before.clone(),
-        StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => {
-            Box::new(run.next_plan().clone())
-        }
-    };
+    let before = run.next_plan().clone();
     match change {
         WorldChange::Fields(changes) => run.set_fields(changes)?,
         WorldChange::Preset(name) => run.set_preset(name)?,
     }
-    // Both lanes are simulated, so that only the change makes a difference.
-    let Some(original) = on_show.first().map(StagedChampion::simulated) else { return Ok(None) };
-    let original = &original;
+    let Some(original) = stage.on_show.first() else { return Ok(None) };
     // Changes accumulate.
-    let so_far = match mode {
-        StageMode::WhatIf { .. } => on_show.last().unwrap_or(original),
-        StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => original,
-    };
+    let so_far = stage.current().unwrap_or(original);
     let next = run.next_settings();
     let trial = match change {
         // Other differences of the next run's world are left out.
@@ -64,120 +123,68 @@ pub(crate) fn what_if(
     if trial == *so_far.trial() {
         return Ok(None);
     }
-    if trial == *original.trial() {
-        return Ok(Some(Show::solo(original.clone())));
-    }
     let label = match change {
         WorldChange::Preset(name) => (*name).to_owned(),
         WorldChange::Fields(_) => world_in_words(&original.champion().trial, &trial),
     };
-    let changed = original.in_world(&trial, label);
-    changed.check().map_err(|reason| {
-        format!("The snake on the stage stays in its world, because it does not fit the new one: {reason}")
-    })?;
-    let champions = vec![original.clone(), changed];
-    Ok(Some(Show { champions, mode: StageMode::WhatIf { before } }))
+    stage.with_world(&before, &trial, label).map(Some)
 }
 
-/// Discards the changes.
+/// Lets the latest copy stay, so that the next change makes another one beside it.
+///
+/// # Errors
+/// No copy may stay, with the reason.
+pub(crate) fn another_beside(
+    run: &CurrentRun,
+    on_show: Vec<StagedChampion>,
+    mode: &StageMode,
+) -> Result<Show, String> {
+    match mode {
+        StageMode::WhatIf { before, beside, current } if mode.can_try_another() => {
+            let (before, mut beside) = (before.clone(), beside.clone());
+            beside.push(run.next_plan().clone());
+            Ok(what_if_of(on_show, before, beside, *current))
+        }
+        StageMode::WhatIf { beside, current, .. } if *current > beside.len() => {
+            Err("There is no room for another copy: discard one first.".to_owned())
+        }
+        _ => Err("Change a setting of the World panel first.".to_owned()),
+    }
+}
+
+/// Discards the latest copy. The next run gets the world of the lane before it.
 pub(crate) fn dropped(
     run: &mut CurrentRun,
     on_show: &[StagedChampion],
     mode: &StageMode,
 ) -> Result<Option<Show>, String> {
-    let StageMode::WhatIf { before } = mode else { return Ok(None) };
-    run.undo_world(before)?;
-    Ok(on_show.first().cloned().map(Show::solo))
+    let StageMode::WhatIf { before, beside, .. } = mode else { return Ok(None) };
+    let current = on_show.len().saturating_sub(2);
+    let mut beside = beside.clone();
+    beside.truncate(current);
+    run.undo_world(beside.last().unwrap_or(before))?;
+    Ok(Some(what_if_of(on_show[..=current].to_vec(), before.clone(), beside, current)))
 }
 
-/// Keeps the changed lane.
+/// The lane of a what-if whose world the next run has, alone and from the start.
 pub(crate) fn kept(on_show: &[StagedChampion], mode: &StageMode) -> Option<Show> {
-    let is_what_if = matches!(mode, StageMode::WhatIf { .. });
-    on_show.last().filter(|_| is_what_if).cloned().map(Show::solo)
+    let StageMode::WhatIf { current, .. } = mode else { return None };
+    on_show.get(*current).map(|staged| Show::solo(staged.from_start()))
+}
+
+/// Keeps a changed lane of a what-if, alone and from the start. The next run gets its world.
+pub(crate) fn kept_lane(
+    run: &mut CurrentRun,
+    on_show: &[StagedChampion],
+    mode: &StageMode,
+    lane: usize,
+) -> Result<Option<Show>, String> {
+    let StageMode::WhatIf { beside, .. } = mode else { return Ok(None) };
+    if let Some(plan) = lane.checked_sub(1).and_then(|index| beside.get(index)) {
+        run.undo_world(plan)?;
+    }
+    Ok(on_show.get(lane).map(|staged| Show::solo(staged.from_start())))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::save::shipped_champion;
-    use crate::studio::state::current_run::prepared_run;
-
-    fn saved(index: usize) -> StagedChampion {
-        StagedChampion::from_file(&shipped_champion().expect("well formed"), index, "climber")
-    }
-
-    #[test]
-    fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
-        let mut run = prepared_run();
-        let plan = run.next_plan().clone();
-        let field = |field, text| WorldChange::Fields(vec![(field, text)]);
-        let first =
-            what_if(&mut run, &[saved(0)], &StageMode::Solo, &field("surface.friction", "0.3"))
-                .expect("allowed")
-                .expect("it matters");
-        assert_eq!(first.champions[1].label(), "friction 0.3");
-        let second =
-            what_if(&mut run, &first.champions, &first.mode, &field("stairs.rise_m", "0.7"))
-                .expect("allowed")
-                .expect("it matters");
-        let [original, changed] = &second.champions[..] else { panic!("two lanes") };
-        assert!(!original.is_changed() && changed.is_changed());
-        assert_eq!(changed.label(), "rise 0.7, friction 0.3");
-        let ground = field("ground.friction", "1");
-        let third = what_if(&mut run, &second.champions, &second.mode, &ground);
-        let third = third.expect("allowed").expect("it matters");
-        assert_eq!(third.champions[1].label(), "separate ground, rise 0.7 and 1 more");
-        assert_eq!(changed.trial().surface.friction, 0.3);
-        assert_eq!(changed.trial().duration_s, original.trial().duration_s, "nothing else");
-        let kept = kept(&second.champions, &second.mode).expect("kept");
-        assert_eq!(kept.champions[0].trial(), changed.trial());
-        let shown = dropped(&mut run, &second.champions, &second.mode);
-        let shown = shown.expect("allowed").expect("the original");
-        assert_eq!(shown.champions[0].trial(), original.trial());
-        assert_eq!(*run.next_plan(), plan, "as it was before the first change");
-        // Other settings changed meanwhile stay.
-        what_if(&mut run, &[saved(0)], &StageMode::Solo, &field("surface.friction", "0.3"))
-            .expect("allowed");
-        run.set_seed(77).expect("allowed");
-        run.set_population(9).expect("allowed");
-        dropped(&mut run, &second.champions, &second.mode).expect("allowed");
-        assert_eq!((run.next_seed(), run.next_settings().evolution.population), (77, 9));
-        assert_eq!(run.next_settings().trial, plan.settings.trial);
-    }
-
-    #[test]
-    fn a_second_change_names_the_first_one_that_was_kept() {
-        let mut run = prepared_run();
-        let change = |field, text| WorldChange::Fields(vec![(field, text)]);
-        let first = change("surface.friction", "0.3");
-        let first = what_if(&mut run, &[saved(0)], &StageMode::Solo, &first);
-        let first = first.expect("allowed").expect("it matters");
-        let kept = kept(&first.champions, &first.mode).expect("kept");
-        let second = change("stairs.rise_m", "0.7");
-        let second = what_if(&mut run, &kept.champions, &kept.mode, &second);
-        let second = second.expect("allowed").expect("it matters");
-        let labels: Vec<&str> = second.champions.iter().map(StagedChampion::label).collect();
-        assert_eq!(labels, ["friction 0.3", "rise 0.7, friction 0.3"]);
-    }
-
-    #[test]
-    fn a_world_that_the_genome_does_not_fit_is_refused_with_the_reason() {
-        let mut run = prepared_run();
-        let limbs = WorldChange::Fields(vec![("agent.limbs", "7")]);
-        let refusal = what_if(&mut run, &[saved(0)], &StageMode::Solo, &limbs);
-        let refusal = refusal.expect_err("refused");
-        assert!(refusal.contains("joints is 4 joints") && refusal.contains("7 limbs"), "{refusal}");
-        let preset = what_if(&mut run, &[saved(0)], &StageMode::Solo, &WorldChange::Preset("ice"));
-        let preset = preset.expect("allowed").expect("another world");
-        assert_eq!(preset.champions[1].label(), "ice");
-    }
-
-    #[test]
-    fn settings_outside_the_world_do_not_affect_the_stage() {
-        let mut run = prepared_run();
-        let parents = WorldChange::Fields(vec![("evolution.population", "7")]);
-        let shown = what_if(&mut run, &[saved(0)], &StageMode::Solo, &parents).expect("allowed");
-        assert!(shown.is_none());
-        assert_eq!(run.next_settings().evolution.population, 7);
-    }
-}
+mod tests;

@@ -36,6 +36,7 @@ impl Situation {
         Self {
             is_running: run.status() == RunStatus::Running,
             is_what_if: matches!(mode, StageMode::WhatIf { .. }),
+            can_try_another: mode.can_try_another(),
             is_race: matches!(mode, StageMode::Race | StageMode::Generation { .. }),
             is_covered: workspace.modal().is_some()
                 || workspace.is_bare

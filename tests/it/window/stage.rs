@@ -93,6 +93,43 @@ fn a_changed_world_is_shown_beside_the_original_and_kept_or_discarded() {
 }
 
 #[test]
+fn a_change_is_tried_from_the_present_moment_on_and_copies_stay_side_by_side() {
+    let Some(studio) = Studio::open("what-if-moment", "--preset quick") else { return };
+    studio.pause_evolution();
+    studio.open_panel("World");
+    studio.key("0");
+    studio.wait_for_title("showing saved champion");
+    studio.seek(0.4);
+    let rail = studio.scrolled_to("Slider", "Friction").area;
+    // While the button is held, the copy is already there.
+    studio.drag_and_hold(1, rail.at(0.5, 0.5), rail.at(0.25, 0.5), || {
+        studio.wait_for_title("showing saved champion with a what-if copy, from ");
+    });
+    let moment_s = || -> f64 {
+        let title = studio.title();
+        let (_, after) = title.split_once(", from ").expect("a moment");
+        after.split(' ').next().and_then(|number| number.parse().ok()).expect("a number")
+    };
+    let first_s = moment_s();
+    assert!(first_s > 1.0, "{}", studio.title());
+    studio.key("space");
+    studio.wait_for_title(", stopped at ");
+    let title = studio.title();
+    let stopped_s = title
+        .split_once(", stopped at ")
+        .and_then(|(_, after)| after.trim_end_matches(" s").parse::<f64>().ok());
+    assert!(stopped_s.expect("a time") >= first_s, "the clock goes on from there: {title}");
+    studio.click_label("Try another");
+    studio.drag_slider("Friction", 0.7);
+    studio.wait_for_title("with 2 what-if copies, from ");
+    assert_eq!(moment_s(), first_s, "the same moment, although the clock went on");
+    studio.key("Escape");
+    studio.wait_for_title("with a what-if copy, from ");
+    studio.key("Escape");
+    studio.wait_for_title_without("what-if");
+}
+
+#[test]
 fn clicking_a_limb_shows_its_numbers_and_dragging_disturbs_the_snake() {
     let Some(studio) = held_at_start("hands") else { return };
     let card = |picture: &Picture| {

@@ -1,5 +1,7 @@
 //! Commands to the stage: its lanes and its clock.
 
+mod changes;
+
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
@@ -14,8 +16,7 @@ use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
 use crate::studio::state::sweep::sweep;
-use crate::studio::state::undo::{PlanStep, UndoDirection, followed, stepped};
-use crate::studio::state::what_if::kept;
+use crate::studio::state::what_if::{another_beside, kept};
 use crate::studio::ui::notifications::Notices;
 
 /// State of the stage.
@@ -67,7 +68,7 @@ impl StageParams<'_, '_> {
     /// Shows other champions from their start, until evolution has something better to show.
     pub fn present_for_now(&mut self, show: Option<Show>) {
         if let Some(show) = show {
-            self.playback.restart();
+            self.playback.begin();
             self.show.write(show);
         }
     }
@@ -95,27 +96,6 @@ impl StageParams<'_, '_> {
         self.present_for_now(kept);
     }
 
-    /// Undoes or redoes a change of the plan, and updates the stage.
-    pub fn step(
-        &mut self,
-        run: &mut CurrentRun,
-        step: &PlanStep,
-        way: UndoDirection,
-    ) -> Result<(), String> {
-        let PlanStep { before, after, .. } = step;
-        let (from, to) = if way == UndoDirection::Back { (after, before) } else { (before, after) };
-        let now = run.next_plan().clone();
-        let next = stepped(&now, from, to);
-        if step.is_of_another_run() {
-            run.set_next_plan_alone(next)?;
-        } else {
-            run.set_next_plan(next)?;
-        }
-        let show = followed(&self.champions(), &self.mode, &now, run.next_plan())?;
-        self.present(show);
-        Ok(())
-    }
-
     /// Executes a command to the lanes.
     pub fn apply(
         &mut self,
@@ -130,7 +110,7 @@ impl StageParams<'_, '_> {
             StageCommand::Join(pick) => {
                 let mut on_show = self.champions();
                 if matches!(*self.mode, StageMode::WhatIf { .. } | StageMode::Generation { .. }) {
-                    // The two lanes of a what-if show one champion, and a generation has no room beside it.
+                    // The lanes of a what-if show one champion, and a generation has no room beside it.
                     on_show.truncate(1);
                 }
                 let staged = champion_of(pick, run, opening);
@@ -172,6 +152,11 @@ impl StageParams<'_, '_> {
             }
             StageCommand::KeepChange => {
                 self.settle();
+                None
+            }
+            StageCommand::TryAnother => {
+                // The clock runs on: nothing on the stage changes.
+                self.show.write(another_beside(run, self.champions(), &self.mode)?);
                 None
             }
             StageCommand::ShowAsFound => {

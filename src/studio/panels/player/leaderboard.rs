@@ -1,4 +1,4 @@
-//! Leaderboard: ranking of several lanes, and buttons to keep or discard a change.
+//! Leaderboard: ranking of several lanes, and the buttons below it.
 
 use bevy_egui::egui;
 
@@ -128,8 +128,15 @@ pub(crate) fn leaderboard(
         // A generation has a card of its own.
         StageMode::Solo | StageMode::Generation { .. } => return,
         StageMode::Race => title(ui, "Race"),
-        StageMode::WhatIf { .. } => title(ui, "What if"),
+        StageMode::WhatIf { .. } => {
+            title(ui, "What if");
+            if let Some(beginning) = common_beginning(lanes) {
+                ui.label(egui::RichText::new(beginning).color(palette.text_weak));
+            }
+        }
     }
+    // One copy is kept by the button below.
+    let keeps_each = matches!(mode, StageMode::WhatIf { .. }) && lanes.len() > 2;
     egui::Grid::new("board")
         .num_columns(4)
         .min_col_width(0.0)
@@ -142,9 +149,11 @@ pub(crate) fn leaderboard(
                 let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
                 ui.label(marked_if(is_winner, rank.color(palette.text_weak), palette));
                 lane_dot(ui, ranked.lane, theme::LANE_DOT);
-                let hint = "Show the numbers and torques of this snake below";
+                let beginning = lane.and_then(|lane| lane.staged().beginning_in_words());
+                let beginning = beginning.map(|words| format!("\n{}: {words}", ranked.name));
+                let hint = "Show the numbers and torques of this snake below".to_owned();
                 let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
-                if name.on_hover_text(hint).clicked() {
+                if name.on_hover_text(hint + &beginning.unwrap_or_default()).clicked() {
                     commands.push(Command::Stage(StageCommand::Focus(ranked.lane)));
                 }
                 // A fixed width keeps the layout still while the values change.
@@ -167,35 +176,20 @@ pub(crate) fn leaderboard(
                 if let Some(lane) = lane {
                     value.on_hover_ui(|ui| split_times(ui, lane, time_s));
                 }
+                if keeps_each && ranked.lane > 0 {
+                    keep_button(ui, ranked, commands);
+                }
                 ui.end_row();
             }
         });
+    if let StageMode::WhatIf { beside, current, .. } = mode
+        && *current <= beside.len()
+    {
+        ui.label(egui::RichText::new(NEXT_LANE).color(palette.text_weak));
+    }
+    let selected = lanes.iter().find(|lane| lane.number() == focus);
     ui.horizontal(|ui| {
-        let buttons: &[(&str, &str, Command)] = match mode {
-            StageMode::WhatIf { .. } => &[
-                (
-                    "Keep",
-                    "Keep this change, also for the next run",
-                    Command::Stage(StageCommand::KeepChange),
-                ),
-                (
-                    "Discard",
-                    "Discard this change, also for the next run (Esc)",
-                    Command::Plan(PlanCommand::DropChange),
-                ),
-            ],
-            StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => &[(
-                "Leave race",
-                "Show only the selected snake (Esc)",
-                Command::Stage(StageCommand::Single),
-            )],
-        };
-        for (name, hint, command) in buttons {
-            if ui.button(*name).on_hover_text(*hint).clicked() {
-                commands.push(command.clone());
-            }
-        }
-        let selected = lanes.iter().find(|lane| lane.number() == focus);
+        buttons(ui, mode, keeps_each, commands);
         if *mode == StageMode::Race && selected.is_some_and(|lane| lane.staged().is_changed()) {
             let hint = "Use the changed settings of the selected snake's world for the next run";
             if ui.button("Use this world").on_hover_text(hint).clicked() {
@@ -203,6 +197,54 @@ pub(crate) fn leaderboard(
             }
         }
     });
+}
+
+/// Shown while no copy of a what-if changes.
+const NEXT_LANE: &str = "The next change gets a lane of its own.";
+
+/// The moment from which all copies differ from the original, in words, if it is the same for all.
+fn common_beginning(lanes: &[&Lane]) -> Option<String> {
+    let copies = || lanes.iter().filter(|lane| lane.number() > 0);
+    let mut beginnings = copies().map(|lane| lane.staged().beginning_in_words());
+    let first = beginnings.next().flatten()?;
+    beginnings.all(|other| other.as_ref() == Some(&first)).then_some(first)
+}
+
+/// Draws the button that keeps one of several copies.
+fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane, commands: &mut Vec<Command>) {
+    let said = format!("Keep {}", ranked.name);
+    let hint = format!("{said}: only this lane stays, and the next run gets its world");
+    let (button, is_on) = (ui.small_button("Keep").on_hover_text(hint), ui.is_enabled());
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, is_on, &said));
+    if button.clicked() {
+        commands.push(Command::Plan(PlanCommand::KeepLane(ranked.lane)));
+    }
+}
+
+/// Draws the buttons below the lanes.
+fn buttons(ui: &mut egui::Ui, mode: &StageMode, keeps_each: bool, commands: &mut Vec<Command>) {
+    let StageMode::WhatIf { .. } = mode else {
+        if ui.button("Leave race").on_hover_text("Show only the selected snake (Esc)").clicked() {
+            commands.push(Command::Stage(StageCommand::Single));
+        }
+        return;
+    };
+    let keep = "Keep this change, also for the next run";
+    if !keeps_each && ui.button("Keep").on_hover_text(keep).clicked() {
+        commands.push(Command::Stage(StageCommand::KeepChange));
+    }
+    let discard = if keeps_each {
+        "Discard the latest copy. The next run gets the world of the lane before it (Esc)"
+    } else {
+        "Discard this change, also for the next run (Esc)"
+    };
+    if ui.button("Discard").on_hover_text(discard).clicked() {
+        commands.push(Command::Plan(PlanCommand::DropChange));
+    }
+    let another = "Leave this copy as it is: the next change makes another one beside it";
+    if mode.can_try_another() && ui.button("Try another").on_hover_text(another).clicked() {
+        commands.push(Command::Stage(StageCommand::TryAnother));
+    }
 }
 
 #[cfg(test)]
@@ -247,16 +289,13 @@ mod tests {
             )
         };
         let lanes = [lane(0), lane(1)];
-        let before = Box::new(RunPlan::new("climb", 1, Settings::default()));
+        let what_if = StageMode::what_if(RunPlan::new("climb", 1, Settings::default()));
         for (mode, label, command) in [
             (StageMode::Race, "snake 1", Command::Stage(StageCommand::Focus(1))),
             (StageMode::Race, "Leave race", Command::Stage(StageCommand::Single)),
-            (
-                StageMode::WhatIf { before: before.clone() },
-                "Keep",
-                Command::Stage(StageCommand::KeepChange),
-            ),
-            (StageMode::WhatIf { before }, "Discard", Command::Plan(PlanCommand::DropChange)),
+            (what_if.clone(), "Keep", Command::Stage(StageCommand::KeepChange)),
+            (what_if.clone(), "Try another", Command::Stage(StageCommand::TryAnother)),
+            (what_if, "Discard", Command::Plan(PlanCommand::DropChange)),
         ] {
             let lanes: Vec<&Lane> = lanes.iter().collect();
             let mut harness = Harness::new_ui_state(
@@ -266,6 +305,31 @@ mod tests {
             harness.get_by_label(label).click();
             harness.run();
             assert_eq!(*harness.state(), [command], "{label}");
+        }
+    }
+
+    #[test]
+    fn each_of_several_copies_can_be_kept_and_the_board_says_when_none_changes() {
+        let loaded = shipped_champion().expect("well formed");
+        let plan = RunPlan::new("climb", 1, Settings::default());
+        let staged = |label: &str| StagedChampion::from_file(&loaded, 0, label);
+        let lanes = ["climber", "ice", "glue"].iter().enumerate();
+        let lanes: Vec<Lane> =
+            lanes.map(|(number, label)| Lane::new(staged(label), number)).collect();
+        let lanes: Vec<&Lane> = lanes.iter().collect();
+        for (current, says_so) in [(1, true), (2, false)] {
+            let (before, beside) = (Box::new(plan.clone()), vec![plan.clone()]);
+            let mode = StageMode::WhatIf { before, beside, current };
+            let mut harness = Harness::new_ui_state(
+                |ui, commands| leaderboard(ui, &lanes, &mode, 0, 0.0, false, commands),
+                Vec::new(),
+            );
+            assert_eq!(harness.query_by_label(NEXT_LANE).is_some(), says_so);
+            assert_eq!(harness.query_by_label("Try another").is_some(), !says_so);
+            assert!(harness.query_by_label("Keep climber").is_none(), "it is no copy");
+            harness.get_by_label("Keep glue").click();
+            harness.run();
+            assert_eq!(*harness.state(), [Command::Plan(PlanCommand::KeepLane(2))]);
         }
     }
 

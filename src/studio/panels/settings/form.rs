@@ -1,8 +1,8 @@
 //! Controls of settings, and the values being dragged or typed.
 //!
-//! A change also starts a what-if lane on the stage. So that a drag does not restart it with every pixel, a slider
-//! takes effect on release or after a short rest. Typed text takes effect when its field loses focus; invalid text
-//! stays, with the reason below it.
+//! A change of the world also starts a what-if lane on the stage. So that a drag does not restart it with every pixel,
+//! a slider takes effect in intervals: see [`Changing::takes_effect`]. Typed text takes effect when its field loses
+//! focus; invalid text stays, with the reason below it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,6 +12,7 @@ use bevy_egui::egui;
 use super::columns::{Columns, Part};
 use super::folds::Folds;
 use super::sections_of;
+use super::slider::Changing;
 use super::validation::Check;
 use super::values::Values;
 use crate::schema::{ListedSetting, Section, Setting, SettingKind};
@@ -33,17 +34,6 @@ pub struct Sheet {
     pub(super) folds: Folds,
     /// The setting whose sweep was asked for in this frame.
     pub(super) swept: Option<String>,
-}
-
-/// A slider being dragged.
-#[derive(Debug)]
-pub(super) struct Changing {
-    /// Id of the control.
-    pub id: String,
-    /// Current value.
-    pub so_far: f32,
-    /// Time of the last change, in seconds.
-    pub since_s: f64,
 }
 
 /// Text that has not taken effect.

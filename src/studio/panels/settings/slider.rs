@@ -1,14 +1,45 @@
-//! Sliders of settings. A slider takes effect when it is released or rests.
+//! Sliders of settings. A slider takes effect while it is dragged, if it changes the world, and else when it rests or is
+//! released.
 
 use bevy_egui::egui;
 
-use super::form::{Changing, Sheet};
+use super::form::Sheet;
 use super::number::Control;
 use super::scale::Scale;
 use super::values::rounded;
 
 /// Time without movement after which a slider takes effect, in seconds.
 const REST_S: f64 = 0.35;
+/// The same for a setting of the world, whose effect is seen on the stage.
+const SETTLED_S: f64 = 0.12;
+/// Time after which a setting of the world takes effect even while its slider moves, in seconds: long enough to see
+/// the snake react.
+const MOVING_S: f64 = 0.3;
+
+/// A slider being dragged.
+#[derive(Debug)]
+pub(super) struct Changing {
+    /// Id of the control.
+    pub id: String,
+    /// Current value.
+    pub so_far: f32,
+    /// Time of the last change, in seconds.
+    moved_s: f64,
+    /// Time at which it last took effect or, if it has not, of its first change, in seconds.
+    effective_s: f64,
+    /// Whether the current value has taken effect.
+    is_effective: bool,
+}
+
+impl Changing {
+    /// Whether the current value takes effect now although the slider is still held.
+    fn takes_effect(&self, now_s: f64) -> bool {
+        let is_of_world = self.id.starts_with("trial.");
+        let is_settled = now_s - self.moved_s > if is_of_world { SETTLED_S } else { REST_S };
+        let is_due = is_of_world && now_s - self.effective_s > MOVING_S;
+        !self.is_effective && (is_settled || is_due)
+    }
+}
 
 impl Sheet {
     /// A slider with marks. Returns the setting's text on release or rest.
@@ -41,28 +72,30 @@ impl Sheet {
             so_far = scale.settled(so_far, before, is_dragged);
             // Within the part of the rail that stands for zero, the pointer moves and the value rests.
             if so_far != before {
-                let id = control.id.to_owned();
-                self.changing = Some(Changing { id, so_far, since_s: now_s });
+                let earlier = self.changing.take().filter(|changing| changing.id == control.id);
+                self.changing = Some(Changing {
+                    id: control.id.to_owned(),
+                    so_far,
+                    moved_s: now_s,
+                    effective_s: earlier.map_or(now_s, |changing| changing.effective_s),
+                    is_effective: false,
+                });
             }
         }
-        let since_s = match &self.changing {
-            Some(changing) if changing.id == control.id => changing.since_s,
-            _ => return None,
-        };
+        let changing = self.changing.as_mut().filter(|changing| changing.id == control.id)?;
         // With the arrow keys it has the focus and is never released.
         let is_held = response.dragged() || response.has_focus();
-        let rests = is_held && now_s - since_s > REST_S;
+        if is_held && !changing.takes_effect(now_s) {
+            return None;
+        }
+        let was_effective = std::mem::replace(&mut changing.is_effective, true);
+        changing.effective_s = now_s;
         if !is_held {
             self.changing = None;
         }
         let text = rounded(so_far);
-        if (is_held && !rests) || text == rounded(value) {
+        if was_effective || text == rounded(value) {
             return None;
-        }
-        if rests {
-            // Only once, until it is moved again.
-            let id = control.id.to_owned();
-            self.changing = Some(Changing { id, so_far, since_s: f64::INFINITY });
         }
         match (control.check)(&text) {
             Ok(text) => {
@@ -74,5 +107,77 @@ impl Sheet {
                 None
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::commands::{Command, PlanCommand};
+    use crate::studio::panels::settings::sections_of;
+    use crate::studio::state::current_run::{CurrentRun, prepared_run};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// Drags a setting's slider for this number of frames, a sixtieth of a second each, of which the first `moving`
+    /// move it. Returns the values that took effect while it was held, and those after it was released.
+    fn dragged(field: &'static str, label: &str, moving: usize, frames: usize) -> [Vec<f32>; 2] {
+        type State = (CurrentRun, Vec<f32>);
+        let mut sheet = Sheet::default();
+        let ui = move |ui: &mut egui::Ui, (run, taken): &mut State| {
+            sheet.begin(ui, run);
+            let mut commands = Vec::new();
+            let listed = sheet.values.listed().iter().filter(|listed| listed.path == field);
+            for section in sections_of(listed) {
+                sheet.entries(ui, run, section, |listed| listed.path == field, &mut commands);
+            }
+            for command in commands {
+                let Command::Plan(PlanCommand::SetField { field, text }) = command else {
+                    panic!("{command:?}")
+                };
+                run.set_field(&field, &text).expect("allowed");
+                taken.push(text.parse().expect("a number"));
+            }
+        };
+        let builder = Harness::builder().with_size(egui::vec2(400.0, 200.0));
+        let mut harness =
+            builder.with_step_dt(1.0 / 60.0).build_ui_state(ui, (prepared_run(), Vec::new()));
+        let rail = harness.get_by_role_and_label(egui::accesskit::Role::Slider, label).rect();
+        let at = |share: f32| rail.lerp_inside(egui::vec2(share, 0.5));
+        harness.drag_at(at(0.2));
+        harness.run_steps(1);
+        for frame in 0..frames {
+            let share = 0.2 + 0.6 * (frame.min(moving) as f32 / moving as f32);
+            harness.hover_at(at(share));
+            harness.run_steps(1);
+        }
+        let held = std::mem::take(&mut harness.state_mut().1);
+        harness.drop_at(at(0.8));
+        harness.run_steps(4);
+        [held, harness.state().1.clone()]
+    }
+
+    #[test]
+    fn a_setting_of_the_world_takes_effect_while_its_slider_moves() {
+        let [held, released] = dragged("trial.surface.bounce", "Bounce", 60, 60);
+        assert!((3..=4).contains(&held.len()), "about three times in a second: {held:?}");
+        assert!(held.windows(2).all(|pair| pair[0] < pair[1]), "it follows: {held:?}");
+        assert_eq!(released.len(), 1, "and the last value on release");
+        assert!(released[0] > held[held.len() - 1]);
+    }
+
+    #[test]
+    fn a_setting_of_the_world_takes_effect_once_when_its_slider_rests() {
+        let [held, released] = dragged("trial.surface.bounce", "Bounce", 6, 20);
+        assert_eq!((held.len(), released.len()), (1, 0), "{held:?}, {released:?}");
+    }
+
+    #[test]
+    fn other_settings_wait_until_their_slider_rests_or_is_released() {
+        let field = "evolution.cma_es.step";
+        let [held, released] = dragged(field, "Initial step size", 60, 60);
+        assert_eq!((held.len(), released.len()), (0, 1));
+        let [held, released] = dragged(field, "Initial step size", 6, 40);
+        assert_eq!((held.len(), released.len()), (1, 0));
     }
 }

@@ -181,13 +181,19 @@ fn release(
     }
 }
 
-/// Clears the selection when other lanes take the stage. In a race, it selects the leader.
+/// Clears the selection when other lanes take the stage. In a race, it selects the leader; in a what-if, the latest
+/// copy, and the same limb as before.
 fn clear_selection(
     mut selection: ResMut<Selection>,
     mode: Res<StageMode>,
     added: Query<&Lane, Added<Lane>>,
 ) {
     if added.is_empty() {
+        return;
+    }
+    if matches!(*mode, StageMode::WhatIf { .. }) {
+        // It starts over with every change.
+        selection.lane = added.iter().map(Lane::number).max().unwrap_or_default();
         return;
     }
     selection.reset();

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::evolve::{RunPlan, Settings, fields, with_fields};
 use crate::score::Trial;
-use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
+use crate::studio::state::what_if::ChangedStage;
 use crate::studio::state::wording::world_in_words;
 
 /// The champions to show after the plan changed from `from` to `to`: the settings of the world that differ also change
@@ -14,37 +14,31 @@ use crate::studio::state::wording::world_in_words;
 /// # Errors
 /// The champion on the stage does not fit the new world.
 pub(crate) fn followed(
-    on_show: &[StagedChampion],
-    mode: &StageMode,
+    stage: ChangedStage,
     from: &RunPlan,
     to: &RunPlan,
 ) -> Result<Option<Show>, String> {
-    let Some(first) = on_show.first() else { return Ok(None) };
-    let changed = on_show.last().unwrap_or(first);
-    let (original, begins, shown) = match mode {
+    let Some(first) = stage.on_show.first() else { return Ok(None) };
+    let shown = stage.current().unwrap_or(first);
+    let (original, begins) = match stage.mode {
         // A race has no lane to which a change belongs.
         StageMode::Race => return Ok(None),
-        StageMode::WhatIf { before } => (first.clone(), Some(&**before), changed),
-        StageMode::Solo | StageMode::Generation { .. } => (first.simulated(), None, first),
+        StageMode::WhatIf { before, .. } => (first.clone(), Some(&**before)),
+        StageMode::Solo | StageMode::Generation { .. } => (first.simulated(), None),
     };
     let trial = taken_over(shown.trial(), original.trial(), begins, from, to)
         .map_err(|reason| unsuited(&reason))?;
     if trial == *shown.trial() {
         return Ok(None);
     }
-    if trial == *original.trial() {
-        return Ok(Some(Show::solo(original)));
-    }
     let label = world_in_words(&original.champion().trial, &trial);
-    let restored = original.in_world(&trial, label);
-    restored.check().map_err(|reason| unsuited(&reason.to_string()))?;
     if begins.is_none() && first.is_changed() {
         // After a change was kept, its lane is alone, and undo changes its world in place.
+        let restored = original.in_world(&trial, label);
+        restored.check().map_err(|reason| unsuited(&reason.to_string()))?;
         return Ok(Some(Show::solo(restored)));
     }
-    let before = Box::new(begins.unwrap_or(from).clone());
-    let mode = StageMode::WhatIf { before };
-    Ok(Some(Show { champions: vec![original, restored], mode }))
+    stage.with_world(from, &trial, label).map(Some)
 }
 
 fn unsuited(reason: &str) -> String {
@@ -107,8 +101,14 @@ fn stays_with_a_preset(field: &str) -> bool {
 mod tests {
     use super::*;
     use crate::save::shipped_champion;
+    use crate::studio::stage::staged_champion::StagedChampion;
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
-    use crate::studio::state::what_if::{WorldChange, dropped, what_if};
+    use crate::studio::state::what_if::{WorldChange, another_beside, dropped, what_if};
+
+    /// The stage with these champions, whose changes are tried from the start.
+    fn stage<'a>(on_show: &'a [StagedChampion], mode: &'a StageMode) -> ChangedStage<'a> {
+        ChangedStage { on_show, mode, moment: None }
+    }
 
     fn saved() -> StagedChampion {
         StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
@@ -123,7 +123,7 @@ mod tests {
         text: &str,
     ) -> (RunPlan, Show) {
         let before = run.next_plan().clone();
-        let show = what_if(run, on_show, mode, &WorldChange::Fields(vec![(field, text)]));
+        let show = what_if(run, stage(on_show, mode), &WorldChange::Fields(vec![(field, text)]));
         (before, show.expect("allowed").expect("it matters"))
     }
 
@@ -134,19 +134,45 @@ mod tests {
             change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
         let (one, second) = change(&mut run, &first.champions, &first.mode, "stairs.rise_m", "0.7");
         let two = run.next_plan().clone();
-        let back = followed(&second.champions, &second.mode, &two, &one);
+        let back = followed(stage(&second.champions, &second.mode), &two, &one);
         let back = back.expect("fits").expect("the rise differs");
         assert_eq!(back.champions[1].trial(), first.champions[1].trial());
         assert_eq!(back.champions[1].label(), "friction 0.3");
-        let end = followed(&back.champions, &back.mode, &one, &start);
+        let end = followed(stage(&back.champions, &back.mode), &one, &start);
         let end = end.expect("fits").expect("the friction differs");
         assert_eq!((end.champions.len(), &end.mode), (1, &StageMode::Solo));
         assert_eq!(end.champions[0].trial(), saved().trial());
         // Redo.
-        let forth = followed(&end.champions, &end.mode, &start, &one);
+        let forth = followed(stage(&end.champions, &end.mode), &start, &one);
         let forth = forth.expect("fits").expect("the friction differs");
         assert_eq!(forth.champions[1].trial(), first.champions[1].trial());
-        assert_eq!(forth.mode, StageMode::WhatIf { before: Box::new(start) });
+        assert_eq!(forth.mode, StageMode::what_if(start));
+    }
+
+    #[test]
+    fn a_lane_that_stays_is_left_alone_by_undo() {
+        let mut run = prepared_run();
+        let (start, tried) =
+            change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
+        let fixed = another_beside(&run, tried.champions, &tried.mode).expect("there is a copy");
+        let (one, three) = change(&mut run, &fixed.champions, &fixed.mode, "surface.friction", "2");
+        let labels = |show: &Show| -> Vec<String> {
+            show.champions.iter().map(|staged| staged.label().to_owned()).collect()
+        };
+        assert_eq!(labels(&three), ["climber", "friction 0.3", "friction 2"]);
+        let two = run.next_plan().clone();
+        let back = followed(stage(&three.champions, &three.mode), &two, &one);
+        let back = back.expect("fits").expect("the friction differs");
+        assert_eq!(labels(&back), ["climber", "friction 0.3"]);
+        // Further back the next run has the world of the original, and the copy still stays.
+        let first = followed(stage(&back.champions, &back.mode), &one, &start);
+        let first = first.expect("fits").expect("another lane is current");
+        assert_eq!(labels(&first), ["climber", "friction 0.3"]);
+        let StageMode::WhatIf { current, .. } = first.mode else { panic!("a what-if") };
+        assert_eq!(current, 0);
+        let forth = followed(stage(&first.champions, &first.mode), &start, &two);
+        let forth = forth.expect("fits").expect("the friction differs");
+        assert_eq!(labels(&forth), ["climber", "friction 0.3", "friction 2"]);
     }
 
     #[test]
@@ -156,7 +182,7 @@ mod tests {
         let changed = run.next_plan().clone();
         let alone = dropped(&mut run, &tried.champions, &tried.mode).expect("allowed");
         let alone = alone.expect("the original");
-        let again = followed(&alone.champions, &alone.mode, run.next_plan(), &changed);
+        let again = followed(stage(&alone.champions, &alone.mode), run.next_plan(), &changed);
         let again = again.expect("fits").expect("the friction differs");
         assert_eq!(again.champions[1].label(), "friction 0.3");
     }
@@ -167,7 +193,7 @@ mod tests {
         let (start, tried) =
             change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
         let kept = tried.champions[1].clone();
-        let back = followed(&[kept], &StageMode::Solo, run.next_plan(), &start);
+        let back = followed(stage(&[kept], &StageMode::Solo), run.next_plan(), &start);
         let back = back.expect("fits").expect("the friction differs");
         assert_eq!((back.champions.len(), back.mode), (1, StageMode::Solo));
         assert_eq!(
@@ -182,7 +208,7 @@ mod tests {
         let (start, tried) =
             change(&mut run, &[saved()], &StageMode::Solo, "ground.friction", "0.1");
         let plan = run.next_plan().clone();
-        let back = followed(&tried.champions, &tried.mode, &plan, &start);
+        let back = followed(stage(&tried.champions, &tried.mode), &plan, &start);
         let back = back.expect("fits").expect("the ground differs");
         assert_eq!(back.champions[0].trial().ground, saved().trial().ground);
         assert_eq!(back.mode, StageMode::Solo);
@@ -192,9 +218,10 @@ mod tests {
     fn undoing_a_preset_restores_the_world() {
         let mut run = prepared_run();
         let before = run.next_plan().clone();
-        let show = what_if(&mut run, &[saved()], &StageMode::Solo, &WorldChange::Preset("ice"));
+        let show =
+            what_if(&mut run, stage(&[saved()], &StageMode::Solo), &WorldChange::Preset("ice"));
         let show = show.expect("allowed").expect("another world");
-        let back = followed(&show.champions, &show.mode, run.next_plan(), &before);
+        let back = followed(stage(&show.champions, &show.mode), run.next_plan(), &before);
         let back = back.expect("fits").expect("another world");
         assert_eq!((back.champions.len(), back.champions[0].trial()), (1, saved().trial()));
     }
@@ -204,11 +231,11 @@ mod tests {
         let mut run = prepared_run();
         let before = run.next_plan().clone();
         run.set_population(9).expect("allowed");
-        let shown = followed(&[saved()], &StageMode::Solo, &before, run.next_plan());
+        let shown = followed(stage(&[saved()], &StageMode::Solo), &before, run.next_plan());
         assert!(shown.expect("fits").is_none());
         run.set_field("surface.friction", "0.3").expect("allowed");
         let race = [saved(), saved()];
-        let shown = followed(&race, &StageMode::Race, &before, run.next_plan());
+        let shown = followed(stage(&race, &StageMode::Race), &before, run.next_plan());
         assert!(shown.expect("fits").is_none());
     }
 }

@@ -1,0 +1,244 @@
+//! A rollout whose trial changes on the way: the same moment and state, then another world.
+
+use std::sync::Arc;
+
+use super::Rollout;
+use crate::genome::Genome;
+use crate::score::{Fitness, Trial};
+use crate::world::{Discontinuity, WorldPlan};
+
+/// The conditions of a rollout: the part of its trial that is needed at every step.
+pub(super) struct Conditions {
+    pub world: WorldPlan,
+    pub fitness: Fitness,
+    pub energy_cost_per_kj: f32,
+    pub last_step: u32,
+}
+
+impl Conditions {
+    /// The conditions of a trial in this world.
+    pub fn of(trial: &Trial, world: WorldPlan) -> Self {
+        Self {
+            world,
+            fitness: trial.fitness,
+            energy_cost_per_kj: trial.energy_cost_per_kj,
+            last_step: trial.steps(),
+        }
+    }
+}
+
+/// New conditions from a step on.
+#[derive(Clone)]
+pub(super) struct TrialChange {
+    at_step: u32,
+    to: Arc<Conditions>,
+}
+
+impl TrialChange {
+    /// Number of steps of the whole rollout.
+    pub fn last_step(&self) -> u32 {
+        self.to.last_step
+    }
+}
+
+impl Rollout {
+    /// Whether this rollout of a genome can continue in another trial, in its present state.
+    ///
+    /// # Errors
+    /// The reason, if it cannot.
+    pub fn can_continue(&self, genome: &Genome, trial: &Trial) -> Result<(), Discontinuity> {
+        let world = trial.world_plan(genome);
+        self.simulation.can_continue(&self.conditions.world, &world)?;
+        if self.is_over() || self.step >= trial.steps() {
+            Err(Discontinuity::Duration)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The same rollout of a genome with another trial from `step` on, which must not be past: limbs, controller,
+    /// energy and furthest position go on from their state at that moment.
+    ///
+    /// Its evaluation is that of no trial, and must not be compared with a record.
+    ///
+    /// # Errors
+    /// The reason, if worlds like these cannot continue one another at any moment. Other stairs also depend on the
+    /// moment: see [`Self::can_continue`].
+    pub fn changing_at(
+        mut self,
+        step: u32,
+        genome: &Genome,
+        trial: &Trial,
+    ) -> Result<Self, Discontinuity> {
+        let to = Conditions::of(trial, trial.world_plan(genome));
+        self.conditions.world.can_continue(&to.world)?;
+        if step < self.step || step >= to.last_step {
+            return Err(Discontinuity::Duration);
+        }
+        self.change = Some(TrialChange { at_step: step, to: Arc::new(to) });
+        Ok(self)
+    }
+
+    /// Takes over new conditions if their step has come.
+    pub(super) fn enter_change(&mut self) {
+        if let Some(change) = self.change.take_if(|change| change.at_step == self.step) {
+            self.simulation = self.simulation.continued_in(&change.to.world);
+            self.conditions = change.to;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{Champion, Settings, with_fields};
+    use crate::save::shipped_champion;
+
+    fn champion() -> Champion {
+        shipped_champion().expect("well formed").champion
+    }
+
+    /// The champion's trial with other values.
+    fn with(trial: &Trial, changes: &[(&str, &str)]) -> Trial {
+        let settings = Settings { trial: trial.clone(), ..Settings::default() };
+        with_fields(&settings, changes.iter().copied()).expect("allowed").trial
+    }
+
+    /// A rollout after this number of steps.
+    fn after(mut rollout: Rollout, step: u32) -> Rollout {
+        while rollout.step() < step {
+            assert!(rollout.advance());
+        }
+        rollout
+    }
+
+    /// Everything that an end shows: the trace covers the pose of every limb after every step.
+    fn end(mut rollout: Rollout) -> crate::score::Evaluation {
+        while rollout.advance() {}
+        rollout.evaluation()
+    }
+
+    #[test]
+    fn continued_in_an_unchanged_world_a_rollout_keeps_its_bits() {
+        let Champion { genome, trial, evaluation, .. } = champion();
+        for step in [0, 1, 200, 437, trial.steps() - 1] {
+            let same = Rollout::new(&genome, &trial).changing_at(step, &genome, &trial);
+            assert_eq!(end(same.expect("the same world")), evaluation, "at step {step}");
+            // Without the contacts that the engine holds, it would differ.
+            let given = after(Rollout::new(&genome, &trial), step);
+            let given = given.changing_at(step, &genome, &trial).expect("the same world");
+            assert_eq!(end(given), evaluation, "from step {step}");
+        }
+    }
+
+    /// Changes of which each needs another part of the engine's world to be replaced.
+    const CHANGES: [&[(&str, &str)]; 12] = [
+        &[("surface.friction", "0.3")],
+        &[("surface.bounce", "0.5")],
+        &[("surface.soft_cfm_m_s_per_n", "0.001")],
+        &[("surface.slip_m_s_per_n", "0.001")],
+        &[("surface.dampen_per_s", "3")],
+        &[("ground.soft_cfm_m_s_per_n", "0.001")],
+        &[("gravity_m_s2", "1.6")],
+        &[("agent.density_kg_m3", "7")],
+        &[("agent.bend_limit_rad", "0.2")],
+        &[("joint_damping_nms_per_rad", "3")],
+        &[("angular_damping_per_s", "4")],
+        &[("substeps", "9"), ("joint_cfm_m_s_per_n", "0.0001")],
+    ];
+
+    #[test]
+    fn a_change_before_the_first_step_is_a_rollout_of_the_other_trial() {
+        let Champion { genome, trial, .. } = champion();
+        for changes in CHANGES {
+            let other = with(&trial, changes);
+            let changed = Rollout::new(&genome, &trial).changing_at(0, &genome, &other);
+            let whole = Rollout::new(&genome, &other);
+            assert_eq!(end(changed.expect("continues")), end(whole), "{changes:?}");
+        }
+    }
+
+    #[test]
+    fn until_the_change_a_rollout_is_the_original_and_then_every_change_has_an_effect() {
+        let Champion { genome, trial, .. } = champion();
+        let original = after(Rollout::new(&genome, &trial), 300);
+        for changes in CHANGES {
+            let other = with(&trial, changes);
+            let changed = Rollout::new(&genome, &trial).changing_at(300, &genome, &other);
+            let mut changed = after(changed.expect("continues"), 300);
+            assert_eq!(changed.evaluation().trace_hash, original.evaluation().trace_hash);
+            assert_eq!(original.can_continue(&genome, &other), Ok(()), "{changes:?}");
+            let mut beside = original.clone();
+            let speed =
+                |rollout: &Rollout| -> Vec<f32> { rollout.simulation().speeds_m_s().collect() };
+            assert_eq!(speed(&changed), speed(&beside));
+            assert!(changed.advance() && beside.advance());
+            // Within a step nothing can jump: limbs go on from where and how they were.
+            for (a, b) in changed.poses().iter().zip(beside.poses()) {
+                assert!(a.translation.distance(b.translation) < 0.05, "{changes:?}");
+            }
+            while changed.advance() && beside.advance() {}
+            assert_ne!(changed.poses(), beside.poses(), "{changes:?}");
+        }
+    }
+
+    #[test]
+    fn other_friction_takes_effect_at_once_on_limbs_that_rest() {
+        // Contacts of resting limbs are recycled by the engine with their friction.
+        let Champion { genome, trial, .. } = champion();
+        let still = with(&trial, &[("max_bend_torque_nm", "0"), ("max_twist_torque_nm", "0")]);
+        let resting = after(Rollout::new(&genome, &still), 120);
+        let slid_m = |friction: &str| {
+            let pushed = with(&still, &[("surface.friction", friction)]);
+            let mut pushed = resting.clone().changing_at(120, &genome, &pushed).expect("continues");
+            assert!(pushed.advance());
+            let from_m = pushed.middle_m();
+            let bodies = &mut pushed.simulation.physics_mut().bodies;
+            bodies.iter_mut().for_each(|(_, limb)| {
+                limb.set_linvel(crate::world::Vector::new(0.3, 0.0, 0.0), true);
+            });
+            (0..10).for_each(|_| assert!(pushed.advance()));
+            pushed.middle_m().distance(from_m)
+        };
+        let (stuck_m, slid_m) = (slid_m("5"), slid_m("0"));
+        assert!(slid_m > 0.045 && stuck_m < 0.01, "{slid_m} m on ice, {stuck_m} m on glue");
+    }
+
+    #[test]
+    fn a_state_that_does_not_fit_the_other_trial_is_refused_with_the_reason() {
+        let Champion { genome, trial, .. } = champion();
+        let (early, late) = (
+            after(Rollout::new(&genome, &trial), 10),
+            after(Rollout::new(&genome, &trial), trial.steps() - 1),
+        );
+        for (changes, of_early, of_late) in [
+            (("agent.limb_width_m", "2"), Err(Discontinuity::Body), Err(Discontinuity::Body)),
+            (("steps_per_s", "61"), Err(Discontinuity::StepLength), Err(Discontinuity::StepLength)),
+            (("trial.start_y_m", "-9"), Err(Discontinuity::Start), Err(Discontinuity::Start)),
+            (("stairs.rise_m", "0.7"), Ok(()), Err(Discontinuity::Stairs)),
+            (("trial.duration_s", "5"), Ok(()), Err(Discontinuity::Duration)),
+            (("trial.duration_s", "20"), Ok(()), Ok(())),
+        ] {
+            let other = with(&trial, &[changes]);
+            assert_eq!(early.can_continue(&genome, &other), of_early, "{changes:?} early");
+            assert_eq!(late.can_continue(&genome, &other), of_late, "{changes:?} late");
+        }
+    }
+
+    #[test]
+    fn before_other_stairs_are_reached_the_snake_goes_on_towards_them() {
+        let Champion { genome, trial, .. } = champion();
+        let lower = with(&trial, &[("stairs.rise_m", "0.1")]);
+        let mut rollout = after(Rollout::new(&genome, &trial), 10);
+        let mut changed = rollout.clone().changing_at(10, &genome, &lower).expect("continues");
+        assert!(changed.advance() && rollout.advance());
+        assert_eq!(changed.stairs(), &lower.stairs);
+        // The world is built anew there, without the impulses of the engine's last step.
+        for (a, b) in changed.poses().iter().zip(rollout.poses()) {
+            let apart_m = a.translation.distance(b.translation);
+            assert!(apart_m < 0.005, "{apart_m} m after a step");
+        }
+        while changed.advance() {}
+        assert_eq!(changed.step(), lower.steps());
+    }
+}

@@ -1,0 +1,122 @@
+//! Changes of the next run's plan and their effect on the stage.
+//!
+//! A change of the world is tried from a moment on. The first change takes the moment that the clock shows; the changes
+//! after it take the same, so that their effects can be compared, until the user goes to another moment.
+
+use super::StageParams;
+use crate::run::caught;
+use crate::score::Rollout;
+use crate::studio::commands::PlanCommand;
+use crate::studio::stage::opening::OpeningChampions;
+use crate::studio::stage::{Show, StageMode};
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::state::library::Library;
+use crate::studio::state::plan_commands::apply_to_plan;
+use crate::studio::state::undo::{PlanStep, UndoDirection, UndoHistory, followed, stepped};
+use crate::studio::state::what_if::ChangedStage;
+use crate::studio::ui::notifications::Notices;
+
+/// The moment from which a change is tried.
+struct TriedMoment {
+    /// In simulated seconds.
+    time_s: f64,
+    /// The rollout of the original at that moment; `None` at its start.
+    rollout: Option<Rollout>,
+}
+
+impl StageParams<'_, '_> {
+    /// Executes a command to the plan of the next run, and shows its effect.
+    pub fn apply_to_plan(
+        &mut self,
+        command: &PlanCommand,
+        run: &mut CurrentRun,
+        saves: (&Library, &OpeningChampions),
+        history: &UndoHistory,
+        notices: &mut Notices,
+    ) -> Result<(), String> {
+        let (on_show, mode) = (self.champions_to_change(), self.mode.clone());
+        let is_tried = matches!(
+            command,
+            PlanCommand::SetField { .. } | PlanCommand::SetFields(_) | PlanCommand::SetPreset(_)
+        );
+        let moment = is_tried.then(|| self.moment(history));
+        let rollout = moment.as_ref().and_then(|moment| moment.rollout.as_ref());
+        let stage = ChangedStage { on_show: &on_show, mode: &mode, moment: rollout };
+        let show = apply_to_plan(command, run, saves, stage, notices)?;
+        match (command, moment) {
+            (_, Some(moment)) => self.present_change(show, &moment),
+            // The lanes that stay go on.
+            (PlanCommand::DropChange, _) => {
+                self.following.stop();
+                self.show.write_batch(show);
+            }
+            _ => self.present(show),
+        }
+        Ok(())
+    }
+
+    /// Undoes or redoes a change of the plan, and updates the stage.
+    pub fn step(
+        &mut self,
+        run: &mut CurrentRun,
+        step: &PlanStep,
+        way: UndoDirection,
+        history: &UndoHistory,
+    ) -> Result<(), String> {
+        let PlanStep { before, after, .. } = step;
+        let (from, to) = if way == UndoDirection::Back { (after, before) } else { (before, after) };
+        let now = run.next_plan().clone();
+        let next = stepped(&now, from, to);
+        if step.is_of_another_run() {
+            run.set_next_plan_alone(next)?;
+        } else {
+            run.set_next_plan(next)?;
+        }
+        let moment = self.moment(history);
+        let (on_show, rollout) = (self.champions(), moment.rollout.as_ref());
+        let stage = ChangedStage { on_show: &on_show, mode: &self.mode, moment: rollout };
+        let show = followed(stage, &now, run.next_plan())?;
+        self.present_change(show, &moment);
+        Ok(())
+    }
+
+    /// The moment from which a change is tried now.
+    fn moment(&self, history: &UndoHistory) -> TriedMoment {
+        let at_start = TriedMoment { time_s: 0.0, rollout: None };
+        let original = if *self.mode == StageMode::Race { self.selection.lane } else { 0 };
+        let Some(lane) = self.lanes.iter().find(|lane| lane.number() == original) else {
+            return at_start;
+        };
+        // A drag that passes the original value ends the what-if and begins it again.
+        let goes_on = matches!(*self.mode, StageMode::WhatIf { .. }) || history.is_open();
+        let tried_s = self.playback.tried_from_s().filter(|_| goes_on);
+        let time_s = tried_s.unwrap_or(self.playback.time_s());
+        let (step, _) = lane.moment(time_s);
+        let is_over = f64::from(step) * lane.step_s() >= lane.end_s();
+        if step == 0 || is_over {
+            return at_start;
+        }
+        // A genome whose simulation panics is tried from the start, where the stage reports that.
+        let Ok(rollout) = caught(|| lane.rollout_at(step)) else { return at_start };
+        TriedMoment { time_s: f64::from(step) * lane.step_s(), rollout: Some(rollout) }
+    }
+
+    /// Shows the effect of a change from its moment on.
+    fn present_change(&mut self, show: Option<Show>, moment: &TriedMoment) {
+        let Some(show) = show else { return };
+        let current = match show.mode {
+            StageMode::WhatIf { current, .. } => show.champions.get(current),
+            // The original stays alone.
+            _ if matches!(*self.mode, StageMode::WhatIf { .. }) => show.champions.first(),
+            // A kept copy gets another world.
+            _ => return self.present(Some(show)),
+        };
+        self.following.stop();
+        let is_original = current.is_none_or(|staged| Some(staged) == show.champions.first());
+        let is_from_moment =
+            is_original || current.is_some_and(|staged| staged.changes_at_step().is_some());
+        let start_s = if is_from_moment { moment.time_s } else { 0.0 };
+        self.playback.play_change(start_s, moment.time_s);
+        self.show.write(show);
+    }
+}

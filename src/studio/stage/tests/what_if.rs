@@ -1,0 +1,187 @@
+//! Copies that leave the original in the middle of its replay.
+
+use super::*;
+use crate::evolve::{Settings, with_field};
+use crate::score::{Rollout, Trial};
+
+/// Step at which the copies of these tests leave the original.
+const MOMENT: u32 = 312;
+
+fn original() -> StagedChampion {
+    StagedChampion::from_file(&shipped(), 0, "climber")
+}
+
+fn with_friction(text: &str) -> Trial {
+    let settings = Settings { trial: shipped().champion.trial, ..Settings::default() };
+    with_field(&settings, "surface.friction", text).expect("allowed").trial
+}
+
+/// The original's rollout after this number of steps.
+fn original_at(step: u32) -> Rollout {
+    let mut rollout = original().rollout();
+    while rollout.step() < step {
+        assert!(rollout.advance());
+    }
+    rollout
+}
+
+/// A copy with this friction from [`MOMENT`] on.
+fn copy(friction: &str) -> StagedChampion {
+    let label = format!("friction {friction}");
+    original().in_world_from(Some(&original_at(MOMENT)), &with_friction(friction), label)
+}
+
+/// A what-if of the original and copies with these frictions, of which the latest does not stay.
+fn what_if(frictions: &[&str]) -> Show {
+    let plan = RunPlan::new("climb", 1, Settings::default());
+    let mut champions = vec![original()];
+    champions.extend(frictions.iter().map(|friction| copy(friction)));
+    let beside = vec![plan.clone(); frictions.len() - 1];
+    let mode = StageMode::WhatIf { before: Box::new(plan), beside, current: frictions.len() };
+    Show { champions, mode }
+}
+
+fn step_s() -> f64 {
+    1.0 / f64::from(shipped().champion.trial.physics.steps_per_s)
+}
+
+/// Shows champions and plays from [`MOMENT`] on.
+fn present(app: &mut App, show: Show) {
+    app.world_mut().write_message(show);
+    let moment_s = f64::from(MOMENT) * step_s();
+    clock(app).play_change(moment_s, moment_s);
+    frame(app, 0.0);
+}
+
+/// A stage that has played the original to [`MOMENT`].
+fn stage_at_moment() -> App {
+    let mut app = stage_of(vec![shipped()]);
+    finish_lookahead(&mut app);
+    clock(&mut app).hold_at(f64::from(MOMENT) * step_s());
+    frame(&mut app, 0.0);
+    app
+}
+
+/// The lanes by number, with their entities.
+fn lanes_of(app: &mut App) -> Vec<(Entity, &Lane)> {
+    let mut query = app.world_mut().query::<(Entity, &Lane)>();
+    let mut lanes: Vec<_> = query.iter(app.world()).collect();
+    lanes.sort_by_key(|(_, lane)| lane.number());
+    lanes
+}
+
+#[test]
+fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on() {
+    let mut app = stage_at_moment();
+    present(&mut app, what_if(&["0.3"]));
+    let moment_s = f64::from(MOMENT) * step_s();
+    assert!(clock(&mut app).is_playing());
+    assert_eq!(clock(&mut app).time_s(), moment_s);
+    let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
+    assert_eq!((first.replay().step(), second.replay().step()), (MOMENT, MOMENT));
+    assert_eq!(first.last_poses(), original_at(MOMENT).poses());
+    assert_eq!(second.last_poses(), first.last_poses());
+    (0..40).for_each(|_| frame(&mut app, 0.05));
+    let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
+    assert_eq!(first.last_poses(), original_at(first.replay().step()).poses());
+    let apart_m = first.drawn_middle().distance(second.drawn_middle());
+    assert!(apart_m > 0.1, "{apart_m} m apart after two seconds on ice");
+}
+
+#[test]
+fn seeking_in_a_copy_shows_the_past_of_the_original_and_always_the_same_bits() {
+    let mut played = copy("0.3").rollout();
+    let mut expected = Vec::new();
+    while played.advance() {
+        expected.push(played.poses().to_vec());
+    }
+    let steps = [MOMENT + 90, 40, MOMENT, MOMENT + 1, MOMENT - 1, MOMENT + 300, MOMENT + 90];
+    for is_history_known in [false, true] {
+        let mut app = stage_at_moment();
+        present(&mut app, what_if(&["0.3"]));
+        if is_history_known {
+            finish_lookahead(&mut app);
+        }
+        for step in steps {
+            clock(&mut app).hold_at(f64::from(step) * step_s());
+            frame(&mut app, 0.0);
+            let lanes = lanes_of(&mut app);
+            let shown = lanes[1].1;
+            assert_eq!(shown.replay().step(), step);
+            assert_eq!(shown.last_poses(), expected[step as usize - 1], "step {step}");
+            if step <= MOMENT {
+                assert_eq!(shown.last_poses(), original_at(step).poses(), "step {step}");
+            }
+        }
+    }
+}
+
+#[test]
+fn while_a_copy_starts_over_the_other_lanes_stay() {
+    let mut app = stage_at_moment();
+    present(&mut app, what_if(&["0.3", "2"]));
+    let entities: Vec<Entity> = lanes_of(&mut app).iter().map(|(entity, _)| *entity).collect();
+    finish_lookahead(&mut app);
+    (0..10).for_each(|_| frame(&mut app, 0.05));
+    present(&mut app, what_if(&["0.3", "3"]));
+    let lanes = lanes_of(&mut app);
+    let [(first, original), (second, fixed), (third, changed)] = lanes[..] else {
+        panic!("three lanes")
+    };
+    assert_eq!([first, second], entities[..2]);
+    assert_ne!(third, entities[2]);
+    assert_eq!(changed.staged().label(), "friction 3");
+    for lane in [original, fixed, changed] {
+        assert_eq!(lane.replay().step(), MOMENT);
+        assert_eq!(lane.last_poses(), original_at(MOMENT).poses());
+    }
+    assert!(original.history().is_some() && fixed.history().is_some(), "not computed again");
+}
+
+#[test]
+fn the_end_of_a_copy_is_not_compared_with_the_record() {
+    let mut app = stage_at_moment();
+    present(&mut app, what_if(&["0.3"]));
+    finish_lookahead(&mut app);
+    clock(&mut app).hold_at(1.0e9);
+    (0..5).for_each(|_| frame(&mut app, 0.1));
+    let lanes = lanes_of(&mut app);
+    assert!(lanes.iter().all(|(_, lane)| lane.is_over()));
+    let ends = lanes.iter().map(|(_, lane)| lane.evaluation());
+    let recorded = shipped().champion.evaluation;
+    let agree: Vec<bool> = ends.map(|end| end.agrees_with(&recorded)).collect();
+    assert_eq!(agree, [true, false]);
+    assert_eq!(app.world().resource::<Notices>().len(), 0, "no message about a difference");
+}
+
+#[test]
+fn a_copy_starts_at_the_moment_without_simulating_its_past() {
+    // Ten minutes with the moment near the end: simulating its past would take hundreds of frames of steps.
+    let mut long = shipped();
+    long.champion.trial.duration_s = 600.0;
+    let mut app = stage_of(vec![long.clone()]);
+    finish_lookahead(&mut app);
+    let moment_s = 590.0;
+    clock(&mut app).hold_at(moment_s);
+    frame(&mut app, 0.0);
+    let original = StagedChampion::from_file(&long, 0, "a champion");
+    let step = lane(&mut app).replay().step();
+    let moment = lane(&mut app).rollout_at(step);
+    let settings = Settings { trial: long.champion.trial, ..Settings::default() };
+    let copies = ["0.3", "0.4", "0.5"].map(|friction| {
+        let trial = with_field(&settings, "surface.friction", friction).expect("allowed").trial;
+        let copy = original.in_world_from(Some(&moment), &trial, friction.to_owned());
+        let mode = StageMode::what_if(RunPlan::new("climb", 1, Settings::default()));
+        Show { champions: vec![original.clone(), copy], mode }
+    });
+    for show in copies {
+        let started = std::time::Instant::now();
+        app.world_mut().write_message(show);
+        clock(&mut app).play_change(moment_s, moment_s);
+        frame(&mut app, 0.0);
+        println!("a new copy after {:?}", started.elapsed());
+        let lanes = lanes_of(&mut app);
+        let steps: Vec<u32> = lanes.iter().map(|(_, lane)| lane.replay().step()).collect();
+        assert_eq!(steps, [step; 2], "both are there within one frame");
+    }
+}

@@ -1,0 +1,177 @@
+//! A running world, continued under another plan.
+
+use rapier3d::prelude::*;
+
+use super::{Simulation, WorldPlan};
+use crate::world::{BodyPlan, PhysicsWorld};
+
+/// Why a running world cannot continue under another plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Discontinuity {
+    /// The snake has another number, size or arrangement of limbs.
+    Body,
+    /// A step has another length, so the steps of both worlds have different times.
+    StepLength,
+    /// The snake starts elsewhere, which is over.
+    Start,
+    /// The stairs have another shape, and a limb has reached them: it could be inside a step.
+    Stairs,
+    /// The other trial is over by then.
+    Duration,
+}
+
+impl Discontinuity {
+    /// The reason in words, to follow "because ".
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Body => "the snake has another shape",
+            Self::StepLength => "its physics steps have another length",
+            Self::Start => "the snake starts elsewhere",
+            Self::Stairs => "the snake has already reached the stairs",
+            Self::Duration => "its trial is over by then",
+        }
+    }
+}
+
+impl WorldPlan {
+    /// Whether a world of this plan can continue under `next`, whatever its state; the shape of the stairs also
+    /// depends on that: see [`Simulation::can_continue`].
+    ///
+    /// # Errors
+    /// The reason, if it cannot.
+    pub fn can_continue(&self, next: &Self) -> Result<(), Discontinuity> {
+        let start = |plan: &Self| (plan.start_x_m, plan.start_y_m, plan.start_turn_rad);
+        if !self.body.has_shape_of(&next.body) {
+            Err(Discontinuity::Body)
+        } else if self.physics.steps_per_s != next.physics.steps_per_s {
+            Err(Discontinuity::StepLength)
+        } else if start(self) != start(next) {
+            Err(Discontinuity::Start)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+impl BodyPlan {
+    /// Whether limbs have the same sizes and joints connect the same limbs.
+    fn has_shape_of(&self, other: &Self) -> bool {
+        let sizes = |body: &Self| body.limbs.iter().map(|limb| limb.size_m()).collect::<Vec<_>>();
+        let ends = |body: &Self| {
+            body.joints.iter().map(|joint| (joint.parent, joint.child)).collect::<Vec<_>>()
+        };
+        sizes(self) == sizes(other) && ends(self) == ends(other)
+    }
+}
+
+impl Simulation {
+    /// Whether this world, which was built from `plan`, can continue under `next` in its present state.
+    ///
+    /// # Errors
+    /// The reason, if it cannot.
+    pub fn can_continue(&self, plan: &WorldPlan, next: &WorldPlan) -> Result<(), Discontinuity> {
+        plan.can_continue(next)?;
+        let first_riser_y_m = plan.stairs.first_riser_y_m.min(next.stairs.first_riser_y_m);
+        if plan.stairs != next.stairs && self.front_y_m() >= first_riser_y_m {
+            return Err(Discontinuity::Stairs);
+        }
+        Ok(())
+    }
+
+    /// Largest y of any limb, in metres.
+    fn front_y_m(&self) -> f32 {
+        let colliders = self.limbs.iter().map(|&limb| self.physics.bodies[limb].colliders()[0]);
+        let fronts = colliders.map(|limb| self.physics.colliders[limb].compute_aabb().maxs.y);
+        fronts.fold(f32::MIN, f32::max)
+    }
+
+    /// This world in its present state under another plan, for which [`Self::can_continue`] holds. Where only
+    /// materials, masses, limits or the solver differ, the engine's contacts go on, too, so that under an unchanged
+    /// plan the world continues with the bits of this one. A pull by the user ends.
+    pub fn continued_in(&self, plan: &WorldPlan) -> Self {
+        let fresh = Self::new(plan);
+        let mut continued = if self.is_built_like(&fresh) {
+            let mut continued = self.clone();
+            take_parameters(&mut continued.physics, &fresh.physics);
+            continued
+        } else {
+            let mut continued = fresh.clone();
+            for (&old, &new) in self.limbs.iter().zip(&fresh.limbs) {
+                let old = &self.physics.bodies[old];
+                let new = &mut continued.physics.bodies[new];
+                new.set_position(*old.position(), true);
+                new.set_linvel(old.linvel(), true);
+                new.set_angvel(old.angvel(), true);
+            }
+            continued
+        };
+        continued.contacts = fresh.contacts;
+        continued.body = fresh.body;
+        continued.health = fresh.health;
+        continued.arena_front_y_m = fresh.arena_front_y_m;
+        continued.effort = self.effort;
+        continued.pull = None;
+        continued
+    }
+
+    /// Whether both worlds have the same bodies and colliders, except for their parameters.
+    fn is_built_like(&self, other: &Self) -> bool {
+        let are_bodies_equal =
+            self.contacts.laws.ground_is_apart() == other.contacts.laws.ground_is_apart();
+        // Steps have no body. Sizes of the limbs are equal already.
+        let steps = |simulation: &Self| {
+            let colliders = simulation.physics.colliders.iter();
+            let fixed = colliders.filter(|(_, collider)| collider.parent().is_none());
+            fixed
+                .map(|(_, collider)| {
+                    let half_m = collider.shape().as_cuboid().map(|cuboid| cuboid.half_extents);
+                    (*collider.position(), half_m)
+                })
+                .collect::<Vec<_>>()
+        };
+        are_bodies_equal && steps(self) == steps(other)
+    }
+}
+
+/// Gives a world the parameters of another one that is built like it. What is equal is not touched: the engine
+/// computes everything anew that was touched.
+fn take_parameters(physics: &mut PhysicsWorld, from: &PhysicsWorld) {
+    physics.gravity = from.gravity;
+    physics.integration_parameters = from.integration_parameters;
+    for (handle, wanted) in from.colliders.iter() {
+        let present = &physics.colliders[handle];
+        if present.density() != wanted.density() {
+            physics.colliders[handle].set_density(wanted.density());
+        }
+        let material = |of: &Collider| (of.friction(), of.restitution(), of.active_hooks());
+        if material(&physics.colliders[handle]) != material(wanted) {
+            let collider = &mut physics.colliders[handle];
+            collider.set_friction(wanted.friction());
+            collider.set_restitution(wanted.restitution());
+            collider.set_active_hooks(wanted.active_hooks());
+            // A recycled contact would keep the old material. After a change of groups the engine recomputes it.
+            let groups = collider.collision_groups();
+            collider.set_collision_groups(InteractionGroups::none());
+            collider.set_collision_groups(groups);
+        }
+    }
+    for (handle, wanted) in from.bodies.iter() {
+        if physics.bodies[handle].angular_damping() != wanted.angular_damping() {
+            physics.bodies[handle].set_angular_damping(wanted.angular_damping());
+        }
+    }
+    for (handle, wanted) in from.impulse_joints.iter() {
+        let Some(present) = physics.impulse_joints.get(handle) else { continue };
+        // Impulses of the last step are state and stay.
+        let mut data = wanted.data;
+        for axis in 0..data.limits.len() {
+            data.limits[axis].impulse = present.data.limits[axis].impulse;
+            data.motors[axis].impulse = present.data.motors[axis].impulse;
+        }
+        if data != present.data
+            && let Some(joint) = physics.impulse_joints.get_mut(handle, true)
+        {
+            joint.data = data;
+        }
+    }
+}
