@@ -60,7 +60,7 @@ enum Beginning {
     /// From the start, because its state at the moment of the change does not fit the changed world.
     StartBecause(Discontinuity),
     /// From this physics step on, with its state at that moment; before it, in this trial.
-    Step(u32, Trial),
+    Step(u32, Box<Trial>),
 }
 
 impl StagedChampion {
@@ -120,7 +120,7 @@ impl StagedChampion {
     ) -> Self {
         let Some(moment) = moment else { return self.in_world(trial, what_is_other) };
         let beginning = match moment.can_continue(&self.champion.genome, trial) {
-            Ok(()) => Beginning::Step(moment.step(), self.trial().clone()),
+            Ok(()) => Beginning::Step(moment.step(), Box::new(self.trial().clone())),
             Err(reason) => Beginning::StartBecause(reason),
         };
         let is_own = *trial == self.champion.trial;
@@ -134,7 +134,7 @@ impl StagedChampion {
     }
 
     /// The same champion in the same world from the start.
-    pub fn from_start(&self) -> Self {
+    pub fn shown_from_start(&self) -> Self {
         match &self.shown_as {
             ShownAs::Changed(world) => self.in_world(&world.trial, world.what_is_other.clone()),
             ShownAs::Found | ShownAs::Simulated => self.clone(),

@@ -169,7 +169,7 @@ pub(crate) fn dropped(
 /// The lane of a what-if whose world the next run has, alone and from the start.
 pub(crate) fn kept(on_show: &[StagedChampion], mode: &StageMode) -> Option<Show> {
     let StageMode::WhatIf { current, .. } = mode else { return None };
-    on_show.get(*current).map(|staged| Show::solo(staged.from_start()))
+    on_show.get(*current).map(|staged| Show::solo(staged.shown_from_start()))
 }
 
 /// Keeps a changed lane of a what-if, alone and from the start. The next run gets its world.
@@ -183,7 +183,7 @@ pub(crate) fn kept_lane(
     if let Some(plan) = lane.checked_sub(1).and_then(|index| beside.get(index)) {
         run.undo_world(plan)?;
     }
-    Ok(on_show.get(lane).map(|staged| Show::solo(staged.from_start())))
+    Ok(on_show.get(lane).map(|staged| Show::solo(staged.shown_from_start())))
 }
 
 #[cfg(test)]

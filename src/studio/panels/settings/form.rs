@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 use bevy_egui::egui;
 
+use super::changing::Changing;
 use super::columns::{Columns, Part};
 use super::folds::Folds;
 use super::sections_of;
-use super::slider::Changing;
 use super::validation::Check;
 use super::values::Values;
 use crate::schema::{ListedSetting, Section, Setting, SettingKind};

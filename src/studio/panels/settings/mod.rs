@@ -2,6 +2,7 @@
 //!
 //! [`Sheet`] draws sections and keeps the values being dragged or typed.
 
+mod changing;
 mod choices;
 mod columns;
 mod folds;

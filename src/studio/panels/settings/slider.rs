@@ -3,43 +3,11 @@
 
 use bevy_egui::egui;
 
+use super::changing::Changing;
 use super::form::Sheet;
 use super::number::Control;
 use super::scale::Scale;
 use super::values::rounded;
-
-/// Time without movement after which a slider takes effect, in seconds.
-const REST_S: f64 = 0.35;
-/// The same for a setting of the world, whose effect is seen on the stage.
-const SETTLED_S: f64 = 0.12;
-/// Time after which a setting of the world takes effect even while its slider moves, in seconds: long enough to see
-/// the snake react.
-const MOVING_S: f64 = 0.3;
-
-/// A slider being dragged.
-#[derive(Debug)]
-pub(super) struct Changing {
-    /// Id of the control.
-    pub id: String,
-    /// Current value.
-    pub so_far: f32,
-    /// Time of the last change, in seconds.
-    moved_s: f64,
-    /// Time at which it last took effect or, if it has not, of its first change, in seconds.
-    effective_s: f64,
-    /// Whether the current value has taken effect.
-    is_effective: bool,
-}
-
-impl Changing {
-    /// Whether the current value takes effect now although the slider is still held.
-    fn takes_effect(&self, now_s: f64) -> bool {
-        let is_of_world = self.id.starts_with("trial.");
-        let is_settled = now_s - self.moved_s > if is_of_world { SETTLED_S } else { REST_S };
-        let is_due = is_of_world && now_s - self.effective_s > MOVING_S;
-        !self.is_effective && (is_settled || is_due)
-    }
-}
 
 impl Sheet {
     /// A slider with marks. Returns the setting's text on release or rest.
@@ -73,13 +41,7 @@ impl Sheet {
             // Within the part of the rail that stands for zero, the pointer moves and the value rests.
             if so_far != before {
                 let earlier = self.changing.take().filter(|changing| changing.id == control.id);
-                self.changing = Some(Changing {
-                    id: control.id.to_owned(),
-                    so_far,
-                    moved_s: now_s,
-                    effective_s: earlier.map_or(now_s, |changing| changing.effective_s),
-                    is_effective: false,
-                });
+                self.changing = Some(Changing::moved(control.id, so_far, now_s, earlier));
             }
         }
         let changing = self.changing.as_mut().filter(|changing| changing.id == control.id)?;
@@ -88,8 +50,7 @@ impl Sheet {
         if is_held && !changing.takes_effect(now_s) {
             return None;
         }
-        let was_effective = std::mem::replace(&mut changing.is_effective, true);
-        changing.effective_s = now_s;
+        let was_effective = changing.take_effect(now_s);
         if !is_held {
             self.changing = None;
         }
