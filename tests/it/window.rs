@@ -12,6 +12,7 @@ mod library;
 mod panels;
 mod picture;
 mod places;
+mod random_hand;
 mod screenshots;
 mod settings;
 mod stage;

@@ -5,6 +5,7 @@ pub mod apply;
 pub mod frame_times;
 pub mod keys;
 pub mod preferences;
+pub mod quit;
 pub mod title;
 pub mod ui_dump;
 
@@ -15,6 +16,7 @@ pub(super) fn plugin(app: &mut App) {
         apply::plugin,
         keys::plugin,
         preferences::plugin,
+        quit::plugin,
         accessibility::plugin,
         ui_dump::plugin,
         title::plugin,
