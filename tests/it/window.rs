@@ -13,6 +13,7 @@ mod panels;
 mod picture;
 mod places;
 mod presenting;
+mod random_hand;
 mod screenshot_matrix;
 mod screenshots;
 mod settings;

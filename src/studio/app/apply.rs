@@ -4,6 +4,7 @@ pub mod stage;
 
 use bevy::prelude::*;
 
+use super::quit::QuitRequest;
 use crate::studio::commands::files::FileCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
@@ -34,7 +35,7 @@ pub(super) fn apply(
     mut run: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,
     mut history: ResMut<UndoHistory>,
-    (opening, mut exit): (Res<OpeningChampions>, MessageWriter<AppExit>),
+    (opening, mut quit): (Res<OpeningChampions>, ResMut<QuitRequest>),
     mut workspace: ResMut<Workspace>,
     mut lessons: ResMut<Lessons>,
     (mut library, mut files): (ResMut<Library>, ResMut<Files>),
@@ -128,12 +129,12 @@ pub(super) fn apply(
                 Ok(())
             }
             Command::Quit => {
-                exit.write(AppExit::Success);
+                quit.0 = true;
                 Ok(())
             }
         };
         history.note(command, before, run.next_plan());
-        notices.problems(done.err());
+        notices.refusal(done.err());
     }
 }
 
@@ -195,7 +196,7 @@ mod tests {
         app.add_message::<Command>()
             .add_message::<Show>()
             .add_message::<ScreenshotArea>()
-            .add_message::<AppExit>()
+            .init_resource::<QuitRequest>()
             .insert_resource(prepared_run())
             .insert_resource(OpeningChampions(vec![NamedChampion {
                 name: "climber".to_owned(),

@@ -6,6 +6,7 @@ pub mod frame_times;
 pub mod keys;
 pub mod preferences;
 pub mod presenting;
+pub mod quit;
 pub mod title;
 pub mod ui_dump;
 
@@ -17,6 +18,7 @@ pub(super) fn plugin(app: &mut App) {
         keys::plugin,
         preferences::plugin,
         presenting::plugin,
+        quit::plugin,
         accessibility::plugin,
         ui_dump::plugin,
         title::plugin,

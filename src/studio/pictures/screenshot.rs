@@ -1,6 +1,7 @@
 //! Screenshots of the window, and of the stage alone at its size in the window.
 
 use bevy::camera::RenderTarget;
+use bevy::ecs::system::SystemParam;
 use bevy::image::Image;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
@@ -21,6 +22,20 @@ struct PendingScreenshot {
     picture: Handle<Image>,
     /// Frames left until the picture is taken.
     frames: u32,
+}
+
+/// Pictures that were asked for and are not saved yet.
+#[derive(SystemParam)]
+pub(crate) struct AwaitedPictures<'w, 's> {
+    cameras: Query<'w, 's, (), With<PendingScreenshot>>,
+    pictures: Query<'w, 's, (), With<Screenshot>>,
+}
+
+impl AwaitedPictures<'_, '_> {
+    /// Whether all pictures are saved.
+    pub fn is_empty(&self) -> bool {
+        self.cameras.is_empty() && self.pictures.is_empty()
+    }
 }
 
 /// Frames until a new camera's picture is complete, because its pipelines are compiled first.

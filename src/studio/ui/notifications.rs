@@ -110,6 +110,15 @@ impl Notices {
         });
     }
 
+    /// Shows why a command was refused, if it was. That is an answer to the user and no error of the program, so the log
+    /// has it as a warning.
+    pub fn refusal(&mut self, text: Option<String>) {
+        if let Some(text) = text {
+            warn!("not done: {text}");
+            self.push(Notice { is_problem: true, lasts: PROBLEM, ..Notice::new(text) });
+        }
+    }
+
     /// Shows and logs a problem, if there is one.
     pub fn problems(&mut self, text: Option<String>) {
         text.into_iter().for_each(|text| self.problem(text));
@@ -228,6 +237,16 @@ mod tests {
         notices.info("7".to_owned());
         let texts: Vec<&str> = notices.list.iter().map(|notice| notice.text.as_str()).collect();
         assert_eq!(texts, ["6", "8", "9", "7"]);
+    }
+
+    #[test]
+    fn a_refused_command_is_answered_like_a_problem() {
+        let mut notices = Notices::default();
+        notices.refusal(None);
+        assert_eq!(notices.last(), None, "it was followed");
+        notices.refusal(Some("Nothing to race yet".to_owned()));
+        assert_eq!(notices.last(), Some("Nothing to race yet"));
+        assert!(notices.0[0].is_problem);
     }
 
     #[test]

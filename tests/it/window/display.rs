@@ -1,11 +1,12 @@
 //! The program on a virtual display.
 
 use std::fs;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::picture::Picture;
@@ -18,7 +19,7 @@ pub struct Studio {
     display: String,
     window: String,
     size: (i32, i32),
-    folder: tempfile::TempDir,
+    folder: Arc<tempfile::TempDir>,
     /// Opens one window at a time, because software rendering uses all cores.
     _turn: MutexGuard<'static, ()>,
 }
@@ -62,6 +63,18 @@ fn is_installed(tool: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(tool).is_file())
 }
 
+/// A folder with programs for the search path: a file manager that shows nothing.
+fn file_manager(folder: &Path) -> PathBuf {
+    let programs = folder.join("bin");
+    let opener = programs.join("xdg-open");
+    if !opener.exists() {
+        fs::create_dir(&programs).expect("created");
+        fs::write(&opener, "#!/bin/sh\nexit 0\n").expect("written");
+        fs::set_permissions(&opener, fs::Permissions::from_mode(0o755)).expect("executable");
+    }
+    programs
+}
+
 /// Text of a preferences file with these fields.
 pub fn preferences(fields: &str) -> String {
     format!("(kind: \"snakes-and-stairs preferences\", format: 1, preferences: ({fields}))")
@@ -87,15 +100,32 @@ impl Studio {
     }
 
     fn open_plain(test: &str, arguments: &str, size: (i32, i32)) -> Option<Self> {
+        Self::open_in(&Arc::new(folder()), test, arguments, size, size)
+    }
+
+    /// Opens the program as a user does who names nothing to watch, with this folder as its working directory and home,
+    /// and in a window of this size on a screen that may be larger.
+    pub fn open_in(
+        folder: &Arc<tempfile::TempDir>,
+        test: &str,
+        arguments: &str,
+        size: (i32, i32),
+        screen: (i32, i32),
+    ) -> Option<Self> {
         if let Some(missing) = ["Xvfb", "xdotool"].into_iter().find(|tool| !is_installed(tool)) {
             skip(test, &format!("{missing} is not installed"));
             return None;
         }
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-        let folder = folder();
-        let (width, height) = size;
+        let ((width, height), (screen_width, screen_height)) = (size, screen);
         let mut xvfb = Command::new("Xvfb")
-            .args(["-displayfd", "1", "-screen", "0", &format!("{width}x{height}x24")])
+            .args([
+                "-displayfd",
+                "1",
+                "-screen",
+                "0",
+                &format!("{screen_width}x{screen_height}x24"),
+            ])
             .args(["-nolisten", "tcp", "-fbdir"])
             .arg(folder.path())
             .stdout(Stdio::piped())
@@ -112,13 +142,20 @@ impl Studio {
             fs::write(path, preferences("tour_is_over: true")).expect("written");
             arguments += &format!(" --preferences {PREFERENCES}");
         }
+        // An earlier window in this folder has left its last list.
+        let _ = fs::remove_file(folder.path().join(PLACES));
         let program = snakes(folder.path(), &arguments)
             .env("DISPLAY", &display)
             .env("XDG_RUNTIME_DIR", folder.path())
-            .stderr(Stdio::piped())
+            // Dialogs and file managers must not appear on the desktop of the user who runs the tests.
+            .env_remove("DBUS_SESSION_BUS_ADDRESS")
+            .env("PATH", file_manager(folder.path()))
+            // Plain text, also where the log would be coloured.
+            .env("NO_COLOR", "1")
+            .stderr(fs::File::create(folder.path().join(LOG)).expect("created"))
             .spawn()
             .expect("the program starts");
-        let (program, window) = (Mutex::new(program), String::new());
+        let (program, window, folder) = (Mutex::new(program), String::new(), Arc::clone(folder));
         let mut studio = Self { program, xvfb, display, window, size, folder, _turn: turn };
         if let Err(reason) = studio.find_window() {
             assert!(reason.contains("no graphics driver"), "{test}: {reason}");
@@ -147,10 +184,7 @@ impl Studio {
         loop {
             let program = self.program.get_mut().expect("no panic");
             if program.try_wait().expect("a status").is_some() {
-                let mut said = String::new();
-                let stderr = program.stderr.as_mut().expect("piped");
-                stderr.read_to_string(&mut said).expect("read");
-                return Err(said);
+                return Err(self.log());
             }
             let found = self.xdotool_quietly(&["search", "--onlyvisible", "--name", "Snakes"]);
             if let Some(window) = found.lines().next() {
@@ -266,18 +300,27 @@ impl Studio {
         self.move_to((1, self.size.1 - 2));
     }
 
-    /// Quits with the keyboard and returns the exit code.
+    /// How the program ended, if it has.
+    pub fn ended(&self) -> Option<ExitStatus> {
+        self.program.lock().expect("no panic").try_wait().expect("a status")
+    }
+
+    /// What the program has written to standard error, where its log goes.
+    pub fn log(&self) -> String {
+        String::from_utf8_lossy(&fs::read(self.folder.path().join(LOG)).expect("a log"))
+            .into_owned()
+    }
+
+    /// Quits with the keyboard, closes the display and returns the exit code.
     pub fn quit(self) -> Option<i32> {
+        self.end()
+    }
+
+    /// Quits with the keyboard and returns the exit code.
+    pub fn end(&self) -> Option<i32> {
         self.xdotool(&["key", "ctrl+q"]);
-        let started = Instant::now();
-        loop {
-            let status = self.program.lock().expect("no panic").try_wait().expect("a status");
-            if let Some(status) = status {
-                return status.code();
-            }
-            assert!(started.elapsed() < PATIENCE, "the program did not end");
-            std::thread::sleep(BETWEEN_LOOKS);
-        }
+        self.wait(|| self.ended().is_some(), || "the end of the program".to_owned());
+        self.ended().and_then(|status| status.code())
     }
 
     /// Waits for a condition; `what` describes it in the failure message.
@@ -295,6 +338,17 @@ impl Studio {
         assert!(status.success(), "xdotool {arguments:?}: {status}");
     }
 
+    /// Starts an xdotool that reads commands from its standard input, one per line.
+    pub fn xdotool_reader(&self) -> Child {
+        let mut command = self.xdotool_command(&["-"]);
+        command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().expect("xdotool starts")
+    }
+
+    /// Number by which xdotool knows the window.
+    pub fn window(&self) -> &str {
+        &self.window
+    }
+
     fn xdotool_quietly(&self, arguments: &[&str]) -> String {
         let output = self.xdotool_command(arguments).output().expect("xdotool starts");
         String::from_utf8_lossy(&output.stdout).into_owned()
@@ -309,6 +363,8 @@ impl Studio {
 
 /// The file of `--places`.
 const PLACES: &str = "places.txt";
+/// The file of the program's standard error.
+const LOG: &str = "stderr.txt";
 /// The preferences file.
 const PREFERENCES: &str = "studio.ron";
 
