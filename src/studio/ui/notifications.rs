@@ -246,7 +246,7 @@ mod tests {
         assert_eq!(notices.last(), None, "it was followed");
         notices.refusal(Some("Nothing to race yet".to_owned()));
         assert_eq!(notices.last(), Some("Nothing to race yet"));
-        assert!(notices.0[0].is_problem);
+        assert!(notices.list[0].is_problem);
     }
 
     #[test]

@@ -19,8 +19,11 @@ const LEAST: (f32, f32) = (800.0, 480.0);
 /// A run that ends in the first minute.
 const RUN: &str = "--preset climb --generations 30 --threads 2";
 
+/// Brings a view on.
+type Show = fn(&Studio);
+
 /// The views, in an order in which each can follow the one before.
-const VIEWS: [(&str, fn(&Studio)); 8] = [
+const VIEWS: [(&str, Show); 8] = [
     ("story", story),
     ("main", main_view),
     ("world", world),
