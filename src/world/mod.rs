@@ -24,9 +24,8 @@ pub use physics::PhysicsSettings;
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
-pub use simulation::{
-    ContactForce, ContactPatch, Discontinuity, JointState, JointTorque, Simulation, SurfaceDamping,
-    TouchedSurface, WorldPlan,
-};
+pub use simulation::observe::{ContactForce, JointState};
+pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
+pub use simulation::{Discontinuity, JointTorque, Simulation, WorldPlan};
 pub use stairs::{StairBox, Stairs};
 pub use surface::{Skin, Surface};

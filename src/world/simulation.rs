@@ -7,8 +7,8 @@ use rapier3d::prelude::*;
 mod balance;
 mod build;
 mod continued;
-mod observe;
-mod patches;
+pub(super) mod observe;
+pub(super) mod patches;
 
 use super::bounce::{LimbVelocity, finish_bounce};
 use super::contact::{ContactHooks, ContactLaws, soften};
@@ -20,8 +20,6 @@ use super::{
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 pub use continued::Discontinuity;
-pub use observe::{ContactForce, JointState};
-pub use patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
 /// in every bit.

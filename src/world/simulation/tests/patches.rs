@@ -2,6 +2,7 @@
 
 use super::surface::{block, body, run};
 use super::*;
+use crate::world::{ContactPatch, TouchedSurface};
 
 const WEIGHT_N: f32 = 5.0 * 9.81;
 
