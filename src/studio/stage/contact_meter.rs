@@ -2,7 +2,7 @@
 //!
 //! A meter only reads the world, at most sixty times per simulated second, and never changes it.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use super::replay::Replay;
 use crate::world::{ContactPatch, SurfaceDamping, TouchedSurface};
@@ -37,7 +37,7 @@ struct ContactSample {
 /// What limbs do on a surface, over [`SPAN_S`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceReading {
-    /// Largest number of limbs that touched it at once.
+    /// Number of limbs that touched it.
     pub limbs: usize,
     /// Speed of the contacts along the surface, in m/s: the mean over time and limbs, weighted by the normal force, so
     /// that a limb that only grazes the surface counts little.
@@ -132,16 +132,16 @@ impl ContactMeter {
             step => step,
         };
         let in_span = |step: u32| step <= end && step + self.span_steps > end;
-        let (mut limbs, mut top_slip_m_s, mut depth_m) = (0, 0.0_f32, 0.0_f32);
+        let mut touching = BTreeSet::new();
+        let (mut top_slip_m_s, mut depth_m) = (0.0_f32, 0.0_f32);
         let (mut slip_w, mut pressed_n) = (0.0, 0.0);
         let (mut samples, mut used_n, mut limit_n, mut lost_w) = (0.0, 0.0, 0.0, 0.0);
         for sample in self.samples.iter().filter(|sample| in_span(sample.step)) {
             samples += 1.0;
-            let mut touching: Vec<usize> = Vec::new();
             for patch in sample.patches.iter().filter(|patch| is_meant(patch)) {
-                touching.push(patch.limb);
+                touching.insert(patch.limb);
                 if let TouchedSurface::Limb(other) = patch.touched {
-                    touching.push(other);
+                    touching.insert(other);
                 }
                 top_slip_m_s = top_slip_m_s.max(patch.slip_m_s);
                 slip_w += patch.slip_m_s * patch.normal_n;
@@ -153,15 +153,12 @@ impl ContactMeter {
             }
             let damping = sample.damping.iter().filter(|loss| is_damping(loss));
             lost_w += damping.map(|loss| loss.power_w).sum::<f32>();
-            touching.sort_unstable();
-            touching.dedup();
-            limbs = limbs.max(touching.len());
         }
         let grip_share = (limit_n > 0.0).then(|| used_n / limit_n);
         // Sticking contacts tremble by tiny amounts in both directions.
         let lost_w = (lost_w / samples).max(0.0);
-        (limbs > 0).then_some(SurfaceReading {
-            limbs,
+        (!touching.is_empty()).then_some(SurfaceReading {
+            limbs: touching.len(),
             slip_m_s: slip_w / pressed_n,
             top_slip_m_s,
             grip_share,

@@ -47,7 +47,7 @@ struct ReadoutLine {
 const CONTACT: ReadoutLine = ReadoutLine {
     name: "Contact",
     term: "",
-    hint: "Limbs that touch it: the most at once in the last 0.25 s",
+    hint: "Number of limbs that touched it in the last 0.25 s",
 };
 const SLIP: ReadoutLine = ReadoutLine {
     name: "Slip speed",
