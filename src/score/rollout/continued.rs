@@ -205,6 +205,23 @@ mod tests {
     }
 
     #[test]
+    fn other_gravity_or_density_is_no_loss_and_no_gain_of_energy() {
+        let Champion { genome, trial, .. } = champion();
+        let given = after(Rollout::new(&genome, &trial), 200);
+        let lost_j = given.simulation().energy_lost().total_j;
+        for change in [
+            ("trial.physics.gravity_m_s2", "3"),
+            ("trial.agent.density_kg_m3", "8"),
+            ("trial.stairs.rise_m", "0.4"),
+        ] {
+            let plan = with(&trial, &[change]).world_plan(&genome);
+            let continued = given.simulation().continued_in(&plan);
+            let difference_j = continued.energy_lost().total_j - lost_j;
+            assert!(difference_j.abs() < 0.01, "{change:?}: {difference_j} J at the change");
+        }
+    }
+
+    #[test]
     fn a_state_that_does_not_fit_the_other_trial_is_refused_with_the_reason() {
         let Champion { genome, trial, .. } = champion();
         let (early, late) = (

@@ -20,6 +20,14 @@ impl Simulation {
         self.balance.start_j = self.mechanical_energy_j();
     }
 
+    /// Goes on with the balance of a world whose state this one has taken. Energy that only the other parameters bring,
+    /// such as another gravity, counts neither as lost nor as gained.
+    pub(super) fn take_balance_of(&mut self, earlier: &Self) {
+        self.balance = earlier.balance;
+        self.balance.start_j += self.mechanical_energy_j() - earlier.mechanical_energy_j();
+        self.balance.damping = self.damping_power();
+    }
+
     /// Adds a step to the balance, given the power of the joint torques at its start, in W.
     pub(super) fn add_to_balance(&mut self, joint_power_before_w: f32) {
         let step_s = self.physics.integration_parameters.dt;

@@ -111,6 +111,7 @@ impl Simulation {
         continued.arena_front_y_m = fresh.arena_front_y_m;
         continued.effort = self.effort;
         continued.pull = None;
+        continued.take_balance_of(self);
         continued
     }
 
@@ -142,6 +143,10 @@ fn take_parameters(physics: &mut PhysicsWorld, from: &PhysicsWorld) {
         let present = &physics.colliders[handle];
         if present.density() != wanted.density() {
             physics.colliders[handle].set_density(wanted.density());
+            // The energy of the new mass is read before the next step, which would compute it.
+            if let Some(limb) = wanted.parent() {
+                physics.bodies[limb].recompute_mass_properties_from_colliders(&physics.colliders);
+            }
         }
         let material = |of: &Collider| (of.friction(), of.restitution(), of.active_hooks());
         if material(&physics.colliders[handle]) != material(wanted) {

@@ -55,7 +55,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
             }
             RunEvent::SettingNotChanged { field, reason } => {
                 run.settle_change(&field);
-                notices.problem(refusal_in_words(&field, &reason));
+                notices.refusal(Some(refusal_in_words(&field, &reason)));
             }
             RunEvent::Explored(exploration) => run.explore(exploration),
             RunEvent::Generation(report) => {
