@@ -10,8 +10,13 @@ use crate::studio::pictures::screenshot::AwaitedPictures;
 #[derive(Resource, Debug, Default)]
 pub(crate) struct QuitRequest(pub bool);
 
-/// Maximum time to wait for a picture. A window that is not drawn, for example because it is minimised, gives none.
+/// Time after which a picture is given up that has not come for [`FRAMES`] either. A window that is not drawn, for
+/// example because it is minimised, gives none.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// Frames that a picture may take. Where the processor draws, each can take seconds.
+const FRAMES: u32 = 10;
+/// Time after which a picture is given up, however few frames were drawn.
+const LAST_PATIENCE: Duration = Duration::from_secs(30);
 
 pub(crate) fn plugin(app: &mut App) {
     // Before the preferences are saved for the last time.
@@ -22,14 +27,16 @@ fn end(
     request: Res<QuitRequest>,
     pictures: AwaitedPictures,
     time: Res<Time<Real>>,
-    mut waited: Local<Duration>,
+    (mut waited, mut frames): (Local<Duration>, Local<u32>),
     mut exit: MessageWriter<AppExit>,
 ) {
     if !request.0 {
         return;
     }
     *waited += time.delta();
-    if pictures.is_empty() || *waited > PATIENCE {
+    *frames += 1;
+    let is_given_up = (*waited > PATIENCE && *frames > FRAMES) || *waited > LAST_PATIENCE;
+    if pictures.is_empty() || is_given_up {
         exit.write(AppExit::Success);
     }
 }
@@ -53,14 +60,28 @@ mod tests {
         assert_eq!(app.should_exit(), Some(AppExit::Success));
     }
 
-    #[test]
-    fn a_picture_that_never_comes_does_not_keep_the_program_open() {
+    /// Number of frames of this length after which a program that waits for a picture ends.
+    fn frames_to_the_end(frame: Duration) -> usize {
         let mut app = App::new();
         app.init_resource::<Time<Real>>().add_message::<AppExit>().add_plugins(plugin);
         app.world_mut().spawn(Screenshot::primary_window());
         app.world_mut().resource_mut::<QuitRequest>().0 = true;
-        app.world_mut().resource_mut::<Time<Real>>().advance_by(PATIENCE * 2);
-        app.update();
-        assert_eq!(app.should_exit(), Some(AppExit::Success));
+        let has_ended = |_: &usize| {
+            app.world_mut().resource_mut::<Time<Real>>().advance_by(frame);
+            app.update();
+            app.should_exit() == Some(AppExit::Success)
+        };
+        (1..1000).find(has_ended).expect("it ends")
+    }
+
+    #[test]
+    fn a_picture_that_never_comes_does_not_keep_the_program_open() {
+        assert_eq!(frames_to_the_end(Duration::from_millis(100)), 51, "more than 5 s");
+        assert_eq!(frames_to_the_end(Duration::from_secs(60)), 1, "not drawn");
+    }
+
+    #[test]
+    fn slow_frames_have_time_for_a_picture() {
+        assert_eq!(frames_to_the_end(Duration::from_secs(2)), 11);
     }
 }
