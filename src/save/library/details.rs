@@ -181,15 +181,18 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
         Some(of) => Thumbnail::of_champion(&of.champion, of.recording.as_ref()),
         None => Thumbnail::of_trial(&plan.settings.trial),
     };
-    let ended = (!has_generations_left(&plan, &records))
-        .then(|| "all its generations are finished".to_owned());
+    let is_finished = !has_generations_left(&plan, &records);
+    let ended = is_finished.then(|| "all its generations are finished".to_owned());
     let settings = &plan.settings;
+    // A run whose first generation is larger has fewer of them than planned.
+    let planned = settings.evolution.generations;
+    let generations = if is_finished { records.len() as u32 } else { planned };
     Ok(EntryDetails::Run(Box::new(RunDetails {
         strategy: Some(settings.evolution.strategy),
         controller: settings.genome.controller,
         rewarded: settings.trial.fitness,
         finished: records.len() as u32,
-        generations: Some(settings.evolution.generations),
+        generations: Some(generations),
         best,
         best_of_each,
         champions,

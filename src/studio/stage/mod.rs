@@ -243,9 +243,10 @@ fn advance(
         }
         if let Some(broken) = lane.limit_just_broken_by_pull() {
             let limit = limit_in_words(broken, &lane.trial().health);
-            notices.info(format!(
+            let text = format!(
                 "The pull broke a limit, which ends the trial: {limit}. Space plays it from the start."
-            ));
+            );
+            notices.update("pull", text);
             broken_at_s = Some(lane.end_s());
         }
     }

@@ -27,6 +27,8 @@ pub(crate) struct Following {
     run: u32,
     /// Whether a story begins again after its end, and follows the first landing.
     repeats: bool,
+    /// Whether the first landing ends it. If the user asks for it later, evolution is followed on and on.
+    until_landing: bool,
     /// The generation on the stage.
     shown: Option<u32>,
     /// The latest generation that came onto the stage or was announced.
@@ -59,7 +61,8 @@ const STORY_PARTS: usize = 3;
 impl Following {
     /// Follows the first run from its first generation on. Until that comes, the stage is held.
     pub fn from_start() -> Self {
-        Self { plan: FollowPlan::Evolution, is_new: true, holds: true, ..Self::default() }
+        let plan = FollowPlan::Evolution;
+        Self { plan, is_new: true, until_landing: true, holds: true, ..Self::default() }
     }
 
     /// Whether better generations come onto the stage by themselves.
@@ -82,7 +85,8 @@ impl Following {
 
     /// Shows each better generation from now on, the latest of them at once.
     pub fn follow_evolution(&mut self) {
-        (self.plan, self.shown, self.is_new) = (FollowPlan::Evolution, None, false);
+        (self.plan, self.shown) = (FollowPlan::Evolution, None);
+        (self.is_new, self.until_landing) = (false, false);
     }
 
     /// Leaves on the stage what the user has chosen.
@@ -133,7 +137,7 @@ impl Following {
                     Some(shown) => next_of(milestones, shown)?,
                 };
                 self.is_new = false;
-                if next.is_landed {
+                if next.is_landed && self.until_landing {
                     // The goal is reached. Better ones are announced, and their landing can be watched in peace.
                     self.plan = FollowPlan::Landed;
                 }
@@ -188,6 +192,7 @@ fn follow(
     lanes: Query<&Lane>,
     time: Res<Time<Real>>,
     mut show: MessageWriter<Show>,
+    mut notices: ResMut<Notices>,
 ) {
     if run.is_lent() {
         // A lesson has the stage.
@@ -197,7 +202,7 @@ fn follow(
         // The user has begun another run, and wants to see it learn.
         (following.run, following.announced) = (run.number(), 0);
         following.follow_evolution();
-        following.is_new = true;
+        (following.is_new, following.until_landing) = (true, true);
     }
     if following.holds && (playback.is_playing() || run.status() != RunStatus::Running) {
         // The user plays what is there, or nothing will come.
@@ -216,7 +221,14 @@ fn follow(
         return;
     }
     let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(lanes);
+    let followed = following.follows_evolution();
     let Some(generation) = following.due(&run, is_over) else { return };
+    if followed && following.plan == FollowPlan::Landed {
+        let text =
+            "This snake is the first to land, so it stays on the stage while evolution goes on.";
+        let follow = Command::Stage(StageCommand::ToggleFollowEvolution);
+        notices.offer("best", text.to_owned(), [("Follow evolution", follow)]);
+    }
     following.shown = Some(generation);
     following.announced = following.announced.max(generation);
     following.shown_for = Duration::ZERO;
@@ -246,7 +258,7 @@ fn announce(mut following: ResMut<Following>, run: Res<CurrentRun>, mut notices:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::state::current_run::{explored_run, prepared_run};
+    use crate::studio::state::current_run::{explored_run, landed_run, prepared_run};
     use std::sync::Arc;
 
     #[test]
@@ -265,6 +277,24 @@ mod tests {
         assert_eq!(following.due(&run, true), None, "nothing better");
         following.follow_evolution();
         assert_eq!(following.due(&run, false), Some(last), "the user asked to see where it is");
+    }
+
+    #[test]
+    fn the_first_landing_stays_and_following_on_shows_better_ones() {
+        let run = landed_run();
+        let mut following = Following::from_start();
+        let mut shown = Vec::new();
+        while let Some(generation) = following.due(&run, true) {
+            following.shown = Some(generation);
+            shown.push(generation);
+        }
+        assert_eq!((shown.last(), &following.plan), (Some(&3), &FollowPlan::Landed));
+        assert!(!following.follows_evolution(), "what landed stays");
+        following.follow_evolution();
+        assert_eq!(following.due(&run, true), Some(3), "the latest of the better ones");
+        following.shown = Some(3);
+        assert_eq!(following.due(&run, true), None, "nothing better yet");
+        assert!(following.follows_evolution(), "the user asked for it");
     }
 
     #[test]

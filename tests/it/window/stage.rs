@@ -98,12 +98,12 @@ fn a_change_is_tried_from_the_present_moment_on_and_copies_stay_side_by_side() {
     studio.pause_evolution();
     studio.open_panel("World");
     studio.key("0");
-    studio.wait_for_title("showing saved champion");
+    studio.wait_for_title("showing climber");
     studio.seek(0.4);
     let rail = studio.scrolled_to("Slider", "Friction").area;
     // While the button is held, the copy is already there.
     studio.drag_and_hold(1, rail.at(0.5, 0.5), rail.at(0.25, 0.5), || {
-        studio.wait_for_title("showing saved champion with a what-if copy, from ");
+        studio.wait_for_title("showing climber with a what-if copy, from ");
     });
     let moment_s = || -> f64 {
         let title = studio.title();

@@ -5,7 +5,7 @@ mod changes;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use crate::studio::commands::{PlayerCommand, StageCommand};
+use crate::studio::commands::{Command, PlanCommand, PlayerCommand, StageCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::playback::Playback;
@@ -96,6 +96,13 @@ impl StageParams<'_, '_> {
         self.present_for_now(kept);
     }
 
+    /// The change of a what-if that is on the stage, in words.
+    pub fn tried_change(&self) -> Option<String> {
+        let kept = kept(&self.champions(), &self.mode)?;
+        let changed = kept.champions.iter().find(|staged| staged.is_changed());
+        changed.map(|staged| staged.label().to_owned())
+    }
+
     /// Executes a command to the lanes.
     pub fn apply(
         &mut self,
@@ -148,7 +155,16 @@ impl StageParams<'_, '_> {
                 None
             }
             StageCommand::Single => {
-                self.champions().into_iter().nth(self.selection.lane).map(Show::solo)
+                let left = self.champions().into_iter().nth(self.selection.lane);
+                if let Some(left) = left.iter().find(|left| left.is_changed()) {
+                    let text = format!(
+                        "The stage keeps {}. The settings in the World panel do not.",
+                        left.label()
+                    );
+                    let take = Command::Plan(PlanCommand::UseWorldOfLane);
+                    notices.offer("world", text, [("Use this world", take)]);
+                }
+                left.map(Show::solo)
             }
             StageCommand::KeepChange => {
                 self.settle();

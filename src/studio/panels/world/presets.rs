@@ -106,6 +106,11 @@ fn name_field(
     if let Some(problem) = problem {
         let text = egui::RichText::new(problem).color(theme::of(ui).problem);
         ui.add(egui::Label::new(text).wrap());
+        let allowed = allowed_name(presets, &prompt.text);
+        if ui.button(format!("Use the name {allowed}")).clicked() {
+            prompt.text = allowed;
+            prompt.ask_again();
+        }
     }
     if is_saved {
         commands.push(Command::Plan(PlanCommand::StorePreset(prompt.text.clone())));
@@ -118,7 +123,20 @@ fn free_name(presets: &PresetList, copied: &str) -> String {
     let is_plain = |c: &char| c.is_ascii_lowercase() || c.is_ascii_digit() || *c == '-';
     let plain: String = copied.chars().filter(is_plain).collect();
     let own = if plain.is_empty() { "preset" } else { plain.trim_start_matches("my-") };
-    let start: String = format!("my-{own}").chars().take(36).collect();
+    numbered_if_taken(presets, &format!("my-{own}"))
+}
+
+/// A free name that is like a name that is not allowed: "my-ice-1-2" for "My ice: 1/2".
+fn allowed_name(presets: &PresetList, wanted: &str) -> String {
+    let wanted = wanted.to_ascii_lowercase();
+    let words = wanted.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    let plain = words.collect::<Vec<&str>>().join("-");
+    numbered_if_taken(presets, if plain.is_empty() { "my-preset" } else { &plain })
+}
+
+/// The name if it is free, else the name with the first free number.
+fn numbered_if_taken(presets: &PresetList, name: &str) -> String {
+    let start: String = name.chars().take(36).collect();
     let numbered = (2..1000).map(|number| format!("{start}-{number}"));
     let mut names = std::iter::once(start.clone()).chain(numbered);
     names.find(|name| problem_with(presets, name).is_none()).unwrap_or_default()
@@ -160,6 +178,21 @@ mod tests {
         // The field has the focus, and its suggestion is selected.
         panel.event(egui::Event::Text(name.to_owned()));
         panel.run();
+    }
+
+    #[test]
+    fn a_name_that_is_not_allowed_is_offered_in_an_allowed_form() {
+        let run = prepared_run();
+        let mut panel = panel(&run);
+        type_name(&mut panel, "My ice: 1/2");
+        panel.get_by_label("Use the name my-ice-1-2").click();
+        panel.run();
+        panel.get_by_label("Save").click();
+        panel.run();
+        let stored = Command::Plan(PlanCommand::StorePreset("my-ice-1-2".to_owned()));
+        assert!(panel.state().contains(&stored), "{:?}", panel.state());
+        assert_eq!(allowed_name(run.presets(), "ÄÖ/!"), "my-preset");
+        assert_eq!(allowed_name(run.presets(), "Ice"), "ice-2", "the program has an ice");
     }
 
     #[test]

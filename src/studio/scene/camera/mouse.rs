@@ -144,7 +144,8 @@ fn drag(
     }
     let Ok(lane) = lanes.get(held.lane) else { return };
     if !held.is_pulling && !playback.is_playing() {
-        notices.info("Playback is paused: press Space to play, then pull.".to_owned());
+        let text = "Playback is paused: press Space to play, then pull.";
+        notices.update("pull", text.to_owned());
     }
     if !held.is_pulling && lane.staged().recording().is_some() {
         notices

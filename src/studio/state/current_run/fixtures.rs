@@ -4,9 +4,11 @@ use super::*;
 use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Experiment, LocalPool, RunControl};
-use crate::save::{SavesFolder, store_csv};
+use crate::save::{SavesFolder, shipped_champion, store_csv};
 use crate::score::evaluate;
+use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::options::Options;
+use crate::studio::ui::notifications::Notices;
 
 /// A run with the report's settings that has not started.
 pub fn prepared_run() -> CurrentRun {
@@ -31,6 +33,17 @@ pub fn explored_run() -> CurrentRun {
         run.note_milestone(&report);
         run.reports.push(report);
     }
+    run
+}
+
+/// The explored run after a third generation, whose best snake has landed.
+pub fn landed_run() -> CurrentRun {
+    let mut run = explored_run();
+    let mut report = run.reports.last().expect("two generations").clone();
+    report.generation += 1;
+    report.champion = Some(shipped_champion().expect("well formed").champion);
+    run.note_milestone(&report);
+    run.reports.push(report);
     run
 }
 
@@ -85,6 +98,21 @@ fn run_of(plan: RunPlan) -> CurrentRun {
     let run = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
     let options = Options::of_test(run, saves);
     CurrentRun::new(RunContext::new(&options))
+}
+
+#[test]
+fn a_reset_that_discards_finished_generations_says_so_and_offers_to_resume_them() {
+    let mut run = explored_run();
+    let folder = run.source.folder.clone();
+    let mut notices = Notices::default();
+    run.apply(&RunCommand::Reset, &mut notices).expect("allowed");
+    let news = "test, seed 1 begins anew: \"Start\" replaces its 2 finished generations.";
+    assert_eq!(notices.last(), Some(news));
+    let resume = Command::Run(RunCommand::Continue(folder));
+    assert_eq!(notices.last_offers(), [("Resume it instead".to_owned(), resume)]);
+    // Nothing is lost by another one.
+    run.apply(&RunCommand::Reset, &mut notices).expect("allowed");
+    assert_eq!(notices.len(), 1);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Executes commands to the current run.
 
 use super::CurrentRun;
-use crate::studio::commands::RunCommand;
 use crate::studio::commands::chart_export::ChartFormat;
+use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::chart_export;
 use crate::studio::state::new_file::{offer_path, offer_picture};
 use crate::studio::ui::notifications::Notices;
@@ -17,7 +17,20 @@ impl CurrentRun {
             RunCommand::Start => self.start(),
             RunCommand::Pause => self.pause(),
             RunCommand::SingleGeneration => self.single_generation(),
-            RunCommand::Reset => self.reset(),
+            RunCommand::Reset => {
+                let (plan, finished) = (self.source.plan.clone(), self.reports.len());
+                let folder = self.source.folder.clone();
+                self.reset()?;
+                if finished > 0 && self.source.folder == folder {
+                    let text = format!(
+                        "{}, seed {} begins anew: \"Start\" replaces its {finished} finished generations.",
+                        plan.preset, plan.seed
+                    );
+                    let resume = Command::Run(RunCommand::Continue(folder));
+                    notices.offer("reset", text, [("Resume it instead", resume)]);
+                }
+                Ok(())
+            }
             RunCommand::Continue(folder) => self.go_on_with(folder),
             RunCommand::SetThreads(threads) => self.set_threads(*threads),
             RunCommand::ListRuns => self.list_runs(),

@@ -1,0 +1,258 @@
+//! Commands as the user gives them, frame by frame.
+
+use super::*;
+use crate::save::library::SavePlace;
+use crate::save::shipped_champion;
+use crate::studio::commands::StageCommand;
+use crate::studio::commands::library::LibraryCommand;
+use crate::studio::commands::pick::Pick;
+use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::scene::camera::CameraRig;
+use crate::studio::scene::overlays::Overlays;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::opening::NamedChampion;
+use crate::studio::stage::playback::Playback;
+use crate::studio::stage::selection::Selection;
+use crate::studio::stage::{Show, StageMode};
+use crate::studio::state::current_run::prepared_run;
+use crate::studio::state::following::Following;
+use crate::studio::ui::theme::Theme;
+
+/// An app that executes commands, with an empty stage.
+fn app() -> App {
+    let loaded = shipped_champion().expect("well formed");
+    let mut app = App::new();
+    app.add_message::<Command>()
+        .add_message::<Show>()
+        .add_message::<ScreenshotArea>()
+        .init_resource::<QuitRequest>()
+        .insert_resource(prepared_run())
+        .insert_resource(OpeningChampions(vec![NamedChampion {
+            name: "climber".to_owned(),
+            loaded,
+        }]))
+        .insert_resource(Library::new(crate::save::SavesFolder::find(None)))
+        .init_resource::<Files>()
+        .init_resource::<Notices>()
+        .init_resource::<StageMode>()
+        .init_resource::<Playback>()
+        .init_resource::<CameraRig>()
+        .init_resource::<Overlays>()
+        .init_resource::<Selection>()
+        .init_resource::<Following>()
+        .init_resource::<Workspace>()
+        .init_resource::<Lessons>()
+        .init_resource::<UndoHistory>()
+        .init_resource::<Theme>()
+        .add_systems(Update, apply);
+    app
+}
+
+/// Sends one command per frame and returns the friction of the next run.
+fn friction_after(app: &mut App, commands: &[Command]) -> f32 {
+    for command in commands {
+        app.world_mut().write_message(command.clone());
+        app.update();
+    }
+    app.world().resource::<CurrentRun>().next_settings().trial.surface.friction
+}
+
+#[test]
+fn settings_are_undone_and_redone_drag_by_drag() {
+    let mut app = app();
+    let set = |text: &str| {
+        Command::Plan(PlanCommand::SetField {
+            field: "trial.surface.friction".to_owned(),
+            text: text.to_owned(),
+        })
+    };
+    let first = friction_after(&mut app, &[]);
+    // A drag that pauses twice.
+    assert_eq!(friction_after(&mut app, &[set("0.5"), set("0.4"), set("0.3")]), 0.3);
+    app.world_mut().resource_mut::<UndoHistory>().settle();
+    assert_eq!(friction_after(&mut app, &[set("0.2")]), 0.2);
+    assert_eq!(friction_after(&mut app, &[Command::Undo]), 0.3);
+    assert_eq!(friction_after(&mut app, &[Command::Undo]), first);
+    assert_eq!(friction_after(&mut app, &[Command::Undo]), first, "there is nothing more");
+    assert_eq!(friction_after(&mut app, &[Command::Redo, Command::Redo]), 0.2);
+    let said = app.world().resource::<Notices>();
+    assert_eq!((said.len(), said.last()), (1, Some("Redone: friction 0.2")), "the latest");
+}
+
+#[test]
+fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
+    let mut app = app();
+    let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
+    app.world_mut().spawn(Lane::new(staged, 0));
+    let mut tried = |friction: &str, act: &dyn Fn(&mut Playback)| {
+        act(&mut app.world_mut().resource_mut::<Playback>());
+        app.world_mut().write_message(Command::Plan(PlanCommand::SetField {
+            field: "trial.surface.friction".to_owned(),
+            text: friction.to_owned(),
+        }));
+        app.world_mut().resource_mut::<UndoHistory>().settle();
+        app.update();
+        let show = app.world_mut().resource_mut::<Messages<Show>>().drain().last();
+        let Show { champions, mode } = show.expect("a what-if");
+        let current = champions.last().expect("a copy");
+        let step = current.changes_at_step();
+        *app.world_mut().resource_mut::<StageMode>() = mode;
+        let playback = app.world().resource::<Playback>();
+        assert!(playback.is_playing(), "or there would be nothing to see");
+        (step, playback.time_s())
+    };
+    let goes_to = |time_s| {
+        move |playback: &mut Playback| {
+            playback.apply(&PlayerCommand::Seek(time_s), 1.0 / 60.0, 15.0);
+        }
+    };
+    assert_eq!(tried("0.3", &|playback| playback.hold_at(5.0)), (Some(300), 5.0));
+    let plays_on = |playback: &mut Playback| {
+        (0..8).for_each(|_| {
+            playback.pass(0.5, 1.0, 15.0);
+        })
+    };
+    assert_eq!(tried("0.4", &plays_on), (Some(300), 5.0));
+    assert_eq!(tried("0.5", &goes_to(3.0)), (Some(180), 3.0));
+    assert_eq!(tried("0.6", &plays_on), (Some(180), 3.0));
+    assert_eq!(tried("0.7", &goes_to(15.0)), (None, 0.0), "nothing follows the end");
+}
+
+#[test]
+fn a_preset_a_seed_and_a_group_of_settings_are_one_undo_step_each() {
+    let mut app = app();
+    let plan = |app: &App| app.world().resource::<CurrentRun>().next_plan().clone();
+    let back = [("trial.surface.friction", "0.7"), ("trial.surface.bounce", "0.1")];
+    let back = back.map(|(field, text)| (field.to_owned(), text.to_owned()));
+    let mut plans = vec![plan(&app)];
+    for command in [
+        Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
+        Command::Plan(PlanCommand::SetSeed(77)),
+        Command::Plan(PlanCommand::SetPopulation(9)),
+        Command::Plan(PlanCommand::SetFields(back.to_vec())),
+    ] {
+        friction_after(&mut app, &[command]);
+        plans.push(plan(&app));
+    }
+    while let Some(expected) = plans.pop() {
+        assert_eq!(plan(&app), expected);
+        friction_after(&mut app, &[Command::Undo]);
+    }
+}
+
+#[test]
+fn a_rejected_command_is_no_undo_step() {
+    let mut app = app();
+    let wrong = Command::Plan(PlanCommand::SetField {
+        field: "trial.surface.friction".to_owned(),
+        text: "-1".to_owned(),
+    });
+    friction_after(&mut app, &[wrong, Command::Run(RunCommand::SetThreads(0))]);
+    assert_eq!(app.world().resource::<UndoHistory>().next(UndoDirection::Back), None);
+    assert_eq!(app.world().resource::<Notices>().len(), 2);
+}
+
+#[test]
+fn a_lesson_leaves_the_own_run_untouched() {
+    let mut app = app();
+    let friction = friction_after(&mut app, &[]);
+    let plan = |app: &App| app.world().resource::<CurrentRun>().next_plan().clone();
+    let number = |app: &App| app.world().resource::<CurrentRun>().number();
+    let set = |text: &str| {
+        Command::Plan(PlanCommand::SetField {
+            field: "trial.surface.friction".to_owned(),
+            text: text.to_owned(),
+        })
+    };
+    friction_after(&mut app, &[set("0.5")]);
+    let (own, run) = (plan(&app), number(&app));
+    friction_after(
+        &mut app,
+        &[
+            Command::Lesson(LessonCommand::Begin(0)),
+            Command::Run(RunCommand::Reset),
+            Command::Run(RunCommand::Start),
+        ],
+    );
+    assert_eq!(number(&app), run, "refused, in a sentence");
+    assert!(app.world().resource::<Notices>().len() > 0);
+    friction_after(&mut app, &[set("0.2"), Command::Undo, Command::Undo, set("0.3")]);
+    friction_after(&mut app, &[Command::Lesson(LessonCommand::Leave)]);
+    assert_eq!(plan(&app), own);
+    assert_eq!(friction_after(&mut app, &[Command::Undo]), friction, "one's own step");
+}
+
+#[test]
+fn pausing_in_the_frame_of_a_new_show_pauses_that_show() {
+    let mut app = app();
+    let commands = [
+        Command::Stage(StageCommand::Show(Pick::Opened(0))),
+        Command::Player(PlayerCommand::Toggle),
+    ];
+    app.world_mut().write_message_batch(commands);
+    app.update();
+    assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "one show request");
+    assert!(!app.world().resource::<Playback>().is_playing(), "and paused");
+}
+
+#[test]
+fn a_save_is_shown_and_a_missing_one_is_reported() {
+    let mut app = app();
+    let gone = SavePlace::Champion("nowhere.ron".into());
+    for place in [SavePlace::Shipped("fast"), gone] {
+        app.world_mut().write_message(Command::Library(LibraryCommand::Replay(place)));
+    }
+    app.update();
+    let shown: Vec<Show> = app.world_mut().resource_mut::<Messages<Show>>().drain().collect();
+    assert_eq!(shown.len(), 1);
+    assert_eq!(shown[0].champions[0].name(), "fast");
+    assert_eq!(app.world().resource::<Notices>().len(), 1, "the other is not there");
+}
+
+/// Puts champions on the stage, side by side, and returns the last show that a command asks for.
+fn show_after(app: &mut App, show: Show, command: Command) -> Option<Show> {
+    let old: Vec<Entity> =
+        app.world_mut().query_filtered::<Entity, With<Lane>>().iter(app.world()).collect();
+    old.into_iter().for_each(|lane| assert!(app.world_mut().despawn(lane)));
+    for (number, staged) in show.champions.into_iter().enumerate() {
+        app.world_mut().spawn(Lane::new(staged, number));
+    }
+    *app.world_mut().resource_mut::<StageMode>() = show.mode;
+    app.world_mut().write_message(command);
+    app.update();
+    app.world_mut().resource_mut::<Messages<Show>>().drain().last()
+}
+
+#[test]
+fn a_new_run_names_the_change_that_was_tried_and_takes_it() {
+    let mut app = app();
+    let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
+    let change = Command::Plan(PlanCommand::SetField {
+        field: "trial.surface.friction".to_owned(),
+        text: "0.25".to_owned(),
+    });
+    let what_if = show_after(&mut app, Show::solo(staged), change).expect("a what-if");
+    show_after(&mut app, what_if, Command::Run(RunCommand::Reset)).expect("the kept change");
+    let said = app.world().resource::<Notices>().last();
+    assert_eq!(said, Some("The new run has the change that was tried: friction 0.25."));
+    let run = app.world().resource::<CurrentRun>();
+    assert_eq!(run.next_settings().trial.surface.friction, 0.25);
+}
+
+#[test]
+fn a_lane_that_stays_after_a_race_offers_its_world() {
+    let mut app = app();
+    let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
+    let sweep = Command::Stage(StageCommand::Sweep("trial.surface.friction".to_owned()));
+    let race = show_after(&mut app, Show::solo(staged), sweep).expect("five lanes");
+    app.world_mut().resource_mut::<Selection>().lane = 0;
+    let left = Command::Stage(StageCommand::Single);
+    let alone = show_after(&mut app, race, left).expect("one lane");
+    assert_eq!(alone.champions[0].label(), "friction 0.2");
+    let take = Command::Plan(PlanCommand::UseWorldOfLane);
+    let offers = app.world().resource::<Notices>().last_offers().to_vec();
+    assert_eq!(offers, [("Use this world".to_owned(), take.clone())]);
+    show_after(&mut app, alone, take);
+    let run = app.world().resource::<CurrentRun>();
+    assert_eq!(run.next_settings().trial.surface.friction, 0.2);
+}
