@@ -23,12 +23,12 @@ impl Champion {
         self.trial.agent.body_plan(&self.genome)
     }
 
-    /// A short description of its result: fitness, and the meaning of its final position.
+    /// A short description of its result: fitness, and where it ended.
     pub fn reached(&self) -> String {
         let score = self.score();
         match self.trial.fitness {
             Fitness::StepsClimbed => score,
-            _ => format!("{score}, {}", self.trial.meaning(f64::from(self.evaluation.centre_y_m))),
+            _ => format!("{score}, {}", self.trial.result_in_words(&self.evaluation)),
         }
     }
 

@@ -24,7 +24,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let found = caught(|| evaluate(genome, trial))
         .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })?;
     let matches = found.agrees_with(&recorded);
-    let meaning = loaded.champion.trial.meaning(f64::from(found.centre_y_m));
+    let meaning = trial.result_in_words(&found);
     if json {
         let line = json!({
             "fitness": found.fitness,

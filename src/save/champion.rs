@@ -95,6 +95,7 @@ impl LoadedChampion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::score::Behaviour;
     use std::fs;
 
     use crate::evolve::{RunPlan, Settings};
@@ -138,6 +139,32 @@ mod tests {
         while rollout.advance() {}
         let at = rollout.poses()[2].translation;
         assert!(at.x.abs() < 2.5 && at.z > 5.0, "on the landing, not beside it: {at}");
+    }
+
+    #[test]
+    fn a_snake_beside_the_stairs_is_not_said_to_climb_steps() {
+        let mut champion = shipped_champion().expect("well formed").champion;
+        let landed = champion.trial.stairs.end_y_m() - 1.0;
+        for (end_m, steps_climbed, words) in [
+            (5.59, 2, "climbs 2 steps"),
+            (5.59, 0, "passes 2 steps beside the stairs"),
+            (3.84, 0, "passes 1 step beside the stairs"),
+            (landed, 10, "stands on the landing"),
+            (landed, 0, "passes 10 steps beside the stairs"),
+            (landed + 2.0, 0, "lies behind the stairs"),
+            (-7.23, 0, "starting position"),
+        ] {
+            champion.evaluation.centre_y_m = end_m;
+            champion.evaluation.behaviour = Some(Behaviour { steps_climbed, ..Default::default() });
+            let reached = champion.reached();
+            assert!(reached.ends_with(&format!(", {words}")), "{end_m} m: {reached}");
+        }
+        champion.evaluation.centre_y_m = 5.59;
+        champion.evaluation.behaviour = None;
+        assert!(
+            champion.reached().ends_with("climbs 2 steps"),
+            "the distance is all that is known"
+        );
     }
 
     /// The error of `load_champion` for a champion's text after `edit`.

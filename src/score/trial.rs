@@ -1,6 +1,6 @@
 //! The conditions of an evaluation: everything outside the genome.
 
-use super::{AgentSettings, Fitness, Repeats};
+use super::{AgentSettings, Behaviour, Evaluation, Fitness, Repeats};
 use crate::check::Invalid;
 use crate::genome::{Genome, GenomeShape};
 use crate::schema::{
@@ -164,10 +164,21 @@ impl Trial {
         self.ground.as_ref().unwrap_or(&self.surface)
     }
 
-    /// Describes the centre position `y_m`, of one snake or on average, in the words of the report's Table 1.
+    /// Describes the centre position `y_m`, for example a mean, in the words of the report's Table 1.
     pub fn meaning(&self, y_m: f64) -> String {
         let length_m = f64::from(self.agent.length_m());
         self.stairs.meaning(y_m, f64::from(self.start_y_m), length_m)
+    }
+
+    /// Describes where one snake ended: as [`Trial::meaning`], unless its behaviour says that it lay beside the stairs
+    /// or behind them. A record without a behaviour only has the distance.
+    pub fn result_in_words(&self, evaluation: &Evaluation) -> String {
+        let y_m = f64::from(evaluation.centre_y_m);
+        let off_the_stairs = match evaluation.behaviour {
+            Some(Behaviour { steps_climbed: 0, .. }) => self.stairs.meaning_off_the_stairs(y_m),
+            _ => None,
+        };
+        off_the_stairs.unwrap_or_else(|| self.meaning(y_m))
     }
 }
 

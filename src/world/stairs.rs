@@ -124,6 +124,17 @@ impl Stairs {
         }
     }
 
+    /// Describes in words the place of a snake whose centre has passed risers, but has no step under it, as by
+    /// [`Stairs::steps_under`]: the snake lies beside the stairs or behind them. `None` before the first riser.
+    pub fn meaning_off_the_stairs(&self, y_m: f64) -> Option<String> {
+        match self.steps_climbed(y_m) {
+            0 => None,
+            _ if y_m > f64::from(self.end_y_m()) => Some("lies behind the stairs".to_owned()),
+            1 => Some("passes 1 step beside the stairs".to_owned()),
+            passed => Some(format!("passes {passed} steps beside the stairs")),
+        }
+    }
+
     /// Describes in words the centre position `y_m` of a snake of length `snake_length_m` that started at
     /// `start_y_m`. These are the words of the report's Table 1.
     pub fn meaning(&self, y_m: f64, start_y_m: f64, snake_length_m: f64) -> String {

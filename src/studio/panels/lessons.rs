@@ -5,7 +5,10 @@ use egui_plot::{Line, PlotPoints};
 
 use crate::score::Evaluation;
 use crate::studio::commands::{Command, LessonCommand};
-use crate::studio::state::lessons::{Found, LESSONS, LessonScene, LessonView, Progress};
+use crate::studio::state::lessons::{
+    Asks, FITNESS_OF_THE_LANDED, Found, LESSONS, LessonScene, LessonView, Plays, Progress,
+};
+use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range, x_title, y_title};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -75,9 +78,18 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
     ui.label(lesson.look_for);
     heading(ui, "Conclusion");
     if view.shows_conclusion {
-        ui.label(lesson.answer);
+        ui.label(lesson.conclusion);
     } else {
-        explain(ui, "It appears here once you have seen the result of an experiment.");
+        let asked = lesson.scenes.iter().filter(|scene| scene.question().is_some()).count();
+        explain(
+            ui,
+            match asked {
+                1 => "It appears here once you have seen the result of the experiment.",
+                _ => {
+                    "It appears here once you have seen the results of all experiments of this lesson."
+                }
+            },
+        );
     }
     worksheet(ui, view.index, commands);
 }
@@ -101,6 +113,7 @@ fn prediction(
             match (guessed, progress.comparison(scene)) {
                 (_, Some(comparison)) => {
                     ui.label(comparison);
+                    ui.label(question.finding);
                 }
                 _ if !progress.has_begun => guess_buttons(ui, scene, &mut send),
                 (guessed, None) => {
@@ -108,7 +121,9 @@ fn prediction(
                         Some(guessed) => format!("Your guess: {guessed}"),
                         None => "No guess".to_owned(),
                     });
-                    if !view.is_busy {
+                    if question.asks == Asks::PlaybackSpeed {
+                        explain(ui, next_play(&progress.plays));
+                    } else if !view.is_busy {
                         let text = "The result appears when the race has ended.";
                         explain(ui, text);
                         if guessed.is_some() && ui.button("Show the result now").clicked() {
@@ -119,7 +134,9 @@ fn prediction(
             }
         });
     }
-    if progress.is_revealed && !progress.lanes.is_empty() {
+    if !progress.plays.finished().is_empty() {
+        plays(ui, &progress.plays);
+    } else if progress.is_revealed && !progress.lanes.is_empty() {
         lanes(ui, &progress.lanes);
     }
     if !progress.runs.is_empty() {
@@ -166,11 +183,50 @@ fn heading(ui: &mut egui::Ui, text: &str) {
     ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
 }
 
+/// What the reader has to do next in order to compare playbacks.
+fn next_play(plays: &Plays) -> &'static str {
+    match plays.finished() {
+        [] => "Play it to its end. The result appears after two speeds.",
+        _ => {
+            "Now choose another speed (the field with × below the stage), and play it to its end again."
+        }
+    }
+}
+
+/// Table of the finished playbacks, with all digits of their ends.
+fn plays(ui: &mut egui::Ui, plays: &Plays) {
+    table(ui, "plays", &["Speed", "Ends at", "Hash of the motion"], |ui| {
+        for play in plays.finished() {
+            ui.label(format!("× {}", play.speed));
+            ui.label(format!("{} m", play.evaluation.centre_y_m));
+            hash(ui, play.evaluation.trace_hash);
+            ui.end_row();
+        }
+    });
+}
+
+fn hash(ui: &mut egui::Ui, hash: u64) {
+    let text = egui::RichText::new(format!("{hash:016x}")).monospace();
+    ui.add(egui::Label::new(text.size(theme::SMALL_SIZE)).wrap());
+}
+
+/// Name of a lane or run, with the colour of its lane in the race.
+fn lane_name(ui: &mut egui::Ui, lane: usize, name: &str) {
+    ui.horizontal(|ui| {
+        lane_dot(ui, lane, theme::GAP);
+        ui.label(name);
+    });
+}
+
 /// Table of the final results of all lanes.
 fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
     table(ui, "lanes", &["", "Ends at", "Fitness"], |ui| {
-        for (name, evaluation) in lanes {
-            ui.label(name);
+        for (lane, (name, evaluation)) in lanes.iter().enumerate() {
+            match lanes {
+                // A snake alone has no colour.
+                [_] => drop(ui.label(name)),
+                _ => lane_name(ui, lane, name),
+            }
             match evaluation.disqualified {
                 Some(reason) => {
                     ui.label("disqualified:");
@@ -184,13 +240,13 @@ fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
             ui.end_row();
         }
     });
+    explain(ui, FITNESS_OF_THE_LANDED);
 }
 
 /// Chart of all runs, and a table of their results once these may be seen.
 fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
     let runs = &progress.runs;
     let palette = theme::of(ui);
-    let colors = [palette.accent, palette.second];
     let best = |found: &Found| -> Vec<[f64; 2]> {
         let known = found.reports.iter().filter_map(|report| {
             Some([f64::from(report.generation), report.statistics.as_ref()?.best])
@@ -205,9 +261,9 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
         y_title(ui, "Best fitness of each generation (m)");
         fixed_plot("lesson", theme::PLOT_HEIGHT).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&x, &y));
-            for ((found, points), color) in runs.iter().zip(&lines).zip(colors) {
+            for (lane, (found, points)) in runs.iter().zip(&lines).enumerate() {
                 let line = Line::new(found.name.clone(), PlotPoints::from(points.clone()));
-                plot.line(line.color(color).width(2.0));
+                plot.line(line.color(palette.lane_color(lane)).width(2.0));
             }
         });
         x_title(ui, "Generation");
@@ -220,20 +276,21 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
         });
     }
     if !progress.is_revealed {
+        for (lane, found) in runs.iter().enumerate() {
+            lane_name(ui, lane, &found.name);
+        }
         return;
     }
     table(ui, "runs", &["", "Best", "Disqualified", "Run hash"], |ui| {
-        for (found, color) in runs.iter().zip(colors) {
-            ui.label(egui::RichText::new(&found.name).color(color).strong());
+        for (lane, found) in runs.iter().enumerate() {
+            lane_name(ui, lane, &found.name);
             let best = found.best().map(|best| format!("{:.2} m", best.evaluation.fitness));
             ui.label(best.unwrap_or_else(|| "-".to_owned()));
             let out: u32 = found.reports.iter().map(|report| report.disqualified).sum();
             let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
             ui.label(format!("{out} of {all}"))
                 .on_hover_text("Disqualified snakes of all that were evaluated");
-            let hash = found.run_hash.map(|hash| format!("{hash:016x}"));
-            let hash = egui::RichText::new(hash.unwrap_or_default()).monospace();
-            ui.add(egui::Label::new(hash.size(theme::SMALL_SIZE)).wrap());
+            hash(ui, found.run_hash.unwrap_or_default());
             ui.end_row();
         }
     });
@@ -323,20 +380,90 @@ mod tests {
     }
 
     #[test]
-    fn results_and_conclusion_are_hidden_until_the_reader_guesses_and_asks_for_them() {
+    fn findings_follow_each_result_and_the_conclusion_all_of_them() {
+        let finding = |scene: usize| LESSONS[0].scenes[scene].question().expect("asks").finding;
+        let conclusion = LESSONS[0].conclusion;
         let mut commands = vec![LessonCommand::Begin(0)];
         for step in [LessonCommand::Guess(2), LessonCommand::ShowResult] {
             let of = after(&commands);
-            assert!(!shows(&of, LESSONS[0].answer) && !shows(&of, "Ends at"), "before {step:?}");
+            for hidden in [finding(0), conclusion, "Ends at"] {
+                assert!(!shows(&of, hidden), "before {step:?}: {hidden}");
+            }
             commands.push(step);
         }
         let of = after(&commands);
-        assert!(shows(&of, LESSONS[0].answer) && shows(&of, "Ends at"));
+        assert!(shows(&of, finding(0)) && shows(&of, "Ends at"));
         assert!(shows(&of, "You guessed \"friction 5\", but \"original\" gets furthest"));
-        // The next question hides the conclusion again, and the first answer stays.
+        assert!(!shows(&of, conclusion), "the second experiment is still to come");
         commands.push(LessonCommand::ShowScene(1));
-        assert!(!shows(&after(&commands), LESSONS[0].answer));
+        assert!(!shows(&after(&commands), finding(1)));
+        commands.extend([LessonCommand::Guess(1), LessonCommand::ShowResult]);
+        let of = after(&commands);
+        assert!(shows(&of, finding(1)) && !shows(&of, finding(0)) && shows(&of, conclusion));
         commands.push(LessonCommand::ShowScene(0));
-        assert!(shows(&after(&commands), "You guessed \"friction 5\""));
+        assert!(shows(&after(&commands), "You guessed \"friction 5\""), "the answer stays");
+    }
+
+    #[test]
+    fn the_result_of_playback_speeds_cannot_be_asked_for_before_two_were_watched() {
+        let commands = [
+            LessonCommand::Begin(1),
+            LessonCommand::ShowScene(1),
+            LessonCommand::Guess(0),
+            LessonCommand::ShowResult,
+        ];
+        let of = after(&commands);
+        assert!(shows(&of, "Play it to its end. The result appears after two speeds."));
+        let finding = LESSONS[1].scenes[1].question().expect("asks").finding;
+        assert!(!shows(&of, "Show the result now") && !shows(&of, finding));
+    }
+
+    #[test]
+    fn finished_playbacks_are_listed_with_every_digit_and_their_hash() {
+        let mut of = Plays::default();
+        let end = Evaluation {
+            centre_y_m: 34.312_345,
+            trace_hash: 0x0123_4567_89ab_cdef,
+            ..Evaluation::of_fitness(26.0)
+        };
+        of.follow(0.25, 1.0, None);
+        of.follow(0.25, 15.0, Some(&end));
+        let harness = Harness::builder().build_ui(|ui| plays(ui, &of));
+        for part in ["× 0.25", "34.312344 m", "0123456789abcdef"] {
+            assert!(harness.query_by_label(part).is_some(), "{part}");
+        }
+    }
+
+    #[test]
+    fn results_have_the_colours_of_their_lanes() {
+        let runs_of =
+            |name: &str| Found { name: name.to_owned(), reports: Vec::new(), run_hash: None };
+        let progress = Progress {
+            runs: vec![runs_of("one"), runs_of("two")],
+            lanes: vec![("three", 1.0), ("four", 2.0)]
+                .into_iter()
+                .map(|(name, end_m)| (name.to_owned(), Evaluation::of_fitness(end_m)))
+                .collect(),
+            is_revealed: true,
+            ..Progress::default()
+        };
+        for part in ["lanes", "runs"] {
+            let mut harness = Harness::builder().build_ui(|ui| match part {
+                "lanes" => lanes(ui, &progress.lanes),
+                _ => runs(ui, &progress, false),
+            });
+            harness.run();
+            let palette = theme::of_context(&harness.ctx);
+            let fills: Vec<_> = harness
+                .output()
+                .shapes
+                .iter()
+                .filter_map(|clipped| match &clipped.shape {
+                    egui::Shape::Circle(circle) => Some(circle.fill),
+                    _ => None,
+                })
+                .collect();
+            assert_eq!(fills, [palette.lane_color(0), palette.lane_color(1)], "{part}");
+        }
     }
 }

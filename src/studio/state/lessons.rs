@@ -2,6 +2,7 @@
 //! run is paused meanwhile.
 
 mod catalogue;
+mod plays;
 mod prediction;
 #[cfg(test)]
 mod worksheets;
@@ -22,8 +23,9 @@ use crate::studio::ui::notifications::Notices;
 
 use catalogue::{Side, champions, plan};
 
-pub(crate) use catalogue::{LESSONS, LessonScene};
-pub(crate) use prediction::Progress;
+pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSONS, LessonScene};
+pub(crate) use plays::Plays;
+pub(crate) use prediction::{Asks, Progress};
 
 /// The current lesson, if any.
 #[derive(Resource, Debug, Default)]
@@ -85,7 +87,7 @@ pub(crate) struct LessonView<'l> {
     pub progress: &'l Progress,
     /// Whether runs are in progress.
     pub is_busy: bool,
-    /// Whether the conclusion may be seen: the selected scene leaves no question open, and an experiment was made.
+    /// Whether the conclusion may be seen: the results of all experiments of the lesson have been.
     pub shows_conclusion: bool,
 }
 
@@ -94,18 +96,16 @@ impl Lessons {
     pub fn view(&self) -> Option<LessonView<'_>> {
         let current = self.current.as_ref()?;
         let progress = current.progress.get(current.scene)?;
-        let asks = current.scene().is_some_and(|scene| scene.question().is_some());
-        let is_answered = !asks || progress.is_revealed;
         // The snake alone, which asks nothing, is no experiment.
         let scenes = LESSONS[current.index].scenes.iter().zip(&current.progress);
-        let mut tried = scenes.filter(|(scene, of)| scene.question().is_some() && of.is_revealed);
-        let has_tried = tried.next().is_some();
+        let mut experiments = scenes.filter(|(scene, _)| scene.question().is_some());
+        let are_revealed = experiments.all(|(_, of)| of.is_revealed);
         Some(LessonView {
             index: current.index,
             scene: current.scene,
             progress,
             is_busy: current.under_way.is_some(),
-            shows_conclusion: is_answered && has_tried && current.under_way.is_none(),
+            shows_conclusion: are_revealed && current.under_way.is_none(),
         })
     }
 
@@ -208,7 +208,9 @@ impl Lessons {
     fn reveal(&mut self) {
         if let Some(current) = &mut self.current
             && current.under_way.is_none()
+            && let question = current.scene().and_then(LessonScene::question)
             && let Some(progress) = current.progress.get_mut(current.scene)
+            && question.is_none_or(|question| progress.knows_result(question))
         {
             progress.is_revealed = true;
         }
@@ -298,6 +300,17 @@ impl Lessons {
         Ok(progress.race())
     }
 
+    /// Notes a moment of the playback, if the selected scene asks about it.
+    fn follow_playback(&mut self, playback: &Playback, lanes: &[&Lane]) {
+        let Some(current) = &mut self.current else { return };
+        let question = current.scene().and_then(LessonScene::question);
+        if question.is_some_and(|question| question.asks == Asks::PlaybackSpeed)
+            && let Some(progress) = current.progress.get_mut(current.scene)
+        {
+            progress.plays.follow_stage(playback, lanes);
+        }
+    }
+
     /// Reveals the result once the reader has watched the selected scene to its end: the names of the lanes that have
     /// ended undisturbed are those of the scene.
     fn see(&mut self, ended: &[Option<&str>]) {
@@ -361,6 +374,7 @@ fn take_in(
     }
     let mut lanes: Vec<&Lane> = lanes.iter().collect();
     lanes.sort_by_key(|lane| lane.number());
+    lessons.follow_playback(&playback, &lanes);
     let is_seen = |lane: &Lane| lane.is_over() && !lane.is_disturbed();
     let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged().label()));
     let ended: Vec<Option<&str>> = names.collect();

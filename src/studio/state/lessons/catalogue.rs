@@ -20,8 +20,8 @@ pub(crate) struct Lesson {
     pub to_try: &'static str,
     /// Observation to make.
     pub look_for: &'static str,
-    /// Conclusion.
-    pub answer: &'static str,
+    /// Conclusion from all experiments together. What each of them shows is in its question.
+    pub conclusion: &'static str,
     /// Scenes; the first is shown at once.
     pub scenes: &'static [LessonScene],
     /// Text of the worksheet, as Markdown.
@@ -112,38 +112,44 @@ const AS_FOUND: LessonScene = LessonScene::Lanes {
     lanes: &[lane("original", &[])],
 };
 
-const fn furthest() -> Question {
-    Question { text: "Which snake gets furthest?", asks: Asks::Furthest }
+const fn furthest(finding: &'static str) -> Question {
+    Question { text: "Which snake gets furthest?", asks: Asks::Furthest, finding }
 }
 
-const fn best_run() -> Question {
-    Question { text: "Which run's best snake gets further?", asks: Asks::BestRun }
+const fn best_run(finding: &'static str) -> Question {
+    Question { text: "Which run's best snake gets further?", asks: Asks::BestRun, finding }
 }
 
-const fn same_hash() -> Question {
-    Question { text: "Will both runs have the same hash?", asks: Asks::SameHash }
+const fn same_hash(finding: &'static str) -> Question {
+    Question { text: "Will both runs have the same hash?", asks: Asks::SameHash, finding }
 }
 
-/// All lessons.
+/// Why a snake that ends further may not have more fitness.
+pub(crate) const FITNESS_OF_THE_LANDED: &str = "Fitness is the distance, but it stops counting at 26.00 m, where the \
+    whole snake is on the landing.";
+
+/// All lessons. Only findings and conclusions may state a result: the other texts are read before the experiments.
 pub(crate) const LESSONS: [Lesson; 5] = [
     Lesson {
-        title: "Friction: too little, and too much",
+        title: "Friction: how much?",
         question: "How much grip do stairs need?",
-        story: "In the original experiment, the surface was tuned by eye, which took a long time. On ice, a snake \
-                cannot push itself off. So is more grip always better? The stage shows the same snake on ice, on \
-                its own surface and on a surface like glue.",
-        to_try: "Guess which snake gets furthest, then watch the race. Afterwards open the World panel and drag \
-                 Friction: a copy of the snake starts beside it with the new value.",
+        story: "In the original experiment, the surface was tuned by eye, which took a long time. The stage shows \
+                the same snake on a surface like ice, on its own surface and on a surface like glue.",
+        to_try: "Guess which snake gets furthest, then watch the race. Afterwards go back to its start, open the \
+                 World panel and drag Friction: a copy of the snake starts beside it with the new value.",
         look_for: "How far each snake gets. The torques are the same in all lanes; only the surface differs.",
-        answer: "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
-                 holds the others back. A snake that evolved on one surface is fit for that surface and tolerates only small changes. \
-                 That is why the World panel lets you set every property of a surface as a number and see its effect \
-                 at once.",
+        conclusion: "A snake that evolved on one surface is fit for that surface and tolerates some change, but not \
+                     any: of the tenths from 0.1 on, 0.6 is the smallest friction with which this snake \
+                     reaches the landing. The World panel lets you set every property of a surface as a number and \
+                     see its effect at once.",
         scenes: &[
             LessonScene::Lanes {
                 label: "Ice, original, glue",
                 champion: "robust",
-                question: Some(furthest()),
+                question: Some(furthest(
+                    "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
+                     holds the others back.",
+                )),
                 lanes: &[
                     lane("friction 0.1", &[("surface.friction", "0.1")]),
                     lane("original", &[]),
@@ -153,7 +159,9 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             LessonScene::Lanes {
                 label: "A little less, a little more",
                 champion: "robust",
-                question: Some(furthest()),
+                question: Some(furthest(
+                    "With 0.3 less or more, the snake ends nearer, but still reaches the landing.",
+                )),
                 lanes: &[
                     lane("friction 0.7", &[("surface.friction", "0.7")]),
                     lane("original", &[]),
@@ -164,22 +172,27 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         worksheet: include_str!("../../../../docs/worksheets/1.md"),
     },
     Lesson {
-        title: "Forces that follow the frame rate",
+        title: "Frame rate and physics steps",
         question: "Why did the best snake climb on one computer and fall on another?",
         story: "In the original experiment, forces were applied once per drawn frame. Moving the window slowed the \
                 drawing, and therefore the snake. The stage shows the same genome with its own number of physics \
                 steps per second, with fewer, and with more.",
-        to_try: "Watch the race. Then show the champion alone, and play it at a quarter of the speed and at four \
-                 times the speed (the field with × below the stage), or turn on everything in Show to slow the \
-                 drawing.",
-        look_for: "The fitness at the end. No digit of it changes, at any playback speed.",
-        answer: "Here every physics step has the same length, and drawing does not affect the simulation. A slow \
-                 computer shows fewer frames of exactly the same climb.",
+        to_try: "Watch the race. Then show the champion alone and play it to its end at two or more speeds, for \
+                 example × 1 and × 4 (the field with × below the stage). You can also turn on everything in Show to \
+                 slow the drawing.",
+        look_for: "In the race, where each snake ends. At each playback speed, all digits of the end position, and \
+                   the hash of the motion: sixteen characters (0 to 9 and a to f) that summarise every bit of each \
+                   block's position after every physics step.",
+        conclusion: "Here every physics step has the same length, and drawing does not affect the simulation. A slow \
+                     computer shows fewer frames of exactly the same climb.",
         scenes: &[
             LessonScene::Lanes {
                 label: "Original, fewer and more steps per second",
                 champion: "climber",
-                question: Some(furthest()),
+                question: Some(furthest(
+                    "The number of physics steps per second is part of the calculation: with another number, the same \
+                     genome moves differently.",
+                )),
                 lanes: &[
                     lane("original", &[]),
                     lane("45 steps per second", &[("physics.steps_per_s", "45")]),
@@ -187,11 +200,13 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 ],
             },
             LessonScene::Lanes {
-                label: "The original champion at any playback speed",
+                label: "The original champion at several playback speeds",
                 champion: "climber",
                 question: Some(Question {
-                    text: "What changes at the end if you play it at a quarter of the speed?",
+                    text: "Play it to its end at two speeds. Will it end exactly the same?",
                     asks: Asks::PlaybackSpeed,
+                    finding: "The playback speed only changes when each physics step is drawn, and not what happens \
+                              in it.",
                 }),
                 lanes: &[lane("original", &[])],
             },
@@ -200,20 +215,24 @@ pub(crate) const LESSONS: [Lesson; 5] = [
     },
     Lesson {
         title: "Limits on the joints",
-        question: "Why does it help to restrict the joints?",
-        story: "In the original experiment, snakes without joint limits shook themselves to pieces: a joint that can \
-                turn all the way round folds the snake into itself. With a maximum angle for each joint, chosen \
-                at random for each genome, evolution had fewer useless movements to try.",
+        question: "Does it help evolution to restrict the joints, or does it hinder?",
+        story: "A joint that can turn all the way round allows more movements, and it can fold the snake into itself. \
+                In the original experiment, each joint had a maximum angle, chosen at random for each genome.",
         to_try: "Run evolution twice for six generations of 120 snakes: with the original limits, and with limits of \
                  172°, which hardly restrict a joint.",
-        look_for: "The number of disqualified snakes, and the distance of the best one.",
-        answer: "Limits remove more useless movements than useful ones. Almost without limits, nearly all random \
-                 snakes are disqualified before they have moved, and few are left to breed from.",
+        look_for: "The number of disqualified snakes, the distance of the best one, and where that lies in the race \
+                   afterwards.",
+        conclusion: "Limits remove more useless movements than useful ones, so that evolution has more snakes to \
+                     choose from. What it then finds depends on the fitness: here only the distance counts, and six \
+                     generations go for a way beside the stairs.",
         scenes: &[
             AS_FOUND,
             LessonScene::Runs {
                 label: "Evolve with and almost without limits",
-                question: best_run(),
+                question: best_run(
+                    "Almost without limits, more snakes are disqualified, and fewer are left to breed from. The \
+                     best snake with limits gets further, but it passes the stairs at their side.",
+                ),
                 runs: &[
                     run("with limits", 1, 1, &[("population", "120"), ("generations", "6")]),
                     run(
@@ -233,24 +252,24 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         worksheet: include_str!("../../../../docs/worksheets/3.md"),
     },
     Lesson {
-        title: "Mutations that shrink too fast",
-        question: "Why did progress stop after six generations?",
+        title: "Mutations: how fast should they shrink?",
+        question: "What happens to the progress of a run when its mutations become smaller?",
         story: "Children differ from their parent by random changes within a mutation range. In the original \
-                experiment this range halved with each generation: 100, 50, 25 and so on. After six generations, \
-                children hardly differ from their parents.",
+                experiment this range halved with each generation: 100, 50, 25 and so on.",
         to_try: "Run evolution twice for fourteen generations: with a range that halves, and with one that shrinks \
                  by only 5 % per generation.",
-        look_for: "The two lines. At first the halving range is often ahead, because small changes improve a good \
-                   snake. What happens after generation 6?",
-        answer: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
-                 generations can only refine. Not every seed shows this, because some runs are lucky early. You can \
-                 set the range and its decay in the Run panel; some other strategies, such as CMA-ES, adapt \
-                 the size of their changes themselves.",
+        look_for: "The two lines, early and late: which is ahead, and which still rises?",
+        conclusion: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
+                     generations can only refine. You can set the range and its decay in the Run panel; some other \
+                     strategies, such as CMA-ES, adapt the size of their changes themselves.",
         scenes: &[
             AS_FOUND,
             LessonScene::Runs {
                 label: "Evolve with both ranges",
-                question: best_run(),
+                question: best_run(
+                    "With the range that stays large, the best snake gets further. Not every seed shows this, \
+                     because some runs are lucky early.",
+                ),
                 runs: &[
                     run("range halves", 3, 1, &[("population", "120"), ("generations", "14")]),
                     run(
@@ -265,8 +284,8 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         worksheet: include_str!("../../../../docs/worksheets/4.md"),
     },
     Lesson {
-        title: "Repeating a run exactly",
-        question: "Why must a repeated run give exactly the same result?",
+        title: "Repeating a run",
+        question: "Does a run give the same result when you repeat it?",
         story: "In the original experiment, the same forces gave different results from run to run and from computer \
                 to computer. Results could not be checked, work could not be shared between computers, and runs \
                 were repeated only to discard outliers.",
@@ -274,14 +293,16 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                  a millionth.",
         look_for: "The hash of each run: sixteen characters (0 to 9 and a to f) that summarise every bit of \
                    every evaluation.",
-        answer: "The same seed and settings give the same hash, with any number of threads and on every \
-                 computer with an x86-64 processor. Even a change of a millionth gives another result, so \
-                 only a result that can be repeated exactly can be checked.",
+        conclusion: "A hash tells at once whether two runs are the same in every bit. Only a result that can be \
+                     repeated exactly can be checked, and work on it can be shared between computers.",
         scenes: &[
             AS_FOUND,
             LessonScene::Runs {
                 label: "The same run twice",
-                question: same_hash(),
+                question: same_hash(
+                    "The same seed and settings give the same hash, with any number of threads and on every \
+                     computer with an x86-64 processor.",
+                ),
                 runs: &[
                     run("on one thread", 1, 1, &[("population", "60"), ("generations", "6")]),
                     run("on two threads", 1, 2, &[("population", "60"), ("generations", "6")]),
@@ -289,7 +310,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
             },
             LessonScene::Runs {
                 label: "Friction changed by a millionth",
-                question: same_hash(),
+                question: same_hash("Even a change of a millionth gives another result."),
                 runs: &[
                     run("friction 1", 1, 1, &[("population", "60"), ("generations", "6")]),
                     run(

@@ -2,6 +2,7 @@
 
 use super::Found;
 use super::catalogue::LessonScene;
+use super::plays::Plays;
 use crate::score::Evaluation;
 
 /// Ends within this distance count as equally far, in metres.
@@ -14,6 +15,8 @@ pub(crate) struct Question {
     pub text: &'static str,
     /// Quantity that decides the answer.
     pub asks: Asks,
+    /// What the result shows; hidden before it.
+    pub finding: &'static str,
 }
 
 /// Quantity that decides the answer to a question.
@@ -21,7 +24,7 @@ pub(crate) struct Question {
 pub(crate) enum Asks {
     /// Which lane ends furthest, or whether all end within [`EQUAL_M`].
     Furthest,
-    /// Whether the fitness depends on the speed at which the one snake is played.
+    /// Whether the exact end of the one snake depends on the speed at which it is played.
     PlaybackSpeed,
     /// Which run's best snake ends furthest.
     BestRun,
@@ -42,6 +45,8 @@ pub(crate) struct Progress {
     pub lanes: Vec<(String, Evaluation)>,
     /// Results of the runs.
     pub runs: Vec<Found>,
+    /// Playbacks to the end, where the question is about these.
+    pub plays: Plays,
 }
 
 /// The true answer to a question.
@@ -61,7 +66,7 @@ impl LessonScene {
             Some(Asks::Furthest | Asks::BestRun) => {
                 names().chain(["all within 1 m of each other"]).collect()
             }
-            Some(Asks::PlaybackSpeed) => vec!["the fitness changes", "not a digit changes"],
+            Some(Asks::PlaybackSpeed) => vec!["no, it ends differently", "yes, in every digit"],
             Some(Asks::SameHash) => vec!["the same hash", "different hashes"],
             None => Vec::new(),
         }
@@ -85,6 +90,11 @@ impl Progress {
         })
     }
 
+    /// Whether the result can be told as soon as the reader wants it. Playbacks have to be watched first.
+    pub fn knows_result(&self, question: &Question) -> bool {
+        question.asks != Asks::PlaybackSpeed || self.plays.are_equal().is_some()
+    }
+
     /// Index of the true answer.
     #[cfg(test)]
     pub fn true_answer(&self, asks: Asks) -> Option<usize> {
@@ -105,13 +115,23 @@ impl Progress {
                 let end = |found: &Found| found.best().map(|best| best.evaluation.centre_y_m);
                 let ends: Vec<_> =
                     self.runs.iter().map(|found| (found.name.as_str(), end(found))).collect();
-                furthest(&ends)
+                let mut truth = furthest(&ends)?;
+                // The distance alone does not say that this snake is on the stairs.
+                if let Some(best) = self.runs.get(truth.answer).and_then(Found::best) {
+                    truth.words += ": it ";
+                    truth.words += &best.trial.result_in_words(&best.evaluation);
+                }
+                Some(truth)
             }
             Asks::PlaybackSpeed => {
-                let (_, evaluation) = self.lanes.first()?;
-                let fitness = evaluation.fitness;
-                let words = format!("the fitness at the end is {fitness:.2} at any speed");
-                Some(Truth { answer: 1, words })
+                let speeds = self.plays.finished().iter().map(|play| format!("× {}", play.speed));
+                let speeds = speeds.collect::<Vec<_>>().join(" and ");
+                Some(if self.plays.are_equal()? {
+                    let words = format!("end position and hash are the same at {speeds}");
+                    Truth { answer: 1, words }
+                } else {
+                    Truth { answer: 0, words: format!("the motions at {speeds} differ") }
+                })
             }
             Asks::SameHash => {
                 let hashes: Option<Vec<u64>> = self.runs.iter().map(|of| of.run_hash).collect();
@@ -180,6 +200,23 @@ mod tests {
         let mut out = progress(None, &[25.2, 26.0, 25.9]);
         out.lanes[0].1.disqualified = Some(crate::world::Disqualification::TooFast);
         assert_eq!(out.true_answer(Asks::Furthest), Some(1), "a disqualified snake ends nowhere");
+    }
+
+    #[test]
+    fn playbacks_are_compared_once_two_speeds_were_watched() {
+        let scene = &LESSONS[1].scenes[1];
+        let mut of = Progress { guess: Some(1), is_revealed: true, ..Progress::default() };
+        let mut play = |speed, trace_hash| {
+            let end = Evaluation { trace_hash, ..Evaluation::of_fitness(26.0) };
+            of.plays.follow(speed, 1.0, None);
+            of.plays.follow(speed, 15.0, Some(&end));
+            of.comparison(scene)
+        };
+        assert_eq!(play(1.0, 7), None);
+        let words = play(4.0, 7).expect("two speeds");
+        assert!(words.ends_with("end position and hash are the same at × 1 and × 4."), "{words}");
+        let words = play(0.25, 8).expect("three speeds");
+        assert!(words.contains("but the motions at × 1 and × 4 and × 0.25 differ"), "{words}");
     }
 
     #[test]

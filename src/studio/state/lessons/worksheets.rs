@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use super::prediction::Asks;
+use super::plays::Play;
 use super::tests::result;
 use super::*;
 use crate::score::Evaluation;
@@ -24,7 +24,7 @@ const SHEETS: [Sheet; 5] = [
         steps: &[
             "Begin lesson 1, give your guess, and watch the race to its end. Fill in the table.",
             "Do the same with \"A little less, a little more\".",
-            "Open the World panel and drag Friction: find the smallest value that still reaches the landing.",
+            "From the start, drag Friction in the World panel: find the smallest tenth that still lands.",
         ],
         questions: [
             "What goes wrong with too little friction, and what with too much?",
@@ -35,8 +35,9 @@ const SHEETS: [Sheet; 5] = [
     Sheet {
         steps: &[
             "Begin lesson 2, give your guess, and watch the race to its end. Fill in the table.",
-            "Choose \"The original champion at any playback speed\" and guess again. Play it at × 0.25, × 1 and × 4.",
-            "Write down the fitness at the end each time, with all digits.",
+            "Choose \"The original champion at several playback speeds\" and guess again. Play it to its end at × 1 and \
+             at × 4.",
+            "Write down the end position with all digits, and the first four characters of the hash.",
         ],
         questions: [
             "What is the difference between fewer physics steps per second and a slower playback?",
@@ -51,10 +52,10 @@ const SHEETS: [Sheet; 5] = [
             "Watch the best snake of each run race against the other.",
         ],
         questions: [
-            "Why are so many snakes disqualified when their joints can turn almost freely?",
-            "How can a restriction make a search more successful?",
+            "Why does it matter how many snakes of a generation are disqualified?",
+            "The fitness is the distance alone. Where does the best snake of each run end, and why there?",
         ],
-        expected: "",
+        expected: "Each disqualified snake is one less to breed from. ",
     },
     Sheet {
         steps: &[
@@ -114,7 +115,7 @@ fn text(index: usize) -> String {
         "---\n\n**For the teacher** (cover before copying). {} {}{}\n",
         expected(index),
         sheet.expected,
-        lesson.answer
+        lesson.conclusion
     )
 }
 
@@ -125,9 +126,11 @@ fn table(index: usize) -> String {
     let has_speeds = asked.clone().any(|asks| asks == Asks::PlaybackSpeed);
     let asks = asked.next();
     let heads: &[&str] = match asks {
-        _ if has_speeds => &["Snake", "Ends at (m)", "Fitness"],
+        _ if has_speeds => &["Snake", "Ends at (m)", "Hash"],
         Some(Asks::Furthest | Asks::PlaybackSpeed) => &["Snake", "Ends at (m)", "On the landing?"],
-        Some(Asks::BestRun) => &["Run", "Best fitness (m)", "Disqualified"],
+        Some(Asks::BestRun) => {
+            &["Run", "Best fitness (m)", "Disqualified", "Where does the best end?"]
+        }
         Some(Asks::SameHash) | None => &["Run", "Hash"],
     };
     let row = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
@@ -140,7 +143,7 @@ fn table(index: usize) -> String {
     let mut names = Vec::new();
     for scene in scenes() {
         match scene.question().map(|question| question.asks) {
-            Some(Asks::PlaybackSpeed) => names.extend(["played at × 0.25", "played at × 4"]),
+            Some(Asks::PlaybackSpeed) => names.extend(["played at × 1", "played at × 4"]),
             Some(_) => names.extend(scene.sides().iter().map(|side| side.name)),
             None => {}
         }
@@ -155,26 +158,31 @@ fn table(index: usize) -> String {
 fn expected(index: usize) -> String {
     let scenes = LESSONS[index].scenes.iter().enumerate();
     let asked = scenes.filter_map(|(number, scene)| {
-        scene.question()?;
+        let question = scene.question()?;
         let progress = result(index, number);
         let lane = |(name, of): &(String, Evaluation)| match of.disqualified {
             Some(reason) => format!("{name}: disqualified, {}", reason.words()),
-            None => format!("{name}: {:.2} m, fitness {:.2}", of.centre_y_m, of.fitness),
+            None => format!("{name}: {:.2} m", of.centre_y_m),
         };
         let run = |found: &Found| {
-            let best = found.best().map_or("none".to_owned(), |best| best.score());
+            let best = found.best().map_or("none".to_owned(), |best| best.reached());
             let out: u32 = found.reports.iter().map(|report| report.disqualified).sum();
             let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
             format!("{}: {best}, {out} of {all} disqualified", found.name)
         };
         let hash =
             |found: &Found| format!("{}: {:016x}", found.name, found.run_hash.unwrap_or_default());
-        let results: Vec<String> = match scene.question()?.asks {
-            Asks::Furthest | Asks::PlaybackSpeed => progress.lanes.iter().map(lane).collect(),
+        let play = |play: &Play| {
+            let Play { speed, evaluation } = play;
+            format!("× {speed}: {} m, hash {:016x}", evaluation.centre_y_m, evaluation.trace_hash)
+        };
+        let results: Vec<String> = match question.asks {
+            Asks::Furthest => progress.lanes.iter().map(lane).collect(),
+            Asks::PlaybackSpeed => progress.plays.finished().iter().map(play).collect(),
             Asks::BestRun => progress.runs.iter().map(run).collect(),
             Asks::SameHash => progress.runs.iter().map(hash).collect(),
         };
-        Some(format!("{} ({}).", scene.label(), results.join("; ")))
+        Some(format!("{} ({}). {}", scene.label(), results.join("; "), question.finding))
     });
     asked.collect::<Vec<_>>().join(" ")
 }

@@ -1,0 +1,145 @@
+//! Playbacks of a scene's snake to its end, each at one speed.
+
+use crate::score::Evaluation;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
+use crate::studio::stage::staged_champion::ChampionSource;
+
+/// Playbacks of one snake to its end.
+#[derive(Debug, Default)]
+pub(crate) struct Plays {
+    /// Finished playbacks, at most one per speed, in their order.
+    finished: Vec<Play>,
+    current: CurrentPlay,
+    /// Displayed time at the last moment, in simulated seconds.
+    time_s: f64,
+}
+
+/// A playback to the end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Play {
+    /// Playback speed, in simulated seconds per second.
+    pub speed: f32,
+    /// Evaluation of the snake that was simulated in this playback.
+    pub evaluation: Evaluation,
+}
+
+/// The playback in progress.
+#[derive(Debug, Default)]
+enum CurrentPlay {
+    /// None has begun since the last end.
+    #[default]
+    None,
+    /// All of it so far at this speed, in simulated seconds per second.
+    At(f32),
+    /// At several speeds.
+    Mixed,
+}
+
+/// Playbacks at different speeds that a comparison needs.
+pub(super) const PLAYS_TO_COMPARE: usize = 2;
+
+impl Plays {
+    /// The finished playbacks, in their order.
+    pub fn finished(&self) -> &[Play] {
+        &self.finished
+    }
+
+    /// Whether all playbacks ended with the same bits; `None` before there are enough to compare.
+    pub fn are_equal(&self) -> Option<bool> {
+        let (first, others) = self.finished.split_first()?;
+        let is_equal = |play: &Play| play.evaluation.agrees_with(&first.evaluation);
+        (self.finished.len() >= PLAYS_TO_COMPARE).then(|| others.iter().all(is_equal))
+    }
+
+    /// Notes a moment of the playback of a lesson's snake, which is alone on the stage in its own world.
+    pub fn follow_stage(&mut self, playback: &Playback, lanes: &[&Lane]) {
+        match lanes {
+            [lane] if is_undisturbed(lane) => {
+                let ended = lane.is_over().then(|| lane.evaluation());
+                self.follow(playback.speed(), playback.time_s(), ended.as_ref());
+            }
+            _ => self.current = CurrentPlay::None,
+        }
+    }
+
+    /// Notes a moment of the playback: its speed and displayed time, in simulated seconds, and the evaluation of the
+    /// snake if that has ended.
+    pub fn follow(&mut self, speed: f32, time_s: f64, ended: Option<&Evaluation>) {
+        let goes_back = time_s < self.time_s;
+        self.time_s = time_s;
+        if goes_back || time_s <= 0.0 {
+            self.current = CurrentPlay::None;
+        }
+        if time_s <= 0.0 {
+            return;
+        }
+        if let Some(evaluation) = ended {
+            if let CurrentPlay::At(speed) = std::mem::take(&mut self.current) {
+                self.finished.retain(|play| play.speed != speed);
+                self.finished.push(Play { speed, evaluation: *evaluation });
+            }
+            return;
+        }
+        self.current = match self.current {
+            CurrentPlay::None => CurrentPlay::At(speed),
+            CurrentPlay::At(before) if before == speed => CurrentPlay::At(speed),
+            _ => CurrentPlay::Mixed,
+        };
+    }
+}
+
+fn is_undisturbed(lane: &Lane) -> bool {
+    let staged = lane.staged();
+    staged.source() == ChampionSource::Lesson && !staged.is_changed() && !lane.is_disturbed()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn speeds(plays: &Plays) -> Vec<f32> {
+        plays.finished().iter().map(|play| play.speed).collect()
+    }
+
+    #[test]
+    fn a_playback_counts_once_it_was_watched_to_its_end_at_one_speed() {
+        let end = Evaluation::of_fitness(26.0);
+        let mut plays = Plays::default();
+        plays.follow(1.0, 0.0, None);
+        plays.follow(1.0, 15.0, Some(&end));
+        assert!(speeds(&plays).is_empty(), "it stood at its end from the beginning");
+        // The speed is chosen before the start.
+        for (speed, time_s) in [(1.0, 0.0), (4.0, 0.0), (4.0, 5.0), (4.0, 14.0)] {
+            plays.follow(speed, time_s, None);
+        }
+        plays.follow(4.0, 15.0, Some(&end));
+        plays.follow(2.0, 15.0, Some(&end));
+        assert_eq!(speeds(&plays), [4.0], "a speed chosen at the end is not that of the playback");
+        for (speed, time_s) in [(2.0, 0.0), (2.0, 5.0), (0.25, 6.0), (0.25, 14.0)] {
+            plays.follow(speed, time_s, None);
+        }
+        plays.follow(0.25, 15.0, Some(&end));
+        assert_eq!(speeds(&plays), [4.0], "two speeds in one playback");
+        plays.follow(0.25, 1.0, None);
+        plays.follow_stage(&Playback::default(), &[]);
+        plays.follow(0.25, 15.0, Some(&end));
+        assert_eq!(speeds(&plays), [4.0], "without the snake");
+    }
+
+    #[test]
+    fn playbacks_at_two_speeds_are_compared_bit_by_bit() {
+        let end = Evaluation::of_fitness(26.0);
+        let mut plays = Plays::default();
+        let mut play = |speed, end: &Evaluation| {
+            plays.follow(speed, 1.0, None);
+            plays.follow(speed, 15.0, Some(end));
+            plays.are_equal()
+        };
+        assert_eq!(play(1.0, &end), None);
+        assert_eq!(play(1.0, &end), None, "the same speed again");
+        assert_eq!(play(4.0, &end), Some(true));
+        let other = Evaluation { trace_hash: end.trace_hash + 1, ..end };
+        assert_eq!(play(0.25, &other), Some(false), "equal fitness, another motion");
+    }
+}
