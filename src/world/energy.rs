@@ -1,5 +1,7 @@
 //! Energy balance of the snake: the work of its joints, its mechanical energy, and what was lost.
 
+use rapier3d::prelude::*;
+
 /// Terms of the energy balance that only stepping knows, since the start. They never act back on the simulation.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct EnergyBalance {
@@ -11,23 +13,22 @@ pub(super) struct EnergyBalance {
     pub joint_damping_j: f64,
     /// What the damping of the limbs' rotation took, in J.
     pub rotation_damping_j: f64,
-    /// Powers after the last step.
-    pub damping: DampingPower,
 }
 
-/// Power that damping takes away, in W.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct DampingPower {
-    /// Of the joints.
-    pub joints_w: f32,
-    /// Of the limbs' rotation.
-    pub rotation_w: f32,
+/// Rotation of a limb before a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LimbTurn {
+    /// In the world.
+    pub rotation: Rotation,
+    /// In rad/s, in the world.
+    pub rate: Vector,
 }
 
 /// Mechanical energy that the snake has lost since the start.
 ///
-/// The parts are computed with the trapezoidal rule over each step, which is accurate to a few hundredths of the joints'
-/// work. The work of a user's pull is not counted: after a pull the numbers say nothing.
+/// The damping of rotation is exact. The work of the joints and their damping are integrals over each step, from the
+/// rates at both ends and the angle turned in between, accurate to a few hundredths of the joints' work. The work of a
+/// user's pull is not counted: after a pull the numbers say nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EnergyLost {
     /// Everything that turned into heat, in J: `E(0) + W - E(t)`, with the kinetic and potential energy E of all limbs and
@@ -36,8 +37,8 @@ pub struct EnergyLost {
     /// The part of the joints' damping, in J: the integral of `c ω²` over all joint axes, for the damping c and the
     /// rate ω.
     pub joint_damping_j: f32,
-    /// The part of the damping of the limbs' rotation, in J: the integral of `2 d E_rot`, for the rate d at which
-    /// rotation is damped and the energy of rotation.
+    /// The part of the damping of the limbs' rotation, in J: `((1 + d h)² - 1) E_rot` in each step of length
+    /// h, for the damping d and the energy of rotation after it. For a small `d h` that is `2 d h E_rot`.
     pub rotation_damping_j: f32,
 }
 

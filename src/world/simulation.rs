@@ -158,9 +158,7 @@ impl Simulation {
     /// The reason for which this step disqualified the agent. The world must not be stepped further then.
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
-        let joint_power_before_w = self.joint_power_w();
         self.advance();
-        self.add_to_balance(joint_power_before_w);
         let mut effort = self.check_health()?;
         effort.energy_j = self.energy_j();
         self.effort = self.effort.and(effort);
@@ -200,8 +198,10 @@ impl Simulation {
             substeps: *substeps,
             snake_kg: *snake_kg,
         };
+        let turns_before = self.limb_turns();
         if !self.contacts.bounces {
             self.physics.step_with_events(&hooks, &());
+            self.add_to_balance(&turns_before);
         } else {
             let velocity = |&limb: &RigidBodyHandle| {
                 let body = &self.physics.bodies[limb];
@@ -209,11 +209,14 @@ impl Simulation {
             };
             let before: Vec<LimbVelocity> = self.limbs.iter().map(velocity).collect();
             self.physics.step_with_events(&hooks, &());
+            self.add_to_balance(&turns_before);
             for (&limb, before) in self.limbs.iter().zip(before) {
                 finish_bounce(&mut self.physics, limb, before);
             }
         }
-        if laws.stairs.dampen_per_s > 0.0 || laws.ground.dampen_per_s > 0.0 {
+        if self.contacts.laws.stairs.dampen_per_s > 0.0
+            || self.contacts.laws.ground.dampen_per_s > 0.0
+        {
             self.dampen();
         }
     }

@@ -229,8 +229,8 @@ fn draw(
             let target = highlighted_panel(step)
                 .and_then(|kind| panels.panel_rects.iter().find(|(of, _)| *of == kind))
                 .map(|(_, place)| *place);
-            let is_playing = data.on_stage.playback.is_playing();
-            panels.tour.ui(&context, step, target, is_playing, &mut commands);
+            let player_commands = data.on_stage.playback.commands();
+            panels.tour.ui(&context, step, target, player_commands, &mut commands);
         }
         None => {}
     }

@@ -225,11 +225,8 @@ impl Lane {
         self.replay.poses().get(limb).map_or(in_limb_m, |pose| *pose * in_limb_m)
     }
 
-    /// Speed of the middle limb between the last two steps, in m/s.
+    /// Speed of the middle limb between the last two steps, in m/s; at the end, that of the last step.
     pub fn speed_m_s(&self) -> f32 {
-        if self.is_over() {
-            return 0.0;
-        }
         let middle = self.before.len() / 2;
         match (self.before.get(middle), self.replay.poses().get(middle)) {
             (Some(before), Some(after)) => {
@@ -340,9 +337,16 @@ impl Lane {
     }
 
     fn go_on(&mut self, step: u32) {
+        let mut earlier = self.before.clone();
         while self.replay.step() < step && !self.replay.is_over() {
+            let now = self.replay.step();
+            earlier.copy_from_slice(&self.before);
             self.before.copy_from_slice(self.replay.poses());
             let goes_on = self.replay.advance();
+            if self.replay.step() == now {
+                // A step that breaks a limit does not count, so the last one is that before it.
+                self.before.copy_from_slice(&earlier);
+            }
             if goes_on && !self.is_ghost {
                 self.readings.meter.note(&self.replay, step);
             }

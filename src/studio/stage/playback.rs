@@ -23,6 +23,8 @@ pub(crate) struct Playback {
     /// Moment from which changes of the world were tried last, in simulated seconds; `None` if the user has gone to
     /// another one since, or watches something else.
     tried_from_s: Option<f64>,
+    /// Number of commands that paused, played or moved the clock.
+    commands: u32,
 }
 
 /// Playback speed, in simulated seconds per second.
@@ -45,6 +47,7 @@ impl Default for Playback {
             rested_s: 0.0,
             is_sought: false,
             tried_from_s: None,
+            commands: 0,
         }
     }
 }
@@ -58,6 +61,11 @@ impl Playback {
     /// Whether playback is running.
     pub fn is_playing(&self) -> bool {
         self.is_playing
+    }
+
+    /// Number of commands so far that paused, played or moved the clock. The studio also holds the clock by itself.
+    pub fn commands(&self) -> u32 {
+        self.commands
     }
 
     /// Whether playback loops.
@@ -75,6 +83,9 @@ impl Playback {
         if matches!(command, PlayerCommand::Seek(_) | PlayerCommand::Step { .. }) {
             self.tried_from_s = None;
         }
+        use PlayerCommand::{ChangeSpeed, SetSpeed, ToggleLoop};
+        let is_of_speed = matches!(command, SetSpeed(_) | ChangeSpeed { .. } | ToggleLoop);
+        self.commands += u32::from(!is_of_speed);
         match command {
             PlayerCommand::Toggle => self.toggle(end_s),
             PlayerCommand::Restart => self.restart(),

@@ -1,7 +1,9 @@
 //! Keeps the energy balance of a world, step by step, and reads it.
 
+use rapier3d::prelude::*;
+
 use super::Simulation;
-use crate::world::energy::{DampingPower, EnergyLost};
+use crate::world::energy::{EnergyLost, LimbTurn};
 
 impl Simulation {
     /// The energy lost since the start.
@@ -25,48 +27,53 @@ impl Simulation {
     pub(super) fn take_balance_of(&mut self, earlier: &Self) {
         self.balance = earlier.balance;
         self.balance.start_j += self.mechanical_energy_j() - earlier.mechanical_energy_j();
-        self.balance.damping = self.damping_power();
     }
 
-    /// Adds a step to the balance, given the power of the joint torques at its start, in W.
-    pub(super) fn add_to_balance(&mut self, joint_power_before_w: f32) {
+    /// Rotations and rates of the limbs, to be read before a step.
+    pub(super) fn limb_turns(&self) -> Vec<LimbTurn> {
+        let bodies = self.limbs.iter().map(|&limb| &self.physics.bodies[limb]);
+        bodies.map(|body| LimbTurn { rotation: *body.rotation(), rate: body.angvel() }).collect()
+    }
+
+    /// Adds a step to the balance, given the limbs' rotations before it. To be called right after the engine's step:
+    /// bounces and damping surfaces change the rates afterwards.
+    ///
+    /// Rates change a lot within one step where a joint reaches its stop, so the integrals are not taken from the rates
+    /// at both ends alone, but also from the angle through which each limb has turned.
+    pub(super) fn add_to_balance(&mut self, before: &[LimbTurn]) {
         let step_s = self.physics.integration_parameters.dt;
-        let over_step_j =
-            |before_w: f32, after_w: f32| f64::from((before_w + after_w) / 2.0 * step_s);
-        let (before, after) = (self.balance.damping, self.damping_power());
-        let work_j = over_step_j(joint_power_before_w, self.joint_power_w());
-        let balance = &mut self.balance;
-        balance.joint_work_j += work_j;
-        balance.joint_damping_j += over_step_j(before.joints_w, after.joints_w);
-        balance.rotation_damping_j += over_step_j(before.rotation_w, after.rotation_w);
-        balance.damping = after;
-    }
-
-    /// Power of the joint torques that are applied now, in W.
-    pub(super) fn joint_power_w(&self) -> f32 {
-        let limbs = self.limbs.iter().zip(&self.torques_in_world);
-        limbs.map(|(&limb, torque)| torque.dot(self.physics.bodies[limb].angvel())).sum()
-    }
-
-    /// Power that the damping of joints and of rotation takes at the present speeds.
-    fn damping_power(&self) -> DampingPower {
-        let bodies = &self.physics.bodies;
-        let joints_w = self.body.joints.iter().map(|joint| {
-            let [parent, child] = [joint.parent, joint.child].map(|limb| &bodies[self.limbs[limb]]);
-            let rate = parent.rotation().inverse() * (child.angvel() - parent.angvel());
-            joint.damping_nms_per_rad * (rate.x * rate.x + rate.y * rate.y)
-        });
-        let rotation_j = self.limbs.iter().map(|&limb| {
-            let body = &bodies[limb];
-            // The axes of a box are its principal axes.
+        let substep_s = step_s / self.contacts.substeps.max(1) as f32;
+        // The engine divides the rates by this at the very end of the step.
+        let damped_by = 1.0 + self.body.angular_damping_per_s * step_s;
+        let (mut work_j, mut rotation_j) = (0.0, 0.0);
+        let mut turns = Vec::with_capacity(self.limbs.len());
+        for ((&limb, torque), before) in self.limbs.iter().zip(&self.torques_in_world).zip(before) {
+            let body = &self.physics.bodies[limb];
+            let after = body.angvel() * damped_by;
+            let turned_rad = rotation_vector(*body.rotation() * before.rotation.inverse());
+            // The engine turns a limb by its rate at the end of each substep. The work of a torque counts with the mean
+            // of the rates at both ends.
+            let mean = turned_rad / step_s - (after - before.rate) * (substep_s / (2.0 * step_s));
+            work_j += torque.dot(mean) * step_s;
             let rate = body.rotation().inverse() * body.angvel();
+            // The axes of a box are its principal axes.
             let inertia = body.mass_properties().local_mprops.principal_inertia();
-            (inertia * rate).dot(rate) / 2.0
-        });
-        DampingPower {
-            joints_w: joints_w.sum(),
-            rotation_w: 2.0 * self.body.angular_damping_per_s * rotation_j.sum::<f32>(),
+            rotation_j += (inertia * rate).dot(rate) / 2.0 * (damped_by * damped_by - 1.0);
+            turns.push([before.rate, mean, after]);
         }
+        let mut joints_j = 0.0;
+        for joint in &self.body.joints {
+            let to_parent = before[joint.parent].rotation.inverse();
+            let [first, mean, last] = std::array::from_fn(|moment| {
+                to_parent * (turns[joint.child][moment] - turns[joint.parent][moment])
+            });
+            let squares = square_over_step(first.x, mean.x, last.x)
+                + square_over_step(first.y, mean.y, last.y);
+            joints_j += joint.damping_nms_per_rad * squares * step_s;
+        }
+        self.balance.joint_work_j += f64::from(work_j);
+        self.balance.joint_damping_j += f64::from(joints_j);
+        self.balance.rotation_damping_j += f64::from(rotation_j);
     }
 
     /// Kinetic and potential energy of all limbs, in J. The potential energy is 0 at z = 0.
@@ -81,4 +88,21 @@ impl Simulation {
         });
         energies_j.sum()
     }
+}
+
+/// Axis of a rotation times its angle, in rad.
+fn rotation_vector(rotation: Rotation) -> Vector {
+    let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
+    let axis = Vector::new(rotation.x, rotation.y, rotation.z) * sign;
+    let sine = axis.length();
+    // The limit for small angles is 2.
+    let scale = if sine > 1.0e-3 { 2.0 * libm::asinf(sine.min(1.0)) / sine } else { 2.0 };
+    axis * scale
+}
+
+/// Mean square of a rate over a step: of the parabola with these values at both ends and this mean.
+fn square_over_step(first: f32, mean: f32, last: f32) -> f32 {
+    let slope = (last - first) / 2.0;
+    let curve = (first + last) / 2.0 - mean;
+    mean * mean + slope * slope / 3.0 + curve * curve / 5.0
 }

@@ -41,8 +41,9 @@ pub struct ContactPatch {
     /// Depth to which the deepest loaded point has sunk in, in metres. Negative while the engine stops a hard contact
     /// just before it touches.
     pub depth_m: f32,
-    /// Power that friction turns into heat at the end of the step, in W: `-(F · v + T ω)` for the force F and the torque
-    /// T of the last substep, the velocity v of the patch along the surface and the rate ω at which it turns on it.
+    /// Power that friction turns into heat in the last substep, in W: `-(F · v + T ω)` for the force F and the torque
+    /// T of the last substep, the velocity v of the patch along the surface and the rate ω at which it turns on it. 0 where
+    /// a limb has bounced in this step, because a bounce changes the velocities after friction has acted.
     pub friction_w: f32,
 }
 
@@ -55,6 +56,23 @@ pub struct SurfaceDamping {
     pub power_w: f32,
 }
 
+/// Velocity of a limb as the solver left it; of the fixed world, 0.
+#[derive(Debug, Clone, Copy, Default)]
+struct SolvedVelocity {
+    centre_m: Vector,
+    /// In m/s.
+    linear: Vector,
+    /// In rad/s.
+    angular: Vector,
+}
+
+impl SolvedVelocity {
+    /// Velocity of the point of the limb at a place in the world, in m/s.
+    fn at(&self, at_m: Vector) -> Vector {
+        self.linear + self.angular.cross(at_m - self.centre_m)
+    }
+}
+
 /// The points of a manifold that the solver has just solved. A manifold also holds points that are only near, with the
 /// impulses of their last touch.
 pub(super) fn solved_points(
@@ -62,6 +80,15 @@ pub(super) fn solved_points(
 ) -> impl Iterator<Item = &TrackedContact<ContactData>> {
     manifold.data.solver_contacts.iter().filter_map(|contact| {
         manifold.points.get((contact.contact_id[0] & !NEW_CONTACT_BIT) as usize)
+    })
+}
+
+/// Whether a point of a manifold touches for the first time and presses: the engine lets only these bounce.
+fn has_new_impulse(manifold: &ContactManifold) -> bool {
+    manifold.data.solver_contacts.iter().any(|contact| {
+        let id = contact.contact_id[0];
+        let point = manifold.points.get((id & !NEW_CONTACT_BIT) as usize);
+        id & NEW_CONTACT_BIT != 0 && point.is_some_and(|point| point.data.impulse > 0.0)
     })
 }
 
@@ -73,7 +100,8 @@ fn share(part: f32, whole: f32) -> f32 {
 impl Simulation {
     /// The contact patches after the last step, the head's first. Patches between limbs are listed once.
     ///
-    /// Forces are those of the last substep: see [`Self::contact_forces`]. Speeds are those at the end of the step.
+    /// Forces are those of the last substep: see [`Self::contact_forces`]. Speeds are those with which the
+    /// solver ended that substep, before damping.
     pub fn contact_patches(&self) -> Vec<ContactPatch> {
         let mut patches = Vec::new();
         for (limb, &body) in self.limbs.iter().enumerate() {
@@ -123,6 +151,35 @@ impl Simulation {
             .max_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
+    /// Velocity of a limb as the solver left it in the last substep, with which its friction agrees.
+    ///
+    /// At the end of a step the engine divides the rates by `1 + d h`, and a damping surface multiplies all velocities.
+    /// With these velocities a contact that holds would seem to slip, and friction to drive it. The bounces that are
+    /// corrected after the solver stay in it.
+    fn solved_velocity(&self, limb: RigidBodyHandle) -> SolvedVelocity {
+        let body = &self.physics.bodies[limb];
+        let step_s = self.physics.integration_parameters.dt;
+        let dampen_per_s =
+            self.strongest_damping(limb).map_or(0.0, |(_, dampen_per_s)| dampen_per_s);
+        let kept = 1.0 - dampen_per_s * step_s;
+        // Where a surface stops limbs within one step, their velocity is not known any more.
+        let factor = if kept > 0.0 { 1.0 / kept } else { 1.0 };
+        SolvedVelocity {
+            centre_m: body.center_of_mass(),
+            linear: body.linvel() * factor,
+            angular: body.angvel() * factor * (1.0 + body.angular_damping() * step_s),
+        }
+    }
+
+    /// Whether a limb has bounced in the last step.
+    fn has_bounced(&self, limb: Option<RigidBodyHandle>) -> bool {
+        let Some(limb) = limb.filter(|_| self.contacts.bounces) else { return false };
+        let collider = self.physics.bodies[limb].colliders()[0];
+        let touching = self.physics.narrow_phase.contact_pairs_with(collider);
+        let mut manifolds = touching.flat_map(|pair| pair.solver_manifolds());
+        manifolds.any(|manifold| manifold.data.restitution > 0.0 && has_new_impulse(manifold))
+    }
+
     /// The surface that a collider belongs to.
     fn touched(&self, collider: ColliderHandle) -> TouchedSurface {
         if collider == self.contacts.ground {
@@ -144,13 +201,10 @@ impl Simulation {
         let colliders =
             [pair.collider1, pair.collider2].map(|handle| &self.physics.colliders[handle]);
         let [first, second] = colliders.map(|collider| {
-            let body = collider.parent().map(|body| &self.physics.bodies[body]);
-            (collider.position(), body)
+            let solved = collider.parent().map(|limb| self.solved_velocity(limb));
+            (collider.position(), solved.unwrap_or_default())
         });
-        let velocity = |body: Option<&RigidBody>, at: Vector| {
-            body.map_or(Vector::ZERO, |body| body.velocity_at_point(at))
-        };
-        let turn = |body: Option<&RigidBody>| body.map_or(Vector::ZERO, |body| body.angvel());
+        let has_bounced = colliders.iter().any(|collider| self.has_bounced(collider.parent()));
 
         let at_m = |point: &TrackedContact<ContactData>| *first.0 * point.local_p1;
         let (mut count, mut centre_m, mut pressed_ns) = (0.0, Vector::ZERO, 0.0);
@@ -170,7 +224,7 @@ impl Simulation {
         // It points from the first body to the second.
         let normal = manifold.data.normal;
         let sliding = |at: Vector| {
-            let relative = velocity(first.1, at) - velocity(second.1, at);
+            let relative = first.1.at(at) - second.1.at(at);
             relative - normal * relative.dot(normal)
         };
         let (mut slip_m_s, mut depth_m, mut lever_nms) = (0.0_f32, f32::NEG_INFINITY, 0.0);
@@ -184,7 +238,7 @@ impl Simulation {
         let friction = colliders[0].friction() * colliders[1].friction();
         let substep_s =
             self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
-        let spin_rad_s = (turn(first.1) - turn(second.1)).dot(normal);
+        let spin_rad_s = (first.1.angular - second.1.angular).dot(normal);
         // The twist acts on the first body about the opposite of the normal.
         let friction_j = twist_nms * spin_rad_s - friction_ns.dot(sliding(centre_m));
         Some(ContactPatch {
@@ -196,7 +250,7 @@ impl Simulation {
                 .max(share(twist_nms.abs(), friction * lever_nms)),
             slip_m_s,
             depth_m,
-            friction_w: friction_j / substep_s,
+            friction_w: if has_bounced { 0.0 } else { friction_j / substep_s },
         })
     }
 }

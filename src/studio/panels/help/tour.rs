@@ -89,22 +89,26 @@ pub(crate) fn highlighted_panel(step: usize) -> Option<PanelKind> {
 #[derive(Debug, Default)]
 pub(crate) struct Tour {
     is_done: [bool; STEPS.len()],
+    /// Number of commands to the player when the step about the stage was first shown.
+    first_commands: Option<u32>,
 }
 
 impl Tour {
     /// Draws a step beside the highlighted rectangle `target` and collects the user's commands. `commands` has those
-    /// of the panels in this frame; `is_playing` says whether the stage plays, which a key can change, too.
+    /// of the panels in this frame; `player_commands` counts those that the player has got, which come from keys, too.
+    /// That the stage is paused says nothing: it also waits for the first generation.
     pub fn ui(
         &mut self,
         context: &egui::Context,
         index: usize,
         target: Option<egui::Rect>,
-        is_playing: bool,
+        player_commands: u32,
         commands: &mut Vec<Command>,
     ) {
         let Some(step) = STEPS.get(index) else { return };
-        let is_held = step.highlights == PanelKind::Stage && !is_playing;
-        self.is_done[index] |= is_held || commands.iter().any(step.is_done_by);
+        let has_acted = step.highlights == PanelKind::Stage
+            && player_commands > *self.first_commands.get_or_insert(player_commands);
+        self.is_done[index] |= has_acted || commands.iter().any(step.is_done_by);
         if commands.iter().any(|command| matches!(command, Command::Lesson(_))) {
             commands.push(Command::Window(WindowCommand::CloseModal));
         }
@@ -218,7 +222,7 @@ mod tests {
                 let mut harness =
                     Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
                         |ui, commands| {
-                            Tour::default().ui(&ui.ctx().clone(), index, None, true, commands);
+                            Tour::default().ui(&ui.ctx().clone(), index, None, 0, commands);
                         },
                         Vec::new(),
                     );
@@ -243,7 +247,7 @@ mod tests {
     fn enter_continues_the_tour() {
         let mut harness = Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
             |ui, commands| {
-                Tour::default().ui(&ui.ctx().clone(), 0, None, true, commands);
+                Tour::default().ui(&ui.ctx().clone(), 0, None, 0, commands);
             },
             Vec::new(),
         );
@@ -251,6 +255,28 @@ mod tests {
         harness.key_press(egui::Key::Enter);
         harness.run();
         assert_eq!(*harness.state(), [Command::Window(WindowCommand::ToggleModal(Modal::Tour(1)))]);
+    }
+
+    #[test]
+    fn only_a_command_to_the_player_ticks_the_first_task_not_a_stage_that_waits() {
+        let player = std::cell::RefCell::new(crate::studio::stage::playback::Playback::default());
+        let mut cards = Tour::default();
+        let mut harness = Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui(|ui| {
+            let player_commands = player.borrow().commands();
+            cards.ui(&ui.ctx().clone(), 0, None, player_commands, &mut Vec::new());
+        });
+        // The first start waits for the first generation.
+        player.borrow_mut().hold_at(0.0);
+        harness.run();
+        let words = STEPS[0].try_it;
+        assert!(harness.query_by_label(&format!("Try it: {words}")).is_some());
+        player.borrow_mut().restart();
+        player.borrow_mut().apply(&PlayerCommand::SetSpeed(2.0), 1.0 / 60.0, 5.0);
+        harness.run();
+        assert!(harness.query_by_label(&format!("Try it: {words}")).is_some());
+        player.borrow_mut().apply(&PlayerCommand::Toggle, 1.0 / 60.0, 5.0);
+        harness.run();
+        assert!(harness.query_by_label(&format!("Done: {words}")).is_some());
     }
 
     #[test]
@@ -267,7 +293,7 @@ mod tests {
             let mut cards = Tour::default();
             let mut harness =
                 Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
-                    |ui, commands| cards.ui(&ui.ctx().clone(), index, None, true, commands),
+                    |ui, commands| cards.ui(&ui.ctx().clone(), index, None, 0, commands),
                     Vec::new(),
                 );
             harness.run();

@@ -64,19 +64,21 @@ const GRIP: ReadoutLine = ReadoutLine {
 const DENT: ReadoutLine = ReadoutLine {
     name: "Dent",
     term: "penetration",
-    hint: "Greatest depth to which a limb has sunk in during the last 0.25 s. A hard surface stays near 0",
+    hint: "Greatest depth of a limb's lowest corner below the surface in the last 0.25 s. A hard surface stays near 0. In a \
+           soft one, a limb that stands on its end can sink in by more than a metre",
 };
 const POWER: ReadoutLine = ReadoutLine {
     name: "Lost here",
     term: "dissipation",
     hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's damping \
-           takes. Mean of the last 0.25 s. Impacts and dents are not in it",
+           takes. Mean of the last 0.25 s. Impacts, bounces and dents are not in it",
 };
 const LOST: ReadoutLine = ReadoutLine {
     name: "Lost so far",
     term: "contacts, stops",
     hint: "Energy lost since the start in all contacts (friction, impacts, dents) and at the stops of the joints: work of the \
-           joints, minus the gain in motion and height, minus what the damping of joints and rotation took",
+           joints, minus the gain in motion and height, minus what the damping of joints and rotation took. A dent \
+           holds a part of it, which may come back. Below 0, the engine has added energy",
 };
 
 /// Width of the names, in points.

@@ -176,8 +176,8 @@ pub(super) fn in_watts(power_w: f32) -> String {
 
 pub(super) fn in_joules(energy_j: f32) -> String {
     // Rounding must not leave "-0 J" at the start.
-    let energy_j = energy_j.max(0.0);
-    if energy_j < 999.5 {
+    let energy_j = if energy_j.abs() < 0.5 { 0.0 } else { energy_j };
+    if energy_j.abs() < 999.5 {
         format!("{energy_j:.0} J")
     } else {
         format!("{:.2} kJ", energy_j / 1000.0)
