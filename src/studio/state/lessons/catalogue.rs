@@ -184,7 +184,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                    the hash of the motion: sixteen characters (0 to 9 and a to f) that summarise every bit of each \
                    block's position after every physics step.",
         conclusion: "Here every physics step has the same length, and drawing does not affect the simulation. A slow \
-                     computer shows fewer frames of exactly the same climb.",
+                     computer shows fewer frames of the same climb.",
         scenes: &[
             LessonScene::Lanes {
                 label: "Original, fewer and more steps per second",
@@ -200,13 +200,12 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 ],
             },
             LessonScene::Lanes {
-                label: "The original champion at several playback speeds",
+                label: "The original at two playback speeds",
                 champion: "climber",
                 question: Some(Question {
                     text: "Play it to its end at two speeds. Will it end exactly the same?",
                     asks: Asks::PlaybackSpeed,
-                    finding: "The playback speed only changes when each physics step is drawn, and not what happens \
-                              in it.",
+                    finding: "The playback speed changes when a physics step is drawn, not what happens in it.",
                 }),
                 lanes: &[lane("original", &[])],
             },

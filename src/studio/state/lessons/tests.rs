@@ -19,7 +19,7 @@ pub(super) fn result(lesson: usize, scene: usize) -> &'static Progress {
             };
             let asks = LESSONS[lesson].scenes[scene].question().map(|question| question.asks);
             let plays = match asks {
-                Some(Asks::PlaybackSpeed) => played(&staged[0], &[0.25, 1.0, 4.0]),
+                Some(Asks::PlaybackSpeed) => played(&staged[0], &[1.0, 4.0]),
                 _ => Plays::default(),
             };
             Progress { lanes: staged.iter().map(of).collect(), plays, ..Progress::default() }
