@@ -27,7 +27,7 @@ impl Controller for GaitFollower {
         let pull = |wave: &Wave, angle_rad, rate_rad_s| {
             self.torque_nm(wave.at(periods), angle_rad, rate_rad_s)
         };
-        let joints = waves.joints.iter().zip(&observation.joints);
+        let joints = waves.joints.iter().zip(observation.joints_ahead());
         for (torque, (joint, state)) in torques.iter_mut().zip(joints) {
             torque.bend_nm = pull(&joint.bend, state.bend_rad, state.bend_rad_s);
             torque.twist_nm = pull(&joint.twist, state.twist_rad, state.twist_rad_s);

@@ -13,7 +13,7 @@ pub use controller::Controller;
 pub use observation::{Observation, Senses};
 
 use crate::genome::ControllerGenes;
-use crate::world::{JointTorque, Simulation};
+use crate::world::{JointTorque, PhysicsSettings, Simulation};
 
 /// The controller that genes encode, in its state before the first step.
 fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
@@ -32,13 +32,13 @@ pub struct ControlLoop {
 }
 
 impl ControlLoop {
-    /// The control loop of a genome in a world that takes `steps_per_s` steps a second.
-    pub fn new(genes: &ControllerGenes, steps_per_s: u32) -> Self {
-        Self::of(controller_of(genes), steps_per_s)
+    /// The control loop of a genome in a world with these settings of the engine.
+    pub fn new(genes: &ControllerGenes, physics: &PhysicsSettings) -> Self {
+        Self::of(controller_of(genes), physics)
     }
 
-    fn of(controller: Box<dyn Controller>, steps_per_s: u32) -> Self {
-        Self { controller, observation: Observation { steps_per_s, ..Observation::default() } }
+    fn of(controller: Box<dyn Controller>, physics: &PhysicsSettings) -> Self {
+        Self { controller, observation: Observation::at_start(physics) }
     }
 
     /// Writes the torques of step number `step` (0 is the first), one per joint from the head.
@@ -88,7 +88,7 @@ mod tests {
             let world = Simulation::new(&trial.world_plan(&genome));
             let mut torques = vec![JointTorque::default(); world.joint_states().len()];
             let counter = Counter { senses: Senses { joints }, acted: 0.0 };
-            let mut original = ControlLoop::of(Box::new(counter), 60);
+            let mut original = ControlLoop::of(Box::new(counter), &trial.physics);
             original.act(0, &world, &mut torques);
             let mut clone = original.clone();
             for step in 1..4 {

@@ -1,6 +1,6 @@
 //! The state of the world as a controller perceives it.
 
-use crate::world::{JointState, Simulation};
+use crate::world::{JointState, PhysicsSettings, Simulation};
 
 /// The senses that a controller needs. Others are not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -16,15 +16,40 @@ pub struct Observation {
     pub step: u32,
     /// Steps per simulated second.
     pub steps_per_s: u32,
+    /// Time from the start of a step to the moment for which its torques should be right, in seconds: see
+    /// [`Observation::at_start`].
+    pub lead_s: f32,
     /// State of each joint from the head; empty unless the controller needs it.
     pub joints: Vec<JointState>,
 }
 
 impl Observation {
-    /// Periods of an oscillation that have passed when the step begins, computed from the number of the step
-    /// instead of summed up, so that no error accumulates.
+    /// The observation before the first step of a world with these settings of the engine.
+    ///
+    /// A torque holds for a whole step, so one for the state at its start is late by half a step on average, and a
+    /// servo of stiffness k loses the damping `k h / 2` in steps of length h. The engine takes back a part of that, half a
+    /// substep, because it moves limbs by their velocities at the end of each substep. With n substeps the lead is
+    /// therefore `h (1 - 1/n) / 2`.
+    pub(super) fn at_start(physics: &PhysicsSettings) -> Self {
+        let lead_s = (physics.step_s() - physics.substep_s()) / 2.0;
+        Self { steps_per_s: physics.steps_per_s, lead_s, ..Self::default() }
+    }
+
+    /// Periods of an oscillation that have passed at the moment for which the controller acts, computed from the number
+    /// of the step instead of summed up, so that no error accumulates.
     pub fn periods(&self, frequency_hz: f32) -> f64 {
-        f64::from(frequency_hz) * f64::from(self.step) / f64::from(self.steps_per_s)
+        let at_start_s = f64::from(self.step) / f64::from(self.steps_per_s);
+        f64::from(frequency_hz) * (at_start_s + f64::from(self.lead_s))
+    }
+
+    /// State of each joint from the head at the moment for which the controller acts, if its rates stay; empty unless the
+    /// controller needs it.
+    pub fn joints_ahead(&self) -> impl Iterator<Item = JointState> + '_ {
+        self.joints.iter().map(|joint| JointState {
+            bend_rad: joint.bend_rad + joint.bend_rad_s * self.lead_s,
+            twist_rad: joint.twist_rad + joint.twist_rad_s * self.lead_s,
+            ..*joint
+        })
     }
 
     /// Observes the world before a step. Buffers are reused: nothing is allocated after the first step.

@@ -54,8 +54,8 @@ setting_group! {
                 .slider(0.0, 5000.0)
                 .logarithmic_from(1.0);
 
-        /// Damping of the servo, in N·m·s/rad. It acts through the torque, with a step's delay, and is limited with
-        /// it; the joints' own damping is a part of the body.
+        /// Damping of the servo, in N·m·s/rad. It acts through the torque, is constant over a step and limited
+        /// with it; the joints' own damping is a part of the body.
         servo_damping_nms_per_rad: f32 = 0.0,
             number("Servo damping", SERVO_DAMPING_RANGE).advanced()
                 .unit("N·m·s/rad")

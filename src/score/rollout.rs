@@ -109,7 +109,7 @@ impl Rollout {
     fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
         let simulation = Simulation::new(&plan);
         let mut rollout = Self {
-            control: ControlLoop::new(&genome.controller, trial.physics.steps_per_s),
+            control: ControlLoop::new(&genome.controller, &trial.physics),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
             simulation,

@@ -11,7 +11,7 @@ pub struct BodyPlan {
     pub limbs: Vec<LimbPlan>,
     /// The joints, in the order in which the world inserts them. A joint's parent comes before its child.
     pub joints: Vec<JointPlan>,
-    /// Share of a limb's angular velocity lost per second to the air, in 1/s.
+    /// Rate at which the air takes the limbs' angular velocity, in 1/s: after a time t, `exp(-rate t)` of it is left.
     pub angular_damping_per_s: f32,
 }
 
@@ -49,7 +49,8 @@ pub struct JointPlan {
     /// the solver, so that large values stay stable.
     pub damping_nms_per_rad: f32,
     /// Constraint force mixing, in m/s per N: 0 holds anchors, locked axis and limits practically
-    /// rigidly, larger is softer. It stands for a spring of `0.2 / (step · CFM)` N/m along the snake.
+    /// rigidly, larger is softer. It stands for a spring of `12 / CFM` N/m along the snake: see
+    /// [`super::ERP_TIME_S`].
     pub cfm_m_s_per_n: f32,
 }
 

@@ -6,7 +6,7 @@
 use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
 
-use super::surface::{ContactLaw, Softness, spring};
+use super::surface::{ContactLaw, ERP_TIME_S, Softness, spring};
 use super::{LimbPlan, PhysicsSettings};
 
 /// The collider of a contact pair that is not `collider`.
@@ -52,11 +52,11 @@ pub(super) fn soften(
 ) {
     let coefficients = |softness: Softness| {
         if softness.is_soft() {
-            soft_coefficients(softness, physics.step_s(), corner_mass_kg(reference))
+            soft_coefficients(softness, corner_mass_kg(reference))
         } else if laws.has_springs() {
             // A rigid contact beside soft ones must be a very stiff spring: the solver has one mode for all.
             let softness = Softness { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..softness };
-            soft_coefficients(softness, physics.step_s(), corner_mass_kg(reference))
+            soft_coefficients(softness, corner_mass_kg(reference))
         } else {
             hard_coefficients(softness.erp, physics)
         }
@@ -74,14 +74,14 @@ pub(super) fn soften(
 /// The value the report's engine manual calls hard, in m/s per N.
 const HARD_CFM_M_S_PER_N: f32 = 1.0e-5;
 
-/// Rapier's softness for a hard contact that corrects the share `erp` of a penetration in one physics
-/// step, that is `1 - (1 - erp)^(1/n)` in each of the n substeps.
+/// Rapier's softness for a hard contact that corrects the share `erp` of a penetration in [`ERP_TIME_S`], that is
+/// `1 - (1 - erp)^(s / ERP_TIME_S)` in each substep of length s.
 ///
 /// Rapier has `erp = dt·w / (dt·w + 2z)` for the angular frequency w and the damping ratio z; a large z
 /// makes the contact's compliance vanish.
 fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<Real> {
-    let substep_s = physics.step_s() / physics.substeps as f32;
-    let left = libm::powf((1.0 - erp).max(1.0e-3), 1.0 / physics.substeps as f32);
+    let substep_s = physics.substep_s();
+    let left = libm::powf((1.0 - erp).max(1.0e-3), substep_s / ERP_TIME_S);
     let damping_ratio = 1.0e3;
     let angular_frequency = 2.0 * damping_ratio * (1.0 - left) / (left * substep_s);
     SpringCoefficients {
@@ -98,14 +98,14 @@ fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<
 ///
 /// Without any damping (an ERP of 1) rapier would divide zero by zero, and close to it lose precision.
 /// The damping ratio therefore has a lower limit, far too small to be visible.
-fn soft_coefficients(softness: Softness, step_s: f32, mass_kg: f32) -> SpringCoefficients<Real> {
+fn soft_coefficients(softness: Softness, mass_kg: f32) -> SpringCoefficients<Real> {
     const LEAST_DAMPING: f32 = 1.0e-3;
-    let spring = spring(softness, step_s);
+    let spring = spring(softness);
     let angular_frequency = (spring.kp_n_per_m / mass_kg).sqrt();
     let damping_ratio = spring.kd_ns_per_m / (2.0 * angular_frequency * mass_kg);
     SpringCoefficients {
         natural_frequency: angular_frequency / std::f32::consts::TAU,
-        damping_ratio: damping_ratio.max(LEAST_DAMPING * angular_frequency * step_s),
+        damping_ratio: damping_ratio.max(LEAST_DAMPING * angular_frequency * ERP_TIME_S),
     }
 }
 
@@ -113,7 +113,6 @@ fn soft_coefficients(softness: Softness, step_s: f32, mass_kg: f32) -> SpringCoe
 /// snake, where the effective mass is the reduced mass of the pair. ERP is [`JOINT_ERP`].
 pub(super) fn joint_coefficients(
     cfm_m_s_per_n: f32,
-    step_s: f32,
     front_kg: f32,
     rear_kg: f32,
 ) -> SpringCoefficients<Real> {
@@ -121,10 +120,10 @@ pub(super) fn joint_coefficients(
         return SpringCoefficients::joint_defaults();
     }
     let reduced_kg = front_kg * rear_kg / (front_kg + rear_kg);
-    soft_coefficients(Softness { erp: JOINT_ERP, cfm_m_s_per_n }, step_s, reduced_kg)
+    soft_coefficients(Softness { erp: JOINT_ERP, cfm_m_s_per_n }, reduced_kg)
 }
 
-/// The share of a soft joint's error that is corrected in one step: ODE's default.
+/// The share of a soft joint's error that is corrected in [`ERP_TIME_S`]: ODE's default for a step.
 pub(super) const JOINT_ERP: f32 = 0.2;
 
 /// Effective mass, in kg, at a contact in a corner of a limb that lies flat:

@@ -37,8 +37,8 @@ pub struct EnergyLost {
     /// The part of the joints' damping, in J: the integral of `c ω²` over all joint axes, for the damping c and the
     /// rate ω.
     pub joint_damping_j: f32,
-    /// The part of the damping of the limbs' rotation, in J: `((1 + d h)² - 1) E_rot` in each step of length
-    /// h, for the damping d and the energy of rotation after it. For a small `d h` that is `2 d h E_rot`.
+    /// The part of the damping of the limbs' rotation, in J: the integral of `2 d E_rot`, for the rate d at which
+    /// rotation is damped and the energy of rotation.
     pub rotation_damping_j: f32,
 }
 

@@ -28,4 +28,4 @@ pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::{Discontinuity, JointTorque, Simulation, WorldPlan};
 pub use stairs::{StairBox, Stairs};
-pub use surface::{Skin, Surface};
+pub use surface::{ERP_TIME_S, Skin, Surface};

@@ -7,6 +7,7 @@ use rapier3d::prelude::*;
 mod balance;
 mod build;
 mod continued;
+mod damping;
 pub(super) mod observe;
 pub(super) mod patches;
 
@@ -20,6 +21,7 @@ use super::{
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 pub use continued::Discontinuity;
+use damping::HalfStepDamping;
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
 /// in every bit.
@@ -62,20 +64,35 @@ pub struct JointTorque {
 pub struct Simulation {
     physics: PhysicsWorld,
     contacts: ContactSettings,
+    damping: HalfStepDamping,
+    /// Share of the joints' damping that acts as a torque.
+    damping_as_torque: f32,
     body: BodyPlan,
     /// The engine's bodies of the limbs, in the order of the plan.
     limbs: Vec<RigidBodyHandle>,
     health: HealthLimits,
     arena_front_y_m: f32,
+    /// Torque of the joints' drives on each limb, in N·m.
     torques_in_world: Vec<Vector>,
-    /// For each joint, the rotation of its parent, about whose axes the torques act, and the torques of this
-    /// step after clamping.
-    applied: Vec<(Rotation, JointTorque)>,
+    /// What the joints' damping adds to it.
+    damping_in_world: Vec<Vector>,
+    applied: Vec<AppliedTorque>,
     effort: Effort,
     balance: EnergyBalance,
     /// The user's pull on a limb, and whether there was one in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
+}
+
+/// Torque at a joint in a step.
+#[derive(Debug, Clone, Copy, Default)]
+struct AppliedTorque {
+    /// Rotation of the parent, about whose axes the torque acts.
+    parent: Rotation,
+    /// The torque after clamping.
+    torque: JointTorque,
+    /// Joint rates at the start of the step: bend and twist, in rad/s.
+    rates_rad_s: [f32; 2],
 }
 
 /// Settings of the contacts, needed in each step.
@@ -108,6 +125,7 @@ impl Simulation {
             integration_parameters: IntegrationParameters {
                 dt: plan.physics.step_s(),
                 num_solver_iterations: plan.physics.substeps as usize,
+                num_internal_pgs_iterations: plan.physics.iterations as usize,
                 ..Default::default()
             },
             ..Default::default()
@@ -136,8 +154,11 @@ impl Simulation {
                 substeps: plan.physics.substeps,
                 snake_kg: plan.body.mass_kg(),
             },
+            damping: HalfStepDamping::of(plan),
+            damping_as_torque: 1.0 - plan.physics.joint_damping_in_solver(),
             torques_in_world: vec![Vector::ZERO; limbs.len()],
-            applied: vec![(Rotation::IDENTITY, JointTorque::default()); plan.body.joints.len()],
+            damping_in_world: vec![Vector::ZERO; limbs.len()],
+            applied: vec![AppliedTorque::default(); plan.body.joints.len()],
             effort: Effort::default(),
             balance: EnergyBalance::default(),
             pull: None,
@@ -175,20 +196,26 @@ impl Simulation {
         self.effort
     }
 
-    /// Energy that the joints spent in the last step, in J. A torque acts through the whole step about the
-    /// axes at its start, and the engine moves limbs by their velocity at its end; so this is the
-    /// rectangle rule with the rates at the end.
+    /// Energy that the joints spent in the last step, in J, by the trapezoidal rule. A torque acts through the
+    /// whole step about the axes at its start.
     fn energy_j(&self) -> f32 {
-        let turn = |limb: usize| self.physics.bodies[self.limbs[limb]].angvel();
         let joints = self.body.joints.iter().zip(&self.applied);
-        let power_w = joints.map(|(joint, (parent, torque))| {
-            let rate = parent.inverse() * (turn(joint.child) - turn(joint.parent));
-            (torque.bend_nm * rate.x).abs() + (torque.twist_nm * rate.y).abs()
+        let power_w = joints.map(|(joint, AppliedTorque { parent, torque, rates_rad_s })| {
+            let after = self.joint_rates(joint, *parent);
+            let [bend, twist] = [0, 1].map(|axis| (rates_rad_s[axis] + after[axis]) / 2.0);
+            (torque.bend_nm * bend).abs() + (torque.twist_nm * twist).abs()
         });
         power_w.sum::<f32>() * self.physics.integration_parameters.dt
     }
 
-    /// Lets the engine take one step, and slows limbs that touch a damping surface.
+    /// Rates of a joint about the x and y axes of a rotation, in rad/s.
+    fn joint_rates(&self, joint: &JointPlan, axes: Rotation) -> [f32; 2] {
+        let turn = |limb: usize| self.physics.bodies[self.limbs[limb]].angvel();
+        let rate = axes.inverse() * (turn(joint.child) - turn(joint.parent));
+        [rate.x, rate.y]
+    }
+
+    /// Lets the engine take one step, and then air and surfaces slow the limbs.
     pub(crate) fn advance(&mut self) {
         let ContactSettings { laws, ground, substeps, snake_kg, .. } = &self.contacts;
         let hooks = ContactHooks {
@@ -214,25 +241,7 @@ impl Simulation {
                 finish_bounce(&mut self.physics, limb, before);
             }
         }
-        if self.contacts.laws.stairs.dampen_per_s > 0.0
-            || self.contacts.laws.ground.dampen_per_s > 0.0
-        {
-            self.dampen();
-        }
-    }
-
-    /// Slows each limb that touches a damping surface, once, by the strongest damping that it touches.
-    fn dampen(&mut self) {
-        let step_s = self.physics.integration_parameters.dt;
-        for limb in 0..self.limbs.len() {
-            let limb = self.limbs[limb];
-            if let Some((_, dampen_per_s)) = self.strongest_damping(limb) {
-                let factor = 1.0 - dampen_per_s * step_s;
-                let body = &mut self.physics.bodies[limb];
-                body.set_linvel(body.linvel() * factor, false);
-                body.set_angvel(body.angvel() * factor, false);
-            }
-        }
+        self.dampen_half_step();
     }
 
     /// The engine's state, for reading: debug drawing, picking, the bench.
@@ -245,23 +254,34 @@ impl Simulation {
         &mut self.physics
     }
 
-    /// Sets the torque of each limb: the sum of the couples of its joints.
+    /// Prepares a step: air and surfaces slow the limbs for its first half, and each limb gets its torque, the sum
+    /// of the couples of its joints.
     pub(crate) fn apply(&mut self, torques: &[JointTorque]) {
+        self.dampen_half_step();
         self.torques_in_world.fill(Vector::ZERO);
+        self.damping_in_world.fill(Vector::ZERO);
         for (index, (joint, torque)) in self.body.joints.iter().zip(torques).enumerate() {
             let bend_nm = torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
             let twist_nm =
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
             let parent = *self.physics.bodies[self.limbs[joint.parent]].rotation();
             let couple = parent * Vector::new(bend_nm, twist_nm, 0.0);
-            self.applied[index] = (parent, JointTorque { bend_nm, twist_nm });
+            let rates_rad_s = self.joint_rates(joint, parent);
+            let [bend, twist] = rates_rad_s;
+            let damping_nms = joint.damping_nms_per_rad * self.damping_as_torque;
+            let damping = parent * (Vector::new(bend, twist, 0.0) * -damping_nms);
+            let torque = JointTorque { bend_nm, twist_nm };
+            self.applied[index] = AppliedTorque { parent, torque, rates_rad_s };
             self.torques_in_world[joint.parent] -= couple;
             self.torques_in_world[joint.child] += couple;
+            self.damping_in_world[joint.parent] -= damping;
+            self.damping_in_world[joint.child] += damping;
         }
-        for (&limb, &torque) in self.limbs.iter().zip(&self.torques_in_world) {
+        let torques = self.torques_in_world.iter().zip(&self.damping_in_world);
+        for (&limb, (&drives, &damping)) in self.limbs.iter().zip(torques) {
             let body = &mut self.physics.bodies[limb];
             body.reset_torques(false);
-            body.add_torque(torque, false);
+            body.add_torque(drives + damping, false);
         }
         if self.pull.is_some() || self.was_pulled {
             self.apply_pull();
@@ -367,7 +387,10 @@ impl Clone for Simulation {
             limbs: self.limbs.clone(),
             health: self.health.clone(),
             arena_front_y_m: self.arena_front_y_m,
+            damping: self.damping,
+            damping_as_torque: self.damping_as_torque,
             torques_in_world: self.torques_in_world.clone(),
+            damping_in_world: self.damping_in_world.clone(),
             applied: self.applied.clone(),
             effort: self.effort,
             balance: self.balance,

@@ -29,11 +29,11 @@ setting_group! {
                 .hint("Impacts slower than this do not bounce, so that a snake at rest stays at rest")
                 .slider(0.0, 10.0);
 
-        /// Error reduction parameter: the share of a penetration that is corrected in one physics step.
+        /// Error reduction parameter: the share of a penetration that is corrected in [`ERP_TIME_S`].
         soft_erp: f32 = 0.25,
             // At 0 nothing would ever be pushed out again and the snake would sink through the ground.
             number("Springiness (ERP)", 0.01..=1.0).advanced()
-                .hint("How quickly a soft surface springs back: share of a dent that is corrected per physics step")
+                .hint("How quickly a soft surface springs back: share of a dent that is corrected in 1/60 s")
                 .slider(0.01, 1.0);
 
         /// Constraint force mixing, in m/s per N (ODE's unit, s/kg): 0 is hard, larger is softer. See
@@ -56,10 +56,10 @@ setting_group! {
                 .slider(0.0, 1.0)
                 .logarithmic_from(1.0e-4);
 
-        /// While a limb touches the surface, its linear and angular velocity lose this share per second,
-        /// in 1/s: a factor of 1 - dampen · step in each step.
+        /// Rate at which the linear and angular velocity of a limb decay while it touches the surface, in 1/s: after
+        /// a time t they are `exp(-dampen t)` of what they were.
         dampen_per_s: f32 = 0.0,
-            // At 20 1/s and the longest step (1/20 s) everything stops at once; more would turn it around.
+            // At 20 1/s a limb of 10 m/s comes to rest within its own length.
             number("Damping", 0.0..=20.0).advanced()
                 .unit("1/s")
                 .hint("Rate at which a limb loses speed while it touches the surface, as in mud")
@@ -86,7 +86,7 @@ setting_group! {
         /// Error reduction parameter, as [`Surface::soft_erp`]. Matters where the skin is soft.
         soft_erp: f32 = 0.25,
             number("Skin springiness (ERP)", 0.01..=1.0).advanced()
-                .hint("How quickly a soft skin springs back: share of a dent that is corrected per physics step")
+                .hint("How quickly a soft skin springs back: share of a dent that is corrected in 1/60 s")
                 .slider(0.01, 1.0);
 
         /// Constraint force mixing, in m/s per N, as [`Surface::soft_cfm_m_s_per_n`].
@@ -108,7 +108,7 @@ impl Skin {
 /// Softness of a material or a contact under load, in the terms of ODE.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Softness {
-    /// Share of the penetration that is corrected in one step.
+    /// Share of the penetration that is corrected in [`ERP_TIME_S`].
     pub erp: f32,
     /// Constraint force mixing, in m/s per N.
     pub cfm_m_s_per_n: f32,
@@ -190,11 +190,16 @@ pub(super) struct Spring {
     pub kd_ns_per_m: f32,
 }
 
-/// The spring and damper that ERP and CFM describe, for a physics step of `step_s`: `kp = ERP / (h · CFM)` and
-/// `kd = (1 - ERP) / CFM` (Open Dynamics Engine manual, section "How to use ERP and CFM").
-pub(super) fn spring(softness: Softness, step_s: f32) -> Spring {
+/// Time in which a contact or a joint corrects its ERP of an error, in seconds. In ODE that is one step, so that another
+/// step rate makes another material of the same numbers. Here it is the step of 1/60 s with which the report's program
+/// ran, at every step rate.
+pub const ERP_TIME_S: f32 = 1.0 / 60.0;
+
+/// The spring and damper that ERP and CFM describe: `kp = ERP / (h · CFM)` and `kd = (1 - ERP) / CFM` with h =
+/// [`ERP_TIME_S`] (Open Dynamics Engine manual, section "How to use ERP and CFM").
+pub(super) fn spring(softness: Softness) -> Spring {
     Spring {
-        kp_n_per_m: softness.erp / (step_s * softness.cfm_m_s_per_n),
+        kp_n_per_m: softness.erp / (ERP_TIME_S * softness.cfm_m_s_per_n),
         kd_ns_per_m: (1.0 - softness.erp) / softness.cfm_m_s_per_n,
     }
 }
@@ -217,10 +222,9 @@ mod tests {
         let skin = Skin { soft_erp: 0.2, soft_cfm_m_s_per_n: 0.01, ..Default::default() };
         let surface = Surface { soft_erp: 0.5, soft_cfm_m_s_per_n: 0.03, ..Default::default() };
         let law = ContactLaw::between(&surface, &skin);
-        let kp =
-            |erp, cfm_m_s_per_n| spring(Softness { erp, cfm_m_s_per_n }, 1.0 / 60.0).kp_n_per_m;
+        let kp = |erp, cfm_m_s_per_n| spring(Softness { erp, cfm_m_s_per_n }).kp_n_per_m;
         let series = 1.0 / (1.0 / kp(0.2, 0.01) + 1.0 / kp(0.5, 0.03));
-        let found = spring(law.softness, 1.0 / 60.0).kp_n_per_m;
+        let found = spring(law.softness).kp_n_per_m;
         assert!((found / series - 1.0).abs() < 1e-5, "{found} for {series}");
     }
 

@@ -36,29 +36,23 @@ impl Simulation {
     }
 
     /// Adds a step to the balance, given the limbs' rotations before it. To be called right after the engine's step:
-    /// bounces and damping surfaces change the rates afterwards.
+    /// bounces, air and damping surfaces change the rates afterwards.
     ///
     /// Rates change a lot within one step where a joint reaches its stop, so the integrals are not taken from the rates
     /// at both ends alone, but also from the angle through which each limb has turned.
     pub(super) fn add_to_balance(&mut self, before: &[LimbTurn]) {
         let step_s = self.physics.integration_parameters.dt;
         let substep_s = step_s / self.contacts.substeps.max(1) as f32;
-        // The engine divides the rates by this at the very end of the step.
-        let damped_by = 1.0 + self.body.angular_damping_per_s * step_s;
-        let (mut work_j, mut rotation_j) = (0.0, 0.0);
+        let mut work_j = 0.0;
         let mut turns = Vec::with_capacity(self.limbs.len());
         for ((&limb, torque), before) in self.limbs.iter().zip(&self.torques_in_world).zip(before) {
             let body = &self.physics.bodies[limb];
-            let after = body.angvel() * damped_by;
+            let after = body.angvel();
             let turned_rad = rotation_vector(*body.rotation() * before.rotation.inverse());
             // The engine turns a limb by its rate at the end of each substep. The work of a torque counts with the mean
             // of the rates at both ends.
             let mean = turned_rad / step_s - (after - before.rate) * (substep_s / (2.0 * step_s));
             work_j += torque.dot(mean) * step_s;
-            let rate = body.rotation().inverse() * body.angvel();
-            // The axes of a box are its principal axes.
-            let inertia = body.mass_properties().local_mprops.principal_inertia();
-            rotation_j += (inertia * rate).dot(rate) / 2.0 * (damped_by * damped_by - 1.0);
             turns.push([before.rate, mean, after]);
         }
         let mut joints_j = 0.0;
@@ -73,7 +67,6 @@ impl Simulation {
         }
         self.balance.joint_work_j += f64::from(work_j);
         self.balance.joint_damping_j += f64::from(joints_j);
-        self.balance.rotation_damping_j += f64::from(rotation_j);
     }
 
     /// Kinetic and potential energy of all limbs, in J. The potential energy is 0 at z = 0.

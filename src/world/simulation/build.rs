@@ -81,7 +81,6 @@ pub(super) fn insert_limbs(
             };
             let body = RigidBodyBuilder::dynamic()
                 .pose(Pose::from_parts(centre, turn))
-                .angular_damping(plan.body.angular_damping_per_s)
                 .can_sleep(false);
             let collider = ColliderBuilder::cuboid(
                 limb.width_m / 2.0,
@@ -106,13 +105,10 @@ pub(super) fn insert_joints(
 ) {
     for joint in &plan.body.joints {
         let [parent, child] = [joint.parent, joint.child].map(|limb| &plan.body.limbs[limb]);
-        let mut built = universal_joint(joint, parent.length_m / 2.0, child.length_m / 2.0);
-        built.softness = joint_coefficients(
-            joint.cfm_m_s_per_n,
-            plan.physics.step_s(),
-            parent.mass_kg(),
-            child.mass_kg(),
-        );
+        let solved = plan.physics.joint_damping_in_solver();
+        let mut built = universal_joint(joint, solved, parent.length_m / 2.0, child.length_m / 2.0);
+        built.softness =
+            joint_coefficients(joint.cfm_m_s_per_n, parent.mass_kg(), child.mass_kg());
         physics.insert_impulse_joint(limbs[joint.parent], limbs[joint.child], built);
     }
 }
@@ -125,11 +121,17 @@ pub(super) fn insert_joints(
 /// `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`; both limits are symmetric (asymmetric ones would
 /// make rapier call the C library's sine, whose bits differ between machines).
 ///
-/// The damping is a motor with a target rate of zero, which the solver integrates implicitly. Rapier treats
+/// The share `solved` of the damping is a motor with a target rate of zero, which the solver integrates implicitly: see
+/// [`PhysicsSettings::joint_damping_in_solver`](crate::world::PhysicsSettings::joint_damping_in_solver). Rapier treats
 /// a motor without damping as infinitely stiff, so an undamped joint's motor gets no force. The motor
 /// stays nevertheless, because joints without motors are solved four at a time, by code that calls the C
 /// library's arc tangent.
-fn universal_joint(plan: &JointPlan, parent_half_m: f32, child_half_m: f32) -> GenericJoint {
+fn universal_joint(
+    plan: &JointPlan,
+    solved: f32,
+    parent_half_m: f32,
+    child_half_m: f32,
+) -> GenericJoint {
     let locked = JointAxesMask::LIN_AXES | JointAxesMask::ANG_Z;
     let mut joint = GenericJointBuilder::new(locked)
         .local_anchor1(Vector::new(0.0, -parent_half_m, 0.0))
@@ -141,7 +143,7 @@ fn universal_joint(plan: &JointPlan, parent_half_m: f32, child_half_m: f32) -> G
         .build();
     for axis in [JointAxis::AngX, JointAxis::AngY] {
         joint.set_motor_model(axis, MotorModel::ForceBased);
-        joint.set_motor_velocity(axis, 0.0, plan.damping_nms_per_rad);
+        joint.set_motor_velocity(axis, 0.0, solved * plan.damping_nms_per_rad);
         if plan.damping_nms_per_rad == 0.0 {
             joint.set_motor_max_force(axis, 0.0);
         }

@@ -106,6 +106,8 @@ impl Simulation {
             continued
         };
         continued.contacts = fresh.contacts;
+        continued.damping = fresh.damping;
+        continued.damping_as_torque = fresh.damping_as_torque;
         continued.body = fresh.body;
         continued.health = fresh.health;
         continued.arena_front_y_m = fresh.arena_front_y_m;
@@ -158,11 +160,6 @@ fn take_parameters(physics: &mut PhysicsWorld, from: &PhysicsWorld) {
             let groups = collider.collision_groups();
             collider.set_collision_groups(InteractionGroups::none());
             collider.set_collision_groups(groups);
-        }
-    }
-    for (handle, wanted) in from.bodies.iter() {
-        if physics.bodies[handle].angular_damping() != wanted.angular_damping() {
-            physics.bodies[handle].set_angular_damping(wanted.angular_damping());
         }
     }
     for (handle, wanted) in from.impulse_joints.iter() {

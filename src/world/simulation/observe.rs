@@ -74,7 +74,7 @@ impl Simulation {
 
     /// The torques that acted in the last step, clamped to the joints' limits, one per joint.
     pub fn applied_torques(&self) -> impl ExactSizeIterator<Item = JointTorque> + '_ {
-        self.applied.iter().map(|(_, torque)| *torque)
+        self.applied.iter().map(|applied| applied.torque)
     }
 
     /// Forces of the ground and the stairs on the limbs in the last substep of the last step, the head's

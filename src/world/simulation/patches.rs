@@ -120,17 +120,15 @@ impl Simulation {
 
     /// Power that damping surfaces took from the limbs in the last step.
     ///
-    /// Damping multiplies a limb's velocities by `f = 1 - dampen · h` in a step of length h, so that with the kinetic
-    /// energy E after the step the loss is `E (1/f² - 1) / h`. If the damping stops limbs within one step (f is 0),
-    /// they have no speed from which to read it, and the loss counts as 0.
+    /// It is that of the second half of the step, in which damping has multiplied a limb's velocities by a factor f, so
+    /// that with the kinetic energy E after the step the loss is `E (1/f² - 1)`.
     pub fn surface_damping(&self) -> impl Iterator<Item = SurfaceDamping> + '_ {
-        let step_s = self.physics.integration_parameters.dt;
+        let half_step_s = self.physics.integration_parameters.dt / 2.0;
         self.limbs.iter().filter_map(move |&limb| {
-            let (touched, dampen_per_s) = self.strongest_damping(limb)?;
-            let factor = 1.0 - dampen_per_s * step_s;
+            let (touched, _) = self.strongest_damping(limb)?;
+            let factor = self.surface_factor(limb);
             let kept_j = self.physics.bodies[limb].kinetic_energy();
-            let lost_j = kept_j * (1.0 / (factor * factor) - 1.0);
-            let power_w = if factor > 0.0 { lost_j / step_s } else { 0.0 };
+            let power_w = kept_j * (1.0 / (factor * factor) - 1.0) / half_step_s;
             Some(SurfaceDamping { touched, power_w })
         })
     }
@@ -153,21 +151,15 @@ impl Simulation {
 
     /// Velocity of a limb as the solver left it in the last substep, with which its friction agrees.
     ///
-    /// At the end of a step the engine divides the rates by `1 + d h`, and a damping surface multiplies all velocities.
-    /// With these velocities a contact that holds would seem to slip, and friction to drive it. The bounces that are
-    /// corrected after the solver stay in it.
+    /// At the end of a step air and surfaces slow the limbs. With these velocities a contact that holds would seem to
+    /// slip, and friction to drive it. The bounces that are corrected after the solver stay in it.
     fn solved_velocity(&self, limb: RigidBodyHandle) -> SolvedVelocity {
         let body = &self.physics.bodies[limb];
-        let step_s = self.physics.integration_parameters.dt;
-        let dampen_per_s =
-            self.strongest_damping(limb).map_or(0.0, |(_, dampen_per_s)| dampen_per_s);
-        let kept = 1.0 - dampen_per_s * step_s;
-        // Where a surface stops limbs within one step, their velocity is not known any more.
-        let factor = if kept > 0.0 { 1.0 / kept } else { 1.0 };
+        let [linear, angular] = self.last_damping(limb);
         SolvedVelocity {
             centre_m: body.center_of_mass(),
-            linear: body.linvel() * factor,
-            angular: body.angvel() * factor * (1.0 + body.angular_damping() * step_s),
+            linear: body.linvel() / linear,
+            angular: body.angvel() / angular,
         }
     }
 
