@@ -6,13 +6,22 @@ use crate::world::JointTorque;
 
 /// Pulls every joint towards the angle of a gait.
 #[derive(Debug, Clone)]
-pub struct GaitFollower(pub Gait);
+pub struct GaitFollower {
+    gait: Gait,
+    /// Rates of each joint before the last step, bend and twist, in rad/s.
+    last_rates: Vec<[f32; 2]>,
+}
 
 impl GaitFollower {
+    /// The follower of a gait before the first step.
+    pub fn new(gait: Gait) -> Self {
+        Self { gait, last_rates: Vec::new() }
+    }
+
     /// The torque of a proportional-derivative servo on a joint axis, in N·m.
     fn torque_nm(&self, target_rad: f32, angle_rad: f32, rate_rad_s: f32) -> f32 {
-        self.0.stiffness_nm_per_rad * (target_rad - angle_rad)
-            - self.0.servo_damping_nms_per_rad * rate_rad_s
+        self.gait.stiffness_nm_per_rad * (target_rad - angle_rad)
+            - self.gait.servo_damping_nms_per_rad * rate_rad_s
     }
 }
 
@@ -22,19 +31,117 @@ impl Controller for GaitFollower {
     }
 
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
-        let waves = &self.0.waves;
+        if self.last_rates.is_empty() {
+            self.last_rates
+                .extend(observation.joints.iter().map(|now| [now.bend_rad_s, now.twist_rad_s]));
+        }
+        let waves = &self.gait.waves;
         let periods = observation.periods(waves.frequency_hz);
         let pull = |wave: &Wave, angle_rad, rate_rad_s| {
             self.torque_nm(wave.at(periods), angle_rad, rate_rad_s)
         };
-        let joints = waves.joints.iter().zip(observation.joints_ahead());
-        for (torque, (joint, state)) in torques.iter_mut().zip(joints) {
-            torque.bend_nm = pull(&joint.bend, state.bend_rad, state.bend_rad_s);
-            torque.twist_nm = pull(&joint.twist, state.twist_rad, state.twist_rad_s);
+        // The rate in the middle of the step, by the method of Adams and Bashforth: the torque holds for all of it.
+        let middle = |now: f32, last: f32| 1.5 * now - 0.5 * last;
+        let joints = waves.joints.iter().zip(observation.joints_ahead()).zip(&self.last_rates);
+        for (torque, ((joint, state), last)) in torques.iter_mut().zip(joints) {
+            let [bend, twist] = *last;
+            torque.bend_nm = pull(&joint.bend, state.bend_rad, middle(state.bend_rad_s, bend));
+            torque.twist_nm = pull(&joint.twist, state.twist_rad, middle(state.twist_rad_s, twist));
+        }
+        for (last, now) in self.last_rates.iter_mut().zip(&observation.joints) {
+            *last = [now.bend_rad_s, now.twist_rad_s];
         }
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {
         Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::control::ControlLoop;
+    use crate::genome::controllers::{Gait, JointWaves, Wave, Waves};
+    use crate::genome::{ControllerGenes, GenomeSpace};
+    use crate::rng::{Purpose, stream};
+    use crate::score::Trial;
+    use crate::world::{JointTorque, PhysicsSettings, Simulation, Vector};
+
+    /// Angles after each step of two floating limbs whose joint is twisted at 2 rad/s and pulled back by a servo.
+    fn swing_rad(
+        physics: &PhysicsSettings,
+        stiffness: f32,
+        joint_damping: f32,
+        servo_damping: f32,
+    ) -> Vec<f32> {
+        let mut trial = Trial { physics: physics.clone(), ..Trial::default() };
+        trial.physics.gravity_m_s2 = 0.0;
+        trial.agent.limbs = 2;
+        trial.agent.density_kg_m3 = Some(2.5.into());
+        trial.agent.twist_limit_rad = Some(3.0.into());
+        trial.agent.joint_damping_nms_per_rad = joint_damping.into();
+        trial.agent.angular_damping_per_s = 0.0;
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let mut genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let straight = Wave { offset: 0.0, harmonics: Vec::new() };
+        let joints = vec![JointWaves { bend: straight.clone(), twist: straight }];
+        genome.controller = ControllerGenes::Gait(Gait {
+            stiffness_nm_per_rad: stiffness,
+            servo_damping_nms_per_rad: servo_damping,
+            waves: Waves { frequency_hz: 1.0, joints },
+        });
+        let mut world = Simulation::new(&trial.world_plan(&genome));
+        for (index, (_, limb)) in world.physics_mut().bodies.iter_mut().enumerate() {
+            let above = limb.translation() + Vector::new(0.0, 0.0, 30.0);
+            limb.set_translation(above, true);
+            limb.set_angvel(Vector::new(0.0, if index == 0 { 1.0 } else { -1.0 }, 0.0), true);
+        }
+        let mut control = ControlLoop::new(&genome.controller, physics);
+        let mut torques = [JointTorque::default()];
+        let step = |step| {
+            control.act(step, &world, &mut torques);
+            world.step(&torques).expect("healthy");
+            world.joint_states().next().expect("a joint").twist_rad
+        };
+        (0..2 * physics.steps_per_s).map(step).collect()
+    }
+
+    #[test]
+    fn a_servo_swings_a_joint_with_the_period_and_the_decay_of_its_spring_and_damper() {
+        for (steps_per_s, substeps) in [(60, 4), (120, 4), (240, 4), (60, 2), (60, 8)] {
+            let physics = PhysicsSettings { steps_per_s, substeps, ..Default::default() };
+            for (stiffness, joint_damping, servo_damping) in
+                [(60.0, 0.0, 0.0), (60.0, 1.0, 0.0), (60.0, 0.0, 1.0), (120.0, 0.5, 0.5)]
+            {
+                let case = format!(
+                    "{stiffness}, {joint_damping}, {servo_damping} at {steps_per_s} and {substeps}"
+                );
+                let angles = swing_rad(&physics, stiffness, joint_damping, servo_damping);
+                // A limb has m (width² + height²) / 12 = 5/6 kg m², the joint between two of them half of that.
+                let inertia = 5.0 / 12.0;
+                let decay_per_s = (joint_damping + servo_damping) / inertia / 2.0;
+                let angular = (stiffness / inertia - decay_per_s * decay_per_s).sqrt();
+                // The turns, from the vertices of parabolas through three points.
+                let mut turns = Vec::new();
+                for (index, three) in angles.windows(3).enumerate() {
+                    let [a, b, c] = [three[0], three[1], three[2]];
+                    if (b - a) * (c - b) < 0.0 {
+                        let shift = (a - c) / (2.0 * (a - 2.0 * b + c));
+                        let at_s = (index as f32 + 1.0 + shift) * physics.step_s();
+                        turns.push((at_s, b - (a - c) * shift / 4.0));
+                    }
+                }
+                let (first, last) = (turns[0], turns[4]);
+                let half_s = (last.0 - first.0) / 4.0;
+                let expected_s = std::f32::consts::PI / angular;
+                assert!(
+                    (half_s / expected_s - 1.0).abs() < 0.02,
+                    "{half_s} s for {expected_s}: {case}"
+                );
+                let kept = (last.1 / first.1).abs();
+                let expected = libm::expf(-decay_per_s * 4.0 * half_s);
+                assert!((kept - expected).abs() < 0.03, "{kept} for {expected}: {case}");
+            }
+        }
     }
 }

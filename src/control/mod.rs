@@ -20,7 +20,7 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
     match genes {
         ControllerGenes::Signal(signals) => Box::new(signal::SignalPlayer(signals.clone())),
         ControllerGenes::Wave(waves) => Box::new(wave::WavePlayer(waves.clone())),
-        ControllerGenes::Gait(gait) => Box::new(gait::GaitFollower(gait.clone())),
+        ControllerGenes::Gait(gait) => Box::new(gait::GaitFollower::new(gait.clone())),
     }
 }
 

@@ -6,7 +6,7 @@
 use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
 
-use super::surface::{ContactLaw, ERP_TIME_S, Softness, spring};
+use super::surface::{ContactLaw, ERP_TIME_S, Softness, Spring, spring};
 use super::{LimbPlan, PhysicsSettings};
 
 /// The collider of a contact pair that is not `collider`.
@@ -50,13 +50,15 @@ pub(super) fn soften(
     physics: &PhysicsSettings,
     reference: &LimbPlan,
 ) {
+    let (corner_kg, quarter_kg) = (corner_mass_kg(reference), reference.mass_kg() / 4.0);
+    let soft = |softness| soft_coefficients(softness, physics.substep_s(), corner_kg, quarter_kg);
     let coefficients = |softness: Softness| {
         if softness.is_soft() {
-            soft_coefficients(softness, corner_mass_kg(reference))
+            soft(softness)
         } else if laws.has_springs() {
             // A rigid contact beside soft ones must be a very stiff spring: the solver has one mode for all.
             let softness = Softness { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..softness };
-            soft_coefficients(softness, corner_mass_kg(reference))
+            soft(softness)
         } else {
             hard_coefficients(softness.erp, physics)
         }
@@ -90,22 +92,41 @@ fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<
     }
 }
 
-/// Rapier's softness for a contact with the spring and damper that ERP and CFM describe (see
-/// [`spring`]).
+/// Rapier's softness for a contact with the spring and damper that ERP and CFM describe (see [`spring`]).
 ///
-/// Rapier scales its springs with the effective mass at each contact, `w² m` and `2 z w m`; so the
-/// conversion holds exactly for one mass, `mass_kg`: see [`corner_mass_kg`].
+/// Rapier scales its springs with the effective mass at each contact, `w² m` and `2 z w m`; so the conversion holds
+/// exactly for one mass, `effective_kg`: see [`corner_mass_kg`]. `moved_kg` is the mass that the spring moves.
 ///
-/// Without any damping (an ERP of 1) rapier would divide zero by zero, and close to it lose precision.
-/// The damping ratio therefore has a lower limit, far too small to be visible.
-fn soft_coefficients(softness: Softness, mass_kg: f32) -> SpringCoefficients<Real> {
-    const LEAST_DAMPING: f32 = 1.0e-3;
-    let spring = spring(softness);
-    let angular_frequency = (spring.kp_n_per_m / mass_kg).sqrt();
-    let damping_ratio = spring.kd_ns_per_m / (2.0 * angular_frequency * mass_kg);
+/// Rapier integrates a spring k and a damper c in substeps of length h as the force `-k x - (c + h k) v'`, with the
+/// velocity v' after the substep. The term `h k` damps as much as the damper of a trampoline, and the more the longer
+/// the substep. Without it the motion is that of the symplectic Euler method, which keeps the energy of a spring, with
+/// an angular frequency w wrong by `(h w)² / 24`. It is therefore taken from the damper, except where `h w` is too large
+/// for that to be stable; so stiff it also is not to be seen. The damper itself is made stronger, so that implicit
+/// integration takes `exp(-c h / m)` of a velocity.
+fn soft_coefficients(
+    softness: Softness,
+    substep_s: f32,
+    effective_kg: f32,
+    moved_kg: f32,
+) -> SpringCoefficients<Real> {
+    const LEAST_DAMPING: f32 = 2.0e-3;
+    const LEAST_RATIO: f32 = 1.0e-3;
+    let Spring { kp_n_per_m, kd_ns_per_m } = spring(softness);
+    // Where a motion is gone within a substep, exp would be beyond all numbers.
+    let lost = (kd_ns_per_m * substep_s / moved_kg).min(1.0);
+    let stronger = if lost > 1.0e-3 { libm::expm1f(lost) / lost } else { 1.0 };
+    // Without any damping (an ERP of 1) rapier would divide by zero.
+    let damper = (stronger * kd_ns_per_m).max(LEAST_DAMPING * kp_n_per_m * ERP_TIME_S);
+    let turned_rad = substep_s * (kp_n_per_m / moved_kg).sqrt();
+    let taken = (2.0 - 2.0 * turned_rad).clamp(0.0, 1.0);
+    let damper = damper - taken * substep_s * kp_n_per_m;
+    // Near zero rapier would divide zero by zero, or lose precision.
+    let least = LEAST_RATIO * substep_s * kp_n_per_m;
+    let damper = if damper.abs() < least { least } else { damper };
+    let angular_frequency = (kp_n_per_m / effective_kg).sqrt();
     SpringCoefficients {
         natural_frequency: angular_frequency / std::f32::consts::TAU,
-        damping_ratio: damping_ratio.max(LEAST_DAMPING * angular_frequency * ERP_TIME_S),
+        damping_ratio: damper / (2.0 * angular_frequency * effective_kg),
     }
 }
 
@@ -113,6 +134,7 @@ fn soft_coefficients(softness: Softness, mass_kg: f32) -> SpringCoefficients<Rea
 /// snake, where the effective mass is the reduced mass of the pair. ERP is [`JOINT_ERP`].
 pub(super) fn joint_coefficients(
     cfm_m_s_per_n: f32,
+    substep_s: f32,
     front_kg: f32,
     rear_kg: f32,
 ) -> SpringCoefficients<Real> {
@@ -120,7 +142,7 @@ pub(super) fn joint_coefficients(
         return SpringCoefficients::joint_defaults();
     }
     let reduced_kg = front_kg * rear_kg / (front_kg + rear_kg);
-    soft_coefficients(Softness { erp: JOINT_ERP, cfm_m_s_per_n }, reduced_kg)
+    soft_coefficients(Softness { erp: JOINT_ERP, cfm_m_s_per_n }, substep_s, reduced_kg, reduced_kg)
 }
 
 /// The share of a soft joint's error that is corrected in [`ERP_TIME_S`]: ODE's default for a step.

@@ -79,9 +79,8 @@ pub(super) fn insert_limbs(
                 let along_m = straight_y_m - plan.start_y_m;
                 middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
             };
-            let body = RigidBodyBuilder::dynamic()
-                .pose(Pose::from_parts(centre, turn))
-                .can_sleep(false);
+            let body =
+                RigidBodyBuilder::dynamic().pose(Pose::from_parts(centre, turn)).can_sleep(false);
             let collider = ColliderBuilder::cuboid(
                 limb.width_m / 2.0,
                 limb.length_m / 2.0,
@@ -107,8 +106,12 @@ pub(super) fn insert_joints(
         let [parent, child] = [joint.parent, joint.child].map(|limb| &plan.body.limbs[limb]);
         let solved = plan.physics.joint_damping_in_solver();
         let mut built = universal_joint(joint, solved, parent.length_m / 2.0, child.length_m / 2.0);
-        built.softness =
-            joint_coefficients(joint.cfm_m_s_per_n, parent.mass_kg(), child.mass_kg());
+        built.softness = joint_coefficients(
+            joint.cfm_m_s_per_n,
+            plan.physics.substep_s(),
+            parent.mass_kg(),
+            child.mass_kg(),
+        );
         physics.insert_impulse_joint(limbs[joint.parent], limbs[joint.child], built);
     }
 }

@@ -56,7 +56,8 @@ impl Simulation {
             let surface = if surfaces_damp { self.surface_factor(limb) } else { 1.0 };
             let body = &mut self.physics.bodies[limb];
             let turning_j = rotation_energy_j(body);
-            self.balance.rotation_damping_j += f64::from(turning_j * (1.0 - damping.air * damping.air));
+            self.balance.rotation_damping_j +=
+                f64::from(turning_j * (1.0 - damping.air * damping.air));
             body.set_angvel(body.angvel() * (damping.air * surface), false);
             if surface < 1.0 {
                 body.set_linvel(body.linvel() * surface, false);
