@@ -5,7 +5,8 @@ use bevy::prelude::*;
 
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::{Command, PlayerCommand, StageCommand, ViewCommand};
-use crate::studio::scene::camera::{CameraRig, StageCamera};
+use crate::studio::scene::camera::StageCamera;
+use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
