@@ -180,7 +180,7 @@ fn draw(
     } else if workspace.is_bare {
         viewer.stage(&mut root);
     } else {
-        let (preset, seed) = (data.run.preset(), data.run.seed());
+        let (preset, seed) = (data.run.preset_in_words(), data.run.seed());
         let fill = theme::of_context(&context).panel;
         let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, theme::GAP as i8 / 4);
         egui::Panel::top("menu").frame(egui::Frame::new().fill(fill).inner_margin(margin)).show(
