@@ -1,3 +1,5 @@
+//! Layouts for windows of several sizes, as text, and after panels were chosen.
+
 use super::*;
 use egui_dock::{Node, NodePath};
 

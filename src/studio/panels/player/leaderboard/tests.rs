@@ -1,3 +1,5 @@
+//! The leaderboard: ranking, buttons, split times.
+
 use super::*;
 use crate::evolve::{RunPlan, Settings};
 use crate::save::shipped_champion;
