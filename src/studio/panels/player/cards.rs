@@ -7,8 +7,7 @@ use super::camera_bar::view_bar;
 use super::generation_card::{generation_card, waiting_card};
 use super::leaderboard::leaderboard;
 use super::limb_card::limb_card;
-use super::torque_legend::torque_legend;
-use crate::studio::commands::overlay::Overlay;
+use super::overlay_legend::overlay_legend;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, WindowCommand};
 use crate::studio::panels::on_stage::OnStage;
@@ -127,10 +126,13 @@ pub(crate) fn around_stage(
         });
         messages_end = shown.response.rect.top();
     }
-    if on_stage.overlays.shows(Overlay::Torques) {
+    if on_stage.overlays.shows_any() {
         // The legend ignores the pointer, because the snake may be behind it.
-        let place = card("torques", egui::Align2::LEFT_TOP, below_bar).interactable(false);
-        let shown = place.show(context, |ui| frame.show(ui, torque_legend));
+        let place = card("legend", egui::Align2::LEFT_TOP, below_bar).interactable(false);
+        let is_pulled = lanes.iter().any(|lane| lane.is_disturbed());
+        let shown = place.show(context, |ui| {
+            frame.show(ui, |ui| overlay_legend(ui, &on_stage.overlays, is_pulled));
+        });
         below_bar = below(shown.response.rect);
     }
     AroundStage { below_bar, board, messages_end }
