@@ -29,18 +29,27 @@ enum Sample {
 /// Draws the meaning of every overlay that is shown; `is_pulled` says whether the mouse has pulled a snake.
 pub(crate) fn overlay_legend(ui: &mut egui::Ui, overlays: &Overlays, is_pulled: bool) {
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
+    // Rows as low as their samples, because the legend may cover the snake.
+    ui.spacing_mut().interact_size.y = SAMPLE.y;
     for overlay in Overlay::ALL.into_iter().filter(|overlay| overlays.shows(*overlay)) {
-        ui.label(egui::RichText::new(overlay.words().0).strong());
-        for (sample, color, text) in entries(overlay, is_pulled, theme::of(ui)) {
+        let name = overlay.words().0;
+        let entries = entries(overlay, is_pulled, theme::of(ui));
+        let is_one = entries.len() == 1;
+        if !is_one {
+            ui.label(egui::RichText::new(name).strong());
+        }
+        for (sample, color, text) in entries {
+            let text = if is_one { format!("{name}: {text}") } else { text };
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(SAMPLE, egui::Sense::hover());
                 ui.painter().extend(shapes(sample, rect, color));
-                ui.label(egui::RichText::new(text).small());
+                ui.add(egui::Label::new(egui::RichText::new(text).small()).extend());
             });
         }
         if overlay == Overlay::Torques {
             let places = egui::RichText::new("At the sides: bend. Around the body: twist.");
-            ui.label(places.small().color(theme::of(ui).text_weak));
+            let places = places.small().color(theme::of(ui).text_weak);
+            ui.add(egui::Label::new(places).extend());
         }
     }
 }
@@ -138,13 +147,14 @@ mod tests {
         for shown in Overlay::ALL {
             let harness = legend(&[shown], false);
             for overlay in Overlay::ALL {
-                let is_named = harness.query_by_label(overlay.words().0).is_some();
+                let name = overlay.words().0;
+                let is_named = harness.query_all_by_label_contains(name).next().is_some();
                 assert_eq!(is_named, overlay == shown, "{overlay:?} while {shown:?} is shown");
             }
             assert!(!entries(shown, false, theme::of_context(&harness.ctx)).is_empty());
         }
         let harness = legend(&Overlay::ALL, false);
-        for text in ["contact point", "path of the middle block", "blocks", "stairs and ground"] {
+        for text in ["contact point", "Trail: path of the middle block", "blocks"] {
             harness.get_by_label(text);
         }
         assert!(harness.query_by_label("the same, after a pull").is_none());
