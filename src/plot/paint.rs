@@ -36,7 +36,7 @@ const MOST_Y_TICKS: f64 = 10.0;
 /// Opacity of a band between two curves, on the screen and in pictures.
 pub const BAND_OPACITY: f32 = 0.2;
 
-type Axes<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
+type FigureAxes<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
 
 /// The colour of a role in the light theme, as red, green and blue.
 pub fn role_color(role: Role) -> [u8; 3] {
@@ -208,7 +208,7 @@ fn paint(
 /// Writes the names of the marks on plates beside their lines, where they cover least of the series.
 fn mark_labels(
     area: &DrawingArea<BitMapBackend<'_>, Shift>,
-    axes: &Axes<'_, '_>,
+    axes: &FigureAxes<'_, '_>,
     chart: &Chart,
 ) -> Result<(), Box<dyn Error>> {
     let (left, top) = area.get_base_pixel();
@@ -246,7 +246,7 @@ fn mark_labels(
     Ok(())
 }
 
-fn paint_series(axes: &mut Axes<'_, '_>, series: &Series) -> Result<(), Box<dyn Error>> {
+fn paint_series(axes: &mut FigureAxes<'_, '_>, series: &Series) -> Result<(), Box<dyn Error>> {
     let color = color_of(series.role);
     let pairs =
         |points: &[[f64; 2]]| -> Vec<(f64, f64)> { points.iter().map(|&[x, y]| (x, y)).collect() };
