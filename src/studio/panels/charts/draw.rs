@@ -10,7 +10,7 @@ use egui_plot::{
 use super::downsample::DrawnSeries;
 use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::plot::{BAND_OPACITY, Chart, Role, Series, Shape, beside_line};
+use crate::plot::{Chart, Role, Series, Shape, beside_line};
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, grid, x_title, y_title};
@@ -219,7 +219,7 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
         Shape::Band(_) => {
             let DrawnSeries::Band([along, low, high]) = drawn else { return };
             let band = FilledArea::new(&series.name, along, low, high);
-            plot.add(band.fill_color(color.gamma_multiply(BAND_OPACITY)).allow_hover(false));
+            plot.add(band.fill_color(palette.band(color)).allow_hover(false));
         }
         Shape::Bars { width, bars } => {
             let bar = |&[x, height]: &[f64; 2]| Bar::new(x, height).width(width * 0.94).fill(color);

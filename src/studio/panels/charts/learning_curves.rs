@@ -7,7 +7,7 @@ use egui_plot::{FilledArea, HoverPosition, Line, PlotPoints};
 
 use crate::evolve::StrategyKind;
 use crate::genome::ControllerKind;
-use crate::plot::{Axis, BAND_OPACITY, Chart, Figure, Role, Series, Shape};
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::Quartiles;
 use crate::run::compare::ComparisonRow;
 use crate::save::{CURVE_POINTS, Comparison};
@@ -189,7 +189,7 @@ impl CurvesPanel {
                     &along(|quartiles| quartiles.low),
                     &along(|quartiles| quartiles.high),
                 );
-                plot.add(band.fill_color(color.gamma_multiply(BAND_OPACITY)).allow_hover(false));
+                plot.add(band.fill_color(palette.band(color)).allow_hover(false));
             }
             // Lines are drawn over all bands.
             for method in self.shown_methods() {

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Sense, Stroke};
 
 use super::view::ChartView;
-use crate::plot::{BAND_OPACITY, Series, Shape};
+use crate::plot::{Series, Shape};
 use crate::studio::ui::theme;
 
 /// Draws the legend, which wraps between names. Marks are labelled in the chart.
@@ -73,7 +73,7 @@ fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
             painter.circle_filled(rect.center(), 3.0, color);
         }
         Shape::Band(_) => {
-            painter.rect_filled(rect.shrink(1.0), 0.0, color.gamma_multiply(BAND_OPACITY));
+            painter.rect_filled(rect.shrink(1.0), 0.0, theme::of(ui).band(color));
         }
         Shape::Bars { .. } => {
             painter.rect_filled(rect.shrink(1.0), 0.0, color);
