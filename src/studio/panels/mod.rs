@@ -314,7 +314,10 @@ impl Viewer<'_, '_, '_> {
                 let read = ReadLanes::of(self.lanes, focused, on_stage);
                 panels.world.ui(ui, run, &on_stage.history, &read, commands);
             }
-            PanelKind::Charts => panels.charts.ui(ui, run, &shown, commands),
+            PanelKind::Charts => {
+                let selected = focused(self.lanes, &self.data.on_stage).map(Lane::staged);
+                panels.charts.ui(ui, run, &shown, selected, commands);
+            }
             PanelKind::Champions => {
                 let reports = run.reports();
                 let leaders = |generation| run.leaders(generation).len();

@@ -8,8 +8,7 @@ use super::card_places::{AroundLimb, messages_room};
 use super::generation_card::{generation_card, waiting_card};
 use super::leaderboard::leaderboard;
 use super::limb_card::{CardSize, limb_card};
-use super::torque_legend::torque_legend;
-use crate::studio::commands::overlay::Overlay;
+use super::overlay_legend::overlay_legend;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, WindowCommand};
 use crate::studio::panels::on_stage::OnStage;
@@ -132,12 +131,15 @@ pub(crate) fn around_stage(
     }
     let bar = bar.response.rect;
     let mut others: Vec<egui::Rect> = std::iter::once(bar).chain(board).collect();
-    if on_stage.overlays.shows(Overlay::Torques) {
+    if on_stage.overlays.shows_any() {
         // The legend ignores the pointer, because the snake may be behind it.
-        let place = card("torques", egui::Align2::LEFT_TOP, below_bar).interactable(false);
-        let shown = place.show(context, |ui| frame.show(ui, torque_legend)).response.rect;
-        below_bar = below(shown);
-        others.push(shown);
+        let place = card("legend", egui::Align2::LEFT_TOP, below_bar).interactable(false);
+        let is_pulled = lanes.iter().any(|lane| lane.is_disturbed());
+        let shown = place.show(context, |ui| {
+            frame.show(ui, |ui| overlay_legend(ui, &on_stage.overlays, is_pulled));
+        });
+        below_bar = below(shown.response.rect);
+        others.push(shown.response.rect);
     }
     let limb_place = on_stage.selection.limb.map(|limb| {
         let room = egui::vec2(whole.width(), stage.bottom() - bar.bottom());
