@@ -4,6 +4,7 @@
 mod figure;
 mod labels;
 mod paint;
+mod ticks;
 
 use std::error::Error;
 use std::ops::Range;
@@ -23,7 +24,8 @@ use crate::score::Rollout;
 
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 pub use labels::beside_line;
-pub use paint::{figure, ramp, role_color};
+pub use paint::{BAND_OPACITY, figure, ramp, role_color};
+pub use ticks::tick_step;
 
 /// A plot could not be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::args::{Args, CompareArgs};
-use super::error::CliError;
+use super::error::{CliError, of_flag};
 use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings, StrategyKind};
@@ -55,19 +55,23 @@ fn check_compared(preset: &Settings, settings: &Settings) -> Result<(), Invalid>
 pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     let (preset, settings) = args.settings()?;
     check_compared(&args.preset()?.settings, &settings)?;
-    let strategies: Vec<StrategyKind> = kinds("strategies", &compared.strategies)?;
-    let controllers: Vec<ControllerKind> = kinds("controllers", &compared.controllers)?;
-    within("seeds", compared.seeds, 1..=10_000)?;
+    let strategies: Vec<StrategyKind> = kinds("--strategies", &compared.strategies)?;
+    let controllers: Vec<ControllerKind> = kinds("--controllers", &compared.controllers)?;
+    within("--seeds", compared.seeds, 1..=10_000)?;
     let first_seed = args.seed()?;
     let last_seed = first_seed.checked_add(compared.seeds - 1).ok_or_else(|| {
-        Invalid::new("seed", first_seed, "a first seed that leaves room for the others after it")
+        Invalid::new("--seed", first_seed, "a first seed that leaves room for the others after it")
     })?;
     let mut plans = Vec::new();
     for &strategy in &strategies {
         for &controller in &controllers {
             for seed in first_seed..=last_seed {
                 let planned = PlannedRun { strategy, controller, seed };
-                plans.push(planned.plan(&preset, &settings, compared.evaluations)?);
+                let plan = planned.plan(&preset, &settings, compared.evaluations);
+                plans.push(plan.map_err(|invalid| match invalid.field.as_str() {
+                    "evaluations" => of_flag("--evaluations")(invalid),
+                    _ => invalid,
+                })?);
             }
         }
     }
@@ -91,6 +95,9 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
             return Err(crate::save::SaveError::Invalid { path: ron, source }.into());
         }
         comparison = earlier;
+    }
+    if let Some(note) = note_on_single_generations(&plans) {
+        say(&note);
     }
     plans.retain(|plan| !is_done(&comparison, plan));
     say(&format!(
@@ -127,6 +134,25 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     show(args, &comparison, [ron, csv, png])
 }
 
+/// A note on the strategies whose budget is a single generation: nothing has been learned then, so that their rows of
+/// the table are equal. `None` if there are none.
+fn note_on_single_generations(plans: &[RunPlan]) -> Option<String> {
+    let of_plan = |plan: &RunPlan| {
+        let evolution = &plan.settings.evolution;
+        (evolution.generations == 1).then_some(evolution.strategy)
+    };
+    let is_one = |kind: &&StrategyKind| plans.iter().filter_map(of_plan).any(|of| of == **kind);
+    let names: Vec<&str> =
+        StrategyKind::OPTIONS.iter().filter(is_one).map(|kind| kind.name()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "note: {}: these evaluations are a single generation, before anything is learned; raise \
+             --evaluations or lower --population to compare methods",
+            names.join(", ")
+        )
+    })
+}
+
 /// Whether the comparison has this run already.
 fn is_done(comparison: &Comparison, plan: &RunPlan) -> bool {
     comparison.runs.iter().any(|run| {
@@ -156,15 +182,32 @@ mod tests {
 
     #[test]
     fn a_list_of_names_is_read_and_an_unknown_one_refused() {
-        let read = |text| kinds::<StrategyKind>("strategies", text);
+        let read = |text| kinds::<StrategyKind>("--strategies", text);
         assert_eq!(read("all").expect("all"), StrategyKind::OPTIONS);
         let some = read("map_elites, cma-es,cma_es").expect("known");
         assert_eq!(some, [StrategyKind::CmaEs, StrategyKind::MapElites]);
         let error = read("ga,annealing").expect_err("refused").to_string();
         assert!(
-            error.starts_with("strategies is \"annealing\"; allowed: all, halving, ga"),
+            error.starts_with("--strategies is \"annealing\"; allowed: all, halving, ga"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn strategies_with_a_single_generation_are_named() {
+        let settings = Settings::default();
+        let population = settings.evolution.population;
+        let plan = |strategy, evaluations| {
+            let controller = ControllerKind::Gait;
+            let planned = PlannedRun { strategy, controller, seed: 1 };
+            planned.plan("test", &settings, evaluations).expect("allowed")
+        };
+        let few = [StrategyKind::Halving, StrategyKind::Ga, StrategyKind::Random]
+            .map(|strategy| plan(strategy, population));
+        let note = note_on_single_generations(&few).expect("two of them");
+        assert!(note.starts_with("note: ga, random: these evaluations are a single"), "{note}");
+        let enough = plan(StrategyKind::Ga, population * 2);
+        assert_eq!(note_on_single_generations(&[enough]), None);
     }
 
     #[test]

@@ -56,6 +56,11 @@ pub enum CliError {
     NoStudio,
 }
 
+/// Names the flag through which a value came, in the place of the field.
+pub fn of_flag(flag: &str) -> impl Fn(Invalid) -> Invalid {
+    move |invalid| Invalid { field: flag.to_owned(), ..invalid }
+}
+
 impl CliError {
     /// 2 for wrong usage, 1 for failure.
     pub fn exit_code(&self) -> u8 {
@@ -75,7 +80,7 @@ impl From<Invalid> for CliError {
 impl From<SaveError> for CliError {
     fn from(error: SaveError) -> Self {
         match error {
-            SaveError::UnknownPreset(invalid) => invalid.into(),
+            SaveError::UnknownPreset(invalid) => of_flag("--preset")(invalid).into(),
             other => Self::Headless(other.into()),
         }
     }

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use super::args::{Args, RenderArgs, size};
-use super::error::CliError;
+use super::error::{CliError, of_flag};
 use super::output::print;
-use super::replay::named_champions;
+use super::replay::{equals_record, named_champions};
 use crate::check::{Invalid, within};
 use crate::plot;
 use crate::save::{LoadedChampion, store_picture};
@@ -19,6 +19,12 @@ const LARGEST_PIXELS: u32 = 8192;
 pub fn draw(args: &Args, wanted: &RenderArgs) -> Result<(), CliError> {
     within("champions", wanted.files.len(), 1..=MAX_LANES)?;
     let champions = named_champions(&wanted.files)?;
+    for (file, (_, loaded)) in wanted.files.iter().zip(&champions) {
+        // A champion of another engine is drawn from its recording.
+        if loaded.is_of_this_engine() || loaded.recording.is_none() {
+            equals_record(file, loaded)?;
+        }
+    }
     let length_s = |loaded: &LoadedChampion| {
         let trial = &loaded.champion.trial;
         f64::from(trial.steps()) / f64::from(trial.physics.steps_per_s)
@@ -27,14 +33,15 @@ pub fn draw(args: &Args, wanted: &RenderArgs) -> Result<(), CliError> {
     let at_s = wanted.at.as_deref().map(|text| moment(text, longest_s)).transpose()?;
     let scene = RenderedScene {
         at_s,
-        size: size("size", &wanted.size, (64, 64), LARGEST_PIXELS)?,
-        camera: CameraMode::named(&wanted.camera)?,
+        size: size("--size", &wanted.size, (64, 64), LARGEST_PIXELS)?,
+        camera: CameraMode::named(&wanted.camera).map_err(of_flag("--camera"))?,
         theme: args.theme()?.unwrap_or_default(),
         overlays: wanted
             .show
             .iter()
             .map(|name| Overlay::named(name))
-            .collect::<Result<_, Invalid>>()?,
+            .collect::<Result<_, Invalid>>()
+            .map_err(of_flag("--show"))?,
         champions,
     };
     let named_after_first = || PathBuf::from(format!("{}.png", scene.champions[0].0));
@@ -42,7 +49,7 @@ pub fn draw(args: &Args, wanted: &RenderArgs) -> Result<(), CliError> {
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
         let allowed = "a name that ends in .png";
         return Err(
-            Invalid::new("output", format!("{:?}", path.display().to_string()), allowed).into()
+            Invalid::new("--output", format!("{:?}", path.display().to_string()), allowed).into()
         );
     }
     let (mut picture, tags) = render(&scene)?;
@@ -54,8 +61,8 @@ pub fn draw(args: &Args, wanted: &RenderArgs) -> Result<(), CliError> {
 }
 
 fn moment(text: &str, longest_s: f64) -> Result<f64, Invalid> {
-    let wrong = |_| Invalid::new("at", format!("{text:?}"), "a number");
+    let wrong = |_| Invalid::new("--at", format!("{text:?}"), "a number");
     let at_s: f64 = text.parse().map_err(wrong)?;
-    within("at", at_s, 0.0..=longest_s)?;
+    within("--at", at_s, 0.0..=longest_s)?;
     Ok(at_s)
 }

@@ -5,9 +5,10 @@ use std::path::Path;
 use indicatif::ProgressBar;
 
 use super::args::Args;
-use super::error::CliError;
+use super::error::{CliError, of_flag};
 use super::output::{cancel_on_interrupt, print};
-use crate::check::within;
+use super::replay::equals_record;
+use crate::check::{Invalid, within};
 use crate::run::LocalPool;
 use crate::run::headless::HeadlessError;
 use crate::run::progress_bar::with_bar;
@@ -23,9 +24,11 @@ pub fn robust(
     trials: u32,
     range: &PerturbationRange,
 ) -> Result<(), CliError> {
-    within("trials", trials, 1..=1_000_000)?;
-    schema::check(range)?;
-    let champion = load_champion(file)?.champion;
+    within("--trials", trials, 1..=1_000_000)?;
+    schema::check(range).map_err(of_its_flag)?;
+    let loaded = load_champion(file)?;
+    let matches = equals_record(file, &loaded)?;
+    let champion = loaded.champion;
     let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
     let (control, seed) = (cancel_on_interrupt(), args.seed()?);
     let bar = ProgressBar::new(trials.into());
@@ -43,6 +46,7 @@ pub fn robust(
             "done": true,
             "trials": found.trials,
             "disqualified": found.disqualified,
+            "matches": matches,
         });
         return print(&format!("{line}\n"));
     }
@@ -69,6 +73,16 @@ pub fn robust(
         );
     }
     print(&text)
+}
+
+/// An error about a range of perturbations, with the name of its flag.
+fn of_its_flag(invalid: Invalid) -> Invalid {
+    let flag = match invalid.field.rsplit('.').next().unwrap_or_default() {
+        "start_m" => "start",
+        "turn_deg" => "turn",
+        other => other,
+    };
+    of_flag(&format!("--off-{flag}"))(invalid)
 }
 
 fn shares(found: &Robustness) -> impl Iterator<Item = (u32, Share)> + '_ {

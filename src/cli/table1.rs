@@ -15,11 +15,11 @@ use crate::score::Fitness;
 
 /// Runs the protocol with `count` seeds from `first_seed` on; prints both tables, and writes CSV and PNG.
 pub fn table1(args: &Args, first_seed: u64, count: u64) -> Result<(), CliError> {
-    within("seeds", count, 1..=10_000)?;
-    within("first-seed", first_seed, 0..=u64::MAX - count)?;
+    within("--seeds", count, 1..=10_000)?;
+    within("--first-seed", first_seed, 0..=u64::MAX - count)?;
     let seeds = first_seed..=first_seed + count - 1;
     let (preset, settings) = args.settings()?;
-    check_fitness(&settings)?;
+    check_fitness(&settings).map_err(|invalid| args.of_its_flag(invalid))?;
     let folder = args.results_folder();
     folder.prepare()?;
     let evaluator = args.evaluator()?;

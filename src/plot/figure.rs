@@ -46,6 +46,8 @@ pub struct Axis {
     pub range: RangeInclusive<f64>,
     /// Names in place of numbers, each with its position.
     pub names: Vec<(f64, String)>,
+    /// Whether it counts, so that only whole numbers make sense.
+    pub is_whole: bool,
 }
 
 /// A reference value.
@@ -115,7 +117,12 @@ pub enum Role {
 impl Axis {
     /// An axis with numbers.
     pub fn new(name: &str, unit: &'static str, range: RangeInclusive<f64>) -> Self {
-        Self { name: name.to_owned(), unit, range, names: Vec::new() }
+        Self { name: name.to_owned(), unit, range, names: Vec::new(), is_whole: false }
+    }
+
+    /// An axis of a count, such as generations, with whole numbers.
+    pub fn count(name: &str, range: RangeInclusive<f64>) -> Self {
+        Self { is_whole: true, ..Self::new(name, "", range) }
     }
 
     /// Name and unit.

@@ -9,8 +9,9 @@ use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::labels::beside_line;
-use super::{Area, Axis, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
-use super::{Axes, TEXT_PIXELS, TITLE_PIXELS, draw, text};
+use super::ticks::TickedAxis;
+use super::{Area, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
+use super::{TEXT_PIXELS, TITLE_PIXELS, draw, text};
 use crate::save::Picture;
 
 /// Size of every picture of a figure, in pixels.
@@ -29,6 +30,13 @@ const PLATE: f32 = 8.0;
 const NAMES_HEIGHT: u32 = 250;
 /// Maximum length of a name, in characters; the rest is cut off.
 const MAX_NAME_LENGTH: usize = 32;
+
+/// Maximum number of numbers along the vertical axis.
+const MOST_Y_TICKS: f64 = 10.0;
+/// Opacity of a band between two curves, on the screen and in pictures.
+pub const BAND_OPACITY: f32 = 0.2;
+
+type FigureAxes<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
 
 /// The colour of a role in the light theme, as red, green and blue.
 pub fn role_color(role: Role) -> [u8; 3] {
@@ -129,7 +137,9 @@ fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dy
             area.draw(&DashedPathElement::new(ends, on, off, style))?;
         }
         Shape::Points(_) => area.draw(&Circle::new((x + SAMPLE / 2, y), 5, color.filled()))?,
-        Shape::Band(_) => area.draw(&Rectangle::new(block, color.mix(0.25).filled()))?,
+        Shape::Band(_) => {
+            area.draw(&Rectangle::new(block, color.mix(BAND_OPACITY.into()).filled()))?
+        }
         Shape::Bars { .. } => area.draw(&Rectangle::new(block, color.filled()))?,
         Shape::Cells(_) => {
             for step in 0..SAMPLE {
@@ -152,30 +162,19 @@ fn paint(
     chart: &Chart,
 ) -> Result<(), Box<dyn Error>> {
     let has_names = !chart.x.names.is_empty();
-    let ends = |axis: &Axis| *axis.range.start()..*axis.range.end();
+    let x = TickedAxis::new(&chart.x, if area.dim_in_pixel().0 > 800 { 12.0 } else { 6.0 });
+    let y = TickedAxis::new(&chart.y, MOST_Y_TICKS);
+    let (x_digits, y_digits) = (x.digits(), y.digits());
     let mut builder = ChartBuilder::on(area);
     builder.margin(MARGIN).y_label_area_size(78);
     builder.x_label_area_size(if has_names { NAMES_HEIGHT } else { 48 });
     if !chart.name.is_empty() {
         builder.caption(&chart.name, text());
     }
-    let mut axes = builder.build_cartesian_2d(ends(&chart.x), ends(&chart.y))?;
-    let y_width = chart.y.range.end() - chart.y.range.start();
-    let digits = |width: f64| {
-        if width < 0.5 {
-            3
-        } else if width < 5.0 {
-            1
-        } else {
-            0
-        }
-    };
-    let y_digits = digits(y_width);
-    let x_digits = digits(chart.x.range.end() - chart.x.range.start());
+    let mut axes = builder.build_cartesian_2d(x, y)?;
     let x_label = if has_names { String::new() } else { chart.x.label() };
     let x_text = |x: &f64| if has_names { String::new() } else { format!("{x:.x_digits$}") };
     axes.configure_mesh()
-        .x_labels(if area.dim_in_pixel().0 > 800 { 12 } else { 6 })
         .x_label_formatter(&x_text)
         .x_desc(x_label)
         .y_label_formatter(&|y| format!("{y:.y_digits$}"))
@@ -209,7 +208,7 @@ fn paint(
 /// Writes the names of the marks on plates beside their lines, where they cover least of the series.
 fn mark_labels(
     area: &DrawingArea<BitMapBackend<'_>, Shift>,
-    axes: &Axes<'_, '_>,
+    axes: &FigureAxes<'_, '_>,
     chart: &Chart,
 ) -> Result<(), Box<dyn Error>> {
     let (left, top) = area.get_base_pixel();
@@ -247,7 +246,7 @@ fn mark_labels(
     Ok(())
 }
 
-fn paint_series(axes: &mut Axes<'_, '_>, series: &Series) -> Result<(), Box<dyn Error>> {
+fn paint_series(axes: &mut FigureAxes<'_, '_>, series: &Series) -> Result<(), Box<dyn Error>> {
     let color = color_of(series.role);
     let pairs =
         |points: &[[f64; 2]]| -> Vec<(f64, f64)> { points.iter().map(|&[x, y]| (x, y)).collect() };
@@ -272,7 +271,7 @@ fn paint_series(axes: &mut Axes<'_, '_>, series: &Series) -> Result<(), Box<dyn 
             let above = ends.iter().map(|&[x, _, high]| (x, high));
             let below = ends.iter().rev().map(|&[x, low, _]| (x, low));
             let edge: Vec<(f64, f64)> = above.chain(below).collect();
-            axes.draw_series([Polygon::new(edge, color.mix(0.18).filled())])?;
+            axes.draw_series([Polygon::new(edge, color.mix(BAND_OPACITY.into()).filled())])?;
         }
         Shape::Bars { width, bars } => {
             let half = width / 2.0;
@@ -295,7 +294,7 @@ fn paint_series(axes: &mut Axes<'_, '_>, series: &Series) -> Result<(), Box<dyn 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::Mark;
+    use crate::plot::{Axis, Mark};
 
     fn chart(name: &str, series: Vec<Series>) -> Chart {
         Chart {

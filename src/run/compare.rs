@@ -189,6 +189,8 @@ impl Comparison {
         );
         for row in self.rows() {
             let show = |quartiles: Option<Quartiles>, digits: usize| match quartiles {
+                // Most runs never reached the landing, and neither did the fastest.
+                Some(Quartiles { low, .. }) if !low.is_finite() => "-".to_owned(),
                 Some(Quartiles { low, median, high }) => {
                     let number = |x: f64| {
                         if x.is_finite() { format!("{x:.digits$}") } else { "-".to_owned() }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 
 use super::evaluator::{Evaluator, WorkersError};
+use super::json::json_line;
 use super::progress_bar::run_generation_with_bar;
 use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
@@ -121,7 +122,7 @@ pub fn evolve(
     let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
         landing.add(report);
-        let line = if json { json_line(report).to_string() } else { table_row(report) };
+        let line = if json { json_line(&report_json(report)) } else { table_row(report) };
         writeln!(out, "{line}")?;
         out.flush()
     };
@@ -158,7 +159,7 @@ pub fn evolve(
             "best": best.map(|best| best.evaluation.fitness),
             "champion": recorder.best(),
         });
-        writeln!(out, "{last}")?;
+        writeln!(out, "{}", json_line(&last))?;
     } else if let (Some(best), Some(path)) = (best, recorder.best()) {
         writeln!(out, "\nchampion  {}", about(best))?;
         writeln!(out, "saved to  {}", path.display())?;
@@ -222,7 +223,7 @@ fn table_row(report: &GenerationReport) -> String {
     format!("{generation:>10}{numbers}{disqualified:>14}  {}", report.meaning)
 }
 
-fn json_line(report: &GenerationReport) -> Value {
+fn report_json(report: &GenerationReport) -> Value {
     let statistics = report.statistics;
     json!({
         "generation": report.generation,

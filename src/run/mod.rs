@@ -8,6 +8,7 @@ mod evaluator;
 pub mod evaluators;
 mod experiment;
 pub mod headless;
+mod json;
 mod library_reader;
 mod lineage;
 mod lookahead;
@@ -28,12 +29,13 @@ pub use evaluator::{
     EvaluationResult, Evaluator, LocalPool, THREADS_RANGE, WorkersError, available_cores,
 };
 pub use experiment::Experiment;
+pub use json::json_line;
 pub use library_reader::{LibraryEvent, LibraryReader};
 pub use lineage::{Ancestor, Ancestry, FitnessSpread, Generation};
 pub use lookahead::Lookahead;
 pub use panics::caught;
 pub use parallel_runs::{ParallelRuns, ParallelRunsEvent};
 pub use recorder::{ChangeError, RecordedRun, RunRecorder, RunSource};
-pub use replay::replay;
+pub use replay::{difference_from_record, replay};
 pub use report::{Crash, GenerationReport, Quartiles, Statistics};
 pub use run_control::{Cancelled, RunControl};

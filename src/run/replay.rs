@@ -6,11 +6,12 @@ use std::path::Path;
 use serde_json::json;
 
 use super::headless::HeadlessError;
+use super::json::json_line;
 use super::panics::caught;
 use crate::ENGINE_VERSION;
 use crate::evolve::Champion;
-use crate::save::load_champion;
-use crate::score::evaluate;
+use crate::save::{LoadedChampion, load_champion};
+use crate::score::{Evaluation, evaluate};
 use crate::world::{Effort, HealthLimits};
 
 /// Re-simulates a saved champion and compares it with its record, bit for bit.
@@ -20,9 +21,8 @@ use crate::world::{Effort, HealthLimits};
 pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), HeadlessError> {
     let loaded = load_champion(path)?;
     let recorded = loaded.champion.evaluation;
-    let Champion { genome, trial, .. } = &loaded.champion;
-    let found = caught(|| evaluate(genome, trial))
-        .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })?;
+    let trial = &loaded.champion.trial;
+    let found = simulated(path, &loaded)?;
     let matches = found.agrees_with(&recorded);
     let meaning = trial.result_in_words(&found);
     if json {
@@ -41,7 +41,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
             "engine": loaded.engine,
             "matches": matches,
         });
-        writeln!(out, "{line}")?;
+        writeln!(out, "{}", json_line(&line))?;
     } else {
         let unit = loaded.champion.trial.fitness.unit();
         writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;
@@ -57,15 +57,43 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
             writeln!(out, "equal to the record, bit for bit")?;
         }
     }
-    if matches {
-        return Ok(());
+    match difference(&loaded, &found) {
+        None => Ok(()),
+        Some(difference) => Err(HeadlessError::Differs { path: path.to_owned(), difference }),
+    }
+}
+
+/// Compares a champion with its record, bit for bit, for a task that only uses its genome: `None` if they are equal,
+/// else the difference in words.
+///
+/// # Errors
+/// Its simulation panicked.
+pub fn difference_from_record(
+    path: &Path,
+    loaded: &LoadedChampion,
+) -> Result<Option<String>, HeadlessError> {
+    let found = simulated(path, loaded)?;
+    Ok(difference(loaded, &found))
+}
+
+fn simulated(path: &Path, loaded: &LoadedChampion) -> Result<Evaluation, HeadlessError> {
+    let Champion { genome, trial, .. } = &loaded.champion;
+    caught(|| evaluate(genome, trial))
+        .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })
+}
+
+/// The difference between the record and the simulation `found`, in words.
+fn difference(loaded: &LoadedChampion, found: &Evaluation) -> Option<String> {
+    let recorded = &loaded.champion.evaluation;
+    if found.agrees_with(recorded) {
+        return None;
     }
     let engine = if loaded.is_of_this_engine() {
         "the file was edited, or this machine computes different results".to_owned()
     } else {
         format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
     };
-    let difference = format!(
+    Some(format!(
         "fitness {}, {} steps, trace {:016x}; recorded {}, {} steps, {:016x} ({engine})",
         found.fitness,
         found.steps,
@@ -73,8 +101,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
         recorded.fitness,
         recorded.steps,
         recorded.trace_hash,
-    );
-    Err(HeadlessError::Differs { path: path.to_owned(), difference })
+    ))
 }
 
 /// Effort of a rollout, each value with the limit beyond which it would have been disqualified.

@@ -22,20 +22,20 @@ fn an_unknown_preset_is_refused_with_the_list_of_presets() {
     let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
     assert_eq!(
         message,
-        "error: preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file"
+        "error: --preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file"
     );
 }
 
 #[test]
 fn a_population_of_zero_is_refused() {
     let message = refusal(folder().path(), "--no-render --population 0", 2);
-    assert_eq!(message, "error: evolution.population is 0; allowed: 1 to 100000");
+    assert_eq!(message, "error: --population is 0; allowed: 1 to 100000");
 }
 
 #[test]
 fn a_negative_duration_is_refused() {
     let message = refusal(folder().path(), "--no-render --duration -2", 2);
-    assert_eq!(message, "error: trial.duration_s is -2; allowed: 0.1 to 600");
+    assert_eq!(message, "error: --duration is -2; allowed: 0.1 to 600");
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
     let folder = folder();
     let message = refusal(folder.path(), "--no-render --set surface.fricton=0.8", 2);
     assert!(
-        message.starts_with("error: set is \"surface.fricton\", an unknown setting"),
+        message.starts_with("error: --set is \"surface.fricton\", an unknown setting"),
         "{message}"
     );
     assert!(message.contains("trial.surface.friction"), "{message}");
@@ -51,14 +51,11 @@ fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
     assert_eq!(message, "error: trial.surface.slip_m_s_per_n is -1; allowed: 0 to 10");
     let message = refusal(folder.path(), "--no-render --fitness speed", 2);
     let allowed = "centre, head, centre_of_mass, height, furthest_y, steps_climbed, climb";
-    assert_eq!(message, format!("error: fitness is \"speed\"; allowed: {allowed}"));
+    assert_eq!(message, format!("error: --fitness is \"speed\"; allowed: {allowed}"));
     let message = refusal(folder.path(), "table1 --seeds 0", 2);
-    assert_eq!(message, "error: seeds is 0; allowed: 1 to 10000");
+    assert_eq!(message, "error: --seeds is 0; allowed: 1 to 10000");
     let message = refusal(folder.path(), "table1 --fitness height", 2);
-    assert_eq!(
-        message,
-        "error: trial.fitness is height; allowed: centre, as in the report's table"
-    );
+    assert_eq!(message, "error: --fitness is height; allowed: centre, as in the report's table");
 }
 
 #[cfg(feature = "studio")]
@@ -77,14 +74,14 @@ fn wrong_values_of_render_are_refused_before_anything_is_drawn() {
     let folder = folder();
     let climber = concat!("render ", env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
     for (arguments, message) in [
-        ("--at 99", "at is 99; allowed: 0 to 15"),
-        ("--at -1", "at is -1; allowed: 0 to 15"),
-        ("--at soon", "at is \"soon\"; allowed: a number"),
-        ("--size 0x0", "size.width is 0; allowed: 64 to 8192"),
-        ("--size big", "size is \"big\"; allowed: WIDTHxHEIGHT, such as 1280x720"),
-        ("--camera foo", "camera is \"foo\"; allowed: follow, side or top"),
-        ("--show ghosts", "show is \"ghosts\"; allowed: contacts, torques, trail or line"),
-        ("--theme dim", "theme is \"dim\"; allowed: light or dark"),
+        ("--at 99", "--at is 99; allowed: 0 to 15"),
+        ("--at -1", "--at is -1; allowed: 0 to 15"),
+        ("--at soon", "--at is \"soon\"; allowed: a number"),
+        ("--size 0x0", "--size width is 0; allowed: 64 to 8192"),
+        ("--size big", "--size is \"big\"; allowed: WIDTHxHEIGHT, such as 1280x720"),
+        ("--camera foo", "--camera is \"foo\"; allowed: follow, side or top"),
+        ("--show ghosts", "--show is \"ghosts\"; allowed: contacts, torques, trail or line"),
+        ("--theme dim", "--theme is \"dim\"; allowed: light or dark"),
     ] {
         let said = refusal(folder.path(), &format!("{climber} {arguments}"), 2);
         assert_eq!(said, format!("error: {message}"));
@@ -98,7 +95,7 @@ fn wrong_values_of_render_are_refused_before_anything_is_drawn() {
 fn a_seed_that_is_not_a_number_is_refused() {
     let message = refusal(folder().path(), "--no-render --seed twelve", 2);
     let allowed = "allowed: a whole number from 0 to 18446744073709551615";
-    assert_eq!(message, format!("error: seed is \"twelve\"; {allowed}"));
+    assert_eq!(message, format!("error: --seed is \"twelve\"; {allowed}"));
 }
 
 #[test]

@@ -211,8 +211,7 @@ fn a_single_setting_and_the_fitness_can_be_set_by_flag() {
     let arguments =
         "settings --json --set surface.friction=0.8 --set gravity_m_s2=1.62 --fitness head";
     let settings = &json_lines(folder.path(), arguments)[0]["settings"];
-    let friction = settings["trial"]["surface"]["friction"].as_f64().expect("a number");
-    assert!((friction - 0.8).abs() < 1e-6);
+    assert_eq!(settings["trial"]["surface"]["friction"], json!(0.8), "the fewest digits");
     assert_eq!(settings["trial"]["fitness"], json!("head"));
     let list = stdout_of(folder.path(), "settings --preset ice");
     let line = list.lines().find(|line| line.starts_with("trial.surface.friction"));
@@ -252,10 +251,27 @@ fn robustness_prints_a_share_with_its_interval_for_each_step() {
     let lines = json_lines(folder.path(), &format!("robust {save} --trials 3 {still} --json"));
     assert_eq!(lines[0]["share"], json!(1.0));
     assert_eq!(lines[10]["disqualified"], json!(0));
+    assert_eq!(lines[10]["matches"], json!(true), "the record is as it was written");
     let output = run(folder.path(), &format!("robust {save} --off-rise 2"));
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(message.trim_end(), "error: rise is 2; allowed: 0 to 0.9");
+    assert_eq!(message.trim_end(), "error: --off-rise is 2; allowed: 0 to 0.9");
+}
+
+#[test]
+fn robustness_says_that_a_champion_does_not_replay_to_its_record() {
+    let folder = folder();
+    let save = include_str!("../../saves/first-climber.ron");
+    let fitness = save.find("fitness: ").expect("a record") + "fitness: ".len();
+    let edited = format!("{}9{}", &save[..fitness], &save[fitness..]);
+    std::fs::write(folder.path().join("edited.ron"), edited).expect("written");
+    let output = run(folder.path(), "robust edited.ron --trials 1 --json");
+    assert_eq!(output.status.code(), Some(0), "its genes can still be measured");
+    let said = String::from_utf8_lossy(&output.stderr);
+    let start = "warning: edited.ron: does not replay to its record: fitness ";
+    assert!(said.contains(start) && said.contains("the file was edited"), "{said}");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains(r#""matches":false"#), "{text}");
 }
 
 #[test]

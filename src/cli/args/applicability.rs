@@ -1,7 +1,7 @@
 //! Which flags have an effect in which task of the program. A flag without effect is refused.
 
-use clap::ArgMatches;
 use clap::parser::ValueSource;
+use clap::{ArgMatches, Command};
 
 use super::flags::{Args, Subcommand};
 use crate::cli::error::CliError;
@@ -29,6 +29,24 @@ use Task::{
     Bench, CheckReplay, Compare, Figures, Presets, Render, ReplayInWindow, Robust, Run, Settings,
     SettingsAsMarkdown, Table1, Verify, Window,
 };
+
+/// All tasks.
+const ALL: [Task; 14] = [
+    Window,
+    Run,
+    ReplayInWindow,
+    CheckReplay,
+    Bench,
+    Verify,
+    Robust,
+    Compare,
+    Table1,
+    Figures,
+    Render,
+    Presets,
+    Settings,
+    SettingsAsMarkdown,
+];
 
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
 const FLAGS: [(&str, &[Task]); 23] = [
@@ -115,6 +133,27 @@ impl Task {
     }
 }
 
+/// Hides the flags that a subcommand refuses from its help.
+pub(super) fn without_refused_flags(command: Command) -> Command {
+    let flags: Vec<_> =
+        command.get_arguments().filter(|flag| flag.is_global_set()).cloned().collect();
+    command.mut_subcommands(|subcommand| {
+        let start = format!("snakes {}", subcommand.get_name());
+        let is_its_own = |task: &Task| {
+            let rest = task.words().strip_prefix(start.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+        };
+        let tasks: Vec<Task> = ALL.into_iter().filter(is_its_own).collect();
+        let is_refused = |flag: &&clap::Arg| {
+            let row = FLAGS.iter().find(|(id, _)| *id == flag.get_id().as_str());
+            row.is_some_and(|(_, of)| !of.iter().any(|task| tasks.contains(task)))
+        };
+        // A subcommand's own definition of a global flag takes the place of the inherited one.
+        let hidden = flags.iter().filter(is_refused).map(|flag| flag.clone().hide(true));
+        subcommand.args(hidden)
+    })
+}
+
 /// Refuses the first given flag that has no effect in the task that the arguments name.
 pub(super) fn check(matches: &ArgMatches, args: &Args) -> Result<(), CliError> {
     let task = Task::of(args);
@@ -138,7 +177,7 @@ mod tests {
     use std::ffi::OsString;
 
     /// Every task, as words of the command line.
-    const TASKS: [(Task, &str); 14] = [
+    const TASKS: [(Task, &str); ALL.len()] = [
         (Window, ""),
         (Run, "--no-render"),
         (ReplayInWindow, "replay a.ron"),
@@ -213,6 +252,31 @@ mod tests {
         for words in ["bench", "verify", "robust a.ron", "compare", "table1", "presets"] {
             let message = parsed(&format!("{words} --no-render")).expect_err("refused");
             assert!(message.starts_with("--no-render has no effect with snakes"), "{message}");
+        }
+    }
+
+    #[test]
+    fn the_help_of_a_task_lists_exactly_the_flags_that_the_task_accepts() {
+        for (subcommand, tasks) in [
+            ("compare", &[Compare][..]),
+            ("robust", &[Robust]),
+            ("bench", &[Bench]),
+            ("verify", &[Verify]),
+            ("table1", &[Table1]),
+            ("figures", &[Figures]),
+            ("render", &[Render]),
+            ("presets", &[Presets]),
+            ("settings", &[Settings, SettingsAsMarkdown]),
+            ("replay", &[ReplayInWindow, CheckReplay]),
+        ] {
+            let arguments = ["snakes", subcommand, "--help"].map(OsString::from);
+            let Ok(Parsed::Print(help)) = parse(arguments) else { panic!("{subcommand} has help") };
+            for (id, of) in FLAGS.iter().filter(|(id, _)| !["from", "evaluator"].contains(id)) {
+                let flag = format!("--{}", id.replace('_', "-"));
+                let is_listed = help.split_whitespace().any(|word| word == flag);
+                let is_accepted = of.iter().any(|task| tasks.contains(task));
+                assert_eq!(is_listed, is_accepted, "{flag} in the help of {subcommand}:\n{help}");
+            }
         }
     }
 

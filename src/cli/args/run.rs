@@ -5,7 +5,7 @@ use std::path::Path;
 use super::flags::{Args, Subcommand};
 use super::values::number;
 use crate::check::Invalid;
-use crate::cli::error::CliError;
+use crate::cli::error::{CliError, of_flag};
 use crate::cli::resume::run_in;
 use crate::evolve::{Champion, Founder, RunPlan, Settings, with_fields};
 use crate::run::RunSource;
@@ -97,26 +97,52 @@ impl Args {
     fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
         let mut settings = preset.settings;
         if let Some(text) = &self.population {
-            settings.evolution.population = number("population", text, WHOLE)?;
+            settings.evolution.population = number("--population", text, WHOLE)?;
         }
         if let Some(text) = &self.generations {
-            settings.evolution.generations = number("generations", text, WHOLE)?;
+            settings.evolution.generations = number("--generations", text, WHOLE)?;
         }
         if let Some(text) = &self.duration {
-            settings.trial.duration_s = number("duration", text, "a number")?;
+            settings.trial.duration_s = number("--duration", text, "a number")?;
         }
         if let Some(text) = &self.fitness {
-            settings.trial.fitness = Fitness::named("fitness", text)?;
+            settings.trial.fitness = Fitness::named("--fitness", text)?;
         }
         let mut changes = Vec::new();
         for text in &self.set {
             let (path, value) = text.split_once('=').ok_or_else(|| {
                 let allowed = "FIELD=VALUE, such as surface.friction=0.8";
-                Invalid::new("set", format!("{text:?}"), allowed)
+                Invalid::new("--set", format!("{text:?}"), allowed)
             })?;
             changes.push((path.trim(), value.trim()));
         }
-        Ok((preset.name, with_fields(&settings, changes)?))
+        let changed = with_fields(&settings, changes).map_err(|invalid| {
+            // The same error without --set comes from another flag.
+            let is_of_flag = settings.check().is_err_and(|other| other == invalid);
+            match invalid.field.as_str() {
+                "set" => of_flag("--set")(invalid),
+                _ if is_of_flag => self.of_its_flag(invalid),
+                _ => invalid,
+            }
+        });
+        Ok((preset.name, changed?))
+    }
+
+    /// An error about a setting, with the name of the flag if one was given for it.
+    pub fn of_its_flag(&self, invalid: Invalid) -> Invalid {
+        let flags = [
+            ("evolution.population", "--population", &self.population),
+            ("evolution.generations", "--generations", &self.generations),
+            ("trial.duration_s", "--duration", &self.duration),
+            ("trial.fitness", "--fitness", &self.fitness),
+        ];
+        let is_it = |(field, _, given): &&(&str, &str, &Option<String>)| {
+            *field == invalid.field && given.is_some()
+        };
+        match flags.iter().find(is_it) {
+            Some((_, flag, _)) => of_flag(flag)(invalid),
+            None => invalid,
+        }
     }
 }
 
@@ -171,23 +197,27 @@ mod tests {
     #[test]
     fn wrong_values_are_refused_with_field_value_and_range() {
         for (words, message) in [
-            ("--population 0", "evolution.population is 0; allowed: 1 to 100000"),
-            ("--population -3", "population is \"-3\"; allowed: a whole number from 0 up"),
-            ("--duration -1", "trial.duration_s is -1; allowed: 0.1 to 600"),
-            ("--duration NaN", "trial.duration_s is NaN; allowed: 0.1 to 600"),
+            ("--population 0", "--population is 0; allowed: 1 to 100000"),
+            ("--population -3", "--population is \"-3\"; allowed: a whole number from 0 up"),
+            ("--duration -1", "--duration is -1; allowed: 0.1 to 600"),
+            ("--duration NaN", "--duration is NaN; allowed: 0.1 to 600"),
             (
                 "--seed twelve",
-                "seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615",
+                "--seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615",
             ),
             (
                 "--preset nosuch",
-                "preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file",
+                "--preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, or a file",
             ),
-            ("--threads 0", "threads is 0; allowed: 1 to 1024"),
+            ("--threads 0", "--threads is 0; allowed: 1 to 1024"),
+            (
+                "--set evolution.population=0 --population 7",
+                "evolution.population is 0; allowed: 1 to 100000",
+            ),
             ("--set surface.bounce=2", "trial.surface.bounce is 2; allowed: 0 to 1"),
             (
                 "--set surface.bounce",
-                "set is \"surface.bounce\"; allowed: FIELD=VALUE, such as surface.friction=0.8",
+                "--set is \"surface.bounce\"; allowed: FIELD=VALUE, such as surface.friction=0.8",
             ),
         ] {
             assert_eq!(refusal(words), message, "{words}");
@@ -197,7 +227,7 @@ mod tests {
     #[test]
     fn an_unknown_evaluator_is_refused_with_the_names_of_all() {
         let refusal = args_of("--evaluator nosuch").evaluator().expect_err("refused").to_string();
-        assert!(refusal.starts_with("evaluator is \"nosuch\"; allowed: threads"), "{refusal}");
+        assert!(refusal.starts_with("--evaluator is \"nosuch\"; allowed: threads"), "{refusal}");
     }
 
     #[cfg(feature = "studio")]
@@ -207,6 +237,6 @@ mod tests {
         assert_eq!(args_of("").theme().expect("allowed"), None);
         assert_eq!(args_of("--theme dark").theme().expect("allowed"), Some(Theme::Dark));
         let refusal = args_of("--theme dim").theme().expect_err("refused").to_string();
-        assert_eq!(refusal, "theme is \"dim\"; allowed: light or dark");
+        assert_eq!(refusal, "--theme is \"dim\"; allowed: light or dark");
     }
 }

@@ -6,6 +6,8 @@ use std::sync::Arc;
 use super::flags::Args;
 use crate::check::{Invalid, within};
 use crate::cli::error::CliError;
+#[cfg(feature = "studio")]
+use crate::cli::error::of_flag;
 use crate::run::evaluators::EVALUATORS;
 use crate::run::headless::HeadlessError;
 use crate::run::{Evaluator, THREADS_RANGE, available_cores};
@@ -26,8 +28,8 @@ pub fn size(flag: &str, text: &str, least: (u32, u32), most: u32) -> Result<(u32
     let wrong = || Invalid::new(flag, format!("{text:?}"), allowed);
     let (width, height) = text.split_once('x').ok_or_else(wrong)?;
     let (width, height) = (number(flag, width, allowed)?, number(flag, height, allowed)?);
-    within(&format!("{flag}.width"), width, least.0..=most)?;
-    within(&format!("{flag}.height"), height, least.1..=most)?;
+    within(&format!("{flag} width"), width, least.0..=most)?;
+    within(&format!("{flag} height"), height, least.1..=most)?;
     Ok((width, height))
 }
 
@@ -36,7 +38,7 @@ impl Args {
     pub fn seed(&self) -> Result<u64, CliError> {
         let allowed = "a whole number from 0 to 18446744073709551615";
         let given = self.seed.as_deref();
-        Ok(given.map_or(Ok(1), |text| number("seed", text, allowed))?)
+        Ok(given.map_or(Ok(1), |text| number("--seed", text, allowed))?)
     }
 
     /// Number of worker threads without a window.
@@ -60,15 +62,15 @@ impl Args {
         let name = self.evaluator.as_deref().unwrap_or(EVALUATORS[0].name);
         let row = EVALUATORS.iter().find(|row| row.name == name).ok_or_else(|| {
             let names: Vec<&str> = EVALUATORS.iter().map(|row| row.name).collect();
-            Invalid::new("evaluator", format!("{name:?}"), names.join(", "))
+            Invalid::new("--evaluator", format!("{name:?}"), names.join(", "))
         })?;
         Ok((row.start)(workers).map_err(HeadlessError::from)?)
     }
 
     fn threads_or(&self, default: usize) -> Result<usize, CliError> {
         let Some(text) = &self.threads else { return Ok(default) };
-        let threads = number("threads", text, "a whole number from 1 to 1024")?;
-        within("threads", threads, THREADS_RANGE)?;
+        let threads = number("--threads", text, "a whole number from 1 to 1024")?;
+        within("--threads", threads, THREADS_RANGE)?;
         Ok(threads)
     }
 
@@ -76,13 +78,14 @@ impl Args {
     #[cfg(feature = "studio")]
     pub fn window_size(&self) -> Result<Option<(u32, u32)>, CliError> {
         let given = self.window_size.as_deref();
-        Ok(given.map(|text| size("window-size", text, (320, 240), 16_384)).transpose()?)
+        Ok(given.map(|text| size("--window-size", text, (320, 240), 16_384)).transpose()?)
     }
 
     /// The colour theme of the window and of pictures, if it is given.
     #[cfg(feature = "studio")]
     pub fn theme(&self) -> Result<Option<Theme>, CliError> {
-        Ok(self.theme.as_deref().map(str::parse).transpose()?)
+        let named = self.theme.as_deref().map(str::parse).transpose();
+        Ok(named.map_err(of_flag("--theme"))?)
     }
 
     /// The file for window preferences.
@@ -99,8 +102,8 @@ impl Args {
     #[cfg(feature = "studio")]
     pub fn exit_after_frames(&self) -> Result<Option<u32>, CliError> {
         let Some(text) = &self.exit_after_frames else { return Ok(None) };
-        let frames = number("exit-after-frames", text, "a whole number from 1 up")?;
-        within("exit-after-frames", frames, 1..=u32::MAX)?;
+        let frames = number("--exit-after-frames", text, "a whole number from 1 up")?;
+        within("--exit-after-frames", frames, 1..=u32::MAX)?;
         Ok(Some(frames))
     }
 }

@@ -13,6 +13,8 @@ pub(crate) struct ChartExport {
     pub name: &'static str,
     /// File format.
     pub format: ChartFormat,
+    /// Whether it is about the current run, whose name the picture then has.
+    pub is_of_run: bool,
 }
 
 /// A file format for charts.

@@ -23,6 +23,11 @@ impl Overlays {
         self.0.contains(&overlay)
     }
 
+    /// Whether any overlay is visible.
+    pub fn shows_any(&self) -> bool {
+        !self.0.is_empty()
+    }
+
     /// Shows or hides an overlay.
     pub fn toggle(&mut self, overlay: Overlay) {
         if self.shows(overlay) {
@@ -36,7 +41,7 @@ impl Overlays {
 /// Width of lines, in pixels.
 const LINE_PIXELS: f32 = 3.0;
 /// Length of the arrow for a force equal to the snake's weight, in metres.
-const WEIGHT_M: f32 = 3.0;
+pub(crate) const WEIGHT_M: f32 = 3.0;
 /// Maximum length of an arrow, in metres. An impact can be a hundred times the weight.
 const LONGEST_ARROW_M: f32 = 6.0;
 /// Radius of a torque's arrow, as a fraction of the limb's larger cross-section side.

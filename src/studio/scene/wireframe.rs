@@ -15,6 +15,20 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, draw.in_set(FrameSet::Draw));
 }
 
+/// Colour of the collision shapes of the snake's blocks.
+pub(crate) fn block_color() -> Color {
+    of_engine(DebugRenderStyle::default().collider_dynamic_color)
+}
+
+/// Colour of the collision shapes of stairs and ground.
+pub(crate) fn stairs_color() -> Color {
+    of_engine(DebugRenderStyle::default().collider_fixed_color)
+}
+
+fn of_engine([hue, saturation, lightness, alpha]: [f32; 4]) -> Color {
+    Color::hsla(hue, saturation, lightness, alpha)
+}
+
 /// Draws lines with a lane's offset.
 struct CollisionLines<'a, 'w, 's> {
     gizmos: &'a mut Gizmos<'w, 's>,
@@ -23,9 +37,7 @@ struct CollisionLines<'a, 'w, 's> {
 
 impl DebugRenderBackend for CollisionLines<'_, '_, '_> {
     fn draw_line(&mut self, _: DebugRenderObject, from: Vector, to: Vector, hsla: [f32; 4]) {
-        let [hue, saturation, lightness, alpha] = hsla;
-        let color = Color::hsla(hue, saturation, lightness, alpha);
-        self.gizmos.line(from + self.offset, to + self.offset, color);
+        self.gizmos.line(from + self.offset, to + self.offset, of_engine(hsla));
     }
 }
 

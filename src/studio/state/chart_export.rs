@@ -3,18 +3,28 @@
 use std::path::PathBuf;
 
 use crate::plot;
+use crate::plot::Figure;
 use crate::save::{SavesFolder, store_csv, store_picture};
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
 
-/// Writes a chart to the exports folder under a free name. Returns the file's path.
-pub(crate) fn export(saves: &SavesFolder, export: &ChartExport) -> Result<PathBuf, String> {
-    let ChartExport { figure, name, format } = export;
+/// Writes a chart to the exports folder under a free name; the title of a picture has the name of its run, if the
+/// chart is about `run`. Returns the file's path.
+pub(crate) fn export(
+    saves: &SavesFolder,
+    export: &ChartExport,
+    run: &str,
+) -> Result<PathBuf, String> {
+    let ChartExport { figure, name, format, is_of_run } = export;
     let folder = saves.exports();
     folder.prepare().map_err(|error| error.to_string())?;
     match format {
         ChartFormat::Png => {
             let path = folder.free_name(name, "png");
-            let picture = plot::figure(figure).map_err(|error| error.to_string())?;
+            let picture = match is_of_run {
+                true => plot::figure(&titled(figure, run)),
+                false => plot::figure(figure),
+            };
+            let picture = picture.map_err(|error| error.to_string())?;
             store_picture(&path, &picture).map_err(|error| error.to_string())?;
             Ok(path)
         }
@@ -26,10 +36,14 @@ pub(crate) fn export(saves: &SavesFolder, export: &ChartExport) -> Result<PathBu
     }
 }
 
+/// A figure whose title has the name of its run: the window shows that elsewhere.
+fn titled(figure: &Figure, run: &str) -> Figure {
+    Figure { title: format!("{} ({run})", figure.title), ..figure.clone() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::Figure;
     use crate::plot::{Axis, Chart, Role, Series, Shape};
     use std::sync::Arc;
 
@@ -47,8 +61,9 @@ mod tests {
         };
         let figure = Arc::new(Figure::of("Fitness", chart));
         let write = |format| {
-            let of = ChartExport { figure: Arc::clone(&figure), name: "fitness", format };
-            export(&saves, &of).expect("written")
+            let figure = Arc::clone(&figure);
+            let of = ChartExport { figure, name: "fitness", format, is_of_run: true };
+            export(&saves, &of, "climb, seed 3").expect("written")
         };
         assert_eq!(write(ChartFormat::Csv), folder.path().join("exports/fitness-1.csv"));
         let table = write(ChartFormat::Csv);
@@ -57,5 +72,6 @@ mod tests {
         assert_eq!(text, "Generation,best (m)\n1,2\n2,3.5\n");
         let size = write(ChartFormat::Png).metadata().expect("there").len();
         assert!(size > 5_000, "{size} bytes are no picture");
+        assert_eq!(titled(&figure, "climb, seed 3").title, "Fitness (climb, seed 3)");
     }
 }

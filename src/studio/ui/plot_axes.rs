@@ -3,9 +3,10 @@
 use std::ops::RangeInclusive;
 
 use bevy_egui::egui;
-use egui_plot::{AxisHints, GridInput, Plot, PlotBounds, uniform_grid_spacer};
+use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotBounds, uniform_grid_spacer};
 
 use super::theme;
+use crate::plot::tick_step;
 
 /// Maximum number of labels along an axis.
 const MAX_LABELS: f64 = 6.0;
@@ -20,8 +21,8 @@ pub(crate) fn fixed_plot<'a>(id: &str, height: f32) -> Plot<'a> {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .allow_axis_zoom_drag(false)
-        .x_grid_spacer(uniform_grid_spacer(steps))
-        .y_grid_spacer(uniform_grid_spacer(steps))
+        .x_grid_spacer(grid(false))
+        .y_grid_spacer(grid(false))
         .custom_x_axes(vec![AxisHints::new_x().label_spacing(LABEL_POINTS)])
         .custom_y_axes(vec![
             AxisHints::new_y().label_spacing(LABEL_POINTS).min_thickness(theme::AXIS_WIDTH),
@@ -33,15 +34,15 @@ const LABEL_POINTS: RangeInclusive<f32> = 4.0..=8.0;
 
 /// Tick step for a range: 1, 2 or 5 times a power of ten.
 pub(crate) fn step(range: f64) -> f64 {
-    let least = (range / MAX_LABELS).max(1.0e-9);
-    let power = libm::pow(10.0, libm::floor(libm::log10(least)));
-    let steps = [1.0, 2.0, 5.0].map(|times| times * power);
-    steps.into_iter().find(|step| *step >= least).unwrap_or(10.0 * power)
+    tick_step(range, MAX_LABELS, false)
 }
 
-fn steps(input: GridInput) -> [f64; 3] {
-    let step = step(input.bounds.1 - input.bounds.0);
-    [step, step * 1.0e3, step * 1.0e6]
+/// Grid of an axis. That of a count has lines at whole numbers only.
+pub(crate) fn grid<'a>(is_whole: bool) -> Box<dyn Fn(GridInput) -> Vec<GridMark> + 'a> {
+    uniform_grid_spacer(move |input: GridInput| {
+        let step = tick_step(input.bounds.1 - input.bounds.0, MAX_LABELS, is_whole);
+        [step, step * 1.0e3, step * 1.0e6]
+    })
 }
 
 /// Formats a number with three significant digits.
@@ -101,13 +102,6 @@ pub(crate) fn x_title(ui: &mut egui::Ui, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn tick_steps_are_round_and_few() {
-        for (range, expected) in [(5.0, 1.0), (6.0, 1.0), (18.0, 5.0), (119.0, 20.0), (0.3, 0.05)] {
-            assert!((step(range) - expected).abs() < 1.0e-9, "{range}: {}", step(range));
-        }
-    }
 
     #[test]
     fn numbers_have_three_significant_digits() {

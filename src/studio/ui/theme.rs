@@ -113,6 +113,10 @@ pub const LANE_DOT: f32 = 10.0;
 pub const FIELD_WIDTH: f32 = 64.0;
 /// Width of a combo box, in points.
 pub const COMBO_WIDTH: f32 = 190.0;
+/// Maximum height of an open list, in points: all presets of the program and some of the user's.
+const LIST_HEIGHT: f32 = 400.0;
+/// Maximum share of the window's height that an open list takes.
+const LIST_SHARE: f32 = 0.75;
 /// Minimum width that panel layouts support, in points.
 #[cfg(test)]
 pub const PANEL_WIDTH: f32 = 320.0;
@@ -177,6 +181,11 @@ pub const COLUMN_WIDTHS: [f32; 4] = [84.0, 84.0, 150.0, 136.0];
 pub const LIST_HEIGHTS: [f32; 2] = [360.0, 140.0];
 /// Height of the list of a run's champions, in points.
 pub const CHAMPIONS_HEIGHT: f32 = 130.0;
+
+/// Maximum height of an open list, in points.
+pub fn list_height(ui: &egui::Ui) -> f32 {
+    LIST_HEIGHT.min(ui.ctx().content_rect().height() * LIST_SHARE)
+}
 
 /// Converts a colour of the scene for egui.
 pub fn flat(color: Color) -> Color32 {

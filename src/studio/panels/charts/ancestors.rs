@@ -57,7 +57,7 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
     let aside = f64::from(last - 1) * 0.04;
     let chart = Chart {
         name: String::new(),
-        x: Axis::new("Generation", "", 1.0 - aside..=f64::from(last) + aside),
+        x: Axis::count("Generation", 1.0 - aside..=f64::from(last) + aside),
         y: Axis::new(
             axis_title(settings.trial.fitness),
             unit.trim(),

@@ -13,7 +13,7 @@ use super::view::{ChartHit, ChartView, HitShape};
 use crate::plot::{Chart, Role, Series, Shape, beside_line};
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
-use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
+use crate::studio::ui::plot_axes::{bounds, fixed_plot, grid, x_title, y_title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 
@@ -95,6 +95,8 @@ impl ChartPart<'_> {
         // This module draws the hover text itself.
         let plot =
             fixed_plot(&self.id, left).label_formatter(|_| None).show_axes([!has_names, true]);
+        let plot = plot.x_grid_spacer(grid(chart.x.is_whole));
+        let plot = plot.y_grid_spacer(grid(chart.y.is_whole));
         let plot = plot.show(ui, |plot| {
             plot.set_plot_bounds(bounds(&chart.x.range, &chart.y.range));
             for (place, _) in &chart.x.names {
@@ -217,7 +219,7 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
         Shape::Band(_) => {
             let DrawnSeries::Band([along, low, high]) = drawn else { return };
             let band = FilledArea::new(&series.name, along, low, high);
-            plot.add(band.fill_color(color.gamma_multiply(0.2)).allow_hover(false));
+            plot.add(band.fill_color(palette.band(color)).allow_hover(false));
         }
         Shape::Bars { width, bars } => {
             let bar = |&[x, height]: &[f64; 2]| Bar::new(x, height).width(width * 0.94).fill(color);

@@ -45,7 +45,7 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
     let marks = frame.marks.iter();
     let chart = Chart {
         name: String::new(),
-        x: Axis::new("Generation", "", frame.x),
+        x: Axis::count("Generation", frame.x),
         y: Axis::new(axis_title(settings.trial.fitness), unit.trim(), frame.y),
         series,
         marks: marks.map(|(name, y)| Mark { name: (*name).to_owned(), y: *y }).collect(),

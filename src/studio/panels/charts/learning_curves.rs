@@ -12,7 +12,7 @@ use crate::run::Quartiles;
 use crate::run::compare::ComparisonRow;
 use crate::save::{CURVE_POINTS, Comparison};
 use crate::studio::ui::plot_axes::{
-    axis_name, bounds, fixed_plot, number, padded_range, x_title, y_title,
+    axis_name, bounds, fixed_plot, grid, number, padded_range, x_title, y_title,
 };
 use crate::studio::ui::theme;
 
@@ -118,7 +118,7 @@ impl CurvesPanel {
         let ends = ends.flat_map(|(_, quartiles)| [quartiles.low, quartiles.high]);
         let chart = Chart {
             name: String::new(),
-            x: Axis::new("Evaluations", "", 0.0..=self.evaluations),
+            x: Axis::count("Evaluations", 0.0..=self.evaluations),
             y: Axis::new(
                 "Best fitness so far",
                 self.unit.trim(),
@@ -174,7 +174,8 @@ impl CurvesPanel {
             HoverPosition::Elsewhere { .. } => None,
         };
         let palette = theme::of(ui);
-        fixed_plot("curves", height).label_formatter(label).show(ui, |plot| {
+        let plot = fixed_plot("curves", height).x_grid_spacer(grid(true));
+        plot.label_formatter(label).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&(0.0..=self.evaluations), &y_range));
             for method in self.shown_methods().filter(|of| !of.curve.is_empty()) {
                 let color = palette.strategy(method.strategy);
@@ -188,7 +189,7 @@ impl CurvesPanel {
                     &along(|quartiles| quartiles.low),
                     &along(|quartiles| quartiles.high),
                 );
-                plot.add(band.fill_color(color.gamma_multiply(0.2)).allow_hover(false));
+                plot.add(band.fill_color(palette.band(color)).allow_hover(false));
             }
             // Lines are drawn over all bands.
             for method in self.shown_methods() {

@@ -73,7 +73,7 @@ fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
             painter.circle_filled(rect.center(), 3.0, color);
         }
         Shape::Band(_) => {
-            painter.rect_filled(rect.shrink(1.0), 0.0, color.gamma_multiply(0.3));
+            painter.rect_filled(rect.shrink(1.0), 0.0, theme::of(ui).band(color));
         }
         Shape::Bars { .. } => {
             painter.rect_filled(rect.shrink(1.0), 0.0, color);

@@ -25,6 +25,7 @@ use crate::plot::Figure;
 use crate::save::Comparison;
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
 use crate::studio::commands::{Command, RunCommand};
+use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
@@ -71,7 +72,7 @@ impl ChartKind {
             Self::Ancestors => ("Ancestors", "Ancestors of the best snake"),
             Self::Torques => (
                 "Torques",
-                "Joint torques of the snake on the stage (or of the best one) and of its parent",
+                "Joint torques of the snake on the stage and of its parent; of several, of the selected one",
             ),
             Self::Parents => ("Parents", "Gene values of the parents of the next generation"),
             Self::Front => ("Front", "Best trade-offs between distance and energy"),
@@ -148,12 +149,13 @@ impl ChartsPanel {
         }
     }
 
-    /// Draws the panel and collects the user's commands.
+    /// Draws the panel and collects the user's commands. `selected` is the selected snake of the stage.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
         run: &CurrentRun,
         shown: &[ShownLane],
+        selected: Option<&StagedChampion>,
         commands: &mut Vec<Command>,
     ) {
         ui.horizontal_wrapped(|ui| {
@@ -172,7 +174,7 @@ impl ChartsPanel {
                 self.search_chart(ui, run, height, shown, commands)
             }
             ChartKind::Methods => self.methods(ui, height, commands),
-            ChartKind::Torques => self.torques(ui, run, height, shown, commands),
+            ChartKind::Torques => self.torques(ui, run, height, selected, commands),
             kind => self.run_chart(ui, run, kind, height, shown, commands),
         }
     }
@@ -208,19 +210,12 @@ impl ChartsPanel {
         ui: &mut egui::Ui,
         run: &CurrentRun,
         height: f32,
-        shown: &[ShownLane],
+        selected: Option<&StagedChampion>,
         commands: &mut Vec<Command>,
     ) {
-        let view = match self
-            .torques
-            .update(run, shown.first().and_then(|shown| shown.champion.place()))
-        {
-            Ok(()) => {
-                self.torques.view(&run.settings().trial).ok_or(ChartKind::Torques.empty_text())
-            }
-            Err(missing) => Err(missing),
-        };
-        // No individual is highlighted, because the chart shows only the one on the stage.
+        let view = self.torques.update(run, selected);
+        let view = view.and_then(|()| self.torques.view().ok_or(ChartKind::Torques.empty_text()));
+        // No individual is highlighted, because the chart shows only the selected one.
         view_or_reason(ui, ChartKind::Torques, view, height, &[], commands);
     }
 
@@ -247,11 +242,14 @@ impl ChartsPanel {
             self.figure = figure.map(|figure| (kind, version, Arc::new(figure)));
         }
         match &self.figure {
-            Some((.., figure)) => header(ui, figure, kind.file_name(), commands),
+            Some((.., figure)) => header(ui, figure, (kind.file_name(), true), commands),
             None => title(ui, kind.labels().0),
         }
         match (kind, front, archive) {
-            (ChartKind::Front, Some(front), _) => front_plot(ui, front, shown, height, commands),
+            (ChartKind::Front, Some(front), _) => {
+                let trial = &run.settings().trial;
+                front_plot(ui, front, trial, shown, height, commands);
+            }
             (ChartKind::Front, None, _) if exploration.is_some() => {
                 explain(ui, "No snake has ended ahead of its starting position yet.");
             }
@@ -271,7 +269,7 @@ impl ChartsPanel {
     fn methods(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
         match &mut self.curves {
             Some(curves) => {
-                header(ui, &curves.figure(), ChartKind::Methods.file_name(), commands);
+                header(ui, &curves.figure(), (ChartKind::Methods.file_name(), false), commands);
                 curves.ui(ui, height);
             }
             None => {
@@ -293,7 +291,7 @@ fn view_or_reason(
 ) {
     match view {
         Ok(view) => {
-            header(ui, &view.figure, kind.file_name(), commands);
+            header(ui, &view.figure, (kind.file_name(), view.is_of_run), commands);
             draw::draw(ui, kind.file_name(), view, height, shown, commands);
         }
         Err(why) => {
@@ -324,7 +322,7 @@ impl FitnessChart {
             self.known = Some((version, fitness::view(run.settings(), run.reports())));
         }
         let Some((_, view)) = &self.known else { return };
-        header(ui, &view.figure, ChartKind::Fitness.file_name(), commands);
+        header(ui, &view.figure, (ChartKind::Fitness.file_name(), true), commands);
         draw::draw(ui, "fitness alone", view, height, shown, commands);
     }
 }
@@ -343,11 +341,11 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     }
 }
 
-/// Draws the title of a chart, and its export buttons.
+/// Draws the title of a chart, and its export buttons; the name is that of an exported file.
 fn header(
     ui: &mut egui::Ui,
     figure: &Arc<Figure>,
-    name: &'static str,
+    (name, is_of_run): (&'static str, bool),
     commands: &mut Vec<Command>,
 ) {
     let is_empty = figure.is_empty();
@@ -364,6 +362,7 @@ fn header(
                     figure,
                     name,
                     format,
+                    is_of_run,
                 })));
             }
         }

@@ -14,7 +14,7 @@ use crate::studio::ui::plot_axes::number;
 
 /// Maximum number of lines that can be distinguished.
 const MAX_PARENTS: usize = 40;
-/// The brightest colours of the ramp are too light for lines on a light panel.
+/// The brightest colours of the ramp, after green, are too light for lines on a light panel.
 const MAX_BRIGHTNESS: f32 = 0.85;
 
 /// Chart of the parents with their numbers of children. None if no genes are known.
@@ -85,12 +85,14 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         0 => String::new(),
         _ => format!(" The best {MAX_PARENTS} of {} are shown.", surplus + known.len()),
     };
+    let about = "Each line is a parent of the next generation and joins the values of its genes. 0 and 1 are the \
+                 ends of a gene's range.";
     let note = if min < max {
         format!(
-            "Each line is a parent. Brighter lines are fitter: {min:.2} to {max:.2}{unit}.{left_out}"
+            "{about} Violet is the least fit ({min:.2}{unit}), green the fittest ({max:.2}{unit}).{left_out}"
         )
     } else {
-        format!("Each line is a parent.{left_out}")
+        format!("{about}{left_out}")
     };
     // Exported files contain the values instead of their relative positions.
     let numbers = Some(columns(&chart, &values));

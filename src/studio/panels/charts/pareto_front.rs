@@ -7,6 +7,7 @@ use egui_plot::{HoverPosition, Line, PlotPoint, PlotPoints, Points};
 
 use super::legend::click_hint;
 use crate::evolve::{Front, FrontMember};
+use crate::score::Trial;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
@@ -17,6 +18,7 @@ use crate::studio::ui::theme;
 pub(crate) fn front_plot(
     ui: &mut egui::Ui,
     front: &Front,
+    trial: &Trial,
     shown: &[ShownLane],
     height: f32,
     commands: &mut Vec<Command>,
@@ -31,7 +33,9 @@ pub(crate) fn front_plot(
         Some((*shown, members.iter().position(is_it)?))
     });
     let label = |position: &HoverPosition<'_>| match position {
-        HoverPosition::NearDataPoint { index, .. } => members.get(*index).map(|of| hover_text(of)),
+        HoverPosition::NearDataPoint { index, .. } => {
+            members.get(*index).map(|of| hover_text(of, trial))
+        }
         HoverPosition::Elsewhere { .. } => None,
     };
     let palette = theme::of(ui);
@@ -87,10 +91,11 @@ fn ranges(points: &[[f64; 2]]) -> Option<(RangeInclusive<f64>, RangeInclusive<f6
 }
 
 /// Hover text of a member.
-fn hover_text(member: &FrontMember) -> String {
+fn hover_text(member: &FrontMember, trial: &Trial) -> String {
     let [y_m, energy_kj] = place(member);
     format!(
-        "Distance {y_m:.2} m, energy {} kJ\nGeneration {}, snake {}\nClick to replay",
+        "Distance {y_m:.2} m: {}\nEnergy {} kJ\nGeneration {}, snake {}\nClick to replay",
+        trial.result_in_words(&member.evaluation),
         number(energy_kj),
         member.generation,
         member.individual + 1
@@ -108,7 +113,9 @@ mod tests {
     fn sent(front: &Front, at: [f64; 2], off: egui::Vec2) -> Vec<Command> {
         let size = egui::vec2(theme::PANEL_WIDTH, 400.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| front_plot(ui, front, &[], theme::PLOT_HEIGHT, commands),
+            |ui, commands| {
+                front_plot(ui, front, &Trial::default(), &[], theme::PLOT_HEIGHT, commands)
+            },
             Vec::new(),
         );
         harness.run();
@@ -142,5 +149,17 @@ mod tests {
         );
         // Far below the point there is no member.
         assert_eq!(sent(front, place(best), egui::vec2(0.0, 60.0)), []);
+    }
+
+    #[test]
+    fn a_snake_beyond_the_landing_is_not_said_to_stand_on_it() {
+        let run = explored_run();
+        let front = &run.exploration().expect("explored").front;
+        let mut member = front.members().next().expect("a member").clone();
+        member.evaluation.centre_y_m = 68.0;
+        let behaviour = member.evaluation.behaviour.as_mut().expect("measured");
+        behaviour.steps_climbed = 0;
+        let text = hover_text(&member, &Trial::default());
+        assert!(text.starts_with("Distance 68.00 m: lies behind the stairs\n"), "{text}");
     }
 }

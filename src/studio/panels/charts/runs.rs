@@ -79,7 +79,7 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
     let hits = hits.collect();
     let chart = Chart {
         name: String::new(),
-        x: Axis::new("Generation", "", 1.0 - aside..=last + aside),
+        x: Axis::count("Generation", 1.0 - aside..=last + aside),
         y: Axis::new(axis_title(fitness), unit.trim(), y),
         series: series.collect(),
         marks: Vec::new(),
@@ -134,7 +134,9 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             let is_on = is_shown || others.compared().len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
             let hint = format!("Add this run to the chart: {}", other.folder.display());
-            if response.on_hover_text(hint).clicked() {
+            let refusal = format!("{MOST_COMPARED} runs are selected; deselect one of them first");
+            let response = response.on_hover_text(hint).on_disabled_hover_text(refusal);
+            if response.clicked() {
                 commands.push(Command::Run(RunCommand::Compare(other.folder.clone())));
             }
         }

@@ -45,7 +45,7 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
             unit.trim(),
             padded_range(ends, 1.0).unwrap_or(0.0..=1.0),
         ),
-        y: Axis::new("Snakes", "", 0.0..=top),
+        y: Axis::count("Snakes", 0.0..=top),
         series: vec![Series::new("snakes", Role::First, bars)],
         marks: Vec::new(),
     };

@@ -19,9 +19,12 @@ fn with<T>(
     act: impl FnOnce(&mut Harness<'_, Vec<Command>>) -> T,
 ) -> (T, Vec<Command>) {
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
-    let mut harness = Harness::builder()
-        .with_size(egui::vec2(width, 700.0))
-        .build_ui_state(|ui, commands| panel.ui(ui, run, &[], commands), Vec::new());
+    let best = run.reports().last().and_then(|report| report.champion.as_ref());
+    let selected = best.map(|best| StagedChampion::from_run(best, run.number()));
+    let mut harness = Harness::builder().with_size(egui::vec2(width, 700.0)).build_ui_state(
+        |ui, commands| panel.ui(ui, run, &[], selected.as_ref(), commands),
+        Vec::new(),
+    );
     harness.run();
     // Opening a chart may request the list of runs.
     harness.state_mut().clear();
@@ -85,7 +88,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
                 harness.get_by_label("CSV").click();
                 harness.run();
             });
-            let [Command::Run(RunCommand::ExportChart(ChartExport { figure, name, format }))] =
+            let [Command::Run(RunCommand::ExportChart(ChartExport { figure, name, format, .. }))] =
                 &sent[..]
             else {
                 panic!("{kind:?}: {sent:?}")
@@ -146,30 +149,6 @@ fn another_run_is_drawn_and_a_damaged_one_is_reported() {
     with(&run, ChartKind::Runs, 400.0, |harness| {
         assert!(harness.query_by_label_contains("log.jsonl: damaged").is_some());
     });
-}
-
-#[test]
-fn the_torques_are_those_of_the_snake_on_the_stage_and_its_parent() {
-    let run = explored_run();
-    let latest = run.exploration().expect("explored").generation.clone().expect("this session's");
-    let child = (0..).zip(&latest.parents).find(|(_, parents)| parents.ids().next().is_some());
-    let (individual, parents) = child.expect("a snake with parents");
-    let place = IndividualId { generation: latest.number, individual };
-    let mut torques = TorqueComparison::default();
-    torques.update(&run, Some(place)).expect("known");
-    let trial = &run.settings().trial;
-    let note = loop {
-        if let Some(view) = torques.view(trial) {
-            break view.figure.note.clone();
-        }
-    };
-    let parent = parents.ids().next().expect("a parent");
-    let name =
-        |of: IndividualId| format!("snake {} of generation {}", of.individual + 1, of.generation);
-    assert!(note.starts_with(&format!("Solid lines: {}.", name(place))), "{note}");
-    assert!(run.genome_of(parent).is_none() || note.contains(&name(parent)), "{note}");
-    torques.update(&run, None).expect("the best");
-    assert!(torques.view(trial).is_none_or(|view| view.figure.note != note));
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Torques of the snake on the stage (or of the best one) and of its parent, for every joint, as in Figure 4 of the
-//! original report.
+//! Torques of the selected snake on the stage and of its parent, for every joint, as in Figure 4 of the original
+//! report.
 
 use std::sync::Arc;
 
@@ -8,7 +8,8 @@ use crate::evolve::IndividualId;
 use crate::genome::{Genome, JointCommands};
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::Lookahead;
-use crate::score::{KeyframeHistory, Trial};
+use crate::score::{KeyframeHistory, Rollout, Trial};
+use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::plot_axes::padded_range;
 
@@ -24,11 +25,13 @@ struct TorqueLines {
 
 /// Snake whose torques are shown or being computed.
 struct Subject {
-    place: IndividualId,
+    name: String,
     genome: Arc<Genome>,
+    trial: Trial,
     /// None if the genes are the torques.
     lookahead: Option<Lookahead>,
     lines: Option<Vec<TorqueLines>>,
+    is_of_run: bool,
 }
 
 /// A child and its parent, with their torques.
@@ -37,102 +40,142 @@ pub(super) struct TorqueComparison {
     child: Option<Subject>,
     parent: Option<Subject>,
     view: Option<ChartView>,
-    /// Version of the run and individual on the stage at the last update.
-    updated_for: Option<(Version, Option<IndividualId>)>,
+    /// Version of the run and selected snake at the last update.
+    updated_for: Option<(Version, Option<StagedChampion>)>,
 }
 
 impl TorqueComparison {
-    /// Selects the snake on the stage (or the best one) and its parent. An error says what is missing.
+    /// Takes the selected snake of the stage and its parent. An error says what is missing.
     pub fn update(
         &mut self,
         run: &CurrentRun,
-        shown: Option<IndividualId>,
+        selected: Option<&StagedChampion>,
     ) -> Result<(), &'static str> {
         // The search runs once per change instead of in every frame.
-        let version = Some((run.version(), shown));
-        if self.updated_for != version {
-            self.updated_for = version;
-            let best = run.exploration().and_then(|exploration| exploration.ancestry.line.first());
-            let of_run = |place: IndividualId| Some((place, run.genome_of(place)?));
-            let child = shown.filter(|shown| run.parents_of(*shown).is_some()).and_then(of_run);
-            let child = child.or_else(|| of_run(best?.place));
-            let parent = child.as_ref().and_then(|(place, genome)| parent(run, *place, genome));
-            let trial = &run.settings().trial;
-            let is_new = replace_subject(&mut self.child, child, trial)
-                | replace_subject(&mut self.parent, parent, trial);
-            if is_new {
-                self.view = None;
+        let version = run.version();
+        let (of_version, of_selected) = match &self.updated_for {
+            Some((known, staged)) => (*known == version, staged.as_ref() == selected),
+            None => (false, false),
+        };
+        if !of_selected {
+            let simulated = selected.filter(|staged| staged.recording().is_none());
+            self.child = simulated.map(|staged| Subject::staged(staged, run.number()));
+            self.parent = None;
+            self.view = None;
+        }
+        if !(of_version && of_selected) {
+            self.updated_for = Some((version, selected.cloned()));
+            self.update_parent(run, selected.filter(|_| self.child.is_some()));
+        }
+        match (&self.child, selected) {
+            (Some(_), _) => Ok(()),
+            (None, Some(_)) => Err("A recording contains poses, but no torques."),
+            (None, None) => {
+                Err("The torques of the snake on the stage and of its parent will appear here.")
             }
         }
-        match &self.child {
-            Some(_) => Ok(()),
-            None => Err("The torques of the best snake and of its parent will appear here."),
+    }
+
+    /// Replaces the parent if it is another one, or is not kept any more.
+    fn update_parent(&mut self, run: &CurrentRun, child: Option<&StagedChampion>) {
+        let found = child.and_then(|child| Some((child, parent(run, child)?)));
+        let is_it = |known: &Subject, (name, genome): &(String, Arc<Genome>)| {
+            known.name == *name && known.genome == *genome
+        };
+        let is_same = match (&self.parent, &found) {
+            (None, None) => true,
+            (Some(known), Some((_, parent))) => is_it(known, parent),
+            _ => false,
+        };
+        if !is_same {
+            self.view = None;
+            self.parent = found.map(|(child, (name, genome))| {
+                let trial = &child.champion().trial;
+                Subject::new(name, genome, trial, |genome| Rollout::new(genome, trial))
+            });
         }
     }
 
     /// Charts, once the torques are known.
-    pub fn view(&mut self, trial: &Trial) -> Option<&ChartView> {
+    pub fn view(&mut self) -> Option<&ChartView> {
         if self.view.is_none() {
             let subjects = [self.child.as_mut(), self.parent.as_mut()];
-            let are_ready =
-                subjects.into_iter().flatten().all(|subject| subject.has_torques(trial));
-            if are_ready {
-                self.view =
-                    self.child.as_ref().map(|child| figure(child, self.parent.as_ref(), trial));
+            if subjects.into_iter().flatten().all(Subject::has_torques) {
+                self.view = self.child.as_ref().map(|child| figure(child, self.parent.as_ref()));
             }
         }
         self.view.as_ref()
     }
 }
 
-/// Nearest ancestor with other genes. An elite that survives unchanged is recorded as its own parent.
-fn parent(
-    run: &CurrentRun,
-    of: IndividualId,
-    genome: &Genome,
-) -> Option<(IndividualId, Arc<Genome>)> {
-    let mut place = of;
+/// Place of a snake of the current run.
+fn place_in(run: &CurrentRun, staged: &StagedChampion) -> Option<IndividualId> {
+    let origin = &staged.champion().origin;
+    let place = IndividualId { generation: origin.generation, individual: origin.individual };
+    (staged.source() == ChampionSource::Run(run.number())).then_some(place)
+}
+
+/// Name and genome of the nearest ancestor with other genes. An elite that survives unchanged is recorded as its own
+/// parent.
+fn parent(run: &CurrentRun, of: &StagedChampion) -> Option<(String, Arc<Genome>)> {
+    let mut place = place_in(run, of)?;
     loop {
         // Parents belong to earlier generations, so the loop ends.
         place = run.parents_of(place)?.ids().next()?;
-        let parent = run.genome_of(place)?;
-        // Unchanged genomes often share memory, which is quick to compare.
-        if !std::ptr::eq(&*parent, genome) && *parent != *genome {
-            return Some((place, parent));
+        let genome = run.genome_of(place)?;
+        if *genome != of.champion().genome {
+            let own_world = if of.is_changed() { ", in its own world" } else { "" };
+            let name = name_of(place.generation, place.individual);
+            return Some((format!("{name}{own_world}"), genome));
         }
     }
 }
 
-/// Replaces a subject if it differs. Returns whether it did.
-fn replace_subject(
-    subject: &mut Option<Subject>,
-    replacement: Option<(IndividualId, Arc<Genome>)>,
-    trial: &Trial,
-) -> bool {
-    let place = |subject: &Option<Subject>| subject.as_ref().map(|subject| subject.place);
-    let is_same = place(subject) == replacement.as_ref().map(|(place, _)| *place)
-        && subject.as_ref().map(|of| &of.genome) == replacement.as_ref().map(|(_, genome)| genome);
-    if is_same {
-        return false;
-    }
-    *subject = replacement.map(|(place, genome)| {
-        let duration_s = f64::from(trial.duration_s);
-        let commands = genome.controller.commands(duration_s).filter(|commands| commands.is_held);
-        let lines = commands.map(|commands| command_torques(&commands, duration_s));
-        let lookahead = lines.is_none().then(|| Lookahead::begin(&genome, trial));
-        Subject { place, genome, lookahead, lines }
-    });
-    true
+/// Name of a snake of a run.
+fn name_of(generation: u32, individual: u32) -> String {
+    format!("snake {} of generation {generation}", individual + 1)
 }
 
 impl Subject {
+    /// A snake on the stage, in the world in which it is shown; `run` is the number of the current run.
+    fn staged(staged: &StagedChampion, run: u32) -> Self {
+        let origin = &staged.champion().origin;
+        let name = match staged.source() {
+            ChampionSource::Run(_) => name_of(origin.generation, origin.individual),
+            _ => staged.name().to_owned(),
+        };
+        let beginning = staged.beginning_in_words().map_or(String::new(), |of| format!(", {of}"));
+        let name = match staged.is_changed() {
+            true => format!("{name} with {}{beginning}", staged.label()),
+            false => name,
+        };
+        let genome = Arc::new(staged.champion().genome.clone());
+        let is_of_run = matches!(staged.source(), ChampionSource::Run(of) if of == run);
+        Self { is_of_run, ..Self::new(name, genome, staged.trial(), |_| staged.rollout()) }
+    }
+
+    /// A snake whose torques are its genes or those of a rollout.
+    fn new(
+        name: String,
+        genome: Arc<Genome>,
+        trial: &Trial,
+        rollout: impl FnOnce(&Genome) -> Rollout,
+    ) -> Self {
+        let duration_s = f64::from(trial.duration_s);
+        let commands = genome.controller.commands(duration_s).filter(|commands| commands.is_held);
+        let lines = commands.map(|commands| command_torques(&commands, duration_s));
+        let lookahead = lines.is_none().then(|| Lookahead::of(rollout(&genome)));
+        Self { name, genome, trial: trial.clone(), lookahead, lines, is_of_run: true }
+    }
+
     /// Whether the torques are known.
-    fn has_torques(&mut self, trial: &Trial) -> bool {
+    fn has_torques(&mut self) -> bool {
         if let Some(lookahead) = &mut self.lookahead {
             lookahead.poll();
             if lookahead.steps_done().is_some() {
                 return false;
             }
+            let trial = &self.trial;
             self.lines = lookahead.history().map(|history| history_torques(history, trial));
             // A lookahead holds whole simulations.
             self.lookahead = None;
@@ -174,7 +217,8 @@ fn history_torques(history: &KeyframeHistory, trial: &Trial) -> Vec<TorqueLines>
 }
 
 /// Figure with one chart per joint: solid lines for the child, dashed lines for the parent.
-fn figure(child: &Subject, parent: Option<&Subject>, trial: &Trial) -> ChartView {
+fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
+    let trial = &child.trial;
     let lines = |subject: &Subject| subject.lines.clone().unwrap_or_default();
     let (of_child, of_parent) = (lines(child), parent.map(lines).unwrap_or_default());
     let all = of_child.iter().chain(&of_parent).flat_map(|of| of.bend.iter().chain(&of.twist));
@@ -204,23 +248,17 @@ fn figure(child: &Subject, parent: Option<&Subject>, trial: &Trial) -> ChartView
         }
     };
     let charts: Vec<Chart> = of_child.iter().enumerate().map(chart).collect();
-    let name = |place: IndividualId| {
-        format!("snake {} of generation {}", place.individual + 1, place.generation)
-    };
     let note = match parent {
         Some(parent) => {
-            format!(
-                "Solid lines: {}. Dashed lines: its parent, {}.",
-                name(child.place),
-                name(parent.place)
-            )
+            format!("Solid lines: {}. Dashed lines: its parent, {}.", child.name, parent.name)
         }
-        None => format!("Solid lines: {}. Its parent is unknown.", name(child.place)),
+        None => format!("Solid lines: {}. Its parent is unknown.", child.name),
     };
-    let figure = Figure::of_several("Torques, child and parent", charts);
+    let figure = Figure::of_several(&format!("Torques: {}", child.name), charts);
     let hits = of_child.iter().enumerate().map(|(index, lines)| hits(lines, of_parent.get(index)));
     let hits = hits.collect();
-    ChartView::new(Figure { note, ..figure }, hits)
+    let view = ChartView::new(Figure { note, ..figure }, hits);
+    ChartView { is_of_run: child.is_of_run, ..view }
 }
 
 /// Hover texts of a joint's torques over time.
@@ -244,64 +282,4 @@ fn hits(child: &TorqueLines, parent: Option<&TorqueLines>) -> Vec<ChartHit> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::genome::{ControllerGenes, ControllerKind};
-    use crate::rng::{Purpose, stream};
-
-    fn subject(kind: ControllerKind, individual: u32, trial: &Trial) -> Option<Subject> {
-        let space = crate::genome::GenomeSpace { controller: kind, ..Default::default() };
-        let mut rng = stream(1, 1, individual, Purpose::Birth);
-        let genome = space.random_genome(trial.genome_shape(), &mut rng);
-        let place = IndividualId { generation: 1, individual };
-        let mut subject = None;
-        assert!(replace_subject(&mut subject, Some((place, Arc::new(genome.clone()))), trial));
-        assert!(
-            !replace_subject(&mut subject, Some((place, Arc::new(genome))), trial),
-            "it is the same"
-        );
-        subject
-    }
-
-    #[test]
-    fn signal_torques_hold_until_the_next_point() {
-        let trial = Trial { duration_s: 1.0, ..Trial::default() };
-        let child = subject(ControllerKind::Signal, 0, &trial).expect("there");
-        let parent = subject(ControllerKind::Signal, 1, &trial).expect("there");
-        let ControllerGenes::Signal(signals) = &child.genome.controller else { panic!("a signal") };
-        let view = figure(&child, Some(&parent), &trial);
-        assert_eq!(view.figure.charts.len(), 4, "one for each joint");
-        let chart = &view.figure.charts[2];
-        let names: Vec<&str> = chart.series.iter().map(|series| series.name.as_str()).collect();
-        assert_eq!(names, ["parent's bend", "parent's twist", "bend", "twist"]);
-        let Shape::Line(bend) = &chart.series[2].shape else { panic!("a line") };
-        let torques = &signals.joints[2].bend_nm;
-        assert_eq!(bend.len(), torques.len() * 2);
-        assert_eq!((bend[2][1], bend[3][1]), (f64::from(torques[1]), f64::from(torques[1])));
-        assert_eq!(bend[1][0], bend[2][0], "it jumps");
-        let hit = &view.hits[2][2];
-        let words = hit.words();
-        assert!(words.contains(&format!("bend {:.0} N·m, twist", bend[2][1])), "{words}");
-        assert!(words.contains("parent's bend"), "{words}");
-    }
-
-    #[test]
-    fn wave_torques_come_from_the_rollout() {
-        let trial = Trial { duration_s: 1.0, ..Trial::default() };
-        let mut torques = TorqueComparison {
-            child: subject(ControllerKind::Wave, 0, &trial),
-            ..TorqueComparison::default()
-        };
-        if let Some(lookahead) = torques.child.as_mut().and_then(|child| child.lookahead.as_mut()) {
-            lookahead.wait();
-        }
-        let view = torques.view(&trial).expect("worked out");
-        let chart = &view.figure.charts[0];
-        let names: Vec<&str> = chart.series.iter().map(|series| series.name.as_str()).collect();
-        assert_eq!(names, ["bend", "twist"], "without a parent, no dashes");
-        let Shape::Line(bend) = &chart.series[0].shape else { panic!("a line") };
-        assert_eq!(bend.len(), trial.steps() as usize);
-        assert!(bend.iter().any(|point| point[1].abs() > 1.0));
-        assert!(view.figure.note.contains("Its parent is unknown"), "{}", view.figure.note);
-    }
-}
+mod tests;

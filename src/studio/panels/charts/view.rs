@@ -17,13 +17,15 @@ pub(super) struct ChartView {
     pub drawn: Vec<Vec<DrawnSeries>>,
     /// Hit targets of each chart.
     pub hits: Vec<Vec<ChartHit>>,
+    /// Whether it is about the current run.
+    pub is_of_run: bool,
 }
 
 impl ChartView {
-    /// View of one or several charts.
+    /// View of one or several charts of the current run.
     pub fn new(figure: Figure, hits: Vec<Vec<ChartHit>>) -> Self {
         let drawn = figure.charts.iter().map(drawn).collect();
-        Self { figure: Arc::new(figure), drawn, hits }
+        Self { figure: Arc::new(figure), drawn, hits, is_of_run: true }
     }
 }
 

@@ -113,7 +113,7 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
             hint: "Move it to the .deleted folder inside the saves folder; Ctrl Z restores it (Del)",
             refusal: has_shipped.then_some("Built-in champions cannot be deleted").or_else(|| {
                 let goes_on = places.iter().any(|place| library.is_current(place));
-                goes_on.then_some("This is the current run; start another one first")
+                goes_on.then_some("This run is open in this window; start another one first")
             }),
             act: library_command(LibraryCommand::Delete(places)),
         },
@@ -124,7 +124,7 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
 fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryAction; 2] {
     let is_over = item.run().is_none_or(|run| run.ended.is_some());
     let refusal = if library.is_current(item.place()) {
-        Some("This is the current run")
+        Some("This run is open in this window")
     } else if item.problem().is_some() {
         DAMAGED
     } else {

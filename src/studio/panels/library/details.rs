@@ -46,8 +46,8 @@ fn button(ui: &mut egui::Ui, action: &LibraryAction, is_small: bool) -> bool {
     response.on_disabled_hover_text(action.refusal.unwrap_or_default()).clicked()
 }
 
-/// Draws the details of one save.
-pub fn details(ui: &mut egui::Ui, item: &LibraryItem) {
+/// Draws the details of one save; `is_open` says that it is the run that this window has open.
+pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     picture(ui, item);
     ui.add(egui::Label::new(egui::RichText::new(item.name()).strong()).truncate());
     let folder = item.place().name();
@@ -93,6 +93,7 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem) {
             method.unwrap_or_default()
         ));
         lines.push(match &run.ended {
+            _ if is_open => "Open in this window: the Run panel controls it".to_owned(),
             Some(why) => format!("Cannot be resumed: {why}"),
             None => "Can be resumed".to_owned(),
         });

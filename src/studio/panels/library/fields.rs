@@ -200,6 +200,7 @@ impl LibraryPanel {
             });
             let has_text = !prompt.trimmed().is_empty();
             let ok = ui.add_enabled(has_text, egui::Button::new("OK").small());
+            let ok = ok.on_disabled_hover_text("Type a path first");
             let is_accepted = end == Some(PromptEnd::Accepted) || ok.clicked();
             if is_accepted && has_text {
                 let paths = vec![PathBuf::from(prompt.trimmed())];

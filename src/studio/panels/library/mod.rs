@@ -356,7 +356,7 @@ impl LibraryPanel {
         let only = only.and_then(|place| library.item(place));
         self.keep_notes_of_others(only, commands);
         if let Some(item) = only {
-            details::details(ui, item);
+            details::details(ui, item, library.is_current(item.place()));
             self.notes(ui, item, commands);
             let is_listed = item.place().run() == self.listed_run.as_deref();
             if let Some(run) = item.run().filter(|_| is_listed) {

@@ -71,6 +71,7 @@ impl EvolutionPanel {
             "Finish one generation, then pause (G)"
         };
         let first_hint = match (is_finished, run.next_run_differs()) {
+            _ if !can_start => "Correct the invalid value below first",
             (true, false) => "Start a run with the next seed (E)",
             (true, true) => "Start a run with the changed settings (E)",
             (false, _) => "Start or pause evolution in the background (E)",

@@ -20,13 +20,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let (text, share) = match run.status() {
         // The evaluation budget is fixed, so larger generations reduce their number.
         RunStatus::Finished if finished < generations as usize => {
-            let tried: u64 = run.reports().iter().map(|of| u64::from(of.evaluations)).sum();
-            let text = format!(
-                "Finished: {} snakes in {finished} generations. Some generations were larger than \
-                 planned, so there were fewer than {generations}.",
-                with_thousands(tried)
-            );
-            (text, 1.0)
+            (finished_early(finished, generations, run.budget()), 1.0)
         }
         RunStatus::Finished => (format!("Finished after generation {finished}"), 1.0),
         status => {
@@ -86,6 +80,14 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
         let hint = "In the latest finished generation. The limits are in the World panel";
         ui.add(egui::Label::new(weak(disqualified)).wrap()).on_hover_text(hint);
     }
+}
+
+/// Text for a run whose larger generations, such as the first of CMA-ES, used up its evaluations early.
+fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
+    format!(
+        "Finished after {finished} of {planned} generations: larger ones used up the run's {} snakes",
+        with_thousands(budget)
+    )
 }
 
 /// Number of random snakes before the first generation of the population's size, as long as it is not finished.
@@ -189,6 +191,14 @@ mod tests {
         assert_eq!(random_first(&settings, 0, true), None, "the founder takes their place");
         settings.evolution.generations = 4;
         assert_eq!(random_first(&settings, 0, false), Some(30), "at most a quarter of the budget");
+    }
+
+    #[test]
+    fn a_run_that_finished_early_says_why_in_one_sentence() {
+        assert_eq!(
+            finished_early(57, 60, 6000),
+            "Finished after 57 of 60 generations: larger ones used up the run's 6,000 snakes"
+        );
     }
 
     #[test]

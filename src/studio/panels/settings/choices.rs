@@ -6,6 +6,7 @@ use super::form::{Sheet, Shown};
 use super::number::Control;
 use crate::schema::Choice;
 use crate::studio::ui::check_box::check_box;
+use crate::studio::ui::theme;
 
 impl Sheet {
     /// A drop-down list. Returns the new choice.
@@ -23,6 +24,7 @@ impl Sheet {
                 .selected_text(title)
                 .truncate()
                 .width(width)
+                .height(theme::list_height(ui))
                 .show_ui(ui, |ui| {
                     for choice in choices {
                         let is_chosen = choice.name == shown.value;

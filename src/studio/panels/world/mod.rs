@@ -12,7 +12,7 @@ use super::undo_buttons::undo_buttons;
 use crate::schema::{ListedSetting, Section, SettingKind};
 use crate::score::{AgentSettings, Trial};
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
-use crate::studio::state::current_run::CurrentRun;
+use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::{explain, title_and};
@@ -173,7 +173,16 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         ("The current run uses these settings.", palette.text_weak)
     };
     ui.label(egui::RichText::new(text).color(color));
-    if ui.add_enabled(differs, egui::Button::new("New run in this world")).clicked() {
+    let button = ui.add_enabled(differs, egui::Button::new("New run in this world"));
+    let hint = "Prepares and starts a run with the changed settings; the current run stays saved";
+    let refusal = match run.status() {
+        RunStatus::Running | RunStatus::Paused => {
+            "The current run uses these settings already: change a setting first"
+        }
+        RunStatus::Ready => "The next run uses these settings: start it in the Run panel",
+        RunStatus::Finished => "The finished run used these settings: change a setting first",
+    };
+    if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
         commands.extend([Command::Run(RunCommand::Reset), Command::Run(RunCommand::Start)]);
     }
 }
@@ -264,6 +273,20 @@ mod tests {
         run.set_field("surface.friction", "0.5").expect("allowed");
         let commands = sent(&run, |harness| harness.get_by_label("New run in this world").click());
         assert_eq!(commands, [Command::Run(RunCommand::Reset), Command::Run(RunCommand::Start)]);
+    }
+
+    #[test]
+    fn a_disabled_button_for_a_new_run_says_why() {
+        let mut run = prepared_run();
+        for reason in ["start it in the Run panel", "change a setting first"] {
+            let commands = sent(&run, |harness| {
+                harness.get_by_label("New run in this world").hover();
+                harness.run_steps(60);
+                assert!(harness.query_by_label_contains(reason).is_some(), "{reason}");
+            });
+            assert_eq!(commands, []);
+            run.single_generation().expect("started");
+        }
     }
 
     #[test]

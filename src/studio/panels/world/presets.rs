@@ -22,8 +22,9 @@ impl PresetChoice {
         ui.horizontal_wrapped(|ui| {
             ui.label("Preset");
             let list = egui::ComboBox::from_id_salt("preset")
-                .selected_text(run.next_preset())
+                .selected_text(run.next_preset_in_words())
                 .width(theme::COMBO_WIDTH)
+                .height(theme::list_height(ui))
                 .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
             let is_on = ui.is_enabled();
             list.response.widget_info(|| {
@@ -94,7 +95,9 @@ fn name_field(
         });
         let is_valid = !prompt.text.is_empty() && problem_with(presets, &prompt.text).is_none();
         let hint = "Writes a file to the \"presets\" folder inside the saves folder (Enter)";
+        let refusal = "Type another name first: this one is empty, taken or not allowed";
         let save = ui.add_enabled(is_valid, egui::Button::new("Save")).on_hover_text(hint);
+        let save = save.on_disabled_hover_text(refusal);
         is_saved = is_valid && (save.clicked() || end == Some(PromptEnd::Accepted));
         is_cancelled = end == Some(PromptEnd::Cancelled)
             || ui.button("Cancel").on_hover_text("Save no preset (Esc)").clicked();
@@ -208,6 +211,19 @@ mod tests {
             Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
         ];
         assert_eq!(*panel.state(), commands);
+    }
+
+    #[test]
+    fn the_open_list_shows_all_presets_of_the_program() {
+        let run = prepared_run();
+        let mut panel = panel(&run);
+        panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();
+        panel.run();
+        let last = run.presets().shipped().last().expect("shipped").name.clone();
+        // Entries out of sight are clipped, and a click on them reaches none.
+        panel.get_by_label(&last).click();
+        panel.run();
+        assert!(panel.state().contains(&Command::Plan(PlanCommand::SetPreset(last))));
     }
 
     #[test]

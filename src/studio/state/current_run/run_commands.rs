@@ -1,6 +1,7 @@
 //! Executes commands to the current run.
 
 use super::CurrentRun;
+use crate::save::library::{SavePlace, read_notes};
 use crate::studio::commands::chart_export::ChartFormat;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::chart_export;
@@ -8,6 +9,13 @@ use crate::studio::state::new_file::{offer_path, offer_picture};
 use crate::studio::ui::notifications::Notices;
 
 impl CurrentRun {
+    /// Name of the run for people: the name that the user gave it, if any, with its preset and seed.
+    fn name(&self) -> String {
+        let notes = read_notes(&SavePlace::Run(self.source.folder.clone())).unwrap_or_default();
+        let plan = format!("{}, seed {}", self.source.plan.preset, self.source.plan.seed);
+        notes.own_name().map_or(plan.clone(), |own| format!("{own}: {plan}"))
+    }
+
     /// Executes a command.
     ///
     /// # Errors
@@ -36,7 +44,7 @@ impl CurrentRun {
             RunCommand::ListRuns => self.list_runs(),
             RunCommand::Compare(folder) => self.others.toggle(folder),
             RunCommand::ExportChart(chart) => {
-                let path = chart_export::export(&self.context.saves, chart)?;
+                let path = chart_export::export(&self.context.saves, chart, &self.name())?;
                 let text = format!("Chart saved to {}", path.display());
                 match chart.format {
                     ChartFormat::Png => offer_picture(notices, text, &path),

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{Library, name_of};
 use crate::run::BackgroundTask;
 use crate::save::SaveError;
-use crate::save::library::FileStep;
+use crate::save::library::{FileStep, SavePlace, read_notes};
 use crate::studio::state::new_file::offer_path;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
@@ -290,7 +290,7 @@ fn capital(words: &str) -> String {
 /// The message after an undo or redo.
 fn undone_in_words(way: UndoDirection, label: &str, steps: &[FileStep]) -> String {
     match steps {
-        [FileStep::Restored { wanted, .. }] => format!("{} restored", name_of(wanted)),
+        [FileStep::Restored { wanted, to }] => format!("{} restored", shown_name(to, wanted)),
         [FileStep::Restored { .. }, ..] => format!("{} saves restored", steps.len()),
         _ => way.taken(label),
     }
@@ -312,12 +312,23 @@ fn renamed_on_return(steps: &[FileStep]) -> String {
     renamed.concat()
 }
 
+/// The name under which the library lists the entry at `path`: a run's own name, or the name of the file or folder
+/// `named`.
+fn shown_name(path: &Path, named: &Path) -> String {
+    let is_run = path.is_dir();
+    let notes = is_run.then(|| read_notes(&SavePlace::Run(path.to_owned())).ok()).flatten();
+    let own_name = notes.as_ref().and_then(|notes| notes.own_name()).map(str::to_owned);
+    own_name.unwrap_or_else(|| name_of(named))
+}
+
 /// The operation in a few words: with the name of a single save, or the number of saves.
 fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
     match steps {
-        [FileStep::Deleted { from, .. }] => format!("{} {}", verb.done, name_of(from)),
+        [FileStep::Deleted { from, kept }] => format!("{} {}", verb.done, shown_name(kept, from)),
         [one] => {
-            let name = one.place().map(|place| place.name()).unwrap_or_default();
+            let place = one.place();
+            let path = place.as_ref().and_then(SavePlace::path);
+            let name = path.map_or(String::new(), |path| shown_name(path, path));
             format!("{} {name}", verb.done)
         }
         several => format!("{} {} saves", verb.done, several.len()),

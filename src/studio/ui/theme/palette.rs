@@ -4,11 +4,11 @@
 
 use bevy::prelude::{Color, Vec3};
 use bevy_egui::egui;
-use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Stroke};
+use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Rgba, Stroke};
 
 use crate::evolve::StrategyKind;
 use crate::plot;
-use crate::plot::{Role, role_color};
+use crate::plot::{BAND_OPACITY, Role, role_color};
 
 /// Colours and light intensities of a theme.
 #[derive(Debug)]
@@ -243,6 +243,19 @@ impl Palette {
     /// Colour of a strategy in all curves, shifted towards the text colour until it is readable on the panel.
     pub fn strategy(&self, kind: StrategyKind) -> Color32 {
         self.readable(kind.info().color)
+    }
+
+    /// Translucent colour of a band in a chart: over the chart's background it looks as in a picture of the chart. The
+    /// window blends light instead of colour values, in which a plainly translucent colour would lose its hue.
+    pub fn band(&self, color: Color32) -> Color32 {
+        let over = Rgba::from(self.field);
+        let seen = Rgba::from(self.field.lerp_to_gamma(color, BAND_OPACITY));
+        let channels = [(seen.r(), over.r()), (seen.g(), over.g()), (seen.b(), over.b())];
+        let shares = channels.map(|(seen, over)| seen / over.max(1.0e-6));
+        // What is left of the light behind the band; some of each band stays visible behind another.
+        let left = shares.into_iter().fold(1.0 - BAND_OPACITY, f32::min);
+        let [r, g, b] = channels.map(|(seen, over)| (seen - over * left).max(0.0));
+        Rgba::from_rgba_premultiplied(r, g, b, 1.0 - left).into()
     }
 
     /// Colour of a chart series by its role.

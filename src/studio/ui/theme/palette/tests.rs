@@ -106,3 +106,18 @@ fn strategies_have_distinct_colours_in_both_themes() {
         }
     }
 }
+
+#[test]
+fn a_band_over_a_chart_has_the_hue_that_it_has_in_a_picture() {
+    for palette in [&LIGHT, &DARK] {
+        let color = palette.role(Role::Third);
+        // As the window blends: in linear light, with colours multiplied by their opacity.
+        let (band, over) = (Rgba::from(palette.band(color)), Rgba::from(palette.field));
+        let seen = Color32::from(band + over * (1.0 - band.a()));
+        let wanted = palette.field.lerp_to_gamma(color, BAND_OPACITY);
+        let pairs = seen.to_array().into_iter().zip(wanted.to_array()).take(3);
+        for (seen, wanted) in pairs {
+            assert!(seen.abs_diff(wanted) <= 4, "{seen} instead of {wanted} in {palette:?}");
+        }
+    }
+}
