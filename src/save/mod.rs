@@ -10,6 +10,7 @@ mod champion;
 mod change;
 mod checkpoint;
 mod comparison;
+mod engine_2;
 mod file_structs;
 mod files;
 mod folder;

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-use super::SaveError;
 use super::files::{check_format, parse, pretty, read_text, store_ron, write_new};
+use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
 use crate::evolve::Settings;
 
@@ -29,7 +29,8 @@ struct PresetFile {
     settings: Settings,
 }
 
-const FORMAT: u32 = 2;
+/// Format 2 differs in the numbers of the world: see [`super::engine_2`].
+const FORMAT: u32 = 3;
 
 /// The preset that is used when none is named.
 pub const DEFAULT_PRESET: &str = "climb";
@@ -122,8 +123,13 @@ pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
         let allowed = "none; this file is not a preset";
         return Err(invalid(Invalid::new("kind", quoted(&kind), allowed)));
     }
-    check_format(path, format, FORMAT)?;
-    let PresetFile { name, about, settings, .. } = parse(path, text)?;
+    if format != 2 {
+        check_format(path, format, FORMAT)?;
+    }
+    let PresetFile { name, about, mut settings, .. } = parse(path, text)?;
+    if format == 2 {
+        settings.trial = engine_2::converted(settings.trial);
+    }
     let preset = Preset { name, about, settings };
     check::name("name", &preset.name).map_err(invalid)?;
     within("about", preset.about.len(), 0..=MAX_ABOUT_BYTES).map_err(invalid)?;

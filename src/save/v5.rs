@@ -9,6 +9,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::engine_2;
 use super::file_structs::file_structs;
 use super::files::hash_of;
 use super::poses::PosesV5;
@@ -119,7 +120,10 @@ impl ChampionV5 {
     /// Translates and checks every value.
     pub fn into_parts(self) -> Result<(Champion, Option<Recording>), Invalid> {
         name("origin.preset", &self.origin.preset)?;
-        let trial = self.trial;
+        let trial = match self.engine {
+            ..=2 => engine_2::converted(self.trial),
+            _ => self.trial,
+        };
         trial.check().map_err(|error| error.inside("trial"))?;
         let genome = self.genome;
         trial.check_genome(&genome).map_err(|error| error.inside("genome"))?;

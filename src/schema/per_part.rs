@@ -22,6 +22,14 @@ impl PerPart {
             Self::Each(values) => values.get(index).or(values.last()).copied().unwrap_or(0.0),
         }
     }
+
+    /// The setting with another value in place of each.
+    pub fn map(&self, of: impl Fn(f32) -> f32) -> Self {
+        match self {
+            Self::All(value) => Self::All(of(*value)),
+            Self::Each(values) => Self::Each(values.iter().map(|value| of(*value)).collect()),
+        }
+    }
 }
 
 impl From<f32> for PerPart {

@@ -9,7 +9,8 @@ setting_group! {
         steps_per_s: u32 = 60;
         /// Solver substeps within one step.
         substeps: u32 = 2;
-        /// Solver iterations within one substep.
+        /// Solver iterations within one substep. Engine 2 had one.
+        #[serde(default = "one_iteration")]
         iterations: u32 = 4;
         /// Downward acceleration, in m/s².
         gravity_m_s2: f32 = 9.81;
@@ -44,6 +45,11 @@ impl SettingGroup for PhysicsSettings {
                 .slider(1.0, 16.0);
         }
     }
+}
+
+/// Iterations in files that do not state them.
+fn one_iteration() -> u32 {
+    1
 }
 
 impl PhysicsSettings {

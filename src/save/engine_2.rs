@@ -1,0 +1,91 @@
+//! Worlds of engine 2 in the numbers of this engine, in which they act as they did.
+//!
+//! Engine 2 had rates and shares per physics step: the effect of the same number depended on the step rate. Presets up to
+//! format 2 and champions of engine 2 hold such numbers.
+
+use crate::score::Trial;
+use crate::world::{ERP_TIME_S, Surface};
+
+/// The trial of engine 2 in the numbers of this engine.
+pub fn converted(mut trial: Trial) -> Trial {
+    let steps_per_s = trial.physics.steps_per_s as f32;
+    // It divided by 1 + d h in each step.
+    let damping = &mut trial.agent.angular_damping_per_s;
+    *damping = steps_per_s * libm::log1pf(*damping / steps_per_s);
+    for surface in std::iter::once(&mut trial.surface).chain(&mut trial.ground) {
+        convert_surface(surface, steps_per_s);
+    }
+    let skin = &mut trial.agent.skin;
+    convert_softness(&mut skin.soft_erp, &mut skin.soft_cfm_m_s_per_n, steps_per_s);
+    // The same stiffness. The damping of a soft joint follows it, because joints have no ERP of their own.
+    let stiffer = 1.0 / (ERP_TIME_S * steps_per_s);
+    trial.agent.joint_cfm_m_s_per_n = trial.agent.joint_cfm_m_s_per_n.map(|cfm| cfm * stiffer);
+    trial
+}
+
+/// Largest damping of a surface, in 1/s. Engine 2 stopped limbs within one step at the highest damping and the lowest
+/// step rate, which no rate can do.
+const MOST_DAMPING_PER_S: f32 = 20.0;
+
+fn convert_surface(surface: &mut Surface, steps_per_s: f32) {
+    // It multiplied by 1 - d h in each step.
+    let share = (surface.dampen_per_s / steps_per_s).min(1.0);
+    surface.dampen_per_s = (-steps_per_s * libm::log1pf(-share)).min(MOST_DAMPING_PER_S);
+    convert_softness(&mut surface.soft_erp, &mut surface.soft_cfm_m_s_per_n, steps_per_s);
+}
+
+/// ERP was the share that was corrected in a step.
+fn convert_softness(erp: &mut f32, cfm_m_s_per_n: &mut f32, steps_per_s: f32) {
+    let steps = ERP_TIME_S * steps_per_s;
+    if (steps - 1.0).abs() < 1.0e-6 {
+        return;
+    }
+    if *cfm_m_s_per_n == 0.0 {
+        *erp = 1.0 - libm::powf(1.0 - *erp, steps);
+        return;
+    }
+    // The same spring ERP / (h CFM) and the same damper (1 - ERP) / CFM.
+    let stiff = *erp * steps;
+    let new_erp = stiff / (stiff + 1.0 - *erp);
+    *cfm_m_s_per_n *= new_erp / stiff;
+    *erp = new_erp;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::PhysicsSettings;
+
+    #[test]
+    fn rates_and_shares_of_a_step_become_those_of_time() {
+        for steps_per_s in [60_u32, 120, 30] {
+            let mut trial = Trial {
+                physics: PhysicsSettings { steps_per_s, ..Default::default() },
+                ..Trial::default()
+            };
+            let step_s = 1.0 / steps_per_s as f32;
+            trial.agent.angular_damping_per_s = 200.0;
+            trial.surface.dampen_per_s = 5.0;
+            trial.surface.soft_erp = 0.4;
+            let soft = Surface { soft_erp: 0.3, soft_cfm_m_s_per_n: 0.02, ..Surface::default() };
+            trial.ground = Some(soft.clone());
+            let new = converted(trial);
+            let close = |found: f32, expected: f32| {
+                assert!((found / expected - 1.0).abs() < 1e-4, "{found} for {expected}");
+            };
+            let kept = |rate: f32| libm::expf(-rate * step_s);
+            close(kept(new.agent.angular_damping_per_s), 1.0 / (1.0 + 200.0 * step_s));
+            close(kept(new.surface.dampen_per_s), 1.0 - 5.0 * step_s);
+            close(libm::powf(1.0 - new.surface.soft_erp, step_s / ERP_TIME_S), 0.6);
+            let ground = new.ground.expect("it had one");
+            close(
+                ground.soft_erp / (ERP_TIME_S * ground.soft_cfm_m_s_per_n),
+                soft.soft_erp / (step_s * soft.soft_cfm_m_s_per_n),
+            );
+            close(
+                (1.0 - ground.soft_erp) / ground.soft_cfm_m_s_per_n,
+                (1.0 - soft.soft_erp) / soft.soft_cfm_m_s_per_n,
+            );
+        }
+    }
+}
