@@ -8,7 +8,7 @@ use bevy::window::{CursorOptions, MonitorSelection, PrimaryWindow, WindowMode};
 
 use super::apply::apply;
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::scene::camera::CameraRig;
+use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::camera::setup::CameraSetup;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::playback::Playback;

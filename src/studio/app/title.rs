@@ -63,7 +63,7 @@ fn update(
     let from = run.founder().map(|name| format!(", from {name}")).unwrap_or_default();
     let title = format!(
         "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{stopped}",
-        run.preset(),
+        run.preset_in_words(),
         run.seed(),
         run.reports().len(),
         run.settings().evolution.generations,

@@ -51,7 +51,7 @@ use help::tour::Tour;
 use lessons::lessons;
 use library::LibraryPanel;
 use on_stage::OnStage;
-use player::cards::{around_stage, lesson_card};
+use player::cards::{CardSituation, around_stage, lesson_card};
 use player::presented_caption::{PresentedCaption, caption_band};
 use player::timeline::{TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
@@ -180,7 +180,7 @@ fn draw(
     } else if workspace.is_bare {
         viewer.stage(&mut root);
     } else {
-        let (preset, seed) = (data.run.preset(), data.run.seed());
+        let (preset, seed) = (data.run.preset_in_words(), data.run.seed());
         let fill = theme::of_context(&context).panel;
         let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, theme::GAP as i8 / 4);
         egui::Panel::top("menu").frame(egui::Frame::new().fill(fill).inner_margin(margin)).show(
@@ -204,20 +204,22 @@ fn draw(
             .show_inside(&mut root, &mut viewer);
     }
     if let Some(stage) = viewer.stage {
-        let (mut board, mut messages_end) = (None, stage.bottom());
+        let (mut cards, mut messages_room) = (Vec::new(), stage);
         if let Some(lane) = focused(&lanes, &data.on_stage).filter(|_| !is_presenting) {
             let is_touring = matches!(workspace.modal(), Some(Modal::Tour(_)));
-            let theme = (*data.theme, data.run.progress(), is_touring);
+            let (theme, progress) = (*data.theme, data.run.progress());
+            let messages = area.messages_size();
+            let of = CardSituation { theme, progress, is_touring, messages };
             let around =
-                around_stage(&context, stage, &data.on_stage, &lanes, lane, theme, &mut commands);
-            (board, messages_end) = (around.board, around.messages_end);
+                around_stage(&context, stage, &data.on_stage, &lanes, lane, &of, &mut commands);
+            (cards, messages_room) = (around.cards, around.messages_room);
             let is_in_sight =
                 panels.panel_rects.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
             if let Some(view) = data.lessons.view().filter(|_| !is_in_sight) {
                 lesson_card(&context, around.below_bar, view.index, &mut commands);
             }
         }
-        area.set(&context, stage, board, messages_end);
+        area.set(&context, stage, cards, messages_room);
     }
     match workspace.modal() {
         Some(Modal::Keys) => key_overlay(&context, &mut commands),

@@ -2,10 +2,12 @@
 
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
+use bevy_egui::egui;
 
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::{Command, PlayerCommand, StageCommand, ViewCommand};
-use crate::studio::scene::camera::{CameraRig, StageCamera};
+use crate::studio::scene::camera::StageCamera;
+use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -27,9 +29,34 @@ pub(crate) struct OnStage<'w, 's> {
     pub history: Res<'w, UndoHistory>,
     pub following: Res<'w, Following>,
     pub smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
+    camera: Query<'w, 's, (&'static Camera, &'static Transform), With<StageCamera>>,
 }
 
 impl OnStage<'_, '_> {
+    /// The rectangles that enclose the limbs of a lane in the window, from the head, in points; `None` for a limb out of
+    /// the camera's sight.
+    pub fn limbs_in_window(&self, context: &egui::Context, lane: &Lane) -> Vec<Option<egui::Rect>> {
+        let Ok((camera, place)) = self.camera.single() else { return Vec::new() };
+        let place = GlobalTransform::from(*place);
+        let point_of = |at: Vec3| {
+            let pixel = camera.world_to_viewport(&place, at + lane.offset()).ok()?;
+            let point = pixel / context.zoom_factor();
+            Some(egui::pos2(point.x, point.y))
+        };
+        let limbs = lane.drawn_poses().zip(&lane.body().limbs);
+        let around = limbs.map(|(pose, plan)| {
+            let half = Vec3::from(plan.size_m()) / 2.0;
+            let ends = [-1.0, 1.0];
+            let corners = ends.into_iter().flat_map(|x| {
+                ends.into_iter().flat_map(move |y| ends.map(|z| Vec3::new(x, y, z) * half))
+            });
+            let points: Option<Vec<egui::Pos2>> =
+                corners.map(|corner| point_of(pose * corner)).collect();
+            points.map(|points| egui::Rect::from_points(&points))
+        });
+        around.collect()
+    }
+
     /// Whether the setting that a command toggles is on; `None` for other commands.
     pub fn is_on(&self, command: &Command, theme: Theme) -> Option<bool> {
         match command {

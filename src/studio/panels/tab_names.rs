@@ -10,6 +10,9 @@ use crate::studio::workspace::layout::Layout;
 /// Space around the name of a tab, in points, as the dock draws it.
 const AROUND: f32 = 16.0;
 
+/// Width of the button that folds the panels of a tab bar, in points, as the dock draws it.
+const FOLD_BUTTON: f32 = 24.0;
+
 /// The panels whose tabs have small names, because their bar is too narrow for those of the usual size.
 pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<PanelKind> {
     let style = context.global_style();
@@ -19,7 +22,7 @@ pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<PanelK
     layout.tab_bars().into_iter().filter(is_crowded).flat_map(|(_, kinds)| kinds).collect()
 }
 
-/// Width of a tab bar with these panels, in points.
+/// Width of a tab bar with these panels, in points: the button that folds it, and the tabs.
 fn bar_width(context: &egui::Context, kinds: &[PanelKind], font: &egui::FontId) -> f32 {
     let name_width = |kind: &PanelKind| {
         let name = kind.name().to_owned();
@@ -28,7 +31,7 @@ fn bar_width(context: &egui::Context, kinds: &[PanelKind], font: &egui::FontId) 
         };
         context.fonts_mut(layout) + AROUND
     };
-    kinds.iter().map(name_width).sum()
+    FOLD_BUTTON + kinds.iter().map(name_width).sum::<f32>()
 }
 
 /// The name of a panel on its tab.

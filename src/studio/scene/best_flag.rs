@@ -9,6 +9,7 @@ use super::text::{TextMeshes, TextPlacement};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::theme::Theme;
 use crate::world::Stairs;
 
@@ -92,7 +93,7 @@ fn plant(
         if !best.is_changed() && !lane.is_added() {
             continue;
         }
-        let text = format!("furthest {y_m:.1} m");
+        let text = format!("furthest {} m", decimals(y_m, 1));
         let width_m = lettering.width_m(&text, DIGIT_M) + CLOTH_M - DIGIT_M;
         let middle = Vec3::new(0.0, width_m / 2.0, POST_M - CLOTH_M / 2.0);
         let mut writing = lettering.begin();

@@ -3,6 +3,7 @@
 //! The world keeps the core's axes, so the camera has z up instead of everything being turned.
 
 pub mod mouse;
+pub mod rig;
 pub mod setup;
 pub mod view;
 
@@ -26,6 +27,7 @@ use crate::studio::stage::selection::Selection;
 use crate::studio::ui::theme::{Palette, Theme};
 use crate::studio::ui::viewport::StageArea;
 
+use rig::CameraRig;
 use view::CameraView;
 
 /// Transform of a fixed camera from the default side, with a stretch of the y axis in view, in metres.
@@ -52,88 +54,6 @@ pub(crate) fn camera_components(msaa: Msaa, palette: &Palette) -> impl Bundle {
         },
     )
 }
-
-/// State of the camera.
-#[derive(Resource, Debug)]
-pub(crate) struct CameraRig {
-    camera_mode: CameraMode,
-    /// The target view.
-    view: CameraView,
-    /// The current view, which approaches the target view.
-    shown: CameraView,
-    /// Whether the camera follows the snake, or all snakes.
-    follows: bool,
-    /// The followed lane; `None` follows all.
-    lane: Option<usize>,
-    /// Smoothed position of the followed snakes, in metres.
-    anchor: Option<Vec3>,
-    lanes: usize,
-}
-
-impl Default for CameraRig {
-    fn default() -> Self {
-        let view = CameraView::of(CameraMode::Follow, 1);
-        Self {
-            camera_mode: CameraMode::Follow,
-            view,
-            shown: view,
-            follows: true,
-            lane: None,
-            anchor: None,
-            lanes: 1,
-        }
-    }
-}
-
-impl CameraRig {
-    /// The current camera mode.
-    pub fn camera_mode(&self) -> CameraMode {
-        self.camera_mode
-    }
-
-    /// Switches to a camera mode.
-    pub fn take(&mut self, camera_mode: CameraMode) {
-        self.camera_mode = camera_mode;
-        self.follows = camera_mode != CameraMode::Free;
-        if self.follows {
-            // Turn the short way round.
-            let turn = std::f32::consts::TAU;
-            self.shown.yaw_rad -= libm::roundf(self.shown.yaw_rad / turn) * turn;
-            self.view = CameraView::of(camera_mode, self.lanes);
-            self.lane = None;
-        } else {
-            // The free camera keeps its current view.
-            self.view = self.shown;
-        }
-    }
-
-    /// Focuses on a lane's snake or, without a lane, on a fixed point, in metres.
-    pub fn focus_on(&mut self, lane: Option<usize>, point: Vec3) {
-        self.view.distance_m = self.view.distance_m.min(FOCUS_M);
-        self.lane = lane;
-        if lane.is_some() {
-            self.view.offset = Vec3::ZERO;
-            (self.camera_mode, self.follows) = (CameraMode::Follow, true);
-        } else {
-            (self.camera_mode, self.follows) = (CameraMode::Free, false);
-            // Glide from the current target to the point.
-            self.view.offset = point - self.anchor.unwrap_or_default();
-        }
-    }
-
-    /// Whether the camera keeps all lanes in view.
-    fn frames_all(&self) -> bool {
-        self.follows && self.lane.is_none() && self.lanes > 1
-    }
-
-    /// Current transform of the camera.
-    pub fn place(&self) -> Transform {
-        self.shown.looking_at(self.anchor.unwrap_or_default() + self.shown.offset)
-    }
-}
-
-/// Distance to a point that was double-clicked, in metres.
-const FOCUS_M: f32 = 12.0;
 
 /// The camera that draws the stage.
 #[derive(Component)]
@@ -240,10 +160,12 @@ fn steer(
         let distance_m = view.distance_m * factor;
         view.distance_m =
             distance_m.clamp(*CameraView::DISTANCE_M.start(), *CameraView::DISTANCE_M.end());
+        rig.turned_by_hand();
     }
     if !grip.began_on_stage {
         return;
     }
+    let view = &mut rig.view;
     let shift = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
     let pans = buttons.any_pressed([MouseButton::Right, MouseButton::Middle]);
     if pans || (shift && buttons.pressed(MouseButton::Left)) {
@@ -256,6 +178,7 @@ fn steer(
         let pitch_rad = view.pitch_rad + drag.y * TURN_RAD_PER_PIXEL;
         view.pitch_rad =
             pitch_rad.clamp(*CameraView::PITCH_RAD.start(), *CameraView::PITCH_RAD.end());
+        rig.turned_by_hand();
     }
 }
 
@@ -314,7 +237,7 @@ struct InView {
 fn glide(
     mut rig: ResMut<CameraRig>,
     lanes: Query<&Lane>,
-    area: Res<StageArea>,
+    (area, selection): (Res<StageArea>, Res<Selection>),
     time: Res<Time<Real>>,
     mut camera: Single<&mut Transform, With<StageCamera>>,
     mut in_view: Local<InView>,
@@ -323,8 +246,11 @@ fn glide(
     let InView { points, snakes, covers } = &mut *in_view;
     points.clear();
     snakes.clear();
-    covers.clear();
-    covers.extend(area.covers());
+    // A camera that makes room while the mouse holds a limb would pull that limb along.
+    if !selection.is_holding() {
+        covers.clear();
+        covers.extend(area.covers());
+    }
     if rig.frames_all() {
         for lane in lanes.iter().filter(|lane| !lane.is_ghost()) {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);

@@ -80,7 +80,7 @@ const SHADOWS_END_M: std::ops::RangeInclusive<f32> = 14.0..=150.0;
 const SHADOW_STEP: f32 = 1.3;
 
 /// Opacity of a ghost's limbs.
-const GHOST_ALPHA: f32 = 0.3;
+const GHOST_ALPHA: f32 = 0.18;
 
 fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
     let size = Quality::for_adapter(&adapter).shadow_map_pixels;

@@ -7,6 +7,7 @@ use super::camera::StageCamera;
 use super::overlays::{Overlays, fitness_line_end};
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::stage::lane::Lane;
+use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::theme;
 use crate::studio::ui::viewport::StageArea;
 
@@ -49,9 +50,12 @@ fn draw(
             let y_m = lane.drawn_middle().y;
             let (above, text) = if are_many {
                 let head = lane.drawn_poses().next()?.translation + lane.offset();
-                (head + Vec3::Z * OVER_HEAD_M, format!("{}  {y_m:.1} m", lane.staged().label()))
+                (
+                    head + Vec3::Z * OVER_HEAD_M,
+                    format!("{}  {} m", lane.staged().label(), decimals(y_m, 1)),
+                )
             } else {
-                (fitness_line_end(lane), format!("middle block at {y_m:.2} m"))
+                (fitness_line_end(lane), format!("middle block at {} m", decimals(y_m, 2)))
             };
             let at = camera.world_to_viewport(&place, above).ok()?;
             Some((area.point_of(at), text))

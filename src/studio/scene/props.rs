@@ -1,5 +1,6 @@
 //! Meshes and materials that the parts of the scene share.
 
+use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 
 /// Shared meshes and materials.
@@ -11,14 +12,19 @@ pub(crate) struct Props {
     pub red: Handle<StandardMaterial>,
     /// Material of the second, fourth, ... limb.
     pub blue: Handle<StandardMaterial>,
-    /// The same for ghosts, translucent.
+    /// The cube for ghosts: its faces have their own brightness, because the materials of ghosts have no light.
+    pub ghost_cube: Handle<Mesh>,
+    /// The same materials for ghosts, translucent. Where thirty ghosts overlap, each pixel is drawn a hundred times, which
+    /// has to be cheap.
     pub red_ghost: Handle<StandardMaterial>,
     pub blue_ghost: Handle<StandardMaterial>,
 }
 
 impl FromWorld for Props {
     fn from_world(world: &mut World) -> Self {
-        let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(1.0));
+        let mut meshes = world.resource_mut::<Assets<Mesh>>();
+        let [cube, ghost_cube] =
+            [Cuboid::from_length(1.0).mesh().build(), shaded_cube()].map(|mesh| meshes.add(mesh));
         let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
         // The theme sets the colours.
         let mut material = |alpha_mode| {
@@ -28,13 +34,26 @@ impl FromWorld for Props {
                 perceptual_roughness,
                 reflectance,
                 alpha_mode,
+                unlit: alpha_mode != AlphaMode::Opaque,
                 ..default()
             })
         };
         let [red, blue] = [AlphaMode::Opaque; 2].map(&mut material);
         let [red_ghost, blue_ghost] = [AlphaMode::Blend; 2].map(&mut material);
-        Self { cube, red, blue, red_ghost, blue_ghost }
+        Self { cube, red, blue, ghost_cube, red_ghost, blue_ghost }
     }
+}
+
+/// A cube of one metre whose faces are brighter the more they face upwards.
+fn shaded_cube() -> Mesh {
+    let mesh = Cuboid::from_length(1.0).mesh().build();
+    let normals = mesh.attribute(Mesh::ATTRIBUTE_NORMAL).and_then(VertexAttributeValues::as_float3);
+    let shade = |&[x, y, _]: &[f32; 3]| {
+        let brightness = 0.75 + 0.25 * y - 0.1 * x.abs();
+        [brightness, brightness, brightness, 1.0]
+    };
+    let colors: Vec<[f32; 4]> = normals.unwrap_or_default().iter().map(shade).collect();
+    mesh.with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }
 
 /// Gives materials the colours of the theme.

@@ -99,19 +99,18 @@ fn build(
                     has_front: body.joints.iter().any(|joint| joint.child == index),
                     has_rear: body.joints.iter().any(|joint| joint.parent == index),
                 };
-                let LimbMeshes { block, white, dark, collar } = shapes.of(shape, &mut meshes);
                 let color = if index % 2 == 0 { red } else { blue };
                 let place = Transform::from_translation(pose.translation);
-                let mut limb = parent.spawn((
-                    Limb(index),
-                    Mesh3d(block),
-                    MeshMaterial3d(color.clone()),
-                    place.with_rotation(pose.rotation),
-                ));
+                let place = place.with_rotation(pose.rotation);
+                let mut limb = parent.spawn((Limb(index), MeshMaterial3d(color.clone())));
                 if lane.is_ghost() {
-                    limb.insert((NotShadowCaster, NotShadowReceiver));
+                    let cube = Mesh3d(props.ghost_cube.clone());
+                    let place = place.with_scale(shape.size);
+                    limb.insert((cube, place, NotShadowCaster, NotShadowReceiver));
                     continue;
                 }
+                let LimbMeshes { block, white, dark, collar } = shapes.of(shape, &mut meshes);
+                limb.insert((Mesh3d(block), place));
                 limb.with_children(|limb| {
                     for (mesh, material) in [(white, &trim.white), (dark, &trim.dark)] {
                         limb.spawn((
@@ -143,7 +142,8 @@ fn place(lanes: Query<(&Lane, &Children)>, mut limbs: Query<(&Limb, &mut Transfo
         while let Some((limb, mut transform)) = limbs.fetch_next() {
             if let Some(pose) = lane.drawn_poses().nth(limb.0) {
                 let place = Transform::from_translation(pose.translation);
-                transform.set_if_neq(place.with_rotation(pose.rotation));
+                let size = transform.scale;
+                transform.set_if_neq(place.with_rotation(pose.rotation).with_scale(size));
             }
         }
     }

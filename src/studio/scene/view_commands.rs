@@ -3,7 +3,8 @@
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use super::camera::{CameraRig, StageCamera};
+use super::camera::StageCamera;
+use super::camera::rig::CameraRig;
 use super::overlays::Overlays;
 use crate::studio::commands::ViewCommand;
 use crate::studio::commands::camera_mode::CameraMode;

@@ -1,6 +1,7 @@
 //! Widgets, theme and fonts that all panels share.
 
 pub mod check_box;
+pub mod decimals;
 pub mod icons;
 pub mod lane_dot;
 pub mod notifications;

@@ -31,6 +31,8 @@ struct Notice {
     /// Display time.
     lasts: Duration,
     shown_for: Duration,
+    /// Height when it was drawn last, in points.
+    height: f32,
 }
 
 /// Display time of news.
@@ -52,6 +54,7 @@ impl Notice {
             is_important: false,
             lasts: NEWS,
             shown_for: Duration::ZERO,
+            height: 0.0,
         }
     }
 
@@ -148,6 +151,16 @@ impl Notices {
         all.filter(|(_, notice)| !self.is_quiet || notice.is_important)
     }
 
+    /// Number of messages, the latest first, that have room in this height, in points; the latest in any case.
+    fn fitting(&self, height: f32) -> usize {
+        let heights = self.drawn().rev().map(|(_, notice)| notice.height + theme::GAP);
+        let ends = heights.scan(0.0, |sum, height| {
+            *sum += height;
+            Some(*sum)
+        });
+        ends.take_while(|end| *end <= height).count().max(1)
+    }
+
     fn push(&mut self, new: Notice) {
         // A repeated message replaces the earlier one and restarts its display time.
         let is_same = |notice: &Notice| new.subject.is_some() && notice.subject == new.subject;
@@ -176,20 +189,25 @@ fn draw(
     let context = contexts.ctx_mut()?;
     let mut taken = None;
     // The stairs rise to the upper right, so there is most room over the ground at the lower right.
-    let corner = area.messages_corner() - egui::Vec2::splat(theme::GAP * 1.5);
+    let room = area.messages_room().shrink(theme::GAP * 1.5);
+    // Older messages for which there is no room wait behind the later ones.
+    let fitting = notices.fitting(room.height());
+    // The rest is for the card's margins.
+    let width = theme::NOTICE_WIDTH.min(room.width() - theme::GAP * 3.0);
+    let mut heights = Vec::new();
     let shown = egui::Area::new(egui::Id::new("notices"))
         .pivot(egui::Align2::RIGHT_BOTTOM)
-        .fixed_pos(corner)
+        .fixed_pos(room.max)
         // Without a button, clicks reach the stage behind the messages.
         .interactable(notices.drawn().any(|(_, notice)| !notice.offers.is_empty()))
         .show(context, |ui| {
             ui.spacing_mut().item_spacing.y = theme::GAP;
             ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
-                for (index, notice) in notices.drawn().rev() {
+                for (index, notice) in notices.drawn().rev().take(fitting) {
                     let palette = theme::of(ui);
                     let edge = if notice.is_problem { palette.problem } else { palette.accent };
-                    palette.card(edge).show(ui, |ui| {
-                        ui.set_max_width(theme::NOTICE_WIDTH);
+                    let card = palette.card(edge).show(ui, |ui| {
+                        ui.set_max_width(width);
                         let text = egui::RichText::new(&notice.text).color(palette.text);
                         // The card is right-aligned, its text left-aligned.
                         let lines = egui::Layout::top_down(egui::Align::Min);
@@ -212,9 +230,11 @@ fn draw(
                             });
                         }
                     });
+                    heights.push((index, card.response.rect.height()));
                 }
             });
         });
+    heights.into_iter().for_each(|(index, height)| notices.list[index].height = height);
     let is_empty = notices.drawn().next().is_none();
     area.set_messages((!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0)));
     if let Some((index, command)) = taken {
@@ -237,6 +257,17 @@ mod tests {
         notices.info("7".to_owned());
         let texts: Vec<&str> = notices.list.iter().map(|notice| notice.text.as_str()).collect();
         assert_eq!(texts, ["6", "8", "9", "7"]);
+    }
+
+    #[test]
+    fn messages_without_room_wait_behind_the_latest() {
+        let mut notices = Notices::default();
+        (0..4).for_each(|number| notices.info(number.to_string()));
+        assert_eq!(notices.fitting(150.0), 4, "not drawn yet");
+        notices.list.iter_mut().for_each(|notice| notice.height = 60.0);
+        assert_eq!(notices.fitting(600.0), 4);
+        assert_eq!(notices.fitting(150.0), 2);
+        assert_eq!(notices.fitting(10.0), 1, "the latest is always shown");
     }
 
     #[test]

@@ -10,12 +10,12 @@ use super::text_prompt;
 pub(crate) struct StageArea {
     /// Rectangle of the stage, in egui points.
     rect: egui::Rect,
-    /// Card over the stage, in egui points.
-    card: Option<egui::Rect>,
+    /// Cards over the stage, in egui points.
+    cards: Vec<egui::Rect>,
     /// Messages over the stage, in egui points.
     messages: Option<egui::Rect>,
-    /// Where the lower right corner of the messages is to be, in egui points.
-    messages_corner: egui::Pos2,
+    /// Room for messages, which stand at its lower right corner, in egui points.
+    messages_room: egui::Rect,
     /// The egui context, which knows the layers over the stage.
     context: egui::Context,
 }
@@ -24,26 +24,25 @@ impl Default for StageArea {
     fn default() -> Self {
         Self {
             rect: egui::Rect::ZERO,
-            card: None,
+            cards: Vec::new(),
             messages: None,
-            messages_corner: egui::Pos2::ZERO,
+            messages_room: egui::Rect::ZERO,
             context: egui::Context::default(),
         }
     }
 }
 
 impl StageArea {
-    /// Sets the stage's rectangle, and the rectangle of a card over it that must cover no snake, in points.
-    /// Messages end at the height `messages_end`.
+    /// Sets the stage's rectangle, the rectangles of cards over it that must cover no snake, and the room for messages,
+    /// in points.
     pub fn set(
         &mut self,
         context: &egui::Context,
         rect: egui::Rect,
-        card: Option<egui::Rect>,
-        messages_end: f32,
+        cards: Vec<egui::Rect>,
+        messages_room: egui::Rect,
     ) {
-        (self.rect, self.card) = (rect, card);
-        self.messages_corner = egui::pos2(rect.right(), messages_end);
+        (self.rect, self.cards, self.messages_room) = (rect, cards, messages_room);
         // Cloning a context only clones a handle.
         self.context = context.clone();
     }
@@ -80,9 +79,14 @@ impl StageArea {
         self.context.text_edit_focused() || text_prompt::is_open(&self.context)
     }
 
-    /// Where the lower right corner of the messages is to be, in egui points.
-    pub fn messages_corner(&self) -> egui::Pos2 {
-        self.messages_corner
+    /// Room for messages, which stand at its lower right corner, in egui points.
+    pub fn messages_room(&self) -> egui::Rect {
+        self.messages_room
+    }
+
+    /// Size of the messages in the last frame, in egui points; zero without any.
+    pub fn messages_size(&self) -> egui::Vec2 {
+        self.messages.map_or(egui::Vec2::ZERO, |messages| messages.size())
     }
 
     /// Sets the rectangle of the messages, in points.
@@ -90,14 +94,14 @@ impl StageArea {
         self.messages = rect;
     }
 
-    /// Card and messages over the stage, as fractions of its width and height from the upper left corner.
+    /// Cards and messages over the stage, as fractions of its width and height from the upper left corner.
     pub fn covers(&self) -> impl Iterator<Item = Rect> {
         let size = self.rect.size().max(egui::Vec2::splat(1.0));
         let share = move |at: egui::Pos2| {
             let from_corner = (at - self.rect.min) / size;
             Vec2::new(from_corner.x, from_corner.y)
         };
-        let covers = [self.card, self.messages].into_iter().flatten();
+        let covers = self.cards.iter().chain(&self.messages);
         let over_stage = covers.filter(|cover| cover.intersects(self.rect));
         over_stage.map(move |cover| Rect::from_corners(share(cover.min), share(cover.max)))
     }
@@ -118,7 +122,7 @@ mod tests {
     fn letters_belong_to_an_open_prompt_even_if_no_widget_has_the_focus() {
         let context = egui::Context::default();
         let mut area = StageArea::default();
-        area.set(&context, egui::Rect::EVERYTHING, None, 0.0);
+        area.set(&context, egui::Rect::EVERYTHING, Vec::new(), egui::Rect::ZERO);
         let mut prompt = TextPrompt::new("my-ice".to_owned());
         let mut pass = |is_open: bool| {
             let _ = context.run_ui(egui::RawInput::default(), |ui| {
@@ -141,10 +145,11 @@ mod tests {
         let mut area = StageArea::default();
         let stage = egui::Rect::from_min_size(egui::pos2(300.0, 40.0), egui::vec2(800.0, 400.0));
         let card = egui::Rect::from_min_size(egui::pos2(300.0, 240.0), egui::vec2(200.0, 200.0));
-        area.set(&egui::Context::default(), stage, Some(card), 440.0);
-        assert_eq!(area.messages_corner(), egui::pos2(1100.0, 440.0));
-        let messages = egui::Rect::from_min_max(egui::pos2(900.0, 340.0), area.messages_corner());
+        area.set(&egui::Context::default(), stage, vec![card], stage);
+        let corner = area.messages_room().max;
+        let messages = egui::Rect::from_min_max(egui::pos2(900.0, 340.0), corner);
         area.set_messages(Some(messages));
+        assert_eq!(area.messages_size(), egui::vec2(200.0, 100.0));
         let covers: Vec<Rect> = area.covers().collect();
         assert_eq!(covers, [Rect::new(0.0, 0.5, 0.25, 1.0), Rect::new(0.75, 0.75, 1.0, 1.0)]);
         let above = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(900.0, 30.0));

@@ -19,6 +19,10 @@ pub(crate) struct Layout {
     is_to_be_laid_out: bool,
     /// The panel to focus after that.
     first: Option<PanelKind>,
+    /// The panels that came to the front or got the focus, the latest last.
+    chosen: Vec<PanelKind>,
+    /// The panels in front of their places when that was last noted.
+    in_front: Vec<PanelKind>,
 }
 
 /// Minimum window width for panels on both sides of the stage, in points.
@@ -53,6 +57,8 @@ impl Default for Layout {
             class: None,
             is_to_be_laid_out: true,
             first: None,
+            chosen: Vec::new(),
+            in_front: Vec::new(),
         }
     }
 }
@@ -97,8 +103,11 @@ impl Layout {
             self.state = Self::default_for(size);
             self.widths.clear();
             self.is_to_be_laid_out = false;
+            self.chosen.clear();
+            self.in_front = self.front_panels();
             self.first.take().into_iter().for_each(|kind| self.open(kind));
         }
+        self.note_chosen();
         if is_settled {
             self.follow_class(size);
             if let Some((stage, _)) = self.state.find_main_surface_tab(&PanelKind::Stage) {
@@ -121,19 +130,30 @@ impl Layout {
         if arrangement(&self.state) != arrangement(&Self::default_of(before, size.x)) {
             return;
         }
-        let focused = self.state.focused_leaf();
-        let active = |tabs: &[PanelKind], active: usize| tabs.get(active).copied();
-        let leaves = self.state.iter_leaves();
-        let mut shown: Vec<(bool, PanelKind)> = leaves
-            .filter_map(|(path, leaf)| {
-                Some((focused == Some(path), active(&leaf.tabs, leaf.active.0)?))
-            })
-            .collect();
-        // The one with the focus is opened last, so that it keeps it.
-        shown.sort_by_key(|(has_focus, _)| *has_focus);
         self.state = Self::default_for(size);
         self.widths.panels_were_rearranged();
-        shown.into_iter().for_each(|(_, kind)| self.open(kind));
+        // The latest choice comes last, so that it is in front where panels share a place now.
+        self.chosen.clone().into_iter().for_each(|kind| self.open(kind));
+        self.in_front = self.front_panels();
+    }
+
+    /// Notes the panels that came to the front since the last call, and the one with the focus.
+    fn note_chosen(&mut self) {
+        let front = self.front_panels();
+        let focused = self.state.focused_leaf().and_then(|path| self.state.leaf(path).ok());
+        let focused = focused.and_then(|leaf| leaf.tabs.get(leaf.active.0).copied());
+        let new = front.iter().filter(|kind| !self.in_front.contains(kind)).copied();
+        for kind in new.chain(focused).collect::<Vec<_>>() {
+            self.chosen.retain(|other| *other != kind);
+            self.chosen.push(kind);
+        }
+        self.in_front = front;
+    }
+
+    /// The panels in front of their places.
+    fn front_panels(&self) -> Vec<PanelKind> {
+        let leaves = self.state.iter_leaves();
+        leaves.filter_map(|(_, leaf)| leaf.tabs.get(leaf.active.0).copied()).collect()
     }
 
     /// Whether the layout contains a panel, visible or as a tab.
@@ -292,100 +312,4 @@ pub(crate) fn style(ui: &egui::Ui) -> Style {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use egui_dock::Node;
-
-    fn laid_out(width: f32) -> Layout {
-        let mut layout = Layout::default();
-        layout.state_in(egui::vec2(width, width * 9.0 / 16.0), true);
-        layout
-    }
-
-    #[test]
-    fn the_default_layout_has_every_panel_once_at_any_width() {
-        for width in [640.0, 1280.0, 2560.0] {
-            let layout = laid_out(width);
-            assert!(PanelKind::ALL.iter().all(|kind| layout.has(*kind)), "{width}");
-            assert!(is_sound(&layout.state), "{width}");
-        }
-    }
-
-    #[test]
-    fn closed_panels_can_be_restored_and_the_stage_cannot_be_closed() {
-        let mut layout = laid_out(1280.0);
-        for kind in PanelKind::ALL {
-            layout.close(kind);
-            assert!(!layout.has(kind));
-        }
-        layout.close(PanelKind::Stage);
-        assert!(layout.has(PanelKind::Stage));
-        for kind in PanelKind::ALL {
-            layout.open(kind);
-            assert!(layout.has(kind));
-        }
-        assert!(is_sound(&layout.state));
-    }
-
-    #[test]
-    fn a_wider_window_widens_the_stage_but_not_the_panels() {
-        let left = |layout: &Layout| {
-            let path = layout.state.find_tab(&PanelKind::Run).expect("there");
-            let root = layout.state.main_surface().root_node().expect("a root");
-            let Node::Horizontal(split) = root else { panic!("split") };
-            assert_eq!(path.node, NodeIndex(1));
-            split.fraction
-        };
-        let mut layout = laid_out(1280.0);
-        assert!((left(&layout) * 1280.0 - LEFT).abs() < 1.0);
-        layout.state_in(egui::vec2(1490.0, 790.0), true);
-        assert!((left(&layout) * 1490.0 - LEFT).abs() < 1.0);
-    }
-
-    #[test]
-    fn the_default_layout_follows_the_window_and_keeps_the_panel_in_front() {
-        let columns = |layout: &Layout| layout.state.iter_leaves().count();
-        let is_in_front = |layout: &Layout, kind: PanelKind| {
-            let path = layout.state.find_tab(&kind).expect("there");
-            layout.state.leaf(path.node_path()).expect("a leaf").active == path.tab
-        };
-        let mut layout = Layout::default();
-        layout.state_in(egui::vec2(1280.0, 720.0), true);
-        layout.open(PanelKind::World);
-        assert_eq!(columns(&layout), 2);
-        layout.state_in(egui::vec2(1920.0, 1080.0), true);
-        assert_eq!(columns(&layout), 4, "stage, charts, champions and the other panels");
-        assert!(is_in_front(&layout, PanelKind::World));
-        // A person's own arrangement stays.
-        layout.close(PanelKind::Lessons);
-        layout.state_in(egui::vec2(1280.0, 720.0), true);
-        assert_eq!(columns(&layout), 4);
-    }
-
-    #[test]
-    fn a_panel_opened_before_the_window_has_a_size_gets_the_focus() {
-        let mut layout = Layout::default();
-        layout.open(PanelKind::Charts);
-        layout.state_in(egui::vec2(1280.0, 720.0), true);
-        let path = layout.state.find_tab(&PanelKind::Charts).expect("there");
-        let leaf = layout.state.leaf(path.node_path()).expect("a leaf");
-        assert_eq!(leaf.active, path.tab);
-    }
-
-    #[test]
-    fn a_layout_survives_as_text_and_invalid_text_is_rejected() {
-        let mut layout = laid_out(1280.0);
-        layout.close(PanelKind::Lessons);
-        let again = Layout::from_text(&layout.to_text());
-        assert!(!again.is_to_be_laid_out && !again.has(PanelKind::Lessons));
-        assert!(again.has(PanelKind::Charts));
-        for text in ["", "(", "()", "(surfaces:[],focused_surface:None)"] {
-            assert!(Layout::from_text(text).is_to_be_laid_out, "{text}");
-        }
-        let by_hand = layout.to_text().replace("fraction:0.3", "fraction:0.4");
-        assert!(Layout::from_text(&by_hand).is_to_be_laid_out);
-        let twice = layout.to_text().replace("Stage", "Lessons");
-        let text = twice.split_once(' ').expect("sealed").1;
-        assert!(Layout::from_text(&format!("{} {text}", seal(text))).is_to_be_laid_out);
-    }
-}
+mod tests;

@@ -7,7 +7,7 @@ use crate::studio::commands::StageCommand;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
-use crate::studio::scene::camera::CameraRig;
+use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::opening::NamedChampion;

@@ -37,8 +37,11 @@ pub(crate) fn menu(
                 let is_toggle = |action: &Action| (action.asks)(situation).as_ref().and_then(is_on);
                 let has_toggles = actions().any(|action| is_toggle(action).is_some());
                 // In a low window a menu would reach below its end.
-                let height = ui.ctx().content_rect().height() - theme::GAP * 8.0;
+                let height = ui.ctx().content_rect().height() - theme::GAP * 6.0;
+                // egui gives a menu at most 400 points of height.
+                ui.set_max_height(height);
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                    ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
                     for action in actions() {
                         entry(ui, action, situation, (has_toggles, is_on), commands);
                         if action.name == BEFORE_RECENT {
@@ -177,6 +180,30 @@ mod tests {
             harness.run();
             let expected = FileCommand::Answer(FileQuestion::Open, vec![path.into()]);
             assert_eq!(harness.state().last(), Some(&Command::File(expected)));
+        }
+    }
+
+    #[test]
+    fn the_last_entry_of_each_menu_is_in_sight_in_a_low_window() {
+        // The smallest window of the window tests, at the scales 1 and 1.25.
+        for size in [egui::vec2(1024.0, 640.0), egui::vec2(819.0, 512.0)] {
+            for of in Menu::ALL {
+                let recent = RecentFiles::default();
+                let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
+                    theme::apply(ui.ctx());
+                    menu(ui, Situation::default(), &|_| None, &recent, "", &mut Vec::new());
+                });
+                harness.get_by_label(of.name()).click();
+                harness.run();
+                let mut entries = ACTIONS.iter().filter(|action| action.menu == of);
+                let last = entries.rfind(|action| !action.key().contains("...")).expect("one");
+                let entry = harness.get_by_label_contains(last.name).rect();
+                let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
+                assert!(screen.contains_rect(entry), "{}: {entry} in {size}", last.name);
+                let layer = harness.ctx.layer_id_at(entry.center()).expect("a menu");
+                let menu_rect = harness.ctx.memory(|memory| memory.area_rect(layer.id));
+                assert!(menu_rect.is_some_and(|rect| rect.contains_rect(entry)), "{}", last.name);
+            }
         }
     }
 

@@ -4,9 +4,10 @@ use bevy::prelude::Msaa;
 use bevy_egui::egui;
 
 use super::camera_bar::view_bar;
+use super::card_places::{AroundLimb, messages_room};
 use super::generation_card::{generation_card, waiting_card};
 use super::leaderboard::leaderboard;
-use super::limb_card::limb_card;
+use super::limb_card::{CardSize, limb_card};
 use super::overlay_legend::overlay_legend;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, WindowCommand};
@@ -42,21 +43,32 @@ pub(crate) fn lesson_card(
 pub(crate) struct AroundStage {
     /// Position for another card below the camera bar.
     pub below_bar: egui::Pos2,
-    /// The leaderboard or the card of a generation, in points. The camera keeps the snakes out of it.
-    pub board: Option<egui::Rect>,
-    /// Height at which messages above the lower right corner end.
-    pub messages_end: f32,
+    /// The cards that the camera keeps the snakes out of, in points: the leaderboard or the card of a generation, and the
+    /// card of a limb.
+    pub cards: Vec<egui::Rect>,
+    /// Room for messages, which stand at its lower right corner, in points.
+    pub messages_room: egui::Rect,
 }
 
-/// Draws the cards over the edges of the stage. `progress` has the evaluated and all snakes of the current generation;
-/// `is_touring` says that a card of the tour covers the upper left corner.
+/// What the cards depend on besides the stage.
+pub(crate) struct CardSituation {
+    pub theme: theme::Theme,
+    /// The evaluated and all snakes of the current generation.
+    pub progress: (u32, u32),
+    /// Whether a card of the tour covers the upper left corner.
+    pub is_touring: bool,
+    /// Size of the messages in the last frame, in points.
+    pub messages: egui::Vec2,
+}
+
+/// Draws the cards over the edges of the stage.
 pub(crate) fn around_stage(
     context: &egui::Context,
     stage: egui::Rect,
     on_stage: &OnStage,
     lanes: &[&Lane],
     focused: &Lane,
-    (theme, progress, is_touring): (theme::Theme, (u32, u32), bool),
+    situation: &CardSituation,
     commands: &mut Vec<Command>,
 ) -> AroundStage {
     let whole = stage;
@@ -75,7 +87,7 @@ pub(crate) fn around_stage(
                 on_stage.rig.camera_mode(),
                 &on_stage.overlays,
                 is_smooth,
-                theme,
+                situation.theme,
                 commands,
             );
         });
@@ -88,7 +100,7 @@ pub(crate) fn around_stage(
     let low = (egui::Align2::LEFT_BOTTOM, stage.left_bottom());
     // One lane rises from the lower left to the upper right, so the sky at the upper left is free.
     let high = (egui::Align2::LEFT_TOP, below_bar);
-    let (pivot, at) = if is_touring { low } else { high };
+    let (pivot, at) = if situation.is_touring { low } else { high };
     let mut corner = None;
     if let (StageMode::Generation { .. }, Some(best)) = (&*on_stage.mode, lanes.first()) {
         let (mode, following) = (&*on_stage.mode, &on_stage.following);
@@ -107,25 +119,18 @@ pub(crate) fn around_stage(
         board = Some(shown.response.rect.expand(theme::GAP));
     } else if on_stage.following.awaits_first() {
         let shown = card("waiting", pivot, at).show(context, |ui| {
-            frame.show(ui, |ui| waiting_card(ui, progress, commands));
+            frame.show(ui, |ui| waiting_card(ui, situation.progress, commands));
         });
         corner = Some(shown.response.rect);
     }
     if let Some(corner) = corner {
         board = Some(corner.expand(theme::GAP));
-        if !is_touring {
+        if !situation.is_touring {
             below_bar = below(corner);
         }
     }
-    let mut messages_end = whole.bottom();
-    if let Some(limb) = on_stage.selection.limb {
-        // The card ignores the pointer, because the snake may be behind it.
-        let place = card("limb", egui::Align2::RIGHT_BOTTOM, stage.right_bottom());
-        let shown = place.interactable(false).show(context, |ui| {
-            frame.show(ui, |ui| limb_card(ui, focused, limb, on_stage.playback.is_playing()));
-        });
-        messages_end = shown.response.rect.top();
-    }
+    let bar = bar.response.rect;
+    let mut others: Vec<egui::Rect> = std::iter::once(bar).chain(board).collect();
     if on_stage.overlays.shows_any() {
         // The legend ignores the pointer, because the snake may be behind it.
         let place = card("legend", egui::Align2::LEFT_TOP, below_bar).interactable(false);
@@ -134,6 +139,46 @@ pub(crate) fn around_stage(
             frame.show(ui, |ui| overlay_legend(ui, &on_stage.overlays, is_pulled));
         });
         below_bar = below(shown.response.rect);
+        others.push(shown.response.rect);
     }
-    AroundStage { below_bar, board, messages_end }
+    let limb_place = on_stage.selection.limb.map(|limb| {
+        let room = egui::vec2(whole.width(), stage.bottom() - bar.bottom());
+        let size = CardSize::for_stage(room);
+        let at = limb_place(context, (stage, &others), on_stage, (lanes, focused), (limb, size));
+        // The card ignores the pointer, because a snake may be behind it.
+        let place = card(LIMB_CARD, egui::Align2::LEFT_TOP, at.min).interactable(false);
+        let is_playing = on_stage.playback.is_playing();
+        let shown = place.show(context, |ui| {
+            frame.show(ui, |ui| limb_card(ui, focused, limb, is_playing, size));
+        });
+        shown.response.rect
+    });
+    if let Some(limb_place) = limb_place.filter(|place| place.contains(below_bar)) {
+        below_bar = below(limb_place);
+    }
+    let messages_room = messages_room(whole, bar, limb_place, &others[1..], situation.messages);
+    AroundStage { below_bar, cards: board.into_iter().chain(limb_place).collect(), messages_room }
+}
+
+/// Id of the card of a limb.
+const LIMB_CARD: &str = "limb";
+
+/// Where the card of a limb of the focused lane stands, beside the `others`.
+fn limb_place(
+    context: &egui::Context,
+    (room, others): (egui::Rect, &[egui::Rect]),
+    on_stage: &OnStage,
+    (lanes, focused): (&[&Lane], &Lane),
+    (limb, size): (usize, CardSize),
+) -> egui::Rect {
+    let drawn = context.memory(|memory| memory.area_rect(egui::Id::new(LIMB_CARD)));
+    // Before the first frame its height is not known.
+    let least = egui::vec2(size.width(), 0.0);
+    let drawn_size = drawn.map_or(least, |rect| rect.size());
+    let of_lane = |lane: &Lane| on_stage.limbs_in_window(context, lane);
+    let selected = of_lane(focused).get(limb).copied().flatten();
+    let lanes = lanes.iter().filter(|lane| !lane.is_ghost());
+    let all: Vec<egui::Rect> = lanes.flat_map(|lane| of_lane(lane)).flatten().collect();
+    let around = AroundLimb { room, taken: others, selected, all: &all };
+    around.place(drawn_size, drawn)
 }

@@ -2,10 +2,12 @@
 
 use bevy_egui::egui;
 
+use super::strip_marks::landing_flag;
 use crate::score::KeyframeHistory;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
+use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
 use crate::world::Stairs;
@@ -100,15 +102,6 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     });
 }
 
-/// Marks the winner by the accent below the text: the panels' font has no bold weight.
-fn marked_if(is_winner: bool, text: egui::RichText, palette: &theme::Palette) -> egui::RichText {
-    if is_winner {
-        text.color(palette.on_accent).background_color(palette.accent).strong()
-    } else {
-        text
-    }
-}
-
 /// Draws the leaderboard and collects the user's commands. `focus` is the lane whose numbers are shown. Over a narrow
 /// stage (`is_narrow`) the texts are shorter.
 pub(crate) fn leaderboard(
@@ -146,8 +139,13 @@ pub(crate) fn leaderboard(
             for (place, ranked) in ranking(racers, time_s).iter().enumerate() {
                 let lane = lanes.iter().find(|lane| lane.number() == ranked.lane);
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
-                let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
-                ui.label(marked_if(is_winner, rank.color(palette.text_weak), palette));
+                if is_winner {
+                    // A coloured background would look like the selection.
+                    landing_flag(ui, WINNER).on_hover_text(WINNER);
+                } else {
+                    let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
+                    ui.label(rank.color(palette.text_weak));
+                }
                 lane_dot(ui, ranked.lane, theme::LANE_DOT);
                 let beginning = lane.and_then(|lane| lane.staged().beginning_in_words());
                 let beginning = beginning.map(|words| format!("\n{}: {words}", ranked.name));
@@ -163,7 +161,7 @@ pub(crate) fn leaderboard(
                     (true, _) => "disqualified".to_owned(),
                     (false, Some(landed_s)) if is_narrow => format!("{landed_s:.2} s"),
                     (false, Some(landed_s)) => format!("landed {landed_s:.2} s"),
-                    (false, None) => format!("{:.2} m", ranked.y_m),
+                    (false, None) => format!("{} m", decimals(ranked.y_m, 2)),
                 };
                 let color = match (ranked.counts(), ranked.landed_s) {
                     (false, _) => palette.problem,
@@ -172,7 +170,7 @@ pub(crate) fn leaderboard(
                 };
                 let width = if is_narrow { 8 } else { 14 };
                 let text = egui::RichText::new(format!("{text:>width$}")).monospace().color(color);
-                let value = ui.label(marked_if(is_winner, text, palette));
+                let value = ui.label(text);
                 if let Some(lane) = lane {
                     value.on_hover_ui(|ui| split_times(ui, lane, time_s));
                 }
@@ -199,6 +197,8 @@ pub(crate) fn leaderboard(
     });
 }
 
+/// Name of the flag in place of the first rank.
+const WINNER: &str = "First on the landing";
 /// Shown while no copy of a what-if changes.
 const NEXT_LANE: &str = "The next change gets a lane of its own.";
 
@@ -248,142 +248,4 @@ fn buttons(ui: &mut egui::Ui, mode: &StageMode, keeps_each: bool, commands: &mut
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::evolve::{RunPlan, Settings};
-    use crate::save::shipped_champion;
-    use crate::studio::stage::staged_champion::StagedChampion;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-
-    #[test]
-    fn the_ranking_puts_landed_lanes_first_and_pulled_or_disqualified_ones_last() {
-        let ranked = |lane, landed_s, is_disqualified, y_m| RankedLane {
-            lane,
-            name: lane.to_string(),
-            landed_s,
-            is_disqualified,
-            is_disturbed: lane == 5,
-            y_m,
-        };
-        let mut ranking = [
-            ranked(0, None, false, 12.0),
-            ranked(1, Some(9.0), false, 24.0),
-            ranked(2, None, true, 30.0),
-            ranked(3, Some(7.5), false, 22.0),
-            ranked(4, None, false, 14.0),
-            ranked(5, None, false, 40.0),
-        ];
-        order(&mut ranking);
-        let lanes = ranking.map(|ranked| ranked.lane);
-        assert_eq!(lanes, [3, 1, 4, 0, 5, 2]);
-    }
-
-    #[test]
-    fn a_click_focuses_a_lane_and_buttons_keep_or_discard_a_change() {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = |number| {
-            Lane::new(
-                StagedChampion::from_file(&loaded, number, &format!("snake {number}")),
-                number,
-            )
-        };
-        let lanes = [lane(0), lane(1)];
-        let what_if = StageMode::what_if(RunPlan::new("climb", 1, Settings::default()));
-        for (mode, label, command) in [
-            (StageMode::Race, "snake 1", Command::Stage(StageCommand::Focus(1))),
-            (StageMode::Race, "Leave race", Command::Stage(StageCommand::Single)),
-            (what_if.clone(), "Keep", Command::Stage(StageCommand::KeepChange)),
-            (what_if.clone(), "Try another", Command::Stage(StageCommand::TryAnother)),
-            (what_if, "Discard", Command::Plan(PlanCommand::DropChange)),
-        ] {
-            let lanes: Vec<&Lane> = lanes.iter().collect();
-            let mut harness = Harness::new_ui_state(
-                |ui, commands| leaderboard(ui, &lanes, &mode, 0, 0.0, false, commands),
-                Vec::new(),
-            );
-            harness.get_by_label(label).click();
-            harness.run();
-            assert_eq!(*harness.state(), [command], "{label}");
-        }
-    }
-
-    #[test]
-    fn each_of_several_copies_can_be_kept_and_the_board_says_when_none_changes() {
-        let loaded = shipped_champion().expect("well formed");
-        let plan = RunPlan::new("climb", 1, Settings::default());
-        let staged = |label: &str| StagedChampion::from_file(&loaded, 0, label);
-        let lanes = ["climber", "ice", "glue"].iter().enumerate();
-        let lanes: Vec<Lane> =
-            lanes.map(|(number, label)| Lane::new(staged(label), number)).collect();
-        let lanes: Vec<&Lane> = lanes.iter().collect();
-        for (current, says_so) in [(1, true), (2, false)] {
-            let (before, beside) = (Box::new(plan.clone()), vec![plan.clone()]);
-            let mode = StageMode::WhatIf { before, beside, current };
-            let mut harness = Harness::new_ui_state(
-                |ui, commands| leaderboard(ui, &lanes, &mode, 0, 0.0, false, commands),
-                Vec::new(),
-            );
-            assert_eq!(harness.query_by_label(NEXT_LANE).is_some(), says_so);
-            assert_eq!(harness.query_by_label("Try another").is_some(), !says_so);
-            assert!(harness.query_by_label("Keep climber").is_none(), "it is no copy");
-            harness.get_by_label("Keep glue").click();
-            harness.run();
-            assert_eq!(*harness.state(), [Command::Plan(PlanCommand::KeepLane(2))]);
-        }
-    }
-
-    #[test]
-    fn split_times_grow_with_the_steps_and_end_at_the_present() {
-        let loaded = shipped_champion().expect("well formed");
-        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "one"), 0);
-        lane.finish_lookahead();
-        let history = lane.history().expect("it has finished");
-        let stairs = &lane.trial().stairs;
-        let all_s = splits_s(stairs, history, lane.step_s(), 15.0);
-        assert_eq!(all_s.len() as u32, stairs.steps, "the shipped champion lands");
-        assert!(all_s.windows(2).all(|pair| pair[0] <= pair[1]), "{all_s:?}");
-        let landed_s = lane.landed_s(15.0).expect("it lands");
-        assert!((all_s[9] - landed_s).abs() < 0.2, "{} and {landed_s}", all_s[9]);
-        let some_s = splits_s(stairs, history, lane.step_s(), all_s[4] + 0.01);
-        assert_eq!(some_s, all_s[..some_s.len()]);
-        assert!((5..10).contains(&some_s.len()), "{some_s:?}");
-    }
-
-    #[test]
-    fn ghosts_are_not_ranked() {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = |number, name: &str| {
-            Lane::new(StagedChampion::from_file(&loaded, number, name), number)
-        };
-        let lanes = [lane(0, "racer"), lane(1, "ghost").into_ghost()];
-        let lanes: Vec<&Lane> = lanes.iter().collect();
-        let mut harness = Harness::new_ui_state(
-            |ui, commands: &mut Vec<Command>| {
-                leaderboard(ui, &lanes, &StageMode::Race, 0, 0.0, false, commands);
-            },
-            Vec::new(),
-        );
-        harness.run();
-        harness.get_by_label("racer");
-        assert!(harness.query_by_label("ghost").is_none());
-    }
-
-    #[test]
-    fn the_leaderboard_is_narrower_over_a_narrow_stage() {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "one"), 0);
-        let width = |is_narrow| {
-            let mut harness = Harness::new_ui_state(
-                |ui, commands: &mut Vec<Command>| {
-                    leaderboard(ui, &[&lane], &StageMode::Race, 0, 0.0, is_narrow, commands);
-                },
-                Vec::new(),
-            );
-            harness.run();
-            let [name, value] = ["one", " m"].map(|label| harness.get_by_label_contains(label));
-            value.rect().right() - name.rect().left()
-        };
-        assert!(width(true) + 30.0 < width(false), "{} of {}", width(true), width(false));
-    }
-}
+mod tests;

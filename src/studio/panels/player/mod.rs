@@ -1,6 +1,7 @@
 //! Panels on the edges of the stage: the player below it, the camera buttons above it, the leaderboard beside it.
 
 pub mod camera_bar;
+mod card_places;
 pub mod cards;
 mod climb_events;
 pub mod generation_card;

@@ -9,6 +9,7 @@ use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
 
@@ -97,7 +98,7 @@ impl PresentedCaption {
         let result = |ranked: &RankedLane| match ranked.landed_s {
             _ if !ranked.counts() => "out".to_owned(),
             Some(landed_s) => format!("landed after {landed_s:.1} s"),
-            None => format!("{:.1} m", ranked.y_m),
+            None => format!("{} m", decimals(ranked.y_m, 1)),
         };
         let Some(leader) = ranking.first() else { return Self::default() };
         let title = match leader.landed_s.filter(|_| leader.counts()) {

@@ -1,6 +1,7 @@
 //! Marks of a snake's climb on the time line, and the legend of the strip.
 
 use bevy_egui::egui;
+use bevy_egui::egui::emath::TSTransform;
 use bevy_egui::egui::{Color32, Rect, Shape, Stroke};
 
 use super::climb_events::{ClimbEvent, ClimbEventKind};
@@ -61,6 +62,18 @@ fn color_of(kind: ClimbEventKind, palette: &Palette) -> Color32 {
         ClimbEventKind::Lost(_) => palette.problem,
         ClimbEventKind::Landed => palette.second,
     }
+}
+
+/// Draws the mark of a landing in a line of text. `said` is its label for screen readers.
+pub(super) fn landing_flag(ui: &mut egui::Ui, said: &str) -> egui::Response {
+    let size = egui::Vec2::splat(HALF * 4.0);
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+    let kind = ClimbEventKind::Landed;
+    let mut flag = shape(kind, egui::Pos2::ZERO, color_of(kind, theme::of(ui)));
+    flag.transform(TSTransform::new(rect.center().to_vec2(), 1.4));
+    ui.painter().add(flag);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, said));
+    response
 }
 
 /// The mark of an event: shapes differ, so that colours are not needed to tell them apart.

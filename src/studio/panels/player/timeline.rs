@@ -9,6 +9,7 @@ use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::{Playback, SPEED_RANGE};
 use crate::studio::stage::staged_champion::ChampionSource;
+use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::icons::{Icon, icon_button};
 use crate::studio::ui::theme;
 
@@ -41,6 +42,10 @@ pub(crate) struct TimelinePanel {
 
 /// Width of the button that lists more readings, in points.
 const MORE_WIDTH: f32 = 40.0;
+/// Minimum width of a sentence that is cut, in points: "disqualified" fits.
+const LEAST_SENTENCE: f32 = 100.0;
+/// Width of a monospaced character, in points.
+const DIGIT_WIDTH: f32 = 8.0;
 /// Approximate width of a character, in points.
 const CHARACTER_WIDTH: f32 = 7.4;
 
@@ -157,8 +162,12 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
     }
     ui.add_space(theme::GAP / 2.0);
     let width = format!("{end_s:.2}").len();
-    let time = format!("{:width$.2} of {end_s:.2} s", playback.time_s());
-    ui.label(egui::RichText::new(time).monospace());
+    let mut time = format!("{:width$.2} of {end_s:.2} s", playback.time_s());
+    let end = format!("The end is at {end_s:.2} s");
+    if ui.available_width() < time.len() as f32 * DIGIT_WIDTH + MORE_WIDTH {
+        time = format!("{:width$.2} s", playback.time_s());
+    }
+    ui.label(egui::RichText::new(time).monospace()).on_hover_text(end);
 }
 
 /// Draws the readings at the current time.
@@ -167,15 +176,14 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     let trial = lane.trial();
     let palette = theme::of(ui);
     if let Some(reason) = evaluation.disqualified {
-        let text = format!("disqualified: {}", reason.words());
-        ui.label(egui::RichText::new(text).color(palette.problem));
+        disqualification(ui, &format!("disqualified: {}", reason.words()));
         return;
     }
     let unit = trial.fitness.unit();
     // A recording stores only the final evaluation.
     let is_on_record = lane.staged().recording().is_some() && !lane.is_over();
     if is_on_record {
-        let place = format!("{:.2} m", evaluation.centre_y_m);
+        let place = format!("{} m", decimals(evaluation.centre_y_m, 2));
         ui.label(egui::RichText::new(place).monospace());
         ui.label(egui::RichText::new("position").color(palette.text_weak));
         return;
@@ -195,7 +203,11 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
         format!("Fitness if the trial ended now: {}{cost}{more}", trial.fitness.words());
     // Ordered by importance, because a narrow window has room for only some of them.
     let all = [
-        ("fitness", Some(format!("{:.2}{unit}", evaluation.fitness)), fitness_hint.as_str()),
+        (
+            "fitness",
+            Some(format!("{}{unit}", decimals(evaluation.fitness, 2))),
+            fitness_hint.as_str(),
+        ),
         ("steps", steps, "Steps that the middle block has climbed"),
         ("speed", Some(format!("{:.2} m/s", lane.speed_m_s())), "Speed of the middle block"),
         (
@@ -229,11 +241,25 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     }
 }
 
+/// Draws why the snake is out, cut with "…" where there is no room for the whole sentence, or behind a button where there
+/// is hardly any.
+fn disqualification(ui: &mut egui::Ui, sentence: &str) {
+    if ui.available_width() < LEAST_SENTENCE {
+        more_readings(ui, &[(sentence, String::new(), "")]);
+        return;
+    }
+    let text = egui::RichText::new(sentence).color(theme::of(ui).problem);
+    ui.add(egui::Label::new(text).truncate()).on_hover_text(sentence);
+}
+
 /// Draws a button that lists the readings for which the panel has no room.
 fn more_readings(ui: &mut egui::Ui, readings: &[(&str, String, &str)]) {
     let lines = |ui: &mut egui::Ui| {
         for (name, value, hint) in readings {
-            ui.label(format!("{name} {value}")).on_hover_text(*hint);
+            let reading = ui.label(format!("{name} {value}").trim_end());
+            if !hint.is_empty() {
+                reading.on_hover_text(*hint);
+            }
         }
     };
     let button = ui.menu_button("…", lines).response;
@@ -302,6 +328,39 @@ mod tests {
             harness.run();
             assert_eq!(harness.query_by_label_contains("26.00 m").is_none(), hides_future);
             assert_eq!(harness.query_by_label_contains("of 15.00 s").is_some(), hides_future);
+        }
+    }
+
+    #[test]
+    fn the_reason_of_a_disqualification_never_covers_the_time() {
+        let loaded = shipped_champion().expect("well formed");
+        let lesson = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
+        let mut trial = lesson.trial().clone();
+        trial.health.speed_m_s = 6.0;
+        let mut lane = Lane::new(lesson.in_world(&trial, "a low limit".to_owned()), 0);
+        lane.finish_lookahead();
+        lane.show(lane.end_s() + 0.1, None, 3000).expect("shown");
+        assert!(lane.evaluation().disqualified.is_some());
+        for width in [368.0, 480.0, 608.0, 900.0] {
+            let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
+            let size = egui::vec2(width, 200.0);
+            let mut harness = Harness::builder().with_size(size).build_ui_state(
+                |ui, commands| {
+                    theme::apply(ui.ctx());
+                    panel.ui(ui, &lane, &playback, SPAN, 0, commands);
+                },
+                Vec::new(),
+            );
+            harness.run();
+            // Below a stage of 400 points there is only room for the time itself.
+            let time = harness.query_by_label_contains(" of 15.00 s");
+            assert_eq!(time.is_some(), width > 368.0, "{width}");
+            let time = time.unwrap_or_else(|| harness.get_by_label(" 0.00 s")).rect();
+            let reason = harness.query_by_label_contains("disqualified: ");
+            let shown = reason.or_else(|| harness.query_by_label("More readings"));
+            let shown = shown.expect("a reason or its button").rect();
+            assert!(shown.left() >= time.right(), "{width}: {shown} covers {time}");
+            assert!(shown.right() <= width, "{width}: {shown}");
         }
     }
 

@@ -22,7 +22,7 @@ impl PresetChoice {
         ui.horizontal_wrapped(|ui| {
             ui.label("Preset");
             let list = egui::ComboBox::from_id_salt("preset")
-                .selected_text(run.next_preset())
+                .selected_text(run.next_preset_in_words())
                 .width(theme::COMBO_WIDTH)
                 .height(theme::list_height(ui))
                 .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));

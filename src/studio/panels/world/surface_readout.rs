@@ -87,6 +87,8 @@ const NAME_WIDTH: f32 = theme::GAP * 11.0;
 const WIDTH_FOR_TERMS: f32 = theme::GAP * 35.0;
 /// Width of a name with its term, in points.
 const TERM_WIDTH: f32 = theme::GAP * 21.0;
+/// Minimum width of a column, in points: every number fits.
+const LEAST_COLUMN: f32 = theme::GAP * 8.5;
 
 impl<'l> ReadLanes<'l> {
     /// The lanes to read out of those on the stage.
@@ -153,18 +155,34 @@ impl<'l> ReadLanes<'l> {
             self.lanes.iter().map(|lane| LaneColumn::of(lane, self.is_playing, is_meant)).collect();
         let has_terms = columns.len() == 1 && ui.available_width() >= WIDTH_FOR_TERMS;
         let names_width = if has_terms { TERM_WIDTH } else { NAME_WIDTH };
-        let gaps = theme::GAP * columns.len() as f32;
-        let room = (ui.available_width() - names_width - gaps) / columns.len() as f32;
-        let table = ReadoutTable { columns, has_terms, names_width, room };
-        let gap = theme::GAP;
-        let grid = egui::Grid::new(("read-out", surface as u8))
+        let all_room = ui.available_width() - names_width;
+        // Columns for which there is no room follow below the first ones.
+        let most = ((all_room / (LEAST_COLUMN + theme::GAP)) as usize).max(1);
+        let beside = columns.len().div_ceil(columns.len().div_ceil(most));
+        let room = all_room / beside as f32 - theme::GAP;
+        for (index, columns) in columns.chunks(beside).enumerate() {
+            let table = ReadoutTable { columns, has_terms, names_width, room };
+            self.grid(ui, (surface, index), &table, is_meant);
+        }
+    }
+
+    /// Draws lanes side by side. `index` counts the tables of a surface.
+    fn grid(
+        &self,
+        ui: &mut egui::Ui,
+        (surface, index): (ReadSurface, usize),
+        table: &ReadoutTable,
+        is_meant: impl Fn(TouchedSurface) -> bool + Copy,
+    ) {
+        let (palette, gap) = (theme::of(ui), theme::GAP);
+        let grid = egui::Grid::new(("read-out", surface as u8, index))
             .min_col_width(0.0)
             .min_row_height(gap * 2.25)
             .spacing([gap, gap / 8.0]);
         grid.show(ui, |ui| {
             if self.are_named {
                 ui.label("");
-                for column in &table.columns {
+                for column in table.columns {
                     table.cell(ui, |ui| {
                         let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
                         let label = column.lane.staged().label();
@@ -188,15 +206,15 @@ impl<'l> ReadLanes<'l> {
 }
 
 /// The lines of a read-out with a column for each lane.
-struct ReadoutTable<'l> {
-    columns: Vec<LaneColumn<'l>>,
+struct ReadoutTable<'c, 'l> {
+    columns: &'c [LaneColumn<'l>],
     has_terms: bool,
     /// Widths of the names and of a column, in points.
     names_width: f32,
     room: f32,
 }
 
-impl ReadoutTable<'_> {
+impl ReadoutTable<'_, '_> {
     fn line(
         &self,
         ui: &mut egui::Ui,
@@ -214,7 +232,7 @@ impl ReadoutTable<'_> {
             ui.set_width(self.names_width);
             ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(line.hint);
         });
-        for column in &self.columns {
+        for column in self.columns {
             let cell = self.cell(ui, |ui| value(ui, column));
             // Above the number, which would keep the pointer from the cell.
             let id = ui.id().with((line.name, column.lane.number()));

@@ -9,7 +9,8 @@ use bevy::window::PrimaryWindow;
 use rapier3d::parry::query::{Ray, RayCast};
 use rapier3d::parry::shape::{Cuboid, HalfSpace};
 
-use super::{CameraRig, StageCamera};
+use super::StageCamera;
+use super::rig::CameraRig;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;

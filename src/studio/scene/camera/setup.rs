@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::CameraRig;
+use super::rig::CameraRig;
 use super::view::CameraView;
 use crate::studio::commands::camera_mode::CameraMode;
 

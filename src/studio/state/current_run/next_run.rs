@@ -117,7 +117,26 @@ impl CurrentRun {
 
     /// Unchanged settings of the next run's preset, if known.
     pub fn preset_settings(&self) -> Option<&Settings> {
-        let name = self.next_preset();
+        self.settings_of(self.next_preset())
+    }
+
+    /// The preset of the current run in words: "climb", or "climb, changed" if the run has other settings.
+    pub fn preset_in_words(&self) -> String {
+        self.in_words(self.preset(), self.settings())
+    }
+
+    /// The same for the next run.
+    pub fn next_preset_in_words(&self) -> String {
+        self.in_words(self.next_preset(), self.next_settings())
+    }
+
+    fn in_words(&self, preset: &str, settings: &Settings) -> String {
+        let is_changed = self.settings_of(preset).is_some_and(|own| own != settings);
+        if is_changed { format!("{preset}, changed") } else { preset.to_owned() }
+    }
+
+    /// Unchanged settings of a preset, if known.
+    fn settings_of(&self, name: &str) -> Option<&Settings> {
         let first = &self.context.first.plan;
         // The program may have been started with a preset file.
         let of_first = (first.preset == name).then_some(&first.settings);
@@ -161,5 +180,23 @@ impl CurrentRun {
             next.founder = None;
         }
         self.set_next_plan(next)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::studio::state::current_run::prepared_run;
+
+    #[test]
+    fn a_preset_with_other_settings_is_called_changed() {
+        let mut run = prepared_run();
+        run.set_preset("climb").expect("shipped");
+        let said = |run: &super::CurrentRun| (run.preset_in_words(), run.next_preset_in_words());
+        let words = |now: &str, next: &str| (now.to_owned(), next.to_owned());
+        assert_eq!(said(&run), words("climb", "climb"));
+        run.set_field("trial.surface.friction", "0.5").expect("allowed");
+        assert_eq!(said(&run), words("climb, changed", "climb, changed"), "it has not started");
+        run.set_preset("ice").expect("shipped");
+        assert_eq!(said(&run), words("ice", "ice"));
     }
 }

@@ -14,6 +14,8 @@ const BAR_HEIGHT: f32 = theme::GAP;
 const BAR_WIDTH: f32 = theme::GAP * 15.0;
 /// Room for the text beside a bar, in points.
 const PERCENT_WIDTH: f32 = theme::GAP * 5.0;
+/// Width of a column in which "5 of 5 limbs" fits, in points.
+const WIDTH_FOR_LIMBS: f32 = theme::GAP * 12.5;
 /// Share from which a contact counts as sliding: the engine stays a little below 1.
 const SLIDES_FROM: f32 = 0.995;
 
@@ -34,7 +36,7 @@ impl<'l> LaneColumn<'l> {
 
     /// Draws the slip speed.
     pub fn slip(&self, ui: &mut egui::Ui) {
-        self.value(ui, |reading| format!("{:.2} m/s", reading.slip_m_s));
+        self.value(ui, |reading| in_m_s(reading.slip_m_s));
     }
 
     /// Draws the depth of the dents.
@@ -60,7 +62,8 @@ impl<'l> LaneColumn<'l> {
             (None, _) => "recording".to_owned(),
             (_, None) => "none".to_owned(),
             (_, Some(reading)) => {
-                format!("{} of {} limbs", reading.limbs, self.lane.body().limbs.len())
+                let unit = if ui.available_width() < WIDTH_FOR_LIMBS { "" } else { " limbs" };
+                format!("{} of {}{unit}", reading.limbs, self.lane.body().limbs.len())
             }
         };
         number(ui, &text);
@@ -164,6 +167,12 @@ fn number(ui: &mut egui::Ui, text: &str) {
 /// A share as whole percents.
 pub(crate) fn in_percent(share: f32) -> String {
     format!("{:.0} %", share * 100.0)
+}
+
+/// A speed in at most four digits.
+pub(super) fn in_m_s(speed_m_s: f32) -> String {
+    let decimals = if speed_m_s < 9.995 { 2 } else { 1 };
+    format!("{speed_m_s:.decimals$} m/s")
 }
 
 pub(super) fn in_mm(depth_m: f32) -> String {

@@ -1,6 +1,6 @@
 //! The read-out of surfaces, drawn in panels of several widths.
 
-use super::lane_column::{in_joules, in_mm, in_watts};
+use super::lane_column::{in_joules, in_m_s, in_mm, in_watts};
 use super::*;
 use crate::save::{LoadedChampion, shipped_champion};
 use crate::score::Recording;
@@ -128,4 +128,31 @@ fn a_ground_of_its_own_has_readings_of_its_own() {
     assert!(shows(&ground, "On the ground now") && shows(&ground, "of 5 limbs"));
     let stairs = panel(vec![&own], ReadSurface::Stairs, 320.0);
     assert!(shows(&stairs, "On the stairs now") && shows(&stairs, "none"), "far from them");
+}
+
+#[test]
+fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
+    let [stone, ice] = on_stone_and_ice();
+    // With the margins of the test's window.
+    let width = 320.0 + 16.0;
+    let panel = panel(vec![&stone, &ice, &stone, &ice, &stone], ReadSurface::Stairs, width);
+    assert_nothing_is_wider_than(&panel, width);
+    for lane in [&stone, &ice] {
+        let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
+        let lost = in_joules(lane.readings().energy_lost.expect("undisturbed").elsewhere_j());
+        let grip = format!("{:>5}", in_percent(reading.grip_share.expect("friction")));
+        for label in [in_m_s(reading.slip_m_s), grip, in_watts(reading.lost_w), lost] {
+            // The width of a label that is not cut: that of its text in the monospaced font.
+            let font = egui::TextStyle::Monospace.resolve(&panel.ctx.global_style());
+            let whole = panel.ctx.fonts_mut(|fonts| {
+                fonts.layout_no_wrap(label.clone(), font, egui::Color32::BLACK).size().x
+            });
+            let shown: Vec<f32> =
+                panel.query_all_by_label(&label).map(|value| value.rect().width()).collect();
+            assert!(!shown.is_empty(), "{label}");
+            assert!(shown.iter().all(|width| *width >= whole - 0.5), "{label}: {shown:?}, {whole}");
+        }
+    }
+    assert!(shows(&panel, "of 5") && !shows(&panel, "of 5 limbs"), "short in narrow columns");
+    assert_eq!((in_m_s(9.99), in_m_s(12.34)), ("9.99 m/s".to_owned(), "12.3 m/s".to_owned()));
 }

@@ -1,0 +1,215 @@
+//! Where the card with a limb's readings stands, and where messages have room beside it.
+
+use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
+
+use crate::studio::ui::theme;
+
+/// Distance between two cards, in points.
+const GAP: f32 = theme::GAP;
+/// Distance that a new place keeps from the limbs, in points, so that the card need not move again at once.
+const FROM_LIMBS: f32 = theme::GAP * 1.5;
+/// Minimum width of messages, in points.
+const LEAST_MESSAGES: f32 = 200.0;
+
+/// What the card with a limb's readings must not cover, in points.
+pub(super) struct AroundLimb<'a> {
+    /// Room for the card.
+    pub room: Rect,
+    /// The other cards.
+    pub taken: &'a [Rect],
+    /// The selected limb.
+    pub selected: Option<Rect>,
+    /// All limbs on the stage.
+    pub all: &'a [Rect],
+}
+
+impl AroundLimb<'_> {
+    /// Where a card of this size covers neither the selected limb nor, if possible, any other; the lower right corner
+    /// if all places are equally good. A card that stands well at `now` stays.
+    pub fn place(&self, size: Vec2, now: Option<Rect>) -> Rect {
+        let candidates = self.candidates(size);
+        let default = Rect::from_min_size(self.room.max - size, size);
+        // Its size may have changed since.
+        let distance = |place: &Rect, now: Rect| {
+            let corners = [place.min - now.min, place.max - now.max];
+            corners.into_iter().map(Vec2::length).fold(f32::INFINITY, f32::min)
+        };
+        let as_now = now.and_then(|now| {
+            let nearest = candidates.iter().copied();
+            let nearest = nearest.min_by(|a, b| distance(a, now).total_cmp(&distance(b, now)))?;
+            (distance(&nearest, now) < GAP).then_some(nearest)
+        });
+        if let Some(as_now) = as_now.filter(|place| self.covered(place, 0.0) == (0.0, 0.0)) {
+            return as_now;
+        }
+        let cost = |place: &Rect| self.covered(place, FROM_LIMBS);
+        let is_less = |a: (f32, f32), b: (f32, f32)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+        let best = candidates.iter().copied().min_by(|a, b| is_less(cost(a), cost(b)));
+        match (as_now, best) {
+            // It moves only for a good reason.
+            (Some(as_now), Some(best)) if !self.is_much_better(&best, &as_now) => as_now,
+            (_, Some(best)) => best,
+            (_, None) => default,
+        }
+    }
+
+    fn is_much_better(&self, place: &Rect, now: &Rect) -> bool {
+        let (ours, theirs) = (self.covered(place, 0.0), self.covered(now, 0.0));
+        ours.0 < theirs.0 || (ours.0 == theirs.0 && ours.1 < theirs.1 / 2.0)
+    }
+
+    /// The covered areas of the selected limb and of all others, in square points.
+    fn covered(&self, place: &Rect, margin: f32) -> (f32, f32) {
+        let of = |limb: &Rect| {
+            let common = place.expand(margin).intersect(*limb);
+            if common.is_positive() { common.area() } else { 0.0 }
+        };
+        (self.selected.as_ref().map_or(0.0, of), self.all.iter().map(of).sum())
+    }
+
+    /// Places at the right and the left edge that cover no other card, the preferred ones first.
+    fn candidates(&self, size: Vec2) -> Vec<Rect> {
+        let (room, last) = (self.room, self.room.max - size);
+        let beside =
+            self.taken.iter().flat_map(|card| [card.bottom() + GAP, card.top() - GAP - size.y]);
+        let tops: Vec<f32> = [last.y, room.top()].into_iter().chain(beside).collect();
+        let at = |x: f32, y: f32| Rect::from_min_size(pos2(x, y), size);
+        let all =
+            [last.x, room.left()].into_iter().flat_map(|x| tops.iter().map(move |y| at(x, *y)));
+        let is_free = |place: &Rect| {
+            room.expand(0.5).contains_rect(*place)
+                && !self.taken.iter().any(|card| card.intersects(*place))
+        };
+        all.filter(is_free).collect()
+    }
+}
+
+/// Room for messages at its lower right corner: not below the bar with the cameras, and beside the card of a limb, or
+/// above it if that is where they have room. `size` is that of the messages.
+pub(super) fn messages_room(
+    stage: Rect,
+    bar: Rect,
+    card: Option<Rect>,
+    others: &[Rect],
+    size: Vec2,
+) -> Rect {
+    let size = size.max(vec2(theme::NOTICE_WIDTH, GAP * 8.0));
+    let is_below_bar = stage.right() - size.x - GAP * 3.0 < bar.right();
+    let top = if is_below_bar { bar.bottom() } else { stage.top() };
+    let whole = Rect::from_min_max(pos2(stage.left(), top), stage.max);
+    let Some(card) = card else { return whole };
+    let to = |max: Pos2| Rect::from_min_max(whole.min, max);
+    let rooms = [
+        whole,
+        // Over the ground; above the card they could cover a snake on the stairs.
+        to(pos2(card.left(), whole.bottom())),
+        Rect::from_min_max(pos2(card.right(), whole.top()), whole.max),
+        to(pos2(whole.right(), card.top())),
+    ];
+    // Rectangles that only touch do not cover each other.
+    let covers = |a: Rect, b: Rect| a.intersect(b).is_positive();
+    let messages = |room: &Rect| {
+        let size = vec2(size.x.min(room.width()), size.y);
+        Rect::from_min_size(room.max - size, size)
+    };
+    let is_free = |room: &&Rect| {
+        let messages = messages(room);
+        room.width() >= LEAST_MESSAGES
+            && room.contains_rect(messages)
+            && !covers(card, messages)
+            && !others.iter().any(|other| covers(*other, messages))
+    };
+    let beside = || rooms[1..].iter().filter(|room| room.width() >= LEAST_MESSAGES);
+    let largest = beside().max_by(|a, b| a.area().total_cmp(&b.area()));
+    *rooms.iter().find(is_free).or(largest).unwrap_or(&whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rect(left: f32, top: f32, right: f32, bottom: f32) -> Rect {
+        Rect::from_min_max(pos2(left, top), pos2(right, bottom))
+    }
+
+    /// The stage and its bar in a window of 1024 by 640 points.
+    const STAGE: Rect = Rect { min: pos2(385.0, 29.0), max: pos2(1024.0, 452.0) };
+    const BAR: Rect = Rect { min: pos2(397.0, 41.0), max: pos2(785.0, 76.0) };
+    /// The card that such a stage has room for.
+    const CARD: Vec2 = vec2(250.0, 224.0);
+
+    /// The limbs of a snake at the first step, from the head, as the default camera shows them in that window.
+    fn snake() -> Vec<Rect> {
+        let middles =
+            [(722.0, 230.0), (686.0, 253.0), (648.0, 262.0), (605.0, 272.0), (558.0, 295.0)];
+        middles.map(|(x, y)| Rect::from_center_size(pos2(x, y), vec2(46.0, 42.0))).to_vec()
+    }
+
+    fn around(limbs: &[Rect], selected: usize) -> AroundLimb<'_> {
+        let all = limbs;
+        let taken = std::slice::from_ref(&BAR);
+        AroundLimb { room: STAGE.shrink(12.0), taken, selected: limbs.get(selected).copied(), all }
+    }
+
+    #[test]
+    fn the_card_of_a_limb_never_covers_that_limb() {
+        let limbs = snake();
+        for selected in 0..limbs.len() {
+            // Wherever the limb is pulled.
+            for (x, y) in
+                (400..1020).step_by(20).flat_map(|x| (40..450).step_by(20).map(move |y| (x, y)))
+            {
+                let mut pulled = limbs.clone();
+                pulled[selected] =
+                    Rect::from_center_size(pos2(x as f32, y as f32), vec2(46.0, 42.0));
+                let place = around(&pulled, selected).place(CARD, None);
+                let selected = pulled[selected];
+                assert!(!place.intersects(selected), "{place} covers {selected}");
+                assert!(STAGE.contains_rect(place) && !place.intersects(BAR), "{place}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_card_covers_no_limb_where_there_is_room_and_stays_while_it_does_not() {
+        let limbs = snake();
+        let small = vec2(310.0, 160.0);
+        let lower_right = around(&limbs, 0).place(small, None);
+        assert_eq!(lower_right.max, STAGE.shrink(12.0).max);
+        assert!(limbs.iter().all(|limb| !limb.intersects(lower_right)));
+        let upper_left = rect(397.0, 84.0, 707.0, 244.0);
+        let down = limbs.iter().map(|limb| limb.translate(vec2(60.0, 100.0))).collect::<Vec<_>>();
+        assert_eq!(
+            around(&down, 0).place(small, Some(upper_left)),
+            upper_left,
+            "it covers nothing"
+        );
+        let covered = around(&limbs, 0).place(small, Some(upper_left));
+        assert_eq!(covered, lower_right, "it would cover a limb");
+    }
+
+    #[test]
+    fn messages_are_neither_below_the_camera_bar_nor_behind_the_card_of_a_limb() {
+        let high = rect(702.0, 175.0, 1012.0, 440.0);
+        for (card, size) in [
+            (None, vec2(364.0, 60.0)),
+            (Some(rect(702.0, 290.0, 1012.0, 440.0)), vec2(364.0, 60.0)),
+            (Some(high), vec2(364.0, 60.0)),
+            (Some(high), vec2(364.0, 300.0)),
+            (Some(rect(397.0, 175.0, 707.0, 440.0)), vec2(364.0, 300.0)),
+            (Some(rect(702.0, 84.0, 1012.0, 334.0)), vec2(364.0, 300.0)),
+        ] {
+            let room = messages_room(STAGE, BAR, card, &[], size);
+            let drawn = Rect::from_min_size(
+                room.max - vec2(size.x.min(room.width()), size.y),
+                vec2(size.x.min(room.width()), size.y),
+            );
+            assert!(drawn.top() >= BAR.bottom(), "{card:?}: {drawn}");
+            assert!(
+                card.is_none_or(|card| !card.shrink(0.5).intersects(drawn)),
+                "{card:?}: {drawn}"
+            );
+            assert!(room.width() >= LEAST_MESSAGES && STAGE.contains_rect(room), "{room}");
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Layouts for windows of several sizes, as text, and after panels were chosen.
+
+use super::*;
+use egui_dock::{Node, NodePath};
+
+fn laid_out(width: f32) -> Layout {
+    let mut layout = Layout::default();
+    layout.state_in(egui::vec2(width, width * 9.0 / 16.0), true);
+    layout
+}
+
+#[test]
+fn the_default_layout_has_every_panel_once_at_any_width() {
+    for width in [640.0, 1280.0, 2560.0] {
+        let layout = laid_out(width);
+        assert!(PanelKind::ALL.iter().all(|kind| layout.has(*kind)), "{width}");
+        assert!(is_sound(&layout.state), "{width}");
+    }
+}
+
+#[test]
+fn closed_panels_can_be_restored_and_the_stage_cannot_be_closed() {
+    let mut layout = laid_out(1280.0);
+    for kind in PanelKind::ALL {
+        layout.close(kind);
+        assert!(!layout.has(kind));
+    }
+    layout.close(PanelKind::Stage);
+    assert!(layout.has(PanelKind::Stage));
+    for kind in PanelKind::ALL {
+        layout.open(kind);
+        assert!(layout.has(kind));
+    }
+    assert!(is_sound(&layout.state));
+}
+
+#[test]
+fn a_wider_window_widens_the_stage_but_not_the_panels() {
+    let left = |layout: &Layout| {
+        let path = layout.state.find_tab(&PanelKind::Run).expect("there");
+        let root = layout.state.main_surface().root_node().expect("a root");
+        let Node::Horizontal(split) = root else { panic!("split") };
+        assert_eq!(path.node, NodeIndex(1));
+        split.fraction
+    };
+    let mut layout = laid_out(1280.0);
+    assert!((left(&layout) * 1280.0 - LEFT).abs() < 1.0);
+    layout.state_in(egui::vec2(1490.0, 790.0), true);
+    assert!((left(&layout) * 1490.0 - LEFT).abs() < 1.0);
+}
+
+#[test]
+fn the_default_layout_follows_the_window_and_keeps_the_panel_in_front() {
+    let columns = |layout: &Layout| layout.state.iter_leaves().count();
+    let is_in_front = |layout: &Layout, kind: PanelKind| {
+        let path = layout.state.find_tab(&kind).expect("there");
+        layout.state.leaf(path.node_path()).expect("a leaf").active == path.tab
+    };
+    let mut layout = Layout::default();
+    layout.state_in(egui::vec2(1280.0, 720.0), true);
+    layout.open(PanelKind::World);
+    assert_eq!(columns(&layout), 2);
+    layout.state_in(egui::vec2(1920.0, 1080.0), true);
+    assert_eq!(columns(&layout), 4, "stage, charts, champions and the other panels");
+    assert!(is_in_front(&layout, PanelKind::World));
+    // A person's own arrangement stays.
+    layout.close(PanelKind::Lessons);
+    layout.state_in(egui::vec2(1280.0, 720.0), true);
+    assert_eq!(columns(&layout), 4);
+}
+
+#[test]
+fn the_chosen_panel_stays_in_front_after_the_window_was_enlarged_and_made_smaller() {
+    let front = |layout: &Layout| layout.front_panels();
+    let (small, large) = (egui::vec2(1024.0, 640.0), egui::vec2(1920.0, 1080.0));
+    let mut layout = Layout::default();
+    layout.state_in(small, true);
+    layout.open(PanelKind::Library);
+    layout.state_in(small, true);
+    layout.open(PanelKind::World);
+    layout.state_in(small, true);
+    // A click on the stage takes the focus away.
+    let (stage, _) = layout.state.find_main_surface_tab(&PanelKind::Stage).expect("there");
+    layout.state.set_focused_node_and_surface(NodePath::new(SurfaceIndex::main(), stage));
+    layout.state_in(small, true);
+    for size in [large, small, large, small] {
+        layout.state_in(size, true);
+        assert!(front(&layout).contains(&PanelKind::World), "{size}: {:?}", front(&layout));
+        if size == large {
+            assert!(front(&layout).contains(&PanelKind::Library), "{:?}", front(&layout));
+        }
+    }
+    layout.state_in(large, true);
+    layout.open(PanelKind::Charts);
+    layout.state_in(large, true);
+    layout.state_in(small, true);
+    assert!(front(&layout).contains(&PanelKind::Charts), "{:?}", front(&layout));
+}
+
+#[test]
+fn a_panel_opened_before_the_window_has_a_size_gets_the_focus() {
+    let mut layout = Layout::default();
+    layout.open(PanelKind::Charts);
+    layout.state_in(egui::vec2(1280.0, 720.0), true);
+    let path = layout.state.find_tab(&PanelKind::Charts).expect("there");
+    let leaf = layout.state.leaf(path.node_path()).expect("a leaf");
+    assert_eq!(leaf.active, path.tab);
+}
+
+#[test]
+fn a_layout_survives_as_text_and_invalid_text_is_rejected() {
+    let mut layout = laid_out(1280.0);
+    layout.close(PanelKind::Lessons);
+    let again = Layout::from_text(&layout.to_text());
+    assert!(!again.is_to_be_laid_out && !again.has(PanelKind::Lessons));
+    assert!(again.has(PanelKind::Charts));
+    for text in ["", "(", "()", "(surfaces:[],focused_surface:None)"] {
+        assert!(Layout::from_text(text).is_to_be_laid_out, "{text}");
+    }
+    let by_hand = layout.to_text().replace("fraction:0.3", "fraction:0.4");
+    assert!(Layout::from_text(&by_hand).is_to_be_laid_out);
+    let twice = layout.to_text().replace("Stage", "Lessons");
+    let text = twice.split_once(' ').expect("sealed").1;
+    assert!(Layout::from_text(&format!("{} {text}", seal(text))).is_to_be_laid_out);
+}
