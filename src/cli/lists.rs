@@ -4,7 +4,7 @@ use super::args::Args;
 use super::error::CliError;
 use super::output::print;
 use crate::evolve::fields;
-use crate::run::json_line;
+use crate::run::with_short_numbers;
 use crate::save::shipped_presets;
 use crate::schema::markdown;
 
@@ -41,7 +41,7 @@ pub fn print_settings(args: &Args, as_markdown: bool) -> Result<(), CliError> {
     }
     if args.json {
         let line = serde_json::json!({"preset": preset, "settings": settings});
-        return print(&format!("{}\n", json_line(&line)));
+        return print(&format!("{}\n", with_short_numbers(&line)));
     }
     let fields = fields(&settings);
     let width = fields.iter().map(|(path, _)| path.len()).max().unwrap_or(0);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 
 use super::evaluator::{Evaluator, WorkersError};
-use super::json::json_line;
+use super::json::short;
 use super::progress_bar::run_generation_with_bar;
 use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
@@ -122,7 +122,7 @@ pub fn evolve(
     let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
         landing.add(report);
-        let line = if json { json_line(&report_json(report)) } else { table_row(report) };
+        let line = if json { report_json(report).to_string() } else { table_row(report) };
         writeln!(out, "{line}")?;
         out.flush()
     };
@@ -156,10 +156,10 @@ pub fn evolve(
             "done": true,
             "run_hash": run_hash,
             "first_on_landing": landing.first,
-            "best": best.map(|best| best.evaluation.fitness),
+            "best": best.map(|best| short(best.evaluation.fitness)),
             "champion": recorder.best(),
         });
-        writeln!(out, "{}", json_line(&last))?;
+        writeln!(out, "{last}")?;
     } else if let (Some(best), Some(path)) = (best, recorder.best()) {
         writeln!(out, "\nchampion  {}", about(best))?;
         writeln!(out, "saved to  {}", path.display())?;

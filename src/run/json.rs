@@ -1,32 +1,26 @@
-//! Lines of JSON for scripts.
+//! Numbers in lines of JSON for scripts.
 
 use serde_json::{Number, Value};
 
-/// A line of JSON, without its end. A number that is a 32-bit one has the fewest digits that give it back: 0.7 instead
-/// of 0.699999988079071.
-pub fn json_line(value: &Value) -> String {
-    shortened(value).to_string()
+/// A 32-bit number with the fewest digits that give it back: 0.7 instead of 0.699999988079071. Null, if it is not finite.
+pub fn short(value: f32) -> Value {
+    let shortest = value.to_string().parse().ok().and_then(Number::from_f64);
+    shortest.map_or(Value::Null, Value::Number)
 }
 
-fn shortened(value: &Value) -> Value {
+/// A value whose fractions are all 32-bit numbers, such as settings, each with the fewest digits that give it back.
+#[expect(clippy::cast_possible_truncation, reason = "they were 32-bit numbers")]
+pub fn with_short_numbers(value: &Value) -> Value {
     match value {
-        Value::Number(number) => Value::Number(shortest(number)),
-        Value::Array(values) => values.iter().map(shortened).collect(),
-        Value::Object(fields) => {
-            fields.iter().map(|(name, value)| (name.clone(), shortened(value))).collect()
+        Value::Number(number) if number.is_f64() => {
+            number.as_f64().map_or(Value::Null, |wide| short(wide as f32))
         }
-        Value::Null | Value::Bool(_) | Value::String(_) => value.clone(),
+        Value::Array(values) => values.iter().map(with_short_numbers).collect(),
+        Value::Object(fields) => {
+            fields.iter().map(|(name, value)| (name.clone(), with_short_numbers(value))).collect()
+        }
+        _ => value.clone(),
     }
-}
-
-fn shortest(number: &Number) -> Number {
-    let shorter = || {
-        let wide = number.as_f64().filter(|_| number.is_f64())?;
-        let narrow = wide as f32;
-        let is_narrow = f64::from(narrow) == wide;
-        is_narrow.then(|| narrow.to_string().parse().ok()).flatten().and_then(Number::from_f64)
-    };
-    shorter().unwrap_or_else(|| number.clone())
 }
 
 #[cfg(test)]
@@ -36,21 +30,15 @@ mod tests {
 
     #[test]
     fn a_32_bit_number_has_the_fewest_digits_that_give_it_back() {
-        let line = json!({"a": [0.7_f32, 12.3456_f32, 1.0e-7_f32, -3.0_f32], "b": {"c": 1}});
-        let text = json_line(&line);
-        assert_eq!(text, r#"{"a":[0.7,12.3456,1e-7,-3.0],"b":{"c":1}}"#);
+        let values = [0.7_f32, 12.3456, 1.0e-7, -3.0, f32::MAX];
+        let line = json!({"a": values, "b": {"seed": u64::MAX, "none": f32::NAN}});
+        let text = with_short_numbers(&line).to_string();
+        assert!(text.starts_with(r#"{"a":[0.7,12.3456,1e-7,-3.0,"#), "{text}");
+        assert!(text.ends_with(r#""b":{"none":null,"seed":18446744073709551615}}"#), "{text}");
         let read: Value = serde_json::from_str(&text).expect("JSON");
         let numbers = read["a"].as_array().expect("a list").iter();
         let read: Vec<f32> = numbers.map(|of| of.as_f64().expect("a number") as f32).collect();
-        assert_eq!(read, [0.7, 12.3456, 1.0e-7, -3.0]);
-    }
-
-    #[test]
-    fn a_64_bit_number_and_a_whole_number_keep_all_their_digits() {
-        let line = json!({"mean": 0.1_f64 + 0.2, "seed": u64::MAX, "none": f32::NAN});
-        assert_eq!(
-            json_line(&line),
-            r#"{"mean":0.30000000000000004,"none":null,"seed":18446744073709551615}"#
-        );
+        assert_eq!(read, values);
+        assert_eq!(short(f32::INFINITY), Value::Null);
     }
 }

@@ -29,7 +29,7 @@ pub use evaluator::{
     EvaluationResult, Evaluator, LocalPool, THREADS_RANGE, WorkersError, available_cores,
 };
 pub use experiment::Experiment;
-pub use json::json_line;
+pub use json::with_short_numbers;
 pub use library_reader::{LibraryEvent, LibraryReader};
 pub use lineage::{Ancestor, Ancestry, FitnessSpread, Generation};
 pub use lookahead::Lookahead;

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::json;
 
 use super::headless::HeadlessError;
-use super::json::json_line;
+use super::json::short;
 use super::panics::caught;
 use crate::ENGINE_VERSION;
 use crate::evolve::Champion;
@@ -27,21 +27,21 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let meaning = trial.result_in_words(&found);
     if json {
         let line = json!({
-            "fitness": found.fitness,
+            "fitness": short(found.fitness),
             "trace_hash": format!("{:016x}", found.trace_hash),
-            "recorded_fitness": recorded.fitness,
+            "recorded_fitness": short(recorded.fitness),
             "recorded_trace_hash": format!("{:016x}", recorded.trace_hash),
             "steps": found.steps,
-            "energy_j": found.effort.map(|effort| effort.energy_j),
-            "top_speed_m_s": found.effort.map(|effort| effort.top_speed_m_s),
-            "joint_drift_m": found.effort.map(|effort| effort.joint_drift_m),
-            "sideways_m": found.effort.map(|effort| effort.sideways_m),
+            "energy_j": found.effort.map(|effort| short(effort.energy_j)),
+            "top_speed_m_s": found.effort.map(|effort| short(effort.top_speed_m_s)),
+            "joint_drift_m": found.effort.map(|effort| short(effort.joint_drift_m)),
+            "sideways_m": found.effort.map(|effort| short(effort.sideways_m)),
             "disqualified": found.disqualified.map(|reason| reason.words()),
             "meaning": meaning,
             "engine": loaded.engine,
             "matches": matches,
         });
-        writeln!(out, "{}", json_line(&line))?;
+        writeln!(out, "{}", line)?;
     } else {
         let unit = loaded.champion.trial.fitness.unit();
         writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;

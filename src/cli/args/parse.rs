@@ -44,10 +44,10 @@ fn one_line(error: &clap::Error) -> String {
     let problem = paragraphs.next().unwrap_or_default();
     let tip = setting_tip(error)
         .or_else(|| paragraphs.find(|text| text.trim().starts_with("tip:")).map(str::to_owned));
-    let words: Vec<&str> = problem.split_whitespace().collect();
-    let tip = tip.as_deref().unwrap_or_default().split_whitespace();
-    let line = words.into_iter().chain(tip).collect::<Vec<&str>>().join(" ");
-    format!("{} (see snakes --help)", line.trim_start_matches("error: "))
+    let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<&str>>().join(" ");
+    let problem = in_one_line(problem);
+    let tip = tip.map(|tip| format!("; {}", in_one_line(&tip))).unwrap_or_default();
+    format!("{}{tip} (see snakes --help)", problem.trim_start_matches("error: "))
 }
 
 /// The tip to use --set, if an unknown flag has the name of exactly one setting, with or without its unit.
@@ -82,7 +82,10 @@ mod tests {
     fn an_unknown_flag_gives_one_line_with_the_most_similar_flag() {
         let message = refusal("--polulation 3");
         assert!(message.contains("--polulation") && !message.contains('\n'), "{message}");
-        assert!(message.contains("tip: a similar argument exists: '--population'"), "{message}");
+        assert!(
+            message.contains("found; tip: a similar argument exists: '--population'"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -54,14 +54,15 @@ struct Held {
 }
 
 impl Held {
-    /// Whether a panel uses a key: a text field, or a list or slider that has the keyboard focus. The help keys work
-    /// everywhere, but "?" can be typed.
+    /// Whether a panel uses a key: a text field, or a list or slider that has the keyboard focus. F1 and F11 work
+    /// everywhere, characters wherever they are not typed.
     fn is_for_panel(self, key: &Key, is_typing: bool, is_steering: bool) -> bool {
         match key {
             Key::F1 | Key::F11 => false,
             // With Ctrl it types no character.
             key if is_typing => !self.is_command(key),
-            Key::Character(text) if text == "?" => false,
+            // Lists, sliders and buttons with the focus use arrows, Enter, Space and the like, but no characters.
+            Key::Character(_) => false,
             _ => is_steering && !self.control,
         }
     }
@@ -212,12 +213,14 @@ mod tests {
     }
 
     #[test]
-    fn help_keys_work_in_lists_and_a_question_mark_can_be_typed() {
-        let (help, letter) = (character("?"), character("n"));
+    fn letters_and_help_keys_work_while_a_list_has_the_focus_and_can_be_typed() {
+        let (help, letter, named) = (character("?"), character("n"), Key::Space);
         assert!(!SHIFT.is_for_panel(&help, false, true));
         assert!(SHIFT.is_for_panel(&help, true, true));
         assert!(!NONE.is_for_panel(&Key::F1, true, true));
-        assert!(NONE.is_for_panel(&letter, false, true), "in a list");
+        assert!(NONE.is_for_panel(&letter, true, true), "typed");
+        assert!(!NONE.is_for_panel(&letter, false, true), "a list uses no letters");
+        assert!(NONE.is_for_panel(&named, false, true), "a button with the focus uses it");
         assert!(!CONTROL.is_for_panel(&letter, false, true), "no letter");
         assert!(!NONE.is_for_panel(&letter, false, false), "on the stage");
     }

@@ -114,13 +114,18 @@ impl Tour {
         }
         let palette = theme::of_context(context);
         let screen = context.content_rect();
-        let target = target.unwrap_or(screen).intersect(screen);
-        outline(context, target);
+        let target = target.map(|target| target.intersect(screen));
         let id = egui::Id::new("tour");
         let width = theme::TOUR_WIDTH.min(screen.width() - theme::GAP * 4.0);
         let known = context.memory(|memory| memory.area_rect(id)).map(|area| area.size());
         let size = known.unwrap_or(egui::vec2(width + theme::GAP * 4.0, CARD_HEIGHT));
-        let place = card_place(target, screen, size);
+        // While another panel is in front, the card points nowhere, and lies where it covers no control above.
+        let low =
+            egui::Align2::CENTER_BOTTOM.align_size_within_rect(size, screen.shrink(theme::GAP));
+        let place = target.map_or(low, |target| card_place(target, screen, size));
+        if let Some(target) = target {
+            outline(context, target);
+        }
         let is_done = self.is_done[index];
         let area = egui::Area::new(id)
             .order(egui::Order::Foreground)
@@ -136,7 +141,7 @@ impl Tour {
                 ui.horizontal(|ui| buttons(ui, index, commands));
             });
         });
-        if let Some(points) = arrow(shown.response.rect, target) {
+        if let Some(points) = target.and_then(|target| arrow(shown.response.rect, target)) {
             let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("tour's arrow"));
             let shape = egui::Shape::convex_polygon(points, palette.accent, egui::Stroke::NONE);
             context.layer_painter(layer).add(shape);
@@ -241,6 +246,16 @@ mod tests {
                 assert_eq!(click("Done"), [Command::Window(WindowCommand::CloseModal)]);
             }
         }
+    }
+
+    #[test]
+    fn while_another_panel_is_in_front_the_card_covers_neither_tabs_nor_buttons_below_them() {
+        let mut harness = Harness::builder().with_size(egui::vec2(1024.0, 640.0)).build_ui(|ui| {
+            Tour::default().ui(&ui.ctx().clone(), 3, None, 0, &mut Vec::new());
+        });
+        harness.run();
+        let title = harness.get_by_label(STEPS[3].title).rect();
+        assert!(title.top() > 400.0, "{title:?}");
     }
 
     #[test]

@@ -188,6 +188,19 @@ fn a_stopped_run_is_resumed_and_lists_its_champions() {
 }
 
 #[test]
+fn the_details_of_the_run_that_is_open_in_this_window_say_so() {
+    let library = library();
+    let item = library.item(&SavePlace::Run(run_folder())).expect("listed");
+    for (is_open, words) in [(true, "Open in this window"), (false, "Can be resumed")] {
+        let mut harness = Harness::new_ui(|ui| details::details(ui, item, is_open));
+        harness.run();
+        assert!(harness.query_by_label_contains(words).is_some(), "{words}");
+        let other = if is_open { "Can be resumed" } else { "Open in this window" };
+        assert!(harness.query_by_label_contains(other).is_none(), "not {other}");
+    }
+}
+
+#[test]
 fn shift_and_control_select_several_saves_for_a_race() {
     let library = library();
     let found = sent(&library, |harness| {

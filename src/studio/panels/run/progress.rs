@@ -85,7 +85,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
 /// Text for a run whose larger generations, such as the first of CMA-ES, used up its evaluations early.
 fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
     format!(
-        "Finished after {finished} of {planned} generations: larger ones used up the run's {} snakes",
+        "Finished after {finished} of {planned} generations: the first ones were larger and used up the run's {} snakes",
         with_thousands(budget)
     )
 }
@@ -197,7 +197,7 @@ mod tests {
     fn a_run_that_finished_early_says_why_in_one_sentence() {
         assert_eq!(
             finished_early(57, 60, 6000),
-            "Finished after 57 of 60 generations: larger ones used up the run's 6,000 snakes"
+            "Finished after 57 of 60 generations: the first ones were larger and used up the run's 6,000 snakes"
         );
     }
 

@@ -186,7 +186,7 @@ impl<'l> ReadLanes<'l> {
                     table.cell(ui, |ui| {
                         let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
                         let label = column.lane.staged().label();
-                        let name = egui::RichText::new(label).color(palette.text_weak);
+                        let name = egui::RichText::new(head_of(ui, label)).color(palette.text_weak);
                         ui.add(egui::Label::new(name).truncate()).on_hover_text(label);
                         dot.on_hover_text(label);
                     });
@@ -202,6 +202,18 @@ impl<'l> ReadLanes<'l> {
                 table.line(ui, &LOST, is_meant, |ui, column| column.lost(ui));
             }
         });
+    }
+}
+
+/// The head of a lane's column: the label, or where that has no room its value, because the labels of worlds with other
+/// values of a setting begin alike.
+fn head_of(ui: &egui::Ui, label: &str) -> String {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let whole = ui.painter().layout_no_wrap(label.to_owned(), font, egui::Color32::PLACEHOLDER);
+    let value = label.rsplit(' ').next().filter(|last| last.parse::<f64>().is_ok());
+    match value {
+        Some(value) if whole.size().x > ui.available_width() => format!("…{value}"),
+        _ => label.to_owned(),
     }
 }
 

@@ -135,12 +135,11 @@ pub(crate) const LESSONS: [Lesson; 5] = [
         question: "How much grip do stairs need?",
         story: "In the original experiment, the surface was tuned by eye, which took a long time. The stage shows \
                 the same snake on a surface like ice, on its own surface and on a surface like glue.",
-        to_try: "Guess which snake gets furthest, then watch the race. Afterwards go back to its start, open the \
-                 World panel and drag Friction: a copy of the snake starts beside it with the new value.",
+        to_try: "Guess which snake gets furthest, then watch the race. Afterwards select the original, go back to \
+                 the start, open the World panel and drag Friction: a copy of the snake starts beside it with the new value.",
         look_for: "How far each snake gets. The torques are the same in all lanes; only the surface differs.",
         conclusion: "A snake that evolved on one surface is fit for that surface and tolerates some change, but not \
-                     any: of the tenths from 0.1 on, 0.6 is the smallest friction with which this snake \
-                     reaches the landing. The World panel lets you set every property of a surface as a number and \
+                     any. The World panel lets you set every property of a surface as a number and \
                      see its effect at once.",
         scenes: &[
             LessonScene::Lanes {

@@ -24,13 +24,13 @@ const SHEETS: [Sheet; 5] = [
         steps: &[
             "Begin lesson 1, give your guess, and watch the race to its end. Fill in the table.",
             "Do the same with \"A little less, a little more\".",
-            "From the start, drag Friction in the World panel: find the smallest tenth that still lands.",
+            "Select \"original\". From the start, drag Friction: find the smallest tenth that still lands.",
         ],
         questions: [
             "What goes wrong with too little friction, and what with too much?",
             "Why does this snake climb best near the friction on which it evolved?",
         ],
-        expected: "",
+        expected: "Of the tenths, 0.6 is the smallest friction that still lands. ",
     },
     Sheet {
         steps: &[

@@ -4,7 +4,10 @@
 
 use bevy::prelude::{Color, Vec3};
 use bevy_egui::egui;
-use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Rgba, Stroke};
+use bevy_egui::egui::ecolor::{
+    gamma_u8_from_linear_f32, linear_f32_from_gamma_u8, linear_u8_from_linear_f32,
+};
+use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Stroke};
 
 use crate::evolve::StrategyKind;
 use crate::plot;
@@ -248,14 +251,17 @@ impl Palette {
     /// Translucent colour of a band in a chart: over the chart's background it looks as in a picture of the chart. The
     /// window blends light instead of colour values, in which a plainly translucent colour would lose its hue.
     pub fn band(&self, color: Color32) -> Color32 {
-        let over = Rgba::from(self.field);
-        let seen = Rgba::from(self.field.lerp_to_gamma(color, BAND_OPACITY));
-        let channels = [(seen.r(), over.r()), (seen.g(), over.g()), (seen.b(), over.b())];
+        let seen = self.field.lerp_to_gamma(color, BAND_OPACITY);
+        let light = |color: Color32| color.to_array().map(linear_f32_from_gamma_u8);
+        let ([r, g, b, _], over) = (light(seen), light(self.field));
+        let channels = [(r, over[0]), (g, over[1]), (b, over[2])];
         let shares = channels.map(|(seen, over)| seen / over.max(1.0e-6));
         // What is left of the light behind the band; some of each band stays visible behind another.
         let left = shares.into_iter().fold(1.0 - BAND_OPACITY, f32::min);
-        let [r, g, b] = channels.map(|(seen, over)| (seen - over * left).max(0.0));
-        Rgba::from_rgba_premultiplied(r, g, b, 1.0 - left).into()
+        let added = |(seen, over): (f32, f32)| gamma_u8_from_linear_f32(seen - over * left);
+        let [r, g, b] = channels.map(added);
+        // The window takes the red, green and blue of a colour as multiplied by its opacity already.
+        Color32::from_rgba_premultiplied(r, g, b, linear_u8_from_linear_f32(1.0 - left))
     }
 
     /// Colour of a chart series by its role.

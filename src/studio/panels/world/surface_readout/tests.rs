@@ -156,3 +156,19 @@ fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
     assert!(shows(&panel, "of 5") && !shows(&panel, "of 5 limbs"), "short in narrow columns");
     assert_eq!((in_m_s(9.99), in_m_s(12.34)), ("9.99 m/s".to_owned(), "12.3 m/s".to_owned()));
 }
+
+#[test]
+fn the_columns_of_one_settings_values_are_told_apart_by_their_values() {
+    let [_, ice] = on_stone_and_ice();
+    let changed = |friction: &str| {
+        let staged = ice.staged().in_world(ice.trial(), format!("friction {friction}"));
+        let mut lane = Lane::new(staged, 1);
+        lane.show(1.0, None, 3000).expect("healthy");
+        lane
+    };
+    let lanes = ["0.05", "0.018", "0.13"].map(changed);
+    let panel = panel(lanes.iter().collect(), ReadSurface::Stairs, 320.0 + 16.0);
+    for value in ["…0.05", "…0.018", "…0.13"] {
+        assert!(shows(&panel, value), "{value}");
+    }
+}

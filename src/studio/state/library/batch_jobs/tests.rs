@@ -105,3 +105,17 @@ fn a_failing_operation_does_not_stop_the_others() {
         assert!(tried.library.item(&SavePlace::Shipped("fast")).is_some());
     }
 }
+
+#[test]
+fn a_message_names_a_run_by_its_own_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [from, kept] = ["climb-seed1-0123abcd", "kept"].map(|name| folder.path().join(name));
+    std::fs::create_dir(&kept).expect("made");
+    let steps = [FileStep::Deleted { from: from.clone(), kept: kept.clone() }];
+    assert_eq!(listed_steps(DELETED, &steps), "deleted climb-seed1-0123abcd");
+    crate::save::library::rename(&SavePlace::Run(kept.clone()), "Ice: 1/2").expect("named");
+    assert_eq!(listed_steps(DELETED, &steps), "deleted Ice: 1/2");
+    let restored = [FileStep::Restored { wanted: from, to: kept }];
+    let said = undone_in_words(UndoDirection::Back, "deleted Ice: 1/2", &restored);
+    assert_eq!(said, "Ice: 1/2 restored");
+}

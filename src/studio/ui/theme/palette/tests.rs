@@ -111,11 +111,14 @@ fn strategies_have_distinct_colours_in_both_themes() {
 fn a_band_over_a_chart_has_the_hue_that_it_has_in_a_picture() {
     for palette in [&LIGHT, &DARK] {
         let color = palette.role(Role::Third);
-        // As the window blends: in linear light, with colours multiplied by their opacity.
-        let (band, over) = (Rgba::from(palette.band(color)), Rgba::from(palette.field));
-        let seen = Color32::from(band + over * (1.0 - band.a()));
+        // As the window's shader blends: in linear light, with colours multiplied by their opacity.
+        let band = palette.band(color);
+        let left = 1.0 - f32::from(band.a()) / 255.0;
+        let light = |color: Color32| color.to_array().map(linear_f32_from_gamma_u8);
+        let channels = light(band).into_iter().zip(light(palette.field)).take(3);
+        let seen = channels.map(|(band, over)| gamma_u8_from_linear_f32(band + over * left));
         let wanted = palette.field.lerp_to_gamma(color, BAND_OPACITY);
-        let pairs = seen.to_array().into_iter().zip(wanted.to_array()).take(3);
+        let pairs = seen.zip(wanted.to_array());
         for (seen, wanted) in pairs {
             assert!(seen.abs_diff(wanted) <= 4, "{seen} instead of {wanted} in {palette:?}");
         }

@@ -1,0 +1,117 @@
+//! The strip under the pointer.
+
+use super::*;
+use crate::save::shipped_champion;
+use crate::studio::stage::staged_champion::StagedChampion;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
+
+#[test]
+fn a_click_or_a_drag_seeks_to_the_time_under_the_pointer() {
+    let loaded = shipped_champion().expect("well formed");
+    let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+    let mut strip_panel = TorqueStrip::default();
+    let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
+        |ui, commands: &mut Vec<f64>| commands.extend(strip_panel.ui(ui, &lane, 1.0, SPAN, 60.0)),
+        Vec::new(),
+    );
+    let strip = harness.get_by_label("Time, in simulated seconds").rect();
+    let at = |share: f32| strip.lerp_inside(egui::vec2(share, 0.5));
+    harness.hover_at(at(0.5));
+    harness.drag_at(at(0.5));
+    harness.drop_at(at(0.5));
+    harness.run();
+    let clicked = harness.state().last().copied().expect("a moment");
+    assert!((clicked - 7.5).abs() < 0.1, "{clicked} s");
+    harness.drag_at(at(0.2));
+    harness.run();
+    harness.hover_at(at(2.0));
+    harness.run();
+    let dragged = harness.state().last().copied().expect("a moment");
+    assert_eq!(dragged, 15.0, "beyond the end is the end");
+    harness.drop_at(at(2.0));
+}
+
+#[test]
+fn a_strip_that_grows_while_it_is_pressed_keeps_its_scale_until_the_release() {
+    let loaded = shipped_champion().expect("well formed");
+    let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+    let mut strip_panel = TorqueStrip::default();
+    let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
+        |ui, moments: &mut Vec<f64>| {
+            // After the first moment the pull that ended the trial is undone.
+            let end_s = if moments.is_empty() { 4.0 } else { 15.0 };
+            let span = TimelineSpan { end_s, ..SPAN };
+            moments.extend(strip_panel.ui(ui, &lane, 1.0, span, 60.0));
+        },
+        Vec::new(),
+    );
+    let strip = harness.get_by_label("Time, in simulated seconds").rect();
+    let at = strip.lerp_inside(egui::vec2(0.25, 0.5));
+    harness.hover_at(at);
+    harness.drag_at(at);
+    harness.run();
+    harness.run();
+    harness.drop_at(at);
+    harness.run();
+    let moments = harness.state().clone();
+    assert!(moments.len() > 2, "{moments:?}");
+    assert!(moments.iter().all(|moment| (moment - 1.0).abs() < 0.05), "{moments:?}");
+    harness.drag_at(at);
+    harness.run();
+    let next = harness.state().last().copied().expect("a moment");
+    assert!((next - 3.75).abs() < 0.1, "{next} s on the new scale");
+}
+
+#[test]
+fn the_legend_names_unit_and_marks_and_a_mark_has_a_hover_text() {
+    let loaded = shipped_champion().expect("well formed");
+    let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+    lane.finish_lookahead();
+    let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
+    for width in [900.0, 420.0] {
+        let mut strip_panel = TorqueStrip::default();
+        let mut harness = Harness::builder().with_size(egui::vec2(width, 140.0)).build_ui(|ui| {
+            strip_panel.ui(ui, &lane, 1.0, SPAN, theme::TORQUE_STRIP_HEIGHT);
+        });
+        harness.run();
+        let legend = harness.get_by_label_contains("Legend: ").rect();
+        assert!(legend.right() <= width, "{legend:?}");
+        assert!(harness.query_by_label_contains("N·m, bend, twist").is_some(), "{width}");
+        let marks = harness.query_by_label_contains("step climbed, step lost");
+        assert!(marks.is_some() || width < 500.0, "{width}");
+        let strip = harness.get_by_label("Time, in simulated seconds").rect();
+        let share = (landed_s / 15.0) as f32;
+        harness.hover_at(strip.lerp_inside(egui::vec2(share, 0.05)));
+        harness.run();
+        let hover = harness.query_all_by_label_contains("Top of the stairs reached").count();
+        assert_eq!(hover, 1, "{width}");
+        assert!(harness.query_all_by_label_contains("Joint 4 (tail): bend").count() == 1);
+    }
+}
+
+#[test]
+fn with_a_hidden_future_marks_and_torques_appear_only_once_they_have_happened() {
+    let loaded = shipped_champion().expect("well formed");
+    let mut lane = Lane::new(StagedChampion::from_lesson(&loaded.champion), 0);
+    lane.finish_lookahead();
+    let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
+    let span = TimelineSpan { hides_future: true, ..SPAN };
+    for (now_s, is_seen) in [(1.0, false), (landed_s + 0.1, true)] {
+        let mut strip_panel = TorqueStrip::default();
+        let mut harness = Harness::builder().with_size(egui::vec2(600.0, 140.0)).build_ui(|ui| {
+            strip_panel.ui(ui, &lane, now_s, span, theme::TORQUE_STRIP_HEIGHT);
+        });
+        harness.run();
+        let strip = harness.get_by_label("Time, in simulated seconds").rect();
+        let share = (landed_s / 15.0) as f32;
+        harness.hover_at(strip.lerp_inside(egui::vec2(share, 0.05)));
+        harness.run();
+        let hover = harness.query_by_label_contains("Top of the stairs reached");
+        assert_eq!(hover.is_some(), is_seen, "at {now_s} s");
+        let torques = harness.query_by_label_contains("Joint 4 (tail): bend");
+        assert_eq!(torques.is_some(), is_seen, "at {now_s} s");
+    }
+}
