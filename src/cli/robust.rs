@@ -50,7 +50,7 @@ pub fn robust(
         });
         return print(&format!("{line}\n"));
     }
-    let PerturbationRange { friction, rise, density, start_m, turn_deg } = range;
+    let PerturbationRange { friction, rise, density, start_m, turn_deg, .. } = range;
     let mut text = format!(
         "{} trials from seed {seed}: friction ±{:.0} %, rise ±{:.0} %, density ±{:.0} %, start ±{start_m} m, \
          turn ±{turn_deg}°\n{} disqualified\n\n{:>14}  {:>6}  95 % interval\n",

@@ -51,7 +51,7 @@ pub fn robustness(
     let one = |number: usize| {
         control.wait_while_paused()?;
         let mut rng = stream(seed, 0, number as u32, Purpose::Perturbation);
-        let perturbation = range.draw(&mut rng);
+        let perturbation = range.draw(trial, &mut rng);
         let steps = caught(|| {
             let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
             while rollout.advance() {}
@@ -116,6 +116,7 @@ mod tests {
             density: 0.0,
             start_m: 0.0,
             turn_deg: 0.0,
+            ..PerturbationRange::default()
         };
         let still = measured(&none, 1);
         assert_eq!((still.disqualified, still.reached[0], still.reached[9]), (0, 12, 12));

@@ -1,16 +1,16 @@
-//! A setting with one value for all limbs or joints, or one value for each.
+//! A setting with one value for all limbs, joints or steps, or one value for each.
 
 use std::fmt;
 
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A setting of the limbs or joints, head first. In a file it is a number or a list of numbers.
+/// A setting of the limbs or joints, head first, or of the steps, lowest first. In a file it is a number or a list of numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PerPart {
     /// One value for all parts.
     All(f32),
-    /// One value for each part, from the head.
+    /// One value for each part, from the head or from the ground.
     Each(Vec<f32>),
 }
 

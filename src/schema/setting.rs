@@ -32,7 +32,7 @@ pub struct Setting {
 /// The type and range of the values of a setting.
 #[derive(Debug, Clone, Copy)]
 pub enum SettingKind {
-    /// A number; if the range allows it, also one for each part of the snake, or no value.
+    /// A number; if the range allows it, also one for each part, or no value.
     Number(NumberRange),
     /// Several numbers.
     List(NumberRange),
@@ -57,13 +57,13 @@ pub struct NumberRange {
     pub slider: Option<[f32; 2]>,
     /// From this value up the slider is logarithmic; none: it is linear.
     pub logarithmic_from: Option<f32>,
-    /// The parts of the snake that may have a value each.
+    /// The parts of the snake or the stairs that may have a value each.
     pub parts: Parts,
     /// The value with which an optional setting begins; none: the setting is not optional.
     pub begins_with: Option<f32>,
 }
 
-/// The parts of the snake that may have a value each, and their number.
+/// The parts of the snake or the stairs that may have a value each, and their number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parts {
     /// None: there is one value.
@@ -72,6 +72,8 @@ pub enum Parts {
     Limbs(usize),
     /// The joints.
     Joints(usize),
+    /// The steps of the stairs.
+    Steps(usize),
 }
 
 impl Parts {
@@ -79,8 +81,29 @@ impl Parts {
     pub fn count(self) -> usize {
         match self {
             Self::One => 1,
-            Self::Limbs(count) | Self::Joints(count) => count,
+            Self::Limbs(count) | Self::Joints(count) | Self::Steps(count) => count,
         }
+    }
+
+    /// One of them, in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::One => "value",
+            Self::Limbs(_) => "limb",
+            Self::Joints(_) => "joint",
+            Self::Steps(_) => "step",
+        }
+    }
+
+    /// The name of one of them; the first index is 0.
+    pub fn name(self, index: usize) -> String {
+        let (word, first) = match self {
+            Self::One => return String::new(),
+            Self::Limbs(_) => ("Limb", ", the head"),
+            Self::Joints(_) => ("Joint", ""),
+            Self::Steps(_) => ("Step", ", the lowest"),
+        };
+        format!("{word} {}{}", index + 1, if index == 0 { first } else { "" })
     }
 }
 
@@ -133,7 +156,7 @@ pub fn whole(label: &'static str, range: RangeInclusive<u32>) -> SettingRow<u32>
     row(label, SettingKind::Number(NumberRange { is_whole: true, ..range }))
 }
 
-/// A number for all parts of the snake, or one for each.
+/// A number for all parts, or one for each.
 pub fn per_part(
     label: &'static str,
     range: RangeInclusive<f32>,

@@ -18,7 +18,7 @@ pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
 pub use fitness::{FITNESS_RANGE, Fitness};
 pub use history::KeyframeHistory;
-pub use perturbation::{Perturbation, PerturbationRange};
+pub use perturbation::{Perturbation, PerturbationRange, draw_shove};
 pub use recording::Recording;
 pub use repeats::{RepeatAggregate, Repeats};
 pub use rollout::{Evaluation, Rollout, evaluate};

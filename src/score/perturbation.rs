@@ -1,7 +1,8 @@
 //! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
-use crate::schema::{number, setting_group};
-use crate::world::WorldPlan;
+use super::Trial;
+use crate::schema::{is_default, number, setting_group};
+use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Vector, WorldPlan};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -41,12 +42,40 @@ setting_group! {
                 .unit("°")
                 .hint("Maximum turn of the snake at the start, to either side")
                 .slider(0.0, 45.0);
+
+        /// Relative change of the depth of the steps.
+        #[serde(default, skip_serializing_if = "is_default")]
+        tread: f32 = 0.0,
+            number("Tread variation", 0.0..=0.9).advanced()
+                .hint("Maximum relative change of the steps' depth: 0.1 is 10 % up or down")
+                .slider(0.0, 0.9);
+
+        /// Relative change of the number of physics steps per second.
+        #[serde(default, skip_serializing_if = "is_default")]
+        step_rate: f32 = 0.0,
+            number("Step rate variation", 0.0..=0.9).advanced()
+                .hint(
+                    "Maximum relative change of the physics steps per second. A motion that only works at one step rate \
+                     exploits the simulation",
+                )
+                .slider(0.0, 0.9);
+
+        /// Largest change of a limb's velocity by a shove, in m/s.
+        #[serde(default, skip_serializing_if = "is_default")]
+        shove_m_s: f32 = 0.0,
+            number("Shove", 0.0..=10.0).advanced()
+                .unit("m/s")
+                .hint(
+                    "Maximum change of one limb's velocity at a random moment between a fifth and three fifths of the \
+                     trial, backwards, to either side or upwards",
+                )
+                .slider(0.0, 5.0);
     }
 }
 
 impl PerturbationRange {
-    /// Draws a perturbation.
-    pub fn draw(&self, rng: &mut ChaCha8Rng) -> Perturbation {
+    /// Draws a perturbation of a trial.
+    pub fn draw(&self, trial: &Trial, rng: &mut ChaCha8Rng) -> Perturbation {
         let mut draw = |range: f32| rng.random_range(-range..=range);
         Perturbation {
             friction: 1.0 + draw(self.friction),
@@ -55,8 +84,29 @@ impl PerturbationRange {
             ahead_m: draw(self.start_m),
             aside_m: draw(self.start_m),
             turn_rad: draw(self.turn_deg).to_radians(),
+            tread: 1.0 + draw(self.tread),
+            step_rate: 1.0 + draw(self.step_rate),
+            shove: (self.shove_m_s > 0.0).then(|| {
+                let change_m_s = rng.random_range(0.0..=self.shove_m_s);
+                let moment_s = [0.2, 0.6].map(|share| share * trial.duration_s);
+                draw_shove(change_m_s, moment_s, trial.agent.limbs, rng)
+            }),
         }
     }
+}
+
+/// Draws a shove of one of `limbs` limbs by `change_m_s` between two moments, in s: backwards, to either side or upwards.
+pub fn draw_shove(
+    change_m_s: f32,
+    [first_s, last_s]: [f32; 2],
+    limbs: u32,
+    rng: &mut ChaCha8Rng,
+) -> Shove {
+    let directions = [Vector::NEG_Y, Vector::NEG_X, Vector::X, Vector::Z];
+    let at_s = rng.random_range(first_s..=last_s);
+    let limb = rng.random_range(0..limbs) as usize;
+    let direction = directions[rng.random_range(0..directions.len() as u32) as usize];
+    Shove { limb, at_s, change_m_s: direction * change_m_s }
 }
 
 /// Deviation of one trial from the nominal one.
@@ -74,20 +124,47 @@ pub struct Perturbation {
     pub aside_m: f32,
     /// Turn of the snake at the start, in radians.
     pub turn_rad: f32,
+    /// Factor on the depth of the steps.
+    pub tread: f32,
+    /// Factor on the physics steps per second.
+    pub step_rate: f32,
+    /// A shove on the way.
+    pub shove: Option<Shove>,
+}
+
+/// No deviation.
+impl Default for Perturbation {
+    fn default() -> Self {
+        Self {
+            friction: 1.0,
+            rise: 1.0,
+            density: 1.0,
+            ahead_m: 0.0,
+            aside_m: 0.0,
+            turn_rad: 0.0,
+            tread: 1.0,
+            step_rate: 1.0,
+            shove: None,
+        }
+    }
 }
 
 impl Perturbation {
-    /// Applies the perturbation to a world.
+    /// Applies the perturbation to a world, all but the shove.
     pub fn apply(&self, plan: &mut WorldPlan) {
         plan.surface.friction *= self.friction;
         plan.ground.friction *= self.friction;
-        plan.stairs.rise_m *= self.rise;
+        plan.stairs.rise_m = plan.stairs.rise_m.map(|rise_m| rise_m * self.rise);
         for limb in &mut plan.body.limbs {
             limb.density_kg_m3 *= self.density;
         }
         plan.start_y_m += self.ahead_m;
         plan.start_x_m += self.aside_m;
         plan.start_turn_rad += self.turn_rad;
+        plan.stairs.tread_m *= self.tread;
+        let PhysicsSettings { steps_per_s, .. } = &mut plan.physics;
+        let rate = (*steps_per_s as f32 * self.step_rate).round() as u32;
+        *steps_per_s = rate.clamp(*STEP_RATES_HZ.start(), *STEP_RATES_HZ.end());
     }
 }
 
@@ -95,12 +172,23 @@ impl Perturbation {
 mod tests {
     use super::*;
     use crate::rng::{Purpose, stream};
+    use crate::genome::GenomeSpace;
+    use crate::schema::PerPart;
+    use crate::score::Rollout;
+    use std::collections::BTreeSet;
 
     #[test]
     fn drawn_perturbations_fill_their_range_on_both_sides() {
-        let range = PerturbationRange { density: 0.3, ..PerturbationRange::default() };
+        let range = PerturbationRange {
+            density: 0.3,
+            tread: 0.1,
+            step_rate: 0.5,
+            shove_m_s: 2.0,
+            ..PerturbationRange::default()
+        };
         let mut rng = stream(1, 0, 0, Purpose::Perturbation);
-        let drawn: Vec<Perturbation> = (0..1000).map(|_| range.draw(&mut rng)).collect();
+        let trial = Trial { duration_s: 10.0, ..Trial::default() };
+        let drawn: Vec<Perturbation> = (0..1000).map(|_| range.draw(&trial, &mut rng)).collect();
         let span = |of: fn(&Perturbation) -> f32, least: f32, most: f32| {
             let values = || drawn.iter().map(of);
             assert!(values().all(|value| (least..=most).contains(&value)));
@@ -113,6 +201,50 @@ mod tests {
         span(|p| p.ahead_m, -0.2, 0.2);
         span(|p| p.aside_m, -0.2, 0.2);
         span(|p| p.turn_rad, -5.0_f32.to_radians(), 5.0_f32.to_radians());
+        span(|p| p.tread, 0.9, 1.1);
+        span(|p| p.step_rate, 0.5, 1.5);
+        let shove = |p: &Perturbation| p.shove.expect("a shove in each");
+        span(|p| p.shove.map_or(0.0, |shove| shove.at_s), 2.0, 6.0);
+        span(|p| p.shove.map_or(0.0, |shove| shove.change_m_s.length()), 0.0, 2.0);
+        let limbs: BTreeSet<usize> = drawn.iter().map(|p| shove(p).limb).collect();
+        assert_eq!(limbs, BTreeSet::from([0, 1, 2, 3, 4]));
+        assert!(drawn.iter().all(|p| shove(p).change_m_s.y <= 0.0 && shove(p).change_m_s.z >= 0.0));
+    }
+
+    #[test]
+    fn a_perturbed_world_has_its_own_steps_and_step_rate() {
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let trial = Trial::default();
+        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let mut plan = trial.world_plan(&genome);
+        let off = Perturbation { tread: 0.9, step_rate: 2.0, rise: 1.1, ..Perturbation::default() };
+        off.apply(&mut plan);
+        assert_eq!(plan.stairs.rise_m, PerPart::All(0.55));
+        assert_eq!((plan.stairs.tread_m, plan.physics.steps_per_s), (1.8, 120));
+        let slow = Perturbation { step_rate: 0.1, ..Perturbation::default() };
+        slow.apply(&mut plan);
+        assert_eq!(plan.physics.steps_per_s, 20, "the lowest that is allowed");
+        let mut rollout = Rollout::perturbed(&genome, &trial, &off);
+        while rollout.advance() {}
+        assert_eq!(rollout.step(), 2 * trial.steps(), "the same duration");
+    }
+
+    #[test]
+    fn a_shove_acts_from_its_moment_on() {
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let trial = Trial::default();
+        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let shove = Shove { limb: 2, at_s: 1.0, change_m_s: Vector::Z * 2.0 };
+        let shoved = Perturbation { shove: Some(shove), ..Perturbation::default() };
+        let mut plain = Rollout::new(&genome, &trial);
+        let mut shoved = Rollout::perturbed(&genome, &trial, &shoved);
+        while plain.step() < 60 {
+            assert!(plain.advance() && shoved.advance());
+        }
+        assert_eq!(plain.poses(), shoved.poses());
+        assert!(plain.advance() && shoved.advance());
+        let up_m = shoved.middle_m().z - plain.middle_m().z;
+        assert!(up_m > 0.01, "{up_m} m higher");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::control::ControlLoop;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
 use crate::world::{
-    BodyPlan, Disqualification, Effort, JointTorque, Pose, Pull, Simulation, Stairs, Vector,
+    BodyPlan, Disqualification, Effort, JointTorque, Pose, Pull, Shove, Simulation, Stairs, Vector,
     WorldPlan,
 };
 use continued::{Conditions, TrialChange};
@@ -84,6 +84,8 @@ pub struct Rollout {
     conditions: Arc<Conditions>,
     /// The change of its conditions that is still to come.
     change: Option<TrialChange>,
+    /// The shove that is still to come.
+    shove: Option<Shove>,
     frequency_hz: f32,
     observer: BehaviourObserver,
     furthest_y_m: f32,
@@ -103,18 +105,21 @@ impl Rollout {
     pub fn perturbed(genome: &Genome, trial: &Trial, perturbation: &Perturbation) -> Self {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
-        Self::in_world(genome, trial, plan)
+        let mut rollout = Self::in_world(genome, trial, plan);
+        rollout.shove = perturbation.shove;
+        rollout
     }
 
     fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
         let simulation = Simulation::new(&plan);
         let mut rollout = Self {
-            control: ControlLoop::new(&genome.controller, &trial.physics),
+            control: ControlLoop::new(&genome.controller, &plan.physics),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
             simulation,
             conditions: Arc::new(Conditions::of(trial, plan)),
             change: None,
+            shove: None,
             frequency_hz: genome.controller.frequency_hz(),
             observer: BehaviourObserver::default(),
             furthest_y_m: f32::MIN,
@@ -133,6 +138,10 @@ impl Rollout {
             return false;
         }
         self.enter_change();
+        let now_s = self.step as f32 * self.conditions.world.physics.step_s();
+        if let Some(shove) = self.shove.take_if(|shove| shove.at_s <= now_s) {
+            self.simulation.shove(&shove);
+        }
         self.control.act(self.step, &self.simulation, &mut self.torques);
         if let Err(reason) = self.simulation.step(&self.torques) {
             self.disqualified = Some(reason);
@@ -252,7 +261,7 @@ pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
     let mut fitnesses = vec![nominal.fitness];
     let seed = genome.hash();
     fitnesses.extend((1..repeats.trials).map(|number| {
-        let perturbation = repeats.off.draw(&mut stream(seed, 0, number, Purpose::Repeat));
+        let perturbation = repeats.off.draw(trial, &mut stream(seed, 0, number, Purpose::Repeat));
         let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
         let at_start = rollout.evaluation().fitness;
         while rollout.advance() {}

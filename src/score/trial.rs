@@ -122,8 +122,7 @@ impl Trial {
 
     /// Number of physics steps of the trial: its duration, rounded to the nearest step.
     pub fn steps(&self) -> u32 {
-        let steps = f64::from(self.duration_s) * f64::from(self.physics.steps_per_s);
-        libm::round(steps).max(1.0) as u32
+        steps_in(self.duration_s, &self.physics)
     }
 
     /// Checks that a genome can be built and controlled in this trial.
@@ -180,6 +179,12 @@ impl Trial {
         };
         off_the_stairs.unwrap_or_else(|| self.meaning(y_m))
     }
+}
+
+/// Number of physics steps of a duration in s, rounded to the nearest step; at least one.
+pub(super) fn steps_in(duration_s: f32, physics: &PhysicsSettings) -> u32 {
+    let steps = f64::from(duration_s) * f64::from(physics.steps_per_s);
+    libm::round(steps).max(1.0) as u32
 }
 
 #[cfg(test)]

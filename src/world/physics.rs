@@ -1,6 +1,11 @@
 //! Settings of the physics engine: the constant step, the solver's substeps, gravity.
 
+use std::ops::RangeInclusive;
+
 use crate::schema::{Section, SettingGroup, Walk, number, setting_group, settings, whole};
+
+/// Allowed numbers of physics steps per second. Below 20 bodies pass through each other; above 1000 nothing changes.
+pub const STEP_RATES_HZ: RangeInclusive<u32> = 20..=1000;
 
 setting_group! {
     /// Settings of the physics engine. They belong to the trial, because they change the bits.
@@ -27,8 +32,7 @@ impl SettingGroup for PhysicsSettings {
                 .unit("m/s²")
                 .hint("Acceleration of free fall: 9.81 on Earth, 1.62 on the Moon")
                 .slider(0.0, 20.0);
-            // Below 20 a second bodies pass through each other; above 1000 nothing changes.
-            steps_per_s: whole("Physics steps per second", 20..=1000).advanced()
+            steps_per_s: whole("Physics steps per second", STEP_RATES_HZ).advanced()
                 .hint("More steps are more accurate but take longer. A different number changes all motions")
                 .slider(20.0, 240.0);
             substeps: whole("Substeps per step", 1..=32).advanced()

@@ -10,6 +10,7 @@ mod continued;
 mod damping;
 pub(super) mod observe;
 pub(super) mod patches;
+mod shove;
 
 use super::bounce::{LimbVelocity, finish_bounce};
 use super::contact::{ContactHooks, ContactLaws, soften};
@@ -22,6 +23,7 @@ use super::{
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 pub use continued::Discontinuity;
 use damping::HalfStepDamping;
+pub use shove::Shove;
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
 /// in every bit.

@@ -1,56 +1,63 @@
 //! The staircase: its shape, and the meaning of a position on it.
 
-use crate::schema::{number, setting_group, whole};
+use crate::schema::{
+    Parts, PerPart, Section, SettingGroup, Walk, number, per_part, setting_group, settings, whole,
+};
 
 setting_group! {
     /// A straight staircase that rises towards +y, with a landing behind its last step.
-    pub struct Stairs in "Stairs": "Shape and position of the staircase." {
+    pub struct Stairs {
         /// Number of steps. The report has ten.
-        steps: u32 = 10,
+        steps: u32 = 10;
+        /// Height of each step over the one below, in metres, lowest first, or one height for all. The report has 0.5.
+        rise_m: PerPart = 0.5.into();
+        /// Depth of one step along y, in metres. From Table 1 of the report: one step per 2 m.
+        tread_m: f32 = 2.0;
+        /// Width across x, in metres. The report has 5.
+        width_m: f32 = 5.0;
+        /// Position of the first riser on the y axis, in metres. From Table 1: the snake, 10 m long,
+        /// touches the stairs with its centre at -2, so the riser is at 3.
+        first_riser_y_m: f32 = 3.0;
+        /// Depth of the landing behind the last tread, in metres. Long enough by default that the
+        /// whole snake (10 m) stands on it.
+        landing_m: f32 = 14.0;
+    }
+}
+
+impl SettingGroup for Stairs {
+    fn walk(&mut self, walk: &mut Walk<'_>) {
+        let each_step = Parts::Steps(self.steps as usize);
+        let Self { steps, rise_m, tread_m, width_m, first_riser_y_m, landing_m } = self;
+        walk.section(Section { title: "Stairs", about: "Shape and position of the staircase." });
+        settings! { walk,
             // A hundred steps are far more than any snake climbs, and still quick.
-            whole("Steps", 0..=100)
+            steps: whole("Steps", 0..=100)
                 .hint("Number of steps; 0 gives flat ground")
                 .slider(0.0, 20.0);
-
-        /// Height of one step, in metres. The report has 0.5.
-        rise_m: f32 = 0.5,
             // From a doorsill to a wall. Below a centimetre the engine's tolerances are as high as the step.
-            number("Rise", 0.01..=5.0)
+            rise_m: per_part("Rise", 0.01..=5.0, each_step)
                 .unit("m")
-                .hint("Height of a step")
+                .hint("Height of a step over the one below it")
                 .slider(0.05, 2.0);
-
-        /// Depth of one step along y, in metres. From Table 1 of the report: one step per 2 m.
-        tread_m: f32 = 2.0,
-            number("Tread", 0.1..=20.0)
+            tread_m: number("Tread", 0.1..=20.0)
                 .unit("m")
                 .hint("Depth of a step. A deep tread gives the snake more room")
                 .slider(0.2, 5.0);
-
-        /// Width across x, in metres. The report has 5.
-        width_m: f32 = 5.0,
             // From a block's own width to a hall's.
-            number("Width", 1.0..=100.0)
+            width_m: number("Width", 1.0..=100.0)
                 .unit("m")
                 .hint("Width of the stairs. A snake that drifts sideways falls off narrow stairs")
                 .slider(1.0, 20.0);
-
-        /// Position of the first riser on the y axis, in metres. From Table 1: the snake, 10 m long,
-        /// touches the stairs with its centre at -2, so the riser is at 3.
-        first_riser_y_m: f32 = 3.0,
             // Within a hundred metres floats still resolve a hundredth of a millimetre.
-            number("First riser at y", -100.0..=100.0).advanced()
+            first_riser_y_m: number("First riser at y", -100.0..=100.0).advanced()
                 .unit("m")
                 .hint("Position at which the stairs begin")
                 .slider(0.0, 20.0);
-
-        /// Depth of the landing behind the last tread, in metres. Long enough by default that the
-        /// whole snake (10 m) stands on it.
-        landing_m: f32 = 14.0,
-            number("Landing", 0.0..=100.0).advanced()
+            landing_m: number("Landing", 0.0..=100.0).advanced()
                 .unit("m")
                 .hint("Depth of the landing beyond the last step")
                 .slider(0.0, 60.0);
+        }
     }
 }
 
@@ -67,6 +74,20 @@ impl Stairs {
     /// Position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {
         self.first_riser_y_m + index as f32 * self.tread_m
+    }
+
+    /// Height of step number `index` (0 is the first) over the one below it, in metres.
+    pub fn step_rise_m(&self, index: u32) -> f32 {
+        self.rise_m.at(index as usize)
+    }
+
+    /// Height of the tread of step number `steps` over the ground, in metres; of 0 steps, the ground itself.
+    pub fn height_m(&self, steps: u32) -> f32 {
+        match &self.rise_m {
+            // Stairs of engine 2 and earlier have these bits.
+            PerPart::All(rise_m) => rise_m * steps as f32,
+            PerPart::Each(_) => (0..steps).map(|step| self.step_rise_m(step)).sum(),
+        }
     }
 
     /// Position from which on a snake's middle block is on the landing, on the y axis, in metres: the last riser. The
@@ -91,7 +112,7 @@ impl Stairs {
                 let back_y_m = if is_last { self.end_y_m() } else { self.riser_y_m(index + 1) };
                 StairBox {
                     min_m: [-self.width_m / 2.0, self.riser_y_m(index), 0.0],
-                    max_m: [self.width_m / 2.0, back_y_m, self.rise_m * (index + 1) as f32],
+                    max_m: [self.width_m / 2.0, back_y_m, self.height_m(index + 1)],
                 }
             })
             .collect()
@@ -111,14 +132,14 @@ impl Stairs {
     pub fn steps_under(&self, at_m: [f32; 3]) -> u32 {
         let [x_m, y_m, z_m] = at_m;
         let climbed = self.steps_climbed(f64::from(y_m));
-        let is_over = z_m >= self.rise_m * climbed as f32 && x_m.abs() <= self.width_m / 2.0;
+        let is_over = z_m >= self.height_m(climbed) && x_m.abs() <= self.width_m / 2.0;
         if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
     }
 
     /// Height of the tread, the landing or the ground at a point of the floor plan, in metres.
     pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
         if x_m.abs() <= self.width_m / 2.0 && y_m <= self.end_y_m() {
-            self.rise_m * self.steps_climbed(f64::from(y_m)) as f32
+            self.height_m(self.steps_climbed(f64::from(y_m)))
         } else {
             0.0
         }
@@ -186,6 +207,20 @@ mod tests {
         assert_eq!(stairs.landing_y_m(), 21.0);
         assert_eq!(stairs.meaning(21.0, -7.23, 10.0), "stands on the landing");
         assert_eq!(Stairs { steps: 0, ..stairs }.meaning(50.0, -7.23, 10.0), "reaches the stairs");
+    }
+
+    #[test]
+    fn steps_of_different_heights_lie_on_one_another() {
+        let rise_m = PerPart::Each(vec![0.5, 0.75, 0.25]);
+        let stairs = Stairs { steps: 3, rise_m, ..Stairs::default() };
+        crate::schema::check(&stairs).expect("a height for each step");
+        let tops = stairs.boxes().iter().map(|step| step.max_m[2]).collect::<Vec<_>>();
+        assert_eq!(tops, [0.5, 1.25, 1.5]);
+        assert_eq!(stairs.surface_z_m(0.0, 5.5), 1.25);
+        let under = |z_m| stairs.steps_under([0.0, 5.5, z_m]);
+        assert_eq!((under(1.3), under(1.2)), (2, 0), "inside the second step");
+        let error = crate::schema::check(&Stairs { steps: 4, ..stairs }).expect_err("a step more");
+        assert!(error.to_string().starts_with("rise_m is "), "{error}");
     }
 
     #[test]

@@ -30,6 +30,7 @@ impl From<&PerturbationArgs> for PerturbationRange {
             density: args.off_density,
             start_m: args.off_start,
             turn_deg: args.off_turn,
+            ..Self::default()
         }
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Rollout;
 use crate::genome::Genome;
+use crate::score::trial::steps_in;
 use crate::score::{Fitness, Trial};
 use crate::world::{Discontinuity, WorldPlan};
 
@@ -19,10 +20,10 @@ impl Conditions {
     /// The conditions of a trial in this world.
     pub fn of(trial: &Trial, world: WorldPlan) -> Self {
         Self {
+            last_step: steps_in(trial.duration_s, &world.physics),
             world,
             fitness: trial.fitness,
             energy_cost_per_kj: trial.energy_cost_per_kj,
-            last_step: trial.steps(),
         }
     }
 }

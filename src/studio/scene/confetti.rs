@@ -117,7 +117,7 @@ fn draw(
 /// Position of a piece, in the coordinates of its lane, in metres, and its direction.
 fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Vec3) {
     let share = |salt: u32| chance(lane as u32, piece * 8 + salt);
-    let top_m = stairs.rise_m * stairs.steps as f32;
+    let top_m = stairs.height_m(stairs.steps);
     let across_m = (share(0) - 0.5) * stairs.width_m;
     let start = Vec3::new(across_m, finish_y_m(stairs), top_m + FINISH_M);
     let thrown_m_s =

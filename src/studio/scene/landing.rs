@@ -9,6 +9,7 @@ use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
 use super::props::recolor;
+use crate::schema::PerPart;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
@@ -120,24 +121,29 @@ fn build(
 fn railing(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let x_m = INSIDE_M - stairs.width_m / 2.0;
-    let top_m = stairs.rise_m * stairs.steps as f32;
-    let (landing_m, end_m) = (stairs.riser_y_m(stairs.steps), stairs.end_y_m());
-    let slope_m = stairs.first_riser_y_m + stairs.tread_m / 2.0;
+    let top_m = stairs.height_m(stairs.steps);
+    let end_m = stairs.end_y_m();
     let at = |y_m: f32, z_m: f32| Vec3::new(x_m, y_m, z_m);
     // The handrail follows the middles of the treads, then the landing.
-    let foot = at(slope_m, stairs.rise_m);
-    let top = at(landing_m - stairs.tread_m / 2.0, top_m);
-    let end = at(end_m, top_m);
+    let on_tread = |step: u32| {
+        at(stairs.riser_y_m(step) + stairs.tread_m / 2.0, stairs.height_m(step + 1))
+    };
+    let last = stairs.steps.saturating_sub(1);
+    let mut bends: Vec<Vec3> = match stairs.rise_m {
+        PerPart::All(_) => vec![on_tread(0), on_tread(last)],
+        PerPart::Each(_) => (0..=last).map(on_tread).collect(),
+    };
+    bends.push(at(end_m, top_m));
+    let straights = || bends.windows(2).map(|ends| (ends[0], ends[1]));
     let bar = |solid: &mut MeshBuilder, from: Vec3, to: Vec3, height_m: f32, radius_m: f32| {
         if from.distance(to) > 0.01 {
             solid.cylinder(from + Vec3::Z * height_m, to + Vec3::Z * height_m, radius_m);
         }
     };
     for (height_m, radius_m) in [(RAIL_M, RAIL_RADIUS_M), (RAIL_M / 2.0, RAIL_RADIUS_M * 0.6)] {
-        bar(&mut solid, foot, top, height_m, radius_m);
-        bar(&mut solid, top, end, height_m, radius_m);
+        straights().for_each(|(from, to)| bar(&mut solid, from, to, height_m, radius_m));
     }
-    for (from, to) in [(foot, top), (top, end)] {
+    for (from, to) in straights() {
         let parts = (from.distance(to) / POST_EVERY_M).ceil().max(1.0) as usize;
         for part in 0..=parts {
             let on_bar = from.lerp(to, part as f32 / parts as f32);
@@ -161,7 +167,7 @@ fn door_m(stairs: &Stairs) -> [f32; 2] {
 /// The wall at the end of the landing, and the posts and the beam of the finish.
 fn wall(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
-    let top_m = stairs.rise_m * stairs.steps as f32;
+    let top_m = stairs.height_m(stairs.steps);
     let half_m = stairs.width_m / 2.0;
     let middle = Vec3::new(0.0, stairs.end_y_m() - WALL_THICK_M / 2.0, top_m + WALL_M / 2.0);
     solid.rounded_box(middle, Vec3::new(stairs.width_m, WALL_THICK_M, WALL_M), 0.03, 1);
@@ -181,7 +187,7 @@ fn wall(stairs: &Stairs) -> MeshBuilder {
 /// The chequered line on the floor, and both sides of the board above it; and the door's frame and handle.
 fn cheques(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
-    let top_m = stairs.rise_m * stairs.steps as f32;
+    let top_m = stairs.height_m(stairs.steps);
     let y_m = finish_y_m(stairs);
     if has_finish(stairs) {
         let floor = Vec3::new(0.0, y_m + LINE_M / 2.0, top_m + PAINT_M);

@@ -101,14 +101,15 @@ fn build(
 
 /// Middle of a step's front edge.
 fn edge(stairs: &Stairs, step: u32) -> Vec3 {
-    Vec3::new(0.0, stairs.riser_y_m(step), stairs.rise_m * (step + 1) as f32)
+    Vec3::new(0.0, stairs.riser_y_m(step), stairs.height_m(step + 1))
 }
 
 /// Two patches over the tread and down the riser that fade out away from the edge.
 fn glow(stairs: &Stairs) -> Mesh {
     let mut solid = MeshBuilder::default();
     let half = Vec3::X * stairs.width_m / 2.0;
-    let (back_m, down_m) = (GLOW_BACK_M.min(stairs.tread_m), GLOW_DOWN_M.min(stairs.rise_m));
+    let lowest_m = (0..stairs.steps).map(|step| stairs.step_rise_m(step)).fold(f32::MAX, f32::min);
+    let (back_m, down_m) = (GLOW_BACK_M.min(stairs.tread_m), GLOW_DOWN_M.min(lowest_m));
     let out_m = OUT_M / 2.0;
     solid.sheet(Vec3::new(0.0, back_m / 2.0, out_m), half, Vec3::Y * back_m / 2.0);
     solid.sheet(Vec3::new(0.0, -out_m, -down_m / 2.0), half, Vec3::Z * down_m / 2.0);

@@ -83,13 +83,14 @@ fn scale(writing: &mut TextMeshBuilder<'_>, lane: &Lane) {
 
 /// Step numbers on the risers.
 fn numbers(writing: &mut TextMeshBuilder<'_>, stairs: &Stairs) {
-    let digit_m = (stairs.rise_m * NUMBER_SHARE).min(MAX_NUMBER_M);
     for step in 0..stairs.steps {
+        let rise_m = stairs.step_rise_m(step);
+        let digit_m = (rise_m * NUMBER_SHARE).min(MAX_NUMBER_M);
         let place = TextPlacement {
             middle: Vec3::new(
                 stairs.width_m / 2.0 - NUMBER_ASIDE_M,
                 stairs.riser_y_m(step) - PAINT_M,
-                stairs.rise_m * (step as f32 + 0.46),
+                stairs.height_m(step) + 0.46 * rise_m,
             ),
             right: Dir3::X,
             up: Dir3::Z,

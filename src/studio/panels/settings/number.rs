@@ -58,7 +58,7 @@ impl Sheet {
         let is_given = shown.value != "none";
         let mut name = ui.id();
         let mut new = None;
-        let is_by_limb = matches!(range.parts, Parts::Limbs(_));
+        let part_word = range.parts.word();
         let is_small = range.slider.is_none() && range.begins_with.is_none();
         Columns::of(ui, is_small).row(ui, |ui, part, width| {
             let requested = match part {
@@ -72,7 +72,7 @@ impl Sheet {
                     None
                 }
                 Part::Control if each.is_some() => {
-                    weak(ui, if is_by_limb { "limb by limb" } else { "joint by joint" });
+                    weak(ui, &format!("{part_word} by {part_word}"));
                     None
                 }
                 Part::Control => {
@@ -104,11 +104,7 @@ impl Sheet {
         each: &[f32],
         index: usize,
     ) -> Option<String> {
-        let part = match (range.parts, index) {
-            (Parts::Limbs(_), 0) => "Limb 1, the head".to_owned(),
-            (Parts::Limbs(_), _) => format!("Limb {}", index + 1),
-            (_, _) => format!("Joint {}", index + 1),
-        };
+        let part = range.parts.name(index);
         let id = format!("{}[{index}]", shown.field);
         let stored = each[index].to_string();
         let value = shown.setting.shown_number(each[index]);
@@ -240,7 +236,7 @@ fn number_name(
     width: f32,
 ) -> (egui::Id, Option<String>) {
     let is_given = shown.value != "none";
-    let has_switch = range.parts != Parts::One && is_given;
+    let has_switch = range.parts.count() > 1 && is_given;
     let name_width = if has_switch { width - SWITCH_WIDTH - theme::GAP } else { width };
     let mut requested = None;
     let size = egui::vec2(name_width, ui.spacing().interact_size.y);
@@ -257,7 +253,7 @@ fn number_name(
     });
     if has_switch {
         let is_each = each.is_some();
-        let of_what = if matches!(range.parts, Parts::Limbs(_)) { "limb" } else { "joint" };
+        let of_what = range.parts.word();
         let hint = if is_each {
             format!("Use the value of the first {of_what} for all")
         } else {

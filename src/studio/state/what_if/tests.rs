@@ -168,8 +168,8 @@ fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
     assert_eq!(labels(&kept.expect("a lane")), ["friction 0.3"]);
     let world = &run.next_settings().trial;
     assert_eq!(
-        (world.surface.friction, world.stairs.rise_m),
-        (0.3, start.settings.trial.stairs.rise_m)
+        (world.surface.friction, world.stairs.rise_m.clone()),
+        (0.3, start.settings.trial.stairs.rise_m.clone())
     );
 
     run.set_next_plan(after_both).expect("allowed");

@@ -1,0 +1,53 @@
+//! A shove: a limb's velocity changes at one moment, as if something had hit it.
+
+use super::Simulation;
+use crate::world::Vector;
+
+/// A sudden change of a limb's velocity. It turns the limb no faster and acts on no other limb, except through the joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shove {
+    /// Index of the limb; the head is 0.
+    pub limb: usize,
+    /// When it happens, in s from the start. It acts before the step that begins then.
+    pub at_s: f32,
+    /// What it adds to the limb's velocity, in m/s.
+    pub change_m_s: Vector,
+}
+
+impl Simulation {
+    /// Shoves a limb now. A limb that does not exist is not shoved. The energy that the shove brings or takes is no gain
+    /// and no loss in the energy balance.
+    pub fn shove(&mut self, shove: &Shove) {
+        let Some(&limb) = self.limbs.get(shove.limb) else { return };
+        let body = &mut self.physics.bodies[limb];
+        let before_j = body.kinetic_energy();
+        body.set_linvel(body.linvel() + shove.change_m_s, true);
+        self.balance.start_j += f64::from(body.kinetic_energy() - before_j);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::genome::GenomeSpace;
+    use crate::rng::{Purpose, stream};
+    use crate::score::Trial;
+    use crate::world::{JointTorque, Shove, Simulation, Vector};
+
+    #[test]
+    fn a_shove_changes_the_speed_of_one_limb_and_is_no_gain_of_energy() {
+        let trial = Trial::default();
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let mut world = Simulation::new(&trial.world_plan(&genome));
+        let torques = vec![JointTorque::default(); world.body().joints.len()];
+        (0..60).for_each(|_| world.step(&torques).expect("healthy"));
+        let (speeds, lost_j) = (world.speeds_m_s().collect::<Vec<_>>(), world.energy_lost().total_j);
+        world.shove(&Shove { limb: 1, at_s: 1.0, change_m_s: Vector::new(0.0, -2.0, 0.0) });
+        let after: Vec<f32> = world.speeds_m_s().collect();
+        assert!((after[1] - 2.0).abs() < 0.05, "{after:?}");
+        assert_eq!((after[0], &after[2..]), (speeds[0], &speeds[2..]));
+        assert!((world.energy_lost().total_j - lost_j).abs() < 0.01);
+        (0..60).for_each(|_| world.step(&torques).expect("healthy"));
+        assert!(world.energy_lost().total_j > lost_j + 1.0, "friction has taken the energy of the shove");
+    }
+}
