@@ -28,6 +28,8 @@ pub enum Purpose {
     Restart = 7,
     /// Choosing among the members of an archive.
     Archive = 8,
+    /// Drawing the shoves of an exam.
+    Shove = 9,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

@@ -6,6 +6,7 @@ mod args;
 mod bench;
 mod compare;
 mod error;
+mod exam;
 #[cfg(feature = "studio")]
 mod figures;
 mod lists;
@@ -53,6 +54,7 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         Some(Subcommand::Robust { file, trials, range }) => {
             robust::robust(&args, file, *trials, &range.into())
         }
+        Some(Subcommand::Exam { files, suite, write }) => exam::exam(&args, files, suite, *write),
         Some(Subcommand::Compare(compared)) => compare::compare(&args, compared),
         Some(Subcommand::Table1 { seeds, first_seed }) => {
             table1::table1(&args, *first_seed, *seeds)

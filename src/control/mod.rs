@@ -41,6 +41,11 @@ impl ControlLoop {
         Self { controller, observation: Observation::at_start(physics) }
     }
 
+    /// Goes on in a world with other settings of the engine, with steps of the same length.
+    pub fn continue_in(&mut self, physics: &PhysicsSettings) {
+        self.observation.take_lead(physics);
+    }
+
     /// Writes the torques of step number `step` (0 is the first), one per joint from the head.
     pub fn act(&mut self, step: u32, world: &Simulation, torques: &mut [JointTorque]) {
         self.observation.update(step, world, self.controller.needs());

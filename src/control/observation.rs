@@ -31,8 +31,14 @@ impl Observation {
     /// substep, because it moves limbs by their velocities at the end of each substep. With n substeps the lead is
     /// therefore `h (1 - 1/n) / 2`.
     pub(super) fn at_start(physics: &PhysicsSettings) -> Self {
-        let lead_s = (physics.step_s() - physics.substep_s()) / 2.0;
-        Self { steps_per_s: physics.steps_per_s, lead_s, ..Self::default() }
+        let mut observation = Self { steps_per_s: physics.steps_per_s, ..Self::default() };
+        observation.take_lead(physics);
+        observation
+    }
+
+    /// Takes the lead of a world with these settings of the engine.
+    pub(super) fn take_lead(&mut self, physics: &PhysicsSettings) {
+        self.lead_s = (physics.step_s() - physics.substep_s()) / 2.0;
     }
 
     /// Periods of an oscillation that have passed at the moment for which the controller acts, computed from the number

@@ -13,6 +13,8 @@ pub struct Champion {
     pub trial: Trial,
     /// Its evaluation.
     pub evaluation: Evaluation,
+    /// Its fitness over the varied trials on which its run chose it; none if its run chose by the evaluation alone.
+    pub chosen_by: Option<f32>,
     /// The run that found it, and its place there.
     pub origin: Origin,
 }
@@ -21,6 +23,11 @@ impl Champion {
     /// The body that it has in its trial.
     pub fn body(&self) -> BodyPlan {
         self.trial.agent.body_plan(&self.genome)
+    }
+
+    /// The number by which a run compares its champions: the greater is the better one.
+    pub fn rank(&self) -> f32 {
+        self.chosen_by.unwrap_or(self.evaluation.fitness)
     }
 
     /// A short description of its result: fitness, and where it ended.

@@ -30,12 +30,23 @@ setting_group! {
                 .hint("1 is a plain sine; more allow richer motions but add genes")
                 .slider(1.0, 5.0);
 
-        /// Greatest amplitude of a target angle, and of its offset to either side, in radians. Torque waves have
-        /// the range of the torque signals.
+        /// Greatest amplitude of a target angle of a bend, and of its offset to either side, in radians. Torque waves
+        /// have the range of the torque signals.
         angle_range_rad: f32 = 1.0,
-            number("Angle range", 0.0..=super::LARGEST_LIMIT_RAD)
+            number("Bend range", 0.0..=super::LARGEST_LIMIT_RAD)
                 .unit("rad")
-                .hint("Maximum amplitude of a gait's joint angles, and maximum offset in either direction")
+                .hint("Maximum amplitude of a gait's bends, and maximum offset in either direction")
+                .slider(0.0, 3.0);
+
+        /// The same of a twist. With 0 a joint that may twist is held straight by its servo, and yields under load.
+        #[serde(default = "one_rad")]
+        twist_range_rad: f32 = 1.0,
+            number("Twist range", 0.0..=super::LARGEST_LIMIT_RAD)
+                .unit("rad")
+                .hint(
+                    "Maximum amplitude of a gait's twists, and maximum offset in either direction. With 0, a joint that \
+                     may twist is held straight and yields under load",
+                )
                 .slider(0.0, 3.0);
 
         /// Least stiffness of the servo, in N·m/rad.
@@ -70,6 +81,11 @@ setting_group! {
         let stiffnesses = self.stiffness_min_nm_per_rad..=*STIFFNESS_RANGE_NM_PER_RAD.end();
         within("stiffness_max_nm_per_rad", self.stiffness_max_nm_per_rad, stiffnesses)
     }
+}
+
+/// The twist range in files that do not state one.
+fn one_rad() -> f32 {
+    1.0
 }
 
 /// The range of every frequency, in Hz: half the least rate of physics steps is 5 Hz.

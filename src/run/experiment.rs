@@ -1,6 +1,7 @@
 //! A run of the learning method: asks the strategy, evaluates the genomes, and tells it the results in order.
 
 mod changes;
+mod choice;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
@@ -22,6 +23,7 @@ use crate::genome::Genome;
 use crate::save::{IndividualRecord, LineageRecord, SavedProgress, SearchState};
 use crate::score::Evaluation;
 use crate::world::Disqualification;
+use choice::choose_champion;
 
 /// A run, between two generations.
 pub struct Experiment {
@@ -240,7 +242,8 @@ impl Experiment {
             genomes: &genomes,
             evaluations: &evaluations,
         };
-        let report = evaluated.report(&ranking, messages, started.elapsed());
+        let champion = choose_champion(&evaluated, &ranking, evaluator, control)?;
+        let report = evaluated.report(champion, messages, started.elapsed());
         let leaders = ranking.iter().take(MAX_LEADERS);
         self.leaders = leaders.map(|&index| evaluated.individual(index)).collect();
 
@@ -318,9 +321,8 @@ impl Experiment {
     }
 
     fn keep_if_better(&mut self, candidate: Option<&Champion>) {
-        let fitness = |champion: &Champion| champion.evaluation.fitness;
         if let Some(candidate) = candidate
-            && self.best.as_ref().is_none_or(|best| fitness(candidate) > fitness(best))
+            && self.best.as_ref().is_none_or(|best| candidate.rank() > best.rank())
         {
             self.best = Some(candidate.clone());
         }

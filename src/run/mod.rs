@@ -6,6 +6,7 @@ pub mod bench;
 pub mod compare;
 mod evaluator;
 pub mod evaluators;
+pub mod exam;
 mod experiment;
 pub mod headless;
 mod json;
@@ -29,7 +30,7 @@ pub use evaluator::{
     EvaluationResult, Evaluator, LocalPool, THREADS_RANGE, WorkersError, available_cores,
 };
 pub use experiment::Experiment;
-pub use json::with_short_numbers;
+pub use json::{short, with_short_numbers};
 pub use library_reader::{LibraryEvent, LibraryReader};
 pub use lineage::{Ancestor, Ancestry, FitnessSpread, Generation};
 pub use lookahead::Lookahead;

@@ -25,7 +25,7 @@ pub struct RecordedRun {
 #[derive(Debug)]
 pub struct RunRecorder {
     folder: RunFolder,
-    /// The file of the best champion, and its fitness.
+    /// The file of the best champion, and its rank.
     best: Option<(PathBuf, f32)>,
 }
 
@@ -193,9 +193,9 @@ impl RunRecorder {
 
     fn keep_if_best(&mut self, report: &GenerationReport, path: PathBuf) {
         let Some(champion) = &report.champion else { return };
-        let fitness = champion.evaluation.fitness;
-        if self.best.as_ref().is_none_or(|(_, best)| fitness > *best) {
-            self.best = Some((path, fitness));
+        let rank = champion.rank();
+        if self.best.as_ref().is_none_or(|(_, best)| rank > *best) {
+            self.best = Some((path, rank));
         }
     }
 }

@@ -71,6 +71,7 @@ impl EvaluatedGeneration<'_> {
             genome: self.genomes[index].clone(),
             trial: self.plan.settings.trial.clone(),
             evaluation: self.evaluations[index],
+            chosen_by: None,
             origin: Origin {
                 preset: self.plan.preset.clone(),
                 seed: self.plan.seed,
@@ -80,11 +81,10 @@ impl EvaluatedGeneration<'_> {
         }
     }
 
-    /// Its report. `ranking` has the indices of the healthy ones, the best first; `messages` those of the panics, in
-    /// the order of the individuals.
+    /// Its report. `messages` has those of the panics, in the order of the individuals.
     pub fn report(
         &self,
-        ranking: &[usize],
+        champion: Option<Champion>,
         messages: Vec<Option<String>>,
         elapsed: Duration,
     ) -> GenerationReport {
@@ -109,7 +109,7 @@ impl EvaluatedGeneration<'_> {
             meaning: meaning(statistics.as_ref(), trial),
             hash: generation_hash(evaluations),
             elapsed_s: elapsed.as_secs_f64(),
-            champion: ranking.first().map(|&index| self.individual(index)),
+            champion,
         }
     }
 }

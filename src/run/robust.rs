@@ -1,11 +1,10 @@
 //! Robustness of a champion: the same genome in many slightly perturbed trials.
 
 use super::evaluator::LocalPool;
-use super::panics::caught;
+use super::exam::exam_ends;
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::Champion;
-use crate::rng::{Purpose, stream};
-use crate::score::{Evaluation, Fitness, PerturbationRange, Rollout, Trial};
+use crate::score::{PerturbationRange, varied};
 
 /// Results of the trials.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,32 +40,13 @@ pub fn robustness(
     pool: &LocalPool,
     control: &RunControl,
 ) -> Result<Robustness, Cancelled> {
-    let Champion { genome, .. } = champion;
-    let trial = &Trial {
-        fitness: Fitness::StepsClimbed,
-        energy_cost_per_kj: 0.0,
-        ..champion.trial.clone()
-    };
+    let trial = &champion.trial;
     control.start_generation();
-    let one = |number: usize| {
-        control.wait_while_paused()?;
-        let mut rng = stream(seed, 0, number as u32, Purpose::Perturbation);
-        let perturbation = range.draw(trial, &mut rng);
-        let steps = caught(|| {
-            let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
-            while rollout.advance() {}
-            let Evaluation { fitness: steps, disqualified, .. } = rollout.evaluation();
-            disqualified.is_none().then_some(steps as u32)
-        });
-        control.count_one();
-        // A trial whose simulation panics counts as disqualified.
-        Ok(steps.unwrap_or_default())
-    };
-    let ends: Vec<Option<u32>> = pool.map(trials as usize, one)?;
-    let reached = |steps: u32| ends.iter().flatten().filter(|&&end| end >= steps).count() as u32;
+    let ends = exam_ends(champion, &varied(trial, range, trials, seed), pool, control)?;
+    let reached = |steps: u32| ends.iter().filter(|end| end.steps >= steps).count() as u32;
     Ok(Robustness {
         trials,
-        disqualified: ends.iter().filter(|end| end.is_none()).count() as u32,
+        disqualified: ends.iter().filter(|end| end.is_disqualified).count() as u32,
         reached: (1..=trial.stairs.steps).map(reached).collect(),
     })
 }

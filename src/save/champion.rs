@@ -6,8 +6,10 @@ use super::SaveError;
 use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, write_whole};
 use super::v5::{ChampionV5, FORMAT, KIND};
 use crate::ENGINE_VERSION;
+use crate::check::Invalid;
 use crate::evolve::Champion;
-use crate::score::Recording;
+use crate::schema::Choices;
+use crate::score::{Recording, SuiteResult};
 
 /// A champion read from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +20,8 @@ pub struct LoadedChampion {
     pub engine: u32,
     /// Its recorded poses, if the file has them.
     pub recording: Option<Recording>,
+    /// The results of its exam, if the file has them.
+    pub exam: Vec<SuiteResult>,
 }
 
 /// Reads a champion.
@@ -41,7 +45,42 @@ pub fn store_champion(
     champion: &Champion,
     recording: Option<&Recording>,
 ) -> Result<(), SaveError> {
-    let text_with = |recording| pretty(path, &ChampionV5::new(champion.clone(), recording));
+    write_champion(path, "", champion, recording, &[])
+}
+
+/// Writes the results of an exam into a champion's file, atomically. The user's comments at its top are kept.
+///
+/// # Errors
+/// Another engine recorded the champion, or the file cannot be read or written.
+pub fn store_exam(
+    path: &Path,
+    loaded: &LoadedChampion,
+    exam: &[SuiteResult],
+) -> Result<(), SaveError> {
+    if !loaded.is_of_this_engine() {
+        let allowed = format!("{ENGINE_VERSION}, to write results of an exam beside its record");
+        let source = Invalid::new("engine", loaded.engine.to_string(), allowed);
+        return Err(SaveError::Invalid { path: path.to_owned(), source });
+    }
+    let text = read_text(path)?;
+    let comments = text.lines().take_while(|line| line.starts_with("//"));
+    let own = comments.filter(|line| !PROGRAMS_COMMENTS.iter().any(|start| line.starts_with(start)));
+    let own: String = own.map(|line| format!("{line}\n")).collect();
+    write_champion(path, &own, &loaded.champion, loaded.recording.as_ref(), exam)
+}
+
+/// The beginnings of the comments that the program writes.
+const PROGRAMS_COMMENTS: [&str; 4] =
+    ["// A champion of Snakes & Stairs", "// Fitness (", "// Exam:", "// Replay it exactly"];
+
+fn write_champion(
+    path: &Path,
+    comments: &str,
+    champion: &Champion,
+    recording: Option<&Recording>,
+    exam: &[SuiteResult],
+) -> Result<(), SaveError> {
+    let text_with = |recording| pretty(path, &ChampionV5::new(champion.clone(), recording, exam));
     let is_readable = |text: &String| text.len() as u64 <= LARGEST_FILE_MIB * 1024 * 1024 - HEADER;
     let mut text = text_with(recording)?;
     if !is_readable(&text) {
@@ -53,7 +92,7 @@ pub fn store_champion(
     let origin = &champion.origin;
     let header = format!(
         "// A champion of Snakes & Stairs: preset {}, seed {}, generation {}, snake {}.\n\
-         // Fitness ({}): {}.\n\
+         // Fitness ({}): {}.\n{}\
          // Replay it exactly: snakes replay FILE (add --no-render to check it in a terminal)\n",
         origin.preset,
         origin.seed,
@@ -61,8 +100,22 @@ pub fn store_champion(
         origin.individual + 1,
         champion.trial.fitness.words(),
         champion.reached(),
+        exam_in_words(exam).map_or_else(String::new, |words| format!("// Exam: {words}.\n")),
     );
-    write_whole(path, format!("{header}{text}").as_bytes())
+    write_whole(path, format!("{comments}{header}{text}").as_bytes())
+}
+
+/// The results of an exam in one line; none of none.
+pub fn exam_in_words(exam: &[SuiteResult]) -> Option<String> {
+    let words = exam.iter().map(|result| {
+        let name = result.suite.choice().title.to_lowercase();
+        if result.each.is_empty() {
+            return format!("{name} {} of {} landed", result.landed, result.trials);
+        }
+        let each = result.each.iter().map(|(label, kept)| format!("{label} {kept:.2}"));
+        format!("way kept at {}", each.collect::<Vec<_>>().join(", "))
+    });
+    (!exam.is_empty()).then(|| words.collect::<Vec<_>>().join("; "))
 }
 
 /// The champion that the studio shows at its start.
@@ -81,8 +134,8 @@ pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveErr
     Header::check(path, text, KIND, FORMAT)?;
     let file: ChampionV5 = parse(path, text)?;
     let engine = file.engine;
-    let (champion, recording) = file.into_parts().map_err(SaveError::invalid(path))?;
-    Ok(LoadedChampion { champion, engine, recording })
+    let (champion, recording, exam) = file.into_parts().map_err(SaveError::invalid(path))?;
+    Ok(LoadedChampion { champion, engine, recording, exam })
 }
 
 impl LoadedChampion {
@@ -95,7 +148,7 @@ impl LoadedChampion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::score::Behaviour;
+    use crate::score::{Behaviour, ExamSuite};
     use std::fs;
 
     use crate::evolve::{RunPlan, Settings};
@@ -126,6 +179,39 @@ mod tests {
         assert!(loaded.is_of_this_engine());
         let files = fs::read_dir(folder.path()).expect("a folder").count();
         assert_eq!(files, 1, "no other file is left in the folder");
+    }
+
+    #[test]
+    fn results_of_an_exam_are_written_beside_the_users_comment_and_read_back() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("champion.ron");
+        store_champion(&path, &champion(), None).expect("written");
+        let text = fs::read_to_string(&path).expect("read");
+        fs::write(&path, format!("// My favourite.\n{text}")).expect("written");
+        let loaded = load_champion(&path).expect("read");
+        let result = SuiteResult {
+            suite: ExamSuite::StepRate,
+            trials: 5,
+            landed: 4,
+            disqualified: 0,
+            median_steps: 10.0,
+            kept: 0.7,
+            each: vec![("120 Hz".to_owned(), 0.9), ("240 Hz".to_owned(), 0.7)],
+        };
+        // Twice, as after an exam is repeated.
+        for _ in 0..2 {
+            store_exam(&path, &loaded, std::slice::from_ref(&result)).expect("written");
+        }
+        let text = fs::read_to_string(&path).expect("read");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "// My favourite.");
+        assert_eq!(lines[3], "// Exam: way kept at 120 Hz 0.90, 240 Hz 0.70.");
+        assert_eq!(text.matches("// Exam").count(), 1);
+        let read = load_champion(&path).expect("read");
+        assert_eq!((read.champion, read.exam), (loaded.champion, vec![result]));
+        fs::write(&path, text.replace("landed: 4", "landed: 6")).expect("written");
+        let error = load_champion(&path).expect_err("more than there were").to_string();
+        assert!(error.contains("exam.landed is 6; allowed: 0 to 5"), "{error}");
     }
 
     #[test]

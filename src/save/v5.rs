@@ -14,16 +14,21 @@ use super::file_structs::file_structs;
 use super::files::hash_of;
 use super::poses::PosesV5;
 use crate::ENGINE_VERSION;
-use crate::check::{Invalid, name, within};
+use crate::check::{Invalid, name, quoted, within};
 use crate::evolve::{Champion, Origin};
 use crate::genome::Genome;
-use crate::score::{Behaviour, Evaluation, FITNESS_RANGE, Recording, Trial};
+use crate::score::{
+    Behaviour, Evaluation, ExamSuite, FITNESS_RANGE, Recording, SuiteResult, Trial,
+};
 use crate::world::Effort;
 
 /// The kind that every champion's file states.
 pub const KIND: &str = "snakes-and-stairs champion";
 /// The number of this format.
 pub const FORMAT: u32 = 5;
+
+/// A champion with its recorded poses, if it has them, and the results of its exam.
+pub type ChampionParts = (Champion, Option<Recording>, Vec<SuiteResult>);
 
 /// The whole file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,8 +39,12 @@ pub struct ChampionV5 {
     pub engine: u32,
     pub origin: OriginV5,
     pub recorded: RecordedV5,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen_by: Option<f32>,
     pub trial: Trial,
     pub genome: Genome,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub exam: Vec<ExamV5>,
     pub poses: Option<PosesV5>,
 }
 
@@ -55,6 +64,15 @@ pub struct RecordedV5 {
 
 file_structs! {
     OriginV5 = Origin { preset: String, seed: u64, generation: u32, individual: u32 }
+    ExamV5 = SuiteResult {
+        suite: ExamSuite,
+        trials: u32,
+        landed: u32,
+        disqualified: u32,
+        median_steps: f32,
+        kept: f32,
+        each: Vec<(String, f32)>,
+    }
     EffortV5 = Effort {
         energy_j: f32,
         top_speed_m_s: f32,
@@ -67,6 +85,29 @@ file_structs! {
         mean_sideways_m: f32,
         contact_duty: f32,
         frequency_hz: f32,
+    }
+}
+
+/// Maximum number of results of an exam, and of conditions in each.
+const MOST_RESULTS: usize = 100;
+
+impl ExamV5 {
+    /// Checks every value.
+    fn check(&self) -> Result<(), Invalid> {
+        within("trials", self.trials, 1..=1_000_000)?;
+        within("landed", self.landed, 0..=self.trials)?;
+        within("disqualified", self.disqualified, 0..=self.trials)?;
+        within("median_steps", self.median_steps, 0.0..=1000.0)?;
+        within("kept", self.kept, 0.0..=1.0e6)?;
+        within("number of conditions", self.each.len(), 0..=MOST_RESULTS)?;
+        for (label, kept) in &self.each {
+            if label.is_empty() || label.chars().count() > 40 || label.contains(char::is_control) {
+                let allowed = "1 to 40 characters without control characters";
+                return Err(Invalid::new("condition", quoted(label), allowed));
+            }
+            within("kept", *kept, 0.0..=1.0e6)?;
+        }
+        Ok(())
     }
 }
 
@@ -103,22 +144,24 @@ impl BehaviourV5 {
 
 impl ChampionV5 {
     /// The file of a champion that this engine found.
-    pub fn new(champion: Champion, recording: Option<&Recording>) -> Self {
-        let Champion { genome, trial, evaluation, origin } = champion;
+    pub fn new(champion: Champion, recording: Option<&Recording>, exam: &[SuiteResult]) -> Self {
+        let Champion { genome, trial, evaluation, chosen_by, origin } = champion;
         Self {
             kind: KIND.to_owned(),
             format: FORMAT,
             engine: ENGINE_VERSION,
             origin: origin.into(),
             recorded: evaluation.into(),
+            chosen_by,
             trial,
             genome,
+            exam: exam.iter().cloned().map(Into::into).collect(),
             poses: recording.map(Into::into),
         }
     }
 
     /// Translates and checks every value.
-    pub fn into_parts(self) -> Result<(Champion, Option<Recording>), Invalid> {
+    pub fn into_parts(self) -> Result<ChampionParts, Invalid> {
         name("origin.preset", &self.origin.preset)?;
         let trial = match self.engine {
             ..=2 => engine_2::converted(self.trial),
@@ -131,7 +174,14 @@ impl ChampionV5 {
         let recording = self.poses.map(|poses| poses.recording(limbs));
         let recording = recording.transpose().map_err(|error| error.inside("poses"))?;
         let evaluation = self.recorded.evaluation().map_err(|error| error.inside("recorded"))?;
-        Ok((Champion { genome, trial, evaluation, origin: self.origin.into() }, recording))
+        if let Some(fitness) = self.chosen_by {
+            within("chosen_by", fitness, FITNESS_RANGE)?;
+        }
+        let (chosen_by, origin) = (self.chosen_by, self.origin.into());
+        within("number of exam results", self.exam.len(), 0..=MOST_RESULTS)?;
+        self.exam.iter().try_for_each(|result| result.check().map_err(|e| e.inside("exam")))?;
+        let exam = self.exam.into_iter().map(Into::into).collect();
+        Ok((Champion { genome, trial, evaluation, chosen_by, origin }, recording, exam))
     }
 }
 

@@ -6,6 +6,7 @@
 
 mod agent;
 mod behaviour;
+mod exam;
 mod fitness;
 mod history;
 mod perturbation;
@@ -16,11 +17,12 @@ mod trial;
 
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
+pub use exam::{ExamCondition, ExamEnd, ExamSuite, SuiteResult, varied};
 pub use fitness::{FITNESS_RANGE, Fitness};
 pub use history::KeyframeHistory;
-pub use perturbation::{Perturbation, PerturbationRange, draw_shove};
+pub use perturbation::{Perturbation, PerturbationRange};
 pub use recording::Recording;
-pub use repeats::{RepeatAggregate, Repeats};
+pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
 pub use rollout::{Evaluation, Rollout, evaluate};
 pub use trial::Trial;
 

@@ -244,7 +244,8 @@ mod tests {
         assert_eq!(plain.poses(), shoved.poses());
         assert!(plain.advance() && shoved.advance());
         let up_m = shoved.middle_m().z - plain.middle_m().z;
-        assert!(up_m > 0.01, "{up_m} m higher");
+        // A step of 2 m/s, of which the joints take a part.
+        assert!(up_m > 0.005, "{up_m} m higher");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! One genome in one trial, step by step.
 
+#[cfg(test)]
+mod audit;
 mod continued;
 
 use std::sync::Arc;
@@ -8,7 +10,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use super::behaviour::BehaviourObserver;
 use super::fitness::FinalState;
-use super::{Behaviour, Perturbation, Trial};
+use super::{Behaviour, Perturbation, PerturbationList, Trial};
 use crate::control::ControlLoop;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
@@ -138,7 +140,7 @@ impl Rollout {
             return false;
         }
         self.enter_change();
-        let now_s = self.step as f32 * self.conditions.world.physics.step_s();
+        let now_s = self.time_s();
         if let Some(shove) = self.shove.take_if(|shove| shove.at_s <= now_s) {
             self.simulation.shove(&shove);
         }
@@ -176,6 +178,11 @@ impl Rollout {
     /// Healthy steps taken so far.
     pub fn step(&self) -> u32 {
         self.step
+    }
+
+    /// Simulated time so far, in s.
+    pub fn time_s(&self) -> f32 {
+        self.step as f32 * self.conditions.world.physics.step_s()
     }
 
     /// The evaluation so far; after the end, the result.
@@ -250,8 +257,8 @@ impl Rollout {
 /// Scores a genome: runs its rollout to the end, and then its perturbed trials, if the settings ask for them.
 /// Of these only the fitness counts: see [`super::Repeats`].
 ///
-/// The perturbations are derived from the genome's own bits. A champion's file is therefore enough to score it
-/// again, and genomes cannot adapt to a few fixed perturbations.
+/// The perturbations are derived from the genome's own bits, or from a fixed seed. A champion's file is therefore enough
+/// to score it again.
 pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
     let nominal = finished(Rollout::new(genome, trial));
     let repeats = &trial.repeats;
@@ -259,7 +266,10 @@ pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
         return nominal;
     }
     let mut fitnesses = vec![nominal.fitness];
-    let seed = genome.hash();
+    let seed = match repeats.list {
+        PerturbationList::Own => genome.hash(),
+        PerturbationList::Fixed => 0,
+    };
     fitnesses.extend((1..repeats.trials).map(|number| {
         let perturbation = repeats.off.draw(trial, &mut stream(seed, 0, number, Purpose::Repeat));
         let mut rollout = Rollout::perturbed(genome, trial, &perturbation);

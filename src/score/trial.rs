@@ -1,6 +1,6 @@
 //! The conditions of an evaluation: everything outside the genome.
 
-use super::{AgentSettings, Behaviour, Evaluation, Fitness, Repeats};
+use super::{AgentSettings, Behaviour, Evaluation, Fitness, PerturbationList, Repeats};
 use crate::check::Invalid;
 use crate::genome::{Genome, GenomeShape};
 use crate::schema::{
@@ -123,6 +123,15 @@ impl Trial {
     /// Number of physics steps of the trial: its duration, rounded to the nearest step.
     pub fn steps(&self) -> u32 {
         steps_in(self.duration_s, &self.physics)
+    }
+
+    /// The trial on whose fitness a run chooses its champions: this one and a fixed list of variations. `None` if it
+    /// chooses by the fitness in this trial alone.
+    pub fn that_chooses_champions(&self) -> Option<Self> {
+        let varied = self.repeats.champion_trials;
+        let list = PerturbationList::Fixed;
+        let repeats = || Repeats { trials: varied + 1, list, ..self.repeats.clone() };
+        (varied > 0).then(|| Self { repeats: repeats(), ..self.clone() })
     }
 
     /// Checks that a genome can be built and controlled in this trial.

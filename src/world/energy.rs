@@ -13,7 +13,14 @@ pub(super) struct EnergyBalance {
     pub joint_damping_j: f64,
     /// What the damping of the limbs' rotation took, in J.
     pub rotation_damping_j: f64,
+    /// Whether something acted whose work is not counted: a user's pull, or a change of the engine's state.
+    pub has_unknown_work: bool,
 }
+
+/// Energy that may come from nothing, as a share of the energy that the joints spent: the error of the balance.
+const GAIN_SHARE: f32 = 0.05;
+/// The same at the start, in J: the contacts settle.
+const GAIN_J: f32 = 1.0;
 
 /// Rotation of a limb before a step.
 #[derive(Debug, Clone, Copy)]
@@ -48,5 +55,11 @@ impl EnergyLost {
     /// friction.
     pub fn elsewhere_j(&self) -> f32 {
         self.total_j - self.joint_damping_j - self.rotation_damping_j
+    }
+
+    /// Whether the mechanical energy has risen beyond the work of the joints: by more than 5 % of what they spent, and
+    /// 1 J. No physics does that; the simulation has failed, and the snake would exploit it.
+    pub fn is_from_nothing(&self, spent_j: f32) -> bool {
+        -self.total_j > GAIN_SHARE * spent_j + GAIN_J
     }
 }

@@ -19,6 +19,8 @@ pub enum Disqualification {
     TooFast,
     /// The agent left the arena.
     LeftArena,
+    /// The agent gained mechanical energy that its joints did not supply.
+    EnergyFromNothing,
     /// The program failed while it simulated the agent.
     Crashed,
 }
@@ -31,6 +33,7 @@ impl Disqualification {
             Self::JointBroke => "joint pulled apart",
             Self::TooFast => "speed limit exceeded",
             Self::LeftArena => "sideways or backward limit crossed",
+            Self::EnergyFromNothing => "energy from nothing",
             Self::Crashed => "simulation failed",
         }
     }

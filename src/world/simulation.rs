@@ -184,7 +184,11 @@ impl Simulation {
         self.advance();
         let mut effort = self.check_health()?;
         effort.energy_j = self.energy_j();
-        self.effort = self.effort.and(effort);
+        let effort = self.effort.and(effort);
+        if !self.balance.has_unknown_work && self.energy_lost().is_from_nothing(effort.energy_j) {
+            return Err(Disqualification::EnergyFromNothing);
+        }
+        self.effort = effort;
         Ok(())
     }
 
@@ -251,8 +255,9 @@ impl Simulation {
         &self.physics
     }
 
-    /// The engine's state, for the bench, which steps rapier alone.
+    /// The engine's state, for the bench, which steps rapier alone. The energy balance says nothing from then on.
     pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
+        self.balance.has_unknown_work = true;
         &mut self.physics
     }
 
@@ -307,6 +312,7 @@ impl Simulation {
         let (force, point) = pull.force_on(body, step_s);
         body.add_force_at_point(force, point, false);
         self.was_pulled = true;
+        self.balance.has_unknown_work = true;
     }
 
     /// Half the length of a limb, as a vector in the world from its centre to its front face, in metres.

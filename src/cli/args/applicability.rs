@@ -15,6 +15,7 @@ enum Task {
     CheckReplay,
     Bench,
     Verify,
+    Exam,
     Robust,
     Compare,
     Table1,
@@ -26,18 +27,19 @@ enum Task {
 }
 
 use Task::{
-    Bench, CheckReplay, Compare, Figures, Presets, Render, ReplayInWindow, Robust, Run, Settings,
+    Bench, CheckReplay, Compare, Exam, Figures, Presets, Render, ReplayInWindow, Robust, Run, Settings,
     SettingsAsMarkdown, Table1, Verify, Window,
 };
 
 /// All tasks.
-const ALL: [Task; 14] = [
+const ALL: [Task; 15] = [
     Window,
     Run,
     ReplayInWindow,
     CheckReplay,
     Bench,
     Verify,
+    Exam,
     Robust,
     Compare,
     Table1,
@@ -51,7 +53,7 @@ const ALL: [Task; 14] = [
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
 const FLAGS: [(&str, &[Task]); 23] = [
     ("no_render", &[Run, CheckReplay]),
-    ("json", &[Run, CheckReplay, Bench, Verify, Robust, Compare, Table1, Presets, Settings]),
+    ("json", &[Run, CheckReplay, Bench, Verify, Exam, Robust, Compare, Table1, Presets, Settings]),
     (
         "preset",
         &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
@@ -68,7 +70,7 @@ const FLAGS: [(&str, &[Task]); 23] = [
     ("resume", &[Window, Run, ReplayInWindow]),
     ("from", &[Window, Run]),
     ("restart", &[Window, Run, ReplayInWindow, Compare]),
-    ("threads", &[Window, Run, ReplayInWindow, Bench, Verify, Robust, Compare, Table1]),
+    ("threads", &[Window, Run, ReplayInWindow, Bench, Verify, Exam, Robust, Compare, Table1]),
     ("evaluator", &[Window, Run, ReplayInWindow, Verify, Compare, Table1]),
     ("out", &[Window, Run, ReplayInWindow, Compare, Table1, Figures]),
     ("saves", &[Window, Run, ReplayInWindow]),
@@ -90,6 +92,7 @@ impl Task {
             Some(Subcommand::Replay { .. }) => ReplayInWindow,
             Some(Subcommand::Bench) => Bench,
             Some(Subcommand::Verify) => Verify,
+            Some(Subcommand::Exam { .. }) => Exam,
             Some(Subcommand::Robust { .. }) => Robust,
             Some(Subcommand::Compare(_)) => Compare,
             Some(Subcommand::Table1 { .. }) => Table1,
@@ -110,6 +113,7 @@ impl Task {
             CheckReplay => "snakes replay --no-render",
             Bench => "snakes bench",
             Verify => "snakes verify",
+            Exam => "snakes exam",
             Robust => "snakes robust",
             Compare => "snakes compare",
             Table1 => "snakes table1",
@@ -184,6 +188,7 @@ mod tests {
         (CheckReplay, "replay a.ron --no-render"),
         (Bench, "bench"),
         (Verify, "verify"),
+        (Exam, "exam a.ron"),
         (Robust, "robust a.ron"),
         (Compare, "compare"),
         (Table1, "table1"),

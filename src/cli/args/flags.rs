@@ -9,7 +9,7 @@ use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
 use crate::run::evaluators::EVALUATORS;
 use crate::schema::Choices;
-use crate::score::Fitness;
+use crate::score::{ExamSuite, Fitness};
 
 /// A five-block snake evolves until it climbs a staircase.
 ///
@@ -125,6 +125,17 @@ pub enum Subcommand {
     Bench,
     /// Check that this machine computes the same bits as the reference machine
     Verify,
+    /// Examine champions: varied trials, other step rates, other stairs, a higher step, shoves
+    Exam {
+        /// Saved champions
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        #[arg(long, value_name = "NAME", help = suite_help())]
+        suite: Vec<String>,
+        /// Write the results into the files
+        #[arg(long)]
+        write: bool,
+    },
     /// Measure how often a champion reaches each step when friction, stairs, density and start vary at random
     Robust {
         /// Saved champion
@@ -167,6 +178,16 @@ pub enum Subcommand {
 /// Lists every fitness, so that the help follows the code.
 fn fitness_help() -> String {
     format!("The fitness that is maximised: {}", Fitness::names().join(", "))
+}
+
+/// Lists every suite of an exam.
+fn suite_help() -> String {
+    let rows = ExamSuite::OPTIONS.iter().map(|suite| {
+        let choice = suite.choice();
+        format!("{}: {}", choice.name, choice.sentence)
+    });
+    let rows: Vec<String> = rows.collect();
+    format!("Suite of the exam; may be repeated [default: all]. {}", rows.join(" "))
 }
 
 /// Lists every evaluator.

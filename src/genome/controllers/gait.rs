@@ -33,6 +33,7 @@ impl ControllerEncoding for Gait {
                 "wave.frequency_max_hz",
                 "wave.harmonics",
                 "wave.angle_range_rad",
+                "wave.twist_range_rad",
                 "wave.stiffness_min_nm_per_rad",
                 "wave.stiffness_max_nm_per_rad",
                 "wave.servo_damping_nms_per_rad",
@@ -58,7 +59,7 @@ impl ControllerEncoding for Gait {
         let field = format_args!("servo_damping_nms_per_rad");
         let name = format_args!("servo damping");
         visit(Gene { field, name, unit: "N·m·s/rad", range }, &mut self.servo_damping_nms_per_rad);
-        self.waves.genes_up_to(wave.angle_range_rad, "rad", space, visit);
+        self.waves.genes_up_to([wave.angle_range_rad, wave.twist_range_rad], "rad", space, visit);
     }
 
     fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
@@ -81,7 +82,9 @@ impl ControllerEncoding for Gait {
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
-        space.wave.angle_range_rad = self.waves.widen_from(space.wave.angle_range_rad, space);
+        let ranges = [space.wave.angle_range_rad, space.wave.twist_range_rad];
+        let [bend_rad, twist_rad] = self.waves.widen_from(ranges, space);
+        (space.wave.angle_range_rad, space.wave.twist_range_rad) = (bend_rad, twist_rad);
         let (wave, stiffness) = (&mut space.wave, self.stiffness_nm_per_rad);
         wave.stiffness_min_nm_per_rad = wave.stiffness_min_nm_per_rad.min(stiffness);
         wave.stiffness_max_nm_per_rad = wave.stiffness_max_nm_per_rad.max(stiffness);

@@ -112,11 +112,11 @@ impl Waves {
         Ok(())
     }
 
-    /// Visits the genes of waves whose offsets and amplitudes have the unit `unit` and at most the size
-    /// `amplitude`.
+    /// Visits the genes of waves whose offsets and amplitudes have the unit `unit` and at most these sizes, about the
+    /// bend and the twist axes.
     pub(super) fn genes_up_to(
         &mut self,
-        amplitude: f32,
+        [bend, twist]: [f32; 2],
         unit: &'static str,
         space: &GenomeSpace,
         visit: GeneVisitor<'_>,
@@ -126,8 +126,8 @@ impl Waves {
         visit(Gene { field, name, unit: "Hz", range }, &mut self.frequency_hz);
         // A joint that cannot turn needs no search.
         let turns = |limits: &[f32]| limits.iter().any(|limit| *limit > 0.0);
-        let bend = if turns(&space.bend_limits_rad) { amplitude } else { 0.0 };
-        let twist = if turns(&space.twist_limits_rad) { amplitude } else { 0.0 };
+        let bend = if turns(&space.bend_limits_rad) { bend } else { 0.0 };
+        let twist = if turns(&space.twist_limits_rad) { twist } else { 0.0 };
         for (joint, waves) in self.joints.iter_mut().enumerate() {
             for (axis, wave, amplitude) in
                 [("bend", &mut waves.bend, bend), ("twist", &mut waves.twist, twist)]
@@ -155,15 +155,22 @@ impl Waves {
         }
     }
 
-    /// Widens a space so that it contains the frequency and the number of terms. Returns the range of offsets
-    /// and amplitudes that these waves need, at least `range`.
-    pub(super) fn widen_from(&self, range: f32, space: &mut GenomeSpace) -> f32 {
+    /// Widens a space so that it contains the frequency and the number of terms. Returns the ranges of offsets
+    /// and amplitudes that these waves need about the bend and the twist axes, at least `bend` and `twist`.
+    pub(super) fn widen_from(
+        &self,
+        [bend, twist]: [f32; 2],
+        space: &mut GenomeSpace,
+    ) -> [f32; 2] {
         let wave = &mut space.wave;
         wave.frequency_min_hz = wave.frequency_min_hz.min(self.frequency_hz);
         wave.frequency_max_hz = wave.frequency_max_hz.max(self.frequency_hz);
         let harmonics = self.all().map(|wave| wave.harmonics.len() as u32).max();
         wave.harmonics = harmonics.unwrap_or(wave.harmonics);
-        self.all().map(Wave::needed_range).fold(range, f32::max)
+        let needed = |range: f32, axis: fn(&JointWaves) -> &Wave| {
+            self.joints.iter().map(axis).map(Wave::needed_range).fold(range, f32::max)
+        };
+        [needed(bend, |joint| &joint.bend), needed(twist, |joint| &joint.twist)]
     }
 
     /// Samples of all waves during a trial.
@@ -204,7 +211,7 @@ impl ControllerEncoding for Waves {
     }
 
     fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.genes_up_to(space.torque_range_nm, "N·m", space, visit);
+        self.genes_up_to([space.torque_range_nm; 2], "N·m", space, visit);
     }
 
     fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
@@ -224,7 +231,8 @@ impl ControllerEncoding for Waves {
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
-        space.torque_range_nm = self.widen_from(space.torque_range_nm, space);
+        let [bend_nm, twist_nm] = self.widen_from([space.torque_range_nm; 2], space);
+        space.torque_range_nm = bend_nm.max(twist_nm);
     }
 
     fn commands(&self, duration_s: f64) -> Option<JointCommands> {

@@ -84,6 +84,7 @@ impl Rollout {
     pub(super) fn enter_change(&mut self) {
         if let Some(change) = self.change.take_if(|change| change.at_step == self.step) {
             self.simulation = self.simulation.continued_in(&change.to.world);
+            self.control.continue_in(&change.to.world.physics);
             self.conditions = change.to;
         }
     }

@@ -44,14 +44,13 @@ struct ReportSummary {
 impl ReportSummary {
     fn of(reports: &[GenerationReport]) -> Self {
         let champions = reports.iter().filter_map(|report| report.champion.as_ref());
-        let fitness = |champion: &Champion| champion.evaluation.fitness;
-        // The earliest of equally fit champions wins.
-        let best = champions.clone().rev().max_by(|a, b| fitness(a).total_cmp(&fitness(b)));
+        // The earliest of equally good champions wins.
+        let best = champions.clone().rev().max_by(|a, b| a.rank().total_cmp(&b.rank()));
         let mut most = f32::MIN;
         let is_better = |report: &GenerationReport| {
-            let fitness = report.champion.as_ref().map(fitness).filter(|fitness| *fitness > most);
-            most = fitness.unwrap_or(most);
-            fitness.is_some()
+            let rank = report.champion.as_ref().map(Champion::rank).filter(|rank| *rank > most);
+            most = rank.unwrap_or(most);
+            rank.is_some()
         };
         let all = reports.iter().map(is_better).enumerate();
         let better = all.filter(|(_, is_better)| *is_better).map(|(index, _)| index).collect();

@@ -266,7 +266,9 @@ fn limit_in_words(broken: Disqualification, health: &HealthLimits) -> String {
             "{reason} ({} m sideways, {} m backward)",
             health.arena_half_width_m, health.arena_back_m
         ),
-        Disqualification::NotFinite | Disqualification::Crashed => reason.to_owned(),
+        Disqualification::NotFinite
+        | Disqualification::EnergyFromNothing
+        | Disqualification::Crashed => reason.to_owned(),
     }
 }
 

@@ -3,7 +3,7 @@
 use rapier3d::prelude::*;
 
 use super::Simulation;
-use crate::world::energy::{EnergyLost, LimbTurn};
+use crate::world::energy::{EnergyBalance, EnergyLost, LimbTurn};
 
 impl Simulation {
     /// The energy lost since the start.
@@ -17,9 +17,10 @@ impl Simulation {
         }
     }
 
-    /// Begins the balance of a new world.
+    /// Begins the balance with the present state.
     pub(super) fn begin_balance(&mut self) {
-        self.balance.start_j = self.mechanical_energy_j();
+        let start_j = self.mechanical_energy_j();
+        self.balance = EnergyBalance { start_j, ..EnergyBalance::default() };
     }
 
     /// Goes on with the balance of a world whose state this one has taken. Energy that only the other parameters bring,

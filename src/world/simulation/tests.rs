@@ -46,7 +46,7 @@ fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
     plan.physics.gravity_m_s2 = 0.0;
     let mut simulation = Simulation::new(&plan);
     for limb in simulation.limbs.clone() {
-        let body = &mut simulation.physics.bodies[limb];
+        let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
         body.set_translation(above, true);
     }
@@ -154,10 +154,10 @@ fn joint_damping_slows_the_joint_as_its_formula_says() {
         let mut simulation = Simulation::new(&plan);
         let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
         let spin = Vector::new(0.0, 1.0, 0.0);
-        simulation.physics.bodies[front].set_angvel(spin, true);
-        simulation.physics.bodies[rear].set_angvel(-spin, true);
+        simulation.physics_mut().bodies[front].set_angvel(spin, true);
+        simulation.physics_mut().bodies[rear].set_angvel(-spin, true);
         for limb in [front, rear] {
-            let body = &mut simulation.physics.bodies[limb];
+            let body = &mut simulation.physics_mut().bodies[limb];
             let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
             body.set_translation(above, true);
         }
@@ -187,7 +187,7 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
             for (limb, sign) in [(front, 1.0), (rear, -1.0)] {
                 simulation.physics.bodies[limb].reset_forces(true);
                 let pull = Vector::new(0.0, pull_n * sign, 0.0);
-                simulation.physics.bodies[limb].add_force(pull, true);
+                simulation.physics_mut().bodies[limb].add_force(pull, true);
             }
             simulation.step(&[JointTorque::default()]).expect("healthy");
         }
@@ -251,7 +251,7 @@ fn a_turned_start_turns_and_moves_the_whole_snake() {
 fn the_effort_of_a_thrown_snake_holds_its_maxima() {
     let (_, mut simulation) = weightless(3);
     for limb in simulation.limbs.clone() {
-        simulation.physics.bodies[limb].set_linvel(Vector::new(3.0, 0.0, 4.0), true);
+        simulation.physics_mut().bodies[limb].set_linvel(Vector::new(3.0, 0.0, 4.0), true);
     }
     for _ in 0..60 {
         simulation.step(&[JointTorque::default(); 2]).expect("healthy");
@@ -265,13 +265,13 @@ fn the_effort_of_a_thrown_snake_holds_its_maxima() {
 fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     let (plan, mut simulation) = weightless(2);
     let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
-    simulation.physics.bodies[front].set_body_type(RigidBodyType::Fixed, true);
+    simulation.physics_mut().bodies[front].set_body_type(RigidBodyType::Fixed, true);
     // Down is backwards along the snake, so that straight is at rest.
     simulation.physics.gravity = Vector::new(0.0, -9.81, 0.0);
     let speed = 0.2;
-    simulation.physics.bodies[rear].set_angvel(Vector::new(speed, 0.0, 0.0), true);
+    simulation.physics_mut().bodies[rear].set_angvel(Vector::new(speed, 0.0, 0.0), true);
     let lever = 1.0;
-    simulation.physics.bodies[rear].set_linvel(Vector::new(0.0, 0.0, -speed * lever), true);
+    simulation.physics_mut().bodies[rear].set_linvel(Vector::new(0.0, 0.0, -speed * lever), true);
     let mut crossings_s = Vec::new();
     let mut previous = 0.0;
     for step in 1..=1800 {
@@ -300,7 +300,7 @@ fn drift(limbs: usize) -> (f32, f32) {
     }
     let mut simulation = Simulation::new(&plan);
     for limb in simulation.limbs.clone() {
-        let body = &mut simulation.physics.bodies[limb];
+        let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
         body.set_translation(above, true);
         body.set_linvel(Vector::new(0.4, 0.0, 0.0), true);
@@ -350,7 +350,7 @@ fn a_fall_follows_the_gravity_of_the_settings() {
         let mut simulation = Simulation::new(&plan);
         let head = simulation.limbs[0];
         for limb in simulation.limbs.clone() {
-            let body = &mut simulation.physics.bodies[limb];
+            let body = &mut simulation.physics_mut().bodies[limb];
             let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
             body.set_translation(above, true);
         }
@@ -372,7 +372,7 @@ fn each_exceeded_health_limit_disqualifies() {
         plan.health.speed_m_s = speed_limit_m_s;
         let mut simulation = Simulation::new(&plan);
         let head = simulation.limbs[0];
-        break_it(&mut simulation.physics.bodies[head]);
+        break_it(&mut simulation.physics_mut().bodies[head]);
         let still = [JointTorque::default(); 4];
         (0..600).find_map(|_| simulation.step(&still).err())
     };

@@ -35,6 +35,7 @@ impl CurrentRun {
             genome: member.genome.clone(),
             trial: self.settings().trial.clone(),
             evaluation: member.evaluation,
+            chosen_by: None,
             origin: self.origin(generation, individual),
         })
     }

@@ -41,6 +41,7 @@ impl CurrentRun {
             genome: (*member.genome).clone(),
             trial: self.settings().trial.clone(),
             evaluation: member.evaluation,
+            chosen_by: None,
             origin: self.origin(number, member.individual),
         };
         let champions = kept.iter().map(champion);

@@ -69,7 +69,7 @@ fn without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_
         }
         let mut simulation = Simulation::new(&plan);
         for limb in simulation.limbs.clone() {
-            let body = &mut simulation.physics.bodies[limb];
+            let body = &mut simulation.physics_mut().bodies[limb];
             let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
             body.set_translation(above, true);
         }

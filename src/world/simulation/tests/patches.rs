@@ -148,11 +148,11 @@ fn patches_tell_stairs_ground_and_limbs_apart_and_air_has_none() {
     for joint in joints {
         simulation.physics.impulse_joints.remove(joint, true);
     }
-    let body = &mut simulation.physics.bodies[tail];
+    let body = &mut simulation.physics_mut().bodies[tail];
     body.set_translation(over + Vector::new(0.0, 0.0, 1.1), true);
     body.set_linvel(Vector::new(0.0, 0.5, -2.0), true);
     // It presses, because an impact is over before the last substep.
-    simulation.physics.bodies[tail].add_force(Vector::new(0.0, 0.0, -50.0), true);
+    simulation.physics_mut().bodies[tail].add_force(Vector::new(0.0, 0.0, -50.0), true);
     for _ in 0..8 {
         simulation.step(&[]).expect("healthy");
         if let [patch] = simulation.contact_patches()[..] {

@@ -97,7 +97,7 @@ fn floating_pair(
     plan.body.joints[0].twist_limit_rad = 3.0;
     let mut simulation = Simulation::new(&plan);
     for limb in simulation.limbs.clone() {
-        let body = &mut simulation.physics.bodies[limb];
+        let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
         body.set_translation(above, true);
     }
@@ -113,7 +113,7 @@ fn run_with(simulation: &mut Simulation, torque: JointTorque, seconds: f32) {
 fn twist(simulation: &mut Simulation, rate_rad_s: f32) {
     for (limb, sign) in simulation.limbs.clone().into_iter().zip([1.0, -1.0]) {
         let spin = Vector::new(0.0, sign * rate_rad_s, 0.0);
-        simulation.physics.bodies[limb].set_angvel(spin, true);
+        simulation.physics_mut().bodies[limb].set_angvel(spin, true);
     }
 }
 

@@ -8,7 +8,8 @@ pub(super) fn block(surface: Surface) -> WorldPlan {
 }
 
 pub(super) fn body(simulation: &mut Simulation) -> &mut RigidBody {
-    &mut simulation.physics.bodies[simulation.limbs[0]]
+    let limb = simulation.limbs[0];
+    &mut simulation.physics_mut().bodies[limb]
 }
 
 pub(super) fn run(simulation: &mut Simulation, seconds: f32) {
@@ -244,7 +245,7 @@ fn energy_gained_j(surface: Surface) -> (f32, f32) {
     plan.health.speed_m_s = 1000.0;
     let mut simulation = Simulation::new(&plan);
     for (index, limb) in simulation.limbs.clone().into_iter().enumerate() {
-        let body = &mut simulation.physics.bodies[limb];
+        let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 1.0);
         body.set_translation(above, true);
         body.set_linvel(Vector::new(1.0, 6.0, 2.0), true);

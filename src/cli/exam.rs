@@ -1,0 +1,182 @@
+//! `snakes exam`: champions in other conditions than those in which they evolved.
+
+use std::path::{Path, PathBuf};
+
+use indicatif::ProgressBar;
+use serde_json::json;
+
+use super::args::Args;
+use super::error::CliError;
+use super::output::{cancel_on_interrupt, print};
+use super::replay::equals_record;
+use crate::run::exam::{exam_trials, examine};
+use crate::run::headless::HeadlessError;
+use crate::run::progress_bar::with_bar;
+use crate::run::{LocalPool, short};
+use crate::save::{load_champion, store_exam};
+use crate::schema::Choices;
+use crate::score::{ExamSuite, SuiteResult};
+
+/// Examines champions and prints the results; if `writes`, also into their files.
+pub fn exam(
+    args: &Args,
+    files: &[PathBuf],
+    suites: &[String],
+    writes: bool,
+) -> Result<(), CliError> {
+    let suites = chosen(suites)?;
+    let champions = files.iter().map(|file| load_champion(file)).collect::<Result<Vec<_>, _>>()?;
+    let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
+    let control = cancel_on_interrupt();
+    let mut rows = Vec::new();
+    for (file, loaded) in files.iter().zip(champions) {
+        let matches = equals_record(file, &loaded)?;
+        let bar = ProgressBar::new(exam_trials(&loaded.champion, &suites).into());
+        let examined = || examine(&loaded.champion, &suites, &pool, &control);
+        let results = with_bar(&bar, &control, examined);
+        let results = results.map_err(|_| HeadlessError::Cancelled { kept: None })?;
+        if writes {
+            store_exam(file, &loaded, &results)?;
+        }
+        if args.json {
+            results.iter().try_for_each(|result| print(&json_line(file, result, matches)))?;
+        } else {
+            rows.push((name(file), results));
+        }
+    }
+    if args.json {
+        return print(&format!("{}\n", json!({"done": true, "files": files.len()})));
+    }
+    print(&table(&suites, &rows))
+}
+
+/// The suites that the user names; all, if none.
+fn chosen(names: &[String]) -> Result<Vec<ExamSuite>, CliError> {
+    if names.is_empty() {
+        return Ok(ExamSuite::OPTIONS.to_vec());
+    }
+    let find = |name: &String| {
+        let suite = ExamSuite::OPTIONS.iter().find(|suite| suite.choice().name == name.as_str());
+        suite.copied().ok_or_else(|| {
+            let all: Vec<&str> =
+                ExamSuite::OPTIONS.iter().map(|suite| suite.choice().name).collect();
+            let all = all.join(", ");
+            CliError::Usage(format!("--suite is {name:?}; allowed: {all} (see snakes exam --help)"))
+        })
+    };
+    let mut suites = names.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    suites.sort_unstable();
+    suites.dedup();
+    Ok(suites)
+}
+
+fn name(file: &Path) -> String {
+    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
+    let each: serde_json::Map<_, _> =
+        result.each.iter().map(|(label, kept)| (label.clone(), short(*kept))).collect();
+    let line = json!({
+        "file": file.display().to_string(),
+        "suite": result.suite.choice().name,
+        "trials": result.trials,
+        "landed": result.landed,
+        "disqualified": result.disqualified,
+        "median_steps": short(result.median_steps),
+        "kept": short(result.kept),
+        "kept_in": each,
+        "matches": matches,
+    });
+    format!("{line}\n")
+}
+
+/// A Markdown table with a row for each champion: in each suite the landings of all trials, and of the step rates the
+/// share of the way that it keeps in each.
+fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> String {
+    let mut head = vec!["champion".to_owned()];
+    for suite in suites {
+        match (suite, champions.first()) {
+            (ExamSuite::StepRate, Some((_, results))) => {
+                let of_rates = results.iter().filter(|result| result.suite == *suite);
+                head.extend(of_rates.flat_map(|result| &result.each).map(|(label, _)| label.clone()));
+            }
+            _ => head.push(suite.choice().name.to_owned()),
+        }
+    }
+    let row = |(name, results): &(String, Vec<SuiteResult>)| {
+        let mut cells = vec![name.clone()];
+        for result in results {
+            if result.each.is_empty() {
+                cells.push(format!("{} of {}", result.landed, result.trials));
+            } else {
+                cells.extend(result.each.iter().map(|(_, kept)| format!("{kept:.2}")));
+            }
+        }
+        cells
+    };
+    let rows: Vec<Vec<String>> =
+        std::iter::once(head).chain(champions.iter().map(row)).collect();
+    let width = |column: usize| {
+        rows.iter().filter_map(|row| Some(row.get(column)?.chars().count())).max().unwrap_or(0)
+    };
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().enumerate().map(|(column, cell)| {
+            let width = width(column);
+            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
+    };
+    let rule: Vec<String> = (0..rows[0].len())
+        .map(|column| {
+            let dashes = "-".repeat(width(column) + 1);
+            if column == 0 { format!(":{dashes}") } else { format!("{dashes}:") }
+        })
+        .collect();
+    let mut text = line(&rows[0]);
+    text += &format!("|{}|\n", rule.join("|"));
+    rows[1..].iter().for_each(|row| text += &line(row));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn result(suite: ExamSuite, each: &[(&str, f32)]) -> SuiteResult {
+        SuiteResult {
+            suite,
+            trials: 100,
+            landed: 97,
+            disqualified: 0,
+            median_steps: 10.0,
+            kept: 0.7,
+            each: each.iter().map(|&(label, kept)| (label.to_owned(), kept)).collect(),
+        }
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_champion_and_a_column_for_each_step_rate() {
+        let suites = [ExamSuite::Trials, ExamSuite::StepRate];
+        let results = || {
+            let rates = [("60 Hz", 1.0), ("240 Hz", 0.7)];
+            vec![result(ExamSuite::Trials, &[]), result(ExamSuite::StepRate, &rates)]
+        };
+        let text = table(&suites, &[("climber".to_owned(), results()), ("b".to_owned(), results())]);
+        let expected = "\
+| champion |    trials | 60 Hz | 240 Hz |
+|:---------|----------:|------:|-------:|
+| climber  | 97 of 100 |  1.00 |   0.70 |
+| b        | 97 of 100 |  1.00 |   0.70 |
+";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn an_unknown_suite_is_refused_with_the_known_ones() {
+        let error = chosen(&["stars".to_owned()]).expect_err("unknown").to_string();
+        assert!(error.contains("\"stars\"") && error.contains("step-rate, stairs"), "{error}");
+        let twice = ["shove", "trials", "shove"].map(str::to_owned);
+        assert_eq!(chosen(&twice).expect("known"), [ExamSuite::Trials, ExamSuite::Shove]);
+    }
+}

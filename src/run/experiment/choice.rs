@@ -1,0 +1,49 @@
+//! The choice of a generation's champion.
+
+use std::sync::OnceLock;
+
+use crate::evolve::Champion;
+use crate::run::evaluator::{EvaluationResult, Evaluator, evaluate_caught};
+use crate::run::report::EvaluatedGeneration;
+use crate::run::run_control::{Cancelled, RunControl};
+
+/// Number of candidates in each generation: the best ones in their own trial.
+pub const CANDIDATES: usize = 2;
+
+/// The champion of a generation, given the indices of its healthy individuals, the best first: the first of them, or,
+/// if the settings say so, the candidate with the greatest fitness on a fixed list of varied trials. `None` if all
+/// were disqualified.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub(super) fn choose_champion(
+    evaluated: &EvaluatedGeneration<'_>,
+    ranking: &[usize],
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Option<Champion>, Cancelled> {
+    let Some(trial) = evaluated.plan.settings.trial.that_chooses_champions() else {
+        return Ok(ranking.first().map(|&index| evaluated.individual(index)));
+    };
+    let candidates = &ranking[..ranking.len().min(CANDIDATES)];
+    let genomes: Vec<_> = candidates.iter().map(|&index| &evaluated.genomes[index]).collect();
+    let results: Vec<OnceLock<EvaluationResult>> =
+        genomes.iter().map(|_| OnceLock::new()).collect();
+    evaluator.evaluate_batch(&trial, &genomes, control, &|index, result| {
+        // Only the first result counts.
+        let _ = results[index].set(result);
+    })?;
+    let mut best: Option<Champion> = None;
+    for ((&index, genome), result) in candidates.iter().zip(genomes).zip(results) {
+        control.wait_while_paused()?;
+        let result = result.into_inner().unwrap_or_else(|| evaluate_caught(genome, &trial));
+        // A candidate that fails on the list is no champion, and the evaluator's report of its own trial stands.
+        let Ok(on_list) = result else { continue };
+        let chosen_by = Some(on_list.fitness);
+        let candidate = Champion { chosen_by, ..evaluated.individual(index) };
+        if best.as_ref().is_none_or(|best| candidate.rank() > best.rank()) {
+            best = Some(candidate);
+        }
+    }
+    Ok(best)
+}

@@ -1,0 +1,170 @@
+//! Examinations of a champion: the same genome in many other conditions than those in which it evolved.
+
+mod suites;
+
+pub use suites::varied;
+
+use super::{Evaluation, Perturbation, Rollout, Trial};
+use crate::genome::Genome;
+use crate::schema::choices;
+use crate::world::Stairs;
+
+choices! {
+    /// A list of conditions for one ability.
+    #[derive(PartialOrd, Ord)]
+    pub enum ExamSuite {
+        Trials = "trials", "Varied trials",
+            "100 trials with other friction (±20 %), rise (±10 %) and start (±0.2 m, ±5°).";
+        StepRate = "step-rate", "Step rates",
+            "60, 120 and 240 physics steps per second, and 4 and 8 substeps per step.";
+        Stairs = "stairs", "Other stairs",
+            "100 staircases: rise 0.3 to 0.7 m, tread 1.5 to 3 m, 5 positions of the first riser; 30 s each.";
+        Surprise = "surprise", "A higher step",
+            "One step of the fourth to ninth has 1.4 times the rise; 5 positions of the first riser; 30 s each.";
+        Shove = "shove", "Shoves",
+            "One limb's velocity changes by 2 m/s, 3 to 8 s after the start. It lands if it does so at most 5 s later than \
+             without the shove.";
+    }
+}
+
+/// One trial of a suite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExamCondition {
+    /// The condition in a few words.
+    pub label: String,
+    /// The trial, in all but the perturbation.
+    pub trial: Trial,
+    /// How the world deviates from it.
+    pub perturbation: Perturbation,
+}
+
+/// The end of a trial of an exam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExamEnd {
+    /// Steps under the middle limb at the end; 0 after a disqualification.
+    pub steps: u32,
+    /// Share of the way from the start to the landing that the middle limb covered, 0 to 1; 0 after a disqualification.
+    /// Beside the stairs only the way to the first riser counts.
+    pub way: f32,
+    /// When the middle limb was first on the landing, in s, if it ended there.
+    pub landed_s: Option<f32>,
+    /// Whether the snake was disqualified.
+    pub is_disqualified: bool,
+}
+
+/// The result of one suite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SuiteResult {
+    /// The suite.
+    pub suite: ExamSuite,
+    /// Number of trials.
+    pub trials: u32,
+    /// Number of trials that ended on the landing.
+    pub landed: u32,
+    /// Number of trials that were disqualified.
+    pub disqualified: u32,
+    /// Median of the steps climbed.
+    pub median_steps: f32,
+    /// Share of its way in its own trial that the champion keeps: the median over the trials, or, for the few trials
+    /// of the step rates, the smallest.
+    pub kept: f32,
+    /// The share in each condition, for a suite of few conditions.
+    pub each: Vec<(String, f32)>,
+}
+
+impl ExamEnd {
+    /// Simulates a genome in a condition.
+    pub fn of(genome: &Genome, condition: &ExamCondition) -> Self {
+        let ExamCondition { trial, perturbation, .. } = condition;
+        let mut rollout = Rollout::perturbed(genome, trial, perturbation);
+        let mut landed_s = None;
+        while rollout.advance() {
+            if rollout.is_on_landing() {
+                landed_s = landed_s.or(Some(rollout.time_s()));
+            }
+        }
+        let evaluation = rollout.evaluation();
+        let start_y_m = trial.start_y_m + perturbation.ahead_m;
+        Self::new(&evaluation, rollout.stairs(), start_y_m, landed_s)
+    }
+
+    /// The end of a simulated trial.
+    fn new(
+        evaluation: &Evaluation,
+        stairs: &Stairs,
+        start_y_m: f32,
+        landed_s: Option<f32>,
+    ) -> Self {
+        let is_disqualified = evaluation.disqualified.is_some();
+        let steps = match evaluation.behaviour {
+            Some(behaviour) if !is_disqualified => behaviour.steps_climbed,
+            _ => 0,
+        };
+        Self {
+            steps,
+            way: if is_disqualified { 0.0 } else { way(evaluation, steps, stairs, start_y_m) },
+            landed_s: landed_s.filter(|_| evaluation.is_on_landing(stairs)),
+            is_disqualified,
+        }
+    }
+}
+
+/// Share of the way from the start to the landing at the end of a trial, 0 to 1.
+fn way(evaluation: &Evaluation, steps: u32, stairs: &Stairs, start_y_m: f32) -> f32 {
+    let goal_y_m = stairs.landing_y_m();
+    let most_y_m = if steps > 0 { goal_y_m } else { stairs.first_riser_y_m };
+    let share = (evaluation.centre_y_m.min(most_y_m) - start_y_m) / (goal_y_m - start_y_m);
+    // A start beyond the landing has no way.
+    if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+}
+
+impl SuiteResult {
+    /// The result of a suite, given the end of the champion's own trial, undisturbed for as long as the suite's trials,
+    /// and the ends in the suite's conditions.
+    pub fn of(
+        suite: ExamSuite,
+        own: &ExamEnd,
+        conditions: &[ExamCondition],
+        ends: &[ExamEnd],
+    ) -> Self {
+        let landed = |end: &&ExamEnd| match suite {
+            ExamSuite::Shove => {
+                let latest_s = own.landed_s.map(|landed_s| landed_s + suites::RECOVERY_S);
+                end.landed_s.zip(latest_s).is_some_and(|(landed_s, latest_s)| landed_s <= latest_s)
+            }
+            _ => end.landed_s.is_some(),
+        };
+        let share = |end: &ExamEnd| if own.way > 0.0 { end.way / own.way } else { 0.0 };
+        let each = match suite {
+            ExamSuite::StepRate => {
+                let labels = conditions.iter().map(|condition| condition.label.clone());
+                labels.zip(ends.iter().map(share)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let shares = ends.iter().map(share);
+        let kept = match suite {
+            ExamSuite::StepRate => shares.fold(f32::MAX, f32::min),
+            _ => median(shares.collect()),
+        };
+        Self {
+            suite,
+            trials: ends.len() as u32,
+            landed: ends.iter().filter(landed).count() as u32,
+            disqualified: ends.iter().filter(|end| end.is_disqualified).count() as u32,
+            median_steps: median(ends.iter().map(|end| end.steps as f32).collect()),
+            kept,
+            each,
+        }
+    }
+}
+
+/// Median; of an even number, the mean of the two middle ones; 0 of none.
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_by(f32::total_cmp);
+    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
+    (values[last / 2] + values[values.len() / 2]) / 2.0
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,134 @@
+//! The conditions of each suite.
+
+use super::{ExamCondition, ExamSuite};
+use crate::rng::{Purpose, stream};
+use crate::score::perturbation::draw_shove;
+use crate::score::{PerturbationRange, Perturbation, Trial};
+use crate::world::Stairs;
+
+/// How much later than without the shove a shoved snake may land, in s.
+pub(super) const RECOVERY_S: f32 = 5.0;
+/// Number of trials in the suites of random conditions.
+const TRIALS: u32 = 100;
+/// Seed of the random conditions.
+const SEED: u64 = 1;
+/// Duration of the trials on other stairs and with shoves, in s.
+const DURATION_S: f32 = 30.0;
+/// Depth of their landing, in m: a snake that lands early has room for the rest of the time.
+const LANDING_M: f32 = 100.0;
+/// Positions of the first riser, in m.
+const FIRST_RISERS_M: [f32; 5] = [2.4, 2.7, 3.0, 3.3, 3.6];
+/// Factor on the rise of the surprising step.
+const SURPRISE: f32 = 1.4;
+/// Change of a limb's velocity by a shove, in m/s.
+const SHOVE_M_S: f32 = 2.0;
+/// First and last moment of a shove, in s.
+const SHOVE_MOMENT_S: [f32; 2] = [3.0, 8.0];
+
+impl ExamSuite {
+    /// The undisturbed trial with which the others are compared: the champion's own, for as long as theirs.
+    pub fn undisturbed(self, trial: &Trial) -> ExamCondition {
+        let trial = match self {
+            Self::Trials | Self::StepRate => trial.clone(),
+            Self::Stairs | Self::Surprise | Self::Shove => long(trial),
+        };
+        condition("undisturbed", trial)
+    }
+
+    /// The conditions for a champion of this trial.
+    pub fn conditions(self, trial: &Trial) -> Vec<ExamCondition> {
+        match self {
+            Self::Trials => varied(trial, &PerturbationRange::default(), TRIALS, SEED),
+            Self::StepRate => step_rates(trial),
+            Self::Stairs => other_stairs(trial),
+            Self::Surprise => higher_steps(trial),
+            Self::Shove => shoves(trial),
+        }
+    }
+}
+
+/// Random variations of a trial.
+pub fn varied(
+    trial: &Trial,
+    range: &PerturbationRange,
+    trials: u32,
+    seed: u64,
+) -> Vec<ExamCondition> {
+    let one = |number| {
+        let mut rng = stream(seed, 0, number, Purpose::Perturbation);
+        ExamCondition {
+            perturbation: range.draw(trial, &mut rng),
+            ..condition(&format!("trial {}", number + 1), trial.clone())
+        }
+    };
+    (0..trials).map(one).collect()
+}
+
+fn condition(label: &str, trial: Trial) -> ExamCondition {
+    ExamCondition { label: label.to_owned(), trial, perturbation: Perturbation::default() }
+}
+
+/// The trial with the duration and the landing of the long suites.
+fn long(trial: &Trial) -> Trial {
+    let stairs = Stairs { landing_m: LANDING_M, ..trial.stairs.clone() };
+    Trial { duration_s: DURATION_S, stairs, ..trial.clone() }
+}
+
+fn step_rates(trial: &Trial) -> Vec<ExamCondition> {
+    let with = |label: &str, change: &dyn Fn(&mut Trial)| {
+        let mut changed = trial.clone();
+        change(&mut changed);
+        condition(label, changed)
+    };
+    let rates = [60, 120, 240].map(|steps_per_s| {
+        with(&format!("{steps_per_s} Hz"), &|trial| trial.physics.steps_per_s = steps_per_s)
+    });
+    let substeps = [4, 8].map(|substeps| {
+        with(&format!("{substeps} substeps"), &|trial| trial.physics.substeps = substeps)
+    });
+    rates.into_iter().chain(substeps).collect()
+}
+
+fn other_stairs(trial: &Trial) -> Vec<ExamCondition> {
+    let mut all = Vec::new();
+    for rise_m in [0.3, 0.4, 0.5, 0.6, 0.7] {
+        for tread_m in [1.5, 2.0, 2.5, 3.0] {
+            for first_riser_y_m in FIRST_RISERS_M {
+                let mut other = long(trial);
+                let rise = rise_m.into();
+                other.stairs = Stairs { rise_m: rise, tread_m, first_riser_y_m, ..other.stairs };
+                let label = format!("rise {rise_m} m, tread {tread_m} m, from {first_riser_y_m} m");
+                all.push(condition(&label, other));
+            }
+        }
+    }
+    all
+}
+
+fn higher_steps(trial: &Trial) -> Vec<ExamCondition> {
+    let mut all = Vec::new();
+    // Index 0 is the first step.
+    for high in 3..9 {
+        for first_riser_y_m in FIRST_RISERS_M {
+            let mut other = long(trial);
+            let rises = (0..other.stairs.steps).map(|step| {
+                other.stairs.step_rise_m(step) * if step == high { SURPRISE } else { 1.0 }
+            });
+            let rise_m = crate::schema::PerPart::Each(rises.collect());
+            other.stairs = Stairs { rise_m, first_riser_y_m, ..other.stairs };
+            let label = format!("step {} higher, from {first_riser_y_m} m", high + 1);
+            all.push(condition(&label, other));
+        }
+    }
+    all
+}
+
+fn shoves(trial: &Trial) -> Vec<ExamCondition> {
+    let one = |number: u32| {
+        let mut rng = stream(SEED, 0, number, Purpose::Shove);
+        let shove = draw_shove(SHOVE_M_S, SHOVE_MOMENT_S, trial.agent.limbs, &mut rng);
+        let perturbation = Perturbation { shove: Some(shove), ..Perturbation::default() };
+        ExamCondition { perturbation, ..condition(&format!("shove {}", number + 1), long(trial)) }
+    };
+    (0..TRIALS).map(one).collect()
+}

@@ -1,0 +1,81 @@
+use super::*;
+use crate::schema::Choices;
+use crate::score::PerPart;
+
+fn end(steps: u32, way: f32, landed_s: Option<f32>) -> ExamEnd {
+    ExamEnd { steps, way, landed_s, is_disqualified: false }
+}
+
+#[test]
+fn every_condition_is_one_of_an_allowed_trial_and_differs_from_all_others() {
+    let trial = Trial { duration_s: 15.0, ..Trial::default() };
+    for &suite in ExamSuite::OPTIONS {
+        let conditions = suite.conditions(&trial);
+        let expected = match suite {
+            ExamSuite::StepRate => 5,
+            ExamSuite::Surprise => 30,
+            _ => 100,
+        };
+        assert_eq!(conditions.len(), expected, "{suite:?}");
+        for (index, condition) in conditions.iter().enumerate() {
+            condition.trial.check().expect(&condition.label);
+            let same = |other: &&ExamCondition| {
+                other.label == condition.label
+                    || (&other.trial, other.perturbation)
+                        == (&condition.trial, condition.perturbation)
+            };
+            let earlier = conditions[..index].iter().find(same);
+            assert_eq!(earlier, None, "{suite:?}: {}", condition.label);
+        }
+    }
+}
+
+#[test]
+fn the_surprising_step_is_higher_and_the_others_are_not() {
+    let trial = Trial::default();
+    let conditions = ExamSuite::Surprise.conditions(&trial);
+    let PerPart::Each(rises_m) = &conditions[0].trial.stairs.rise_m else { panic!("one for all") };
+    assert_eq!(rises_m.len(), 10);
+    assert_eq!((rises_m[3], rises_m[2], rises_m[4]), (0.7, 0.5, 0.5));
+    let PerPart::Each(rises_m) = &conditions[29].trial.stairs.rise_m else { panic!("one for all") };
+    assert_eq!(rises_m[8], 0.7, "the ninth of ten");
+}
+
+#[test]
+fn a_suite_counts_landings_medians_and_the_share_of_the_way() {
+    let own = end(10, 0.8, Some(12.0));
+    let ends = [end(10, 0.8, Some(11.0)), end(4, 0.4, None), end(2, 0.2, None), end(0, 0.0, None)];
+    let conditions = ExamSuite::StepRate.conditions(&Trial::default());
+    let trials = SuiteResult::of(ExamSuite::Trials, &own, &conditions[..4], &ends);
+    assert_eq!((trials.trials, trials.landed, trials.median_steps), (4, 1, 3.0));
+    assert!((trials.kept - 0.375).abs() < 1e-6 && trials.each.is_empty(), "{trials:?}");
+    let rates = SuiteResult::of(ExamSuite::StepRate, &own, &conditions[..4], &ends);
+    assert_eq!((rates.kept, rates.each[1].0.as_str()), (0.0, "120 Hz"));
+    assert!((rates.each[1].1 - 0.5).abs() < 1e-6);
+    let none = SuiteResult::of(ExamSuite::Trials, &end(0, 0.0, None), &conditions[..4], &ends);
+    assert_eq!(none.kept, 0.0, "of a way that is none, none is kept");
+}
+
+#[test]
+fn a_shoved_snake_recovers_if_it_lands_at_most_five_seconds_later() {
+    let own = end(10, 1.0, Some(10.0));
+    let ends = [9.0, 15.0, 15.1].map(|landed_s| end(10, 1.0, Some(landed_s)));
+    let conditions = ExamSuite::Shove.conditions(&Trial::default());
+    let result = SuiteResult::of(ExamSuite::Shove, &own, &conditions[..3], &ends);
+    assert_eq!(result.landed, 2);
+    let lost = SuiteResult::of(ExamSuite::Shove, &end(9, 0.9, None), &conditions[..3], &ends);
+    assert_eq!(lost.landed, 0, "it does not land undisturbed");
+}
+
+#[test]
+fn the_way_counts_up_to_the_landing_and_beside_the_stairs_to_the_first_riser() {
+    let stairs = Stairs::default();
+    let at = |y_m: f32, steps| {
+        let evaluation = Evaluation { centre_y_m: y_m, ..Evaluation::of_fitness(0.0) };
+        way(&evaluation, steps, &stairs, -7.0)
+    };
+    assert_eq!(at(7.0, 2), 0.5);
+    assert_eq!(at(30.0, 10), 1.0);
+    assert!((at(30.0, 0) - 10.0 / 28.0).abs() < 1e-6, "behind the stairs");
+    assert_eq!(at(-9.0, 0), 0.0, "backwards");
+}
