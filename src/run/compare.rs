@@ -133,6 +133,8 @@ fn run_one(
         energy_j_per_m: Descriptor::EnergyPerMetre
             .value(&best.evaluation, start_y_m)
             .filter(|energy| energy.is_finite()),
+        cost_of_transport: best.evaluation.behaviour.and_then(|of| of.cost_of_transport),
+        climbing_efficiency: best.evaluation.behaviour.and_then(|of| of.climbing_efficiency),
     });
     Ok(ComparedRun {
         strategy: plan.settings.evolution.strategy,
@@ -177,7 +179,7 @@ impl Comparison {
     /// The table as text.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>13}\n",
+            "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>15}{:>13}\n",
             "strategy",
             "controller",
             "best fitness",
@@ -185,6 +187,8 @@ impl Comparison {
             "landed",
             "evaluations to landing",
             "energy J/m",
+            "cost of transport",
+            "climbing eff.",
             "final mean"
         );
         for row in self.rows() {
@@ -201,7 +205,7 @@ impl Comparison {
             };
             let landed = row.runs.iter().filter(|run| run.first_on_landing.is_some()).count();
             text += &format!(
-                "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>13}\n",
+                "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>15}{:>13}\n",
                 row.strategy.name(),
                 row.controller.name(),
                 show(row.fitness(), 2),
@@ -209,6 +213,8 @@ impl Comparison {
                 format!("{landed}/{}", row.runs.len()),
                 show(row.evaluations_to_landing(), 0),
                 show(row.energy_j_per_m(), 0),
+                show(row.of_best(|best| best.cost_of_transport), 1),
+                show(row.of_best(|best| best.climbing_efficiency), 3),
                 Quartiles::of(row.runs.iter().filter_map(|run| run.last_mean))
                     .map_or("-".to_owned(), |mean| format!("{:.2}", mean.median)),
             );
@@ -227,6 +233,8 @@ impl Comparison {
             "best_fitness",
             "steps_climbed",
             "energy_j_per_m",
+            "cost_of_transport",
+            "climbing_efficiency",
             "first_on_landing",
             "last_mean",
             "run_hash",
@@ -243,6 +251,8 @@ impl Comparison {
                 best.map_or(String::new(), |best| best.fitness.to_string()),
                 best.map_or(String::new(), |best| best.steps_climbed.to_string()),
                 text(best.and_then(|best| best.energy_j_per_m)),
+                text(best.and_then(|best| best.cost_of_transport).map(f64::from)),
+                text(best.and_then(|best| best.climbing_efficiency).map(f64::from)),
                 run.first_on_landing.map_or(String::new(), |number| number.to_string()),
                 text(run.last_mean),
                 run.run_hash.clone(),
@@ -267,6 +277,11 @@ impl ComparisonRow<'_> {
     pub fn evaluations_to_landing(&self) -> Option<Quartiles> {
         let number = |run: &&ComparedRun| run.first_on_landing.map_or(f64::INFINITY, f64::from);
         Quartiles::of(self.runs.iter().map(number))
+    }
+
+    /// A value of the best of each run.
+    fn of_best(&self, value: impl Fn(ComparedBest) -> Option<f32>) -> Option<Quartiles> {
+        Quartiles::of(self.runs.iter().filter_map(|run| value(run.best?).map(f64::from)))
     }
 
     /// Energy per metre of the best of each run, in J/m.

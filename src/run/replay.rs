@@ -33,6 +33,8 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
             "recorded_trace_hash": format!("{:016x}", recorded.trace_hash),
             "steps": found.steps,
             "energy_j": found.effort.map(|effort| short(effort.energy_j)),
+            "cost_of_transport": found.behaviour.and_then(|of| of.cost_of_transport).map(short),
+            "climbing_efficiency": found.behaviour.and_then(|of| of.climbing_efficiency).map(short),
             "top_speed_m_s": found.effort.map(|effort| short(effort.top_speed_m_s)),
             "joint_drift_m": found.effort.map(|effort| short(effort.joint_drift_m)),
             "sideways_m": found.effort.map(|effort| short(effort.sideways_m)),

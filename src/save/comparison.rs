@@ -76,6 +76,10 @@ pub struct ComparedBest {
     pub steps_climbed: u32,
     /// Energy per metre of progress, in J/m; none without progress.
     pub energy_j_per_m: Option<f64>,
+    /// Energy per weight and way; none without a way.
+    pub cost_of_transport: Option<f32>,
+    /// Share of the energy that lifted the snake; none without energy.
+    pub climbing_efficiency: Option<f32>,
 }
 
 impl Comparison {
@@ -117,6 +121,10 @@ impl Comparison {
             if let Some(energy) = run.best.and_then(|best| best.energy_j_per_m) {
                 within("energy_j_per_m", energy, 0.0..=1.0e15)?;
             }
+            let cost = run.best.and_then(|best| best.cost_of_transport);
+            within("cost_of_transport", cost.unwrap_or(0.0), 0.0..=1.0e15)?;
+            let efficiency = run.best.and_then(|best| best.climbing_efficiency);
+            within("climbing_efficiency", efficiency.unwrap_or(0.0), 0.0..=1.0e15)?;
         }
         Ok(())
     }

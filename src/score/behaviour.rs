@@ -15,6 +15,27 @@ pub struct Behaviour {
     pub contact_duty: f32,
     /// Frequency at which the controller's motion repeats, in Hz.
     pub frequency_hz: f32,
+    /// Cost of transport: energy spent per weight and way, `E / (m g d)`, for the way d of the middle limb along the line
+    /// of the stairs, treads and rises. None without a way or a weight.
+    pub cost_of_transport: Option<f32>,
+    /// Climbing efficiency: share of the energy spent that lifted the snake up the steps under its middle limb,
+    /// `m g Δz / E`. None without energy.
+    pub climbing_efficiency: Option<f32>,
+}
+
+/// What the [`Behaviour`] at a moment needs to know of the rollout.
+#[derive(Debug, Clone, Copy)]
+pub struct BehaviourMoment {
+    /// Position of the middle limb's centre, in m.
+    pub middle_m: [f32; 3],
+    /// Its y at the start, in m.
+    pub start_y_m: f32,
+    /// Weight of the snake, in N.
+    pub weight_n: f32,
+    /// Energy that the joints have spent, in J.
+    pub energy_j: f32,
+    /// Frequency of the controller, in Hz.
+    pub frequency_hz: f32,
 }
 
 /// Accumulates a [`Behaviour`] step by step.
@@ -46,15 +67,47 @@ impl BehaviourObserver {
         self.steps += 1;
     }
 
-    /// The behaviour so far. `middle_m` is the present position of the middle limb's centre.
-    pub fn behaviour(&self, stairs: &Stairs, middle_m: [f32; 3], frequency_hz: f32) -> Behaviour {
+    /// The behaviour so far.
+    pub fn behaviour(&self, stairs: &Stairs, moment: &BehaviourMoment) -> Behaviour {
+        let &BehaviourMoment { middle_m, start_y_m, weight_n, energy_j, frequency_hz } = moment;
         let mean = |sum: f64| (sum / f64::from(self.steps.max(1))) as f32;
+        let steps_climbed = stairs.steps_under(middle_m);
+        let climbed_m = stairs.height_m(steps_climbed);
+        let way_n_m = weight_n * (middle_m[1] - start_y_m + climbed_m);
         Behaviour {
-            steps_climbed: stairs.steps_under(middle_m),
+            steps_climbed,
+            cost_of_transport: (way_n_m > 0.0).then(|| energy_j / way_n_m),
+            climbing_efficiency: (energy_j > 0.0).then(|| weight_n * climbed_m / energy_j),
             mean_height_m: mean(self.height_m),
             mean_sideways_m: mean(self.sideways_m),
             contact_duty: mean(self.contacts),
             frequency_hz,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn transport_costs_energy_per_weight_and_way_and_climbing_lifts_the_weight() {
+        let of = |middle_m: [f32; 3], energy_j: f32| {
+            let moment = BehaviourMoment {
+                middle_m,
+                start_y_m: -7.0,
+                weight_n: 200.0,
+                energy_j,
+                frequency_hz: 1.0,
+            };
+            BehaviourObserver::default().behaviour(&Stairs::default(), &moment)
+        };
+        // On the landing: 35 m forward and 5 m up.
+        let landed = of([0.0, 28.0, 5.5], 16_000.0);
+        assert_eq!((landed.cost_of_transport, landed.climbing_efficiency), (Some(2.0), Some(0.0625)));
+        let beside = of([4.0, 28.0, 0.5], 16_000.0);
+        assert_eq!(beside.climbing_efficiency, Some(0.0), "on the ground beside the stairs");
+        let back = of([0.0, -9.0, 0.5], 0.0);
+        assert_eq!((back.cost_of_transport, back.climbing_efficiency), (None, None));
     }
 }

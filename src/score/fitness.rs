@@ -1,5 +1,6 @@
 //! The fitness measures: what a trial rewards.
 
+use std::collections::VecDeque;
 use std::fmt;
 
 use crate::schema::{Choices, choices};
@@ -62,6 +63,19 @@ impl Fitness {
             Self::Height => "height of the middle block at the end",
             Self::FurthestY => "furthest y of the middle block at any time",
             Self::StepsClimbed => "steps climbed at the end",
+        }
+    }
+
+    /// The fitness of the scores of the last half second: their mean, for a count their least, and for the furthest place
+    /// the last one. None of none.
+    pub(super) fn over(self, scores: &VecDeque<f32>) -> Option<f32> {
+        match self {
+            Self::FurthestY => scores.back().copied(),
+            Self::StepsClimbed => scores.iter().copied().reduce(f32::min),
+            _ => {
+                let sum: f64 = scores.iter().copied().map(f64::from).sum();
+                (!scores.is_empty()).then(|| (sum / scores.len() as f64) as f32)
+            }
         }
     }
 

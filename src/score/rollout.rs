@@ -4,12 +4,14 @@
 mod audit;
 mod continued;
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::behaviour::BehaviourObserver;
+use super::behaviour::{BehaviourMoment, BehaviourObserver};
 use super::fitness::FinalState;
+use super::trial::steps_in;
 use super::{Behaviour, Perturbation, PerturbationList, Trial};
 use crate::control::ControlLoop;
 use crate::genome::Genome;
@@ -74,6 +76,10 @@ impl Evaluation {
     }
 }
 
+/// Time at the end of a trial over which a fitness counts, in s: a snake that is thrown up the stairs in the last instant
+/// has not climbed them.
+const SCORED_S: f32 = 0.5;
+
 /// A rollout in progress. A clone continues with the bits of the original.
 ///
 /// A what-if changes its trial on the way: see [`Rollout::changing_at`].
@@ -91,6 +97,8 @@ pub struct Rollout {
     frequency_hz: f32,
     observer: BehaviourObserver,
     furthest_y_m: f32,
+    /// The scores of the last [`SCORED_S`], the earliest first.
+    recent: VecDeque<f32>,
     trace: Xxh3Default,
     step: u32,
     disqualified: Option<Disqualification>,
@@ -125,6 +133,7 @@ impl Rollout {
             frequency_hz: genome.controller.frequency_hz(),
             observer: BehaviourObserver::default(),
             furthest_y_m: f32::MIN,
+            recent: VecDeque::new(),
             trace: Xxh3Default::new(),
             step: 0,
             disqualified: None,
@@ -162,6 +171,7 @@ impl Rollout {
         }
         self.furthest_y_m = self.furthest_y_m.max(self.middle_m().y);
         self.observer.observe(&self.simulation, &self.conditions.world.stairs);
+        self.remember_score();
         true
     }
 
@@ -187,19 +197,20 @@ impl Rollout {
 
     /// The evaluation so far; after the end, the result.
     pub fn evaluation(&self) -> Evaluation {
-        let state = FinalState {
-            body: self.body(),
-            poses: &self.poses,
-            furthest_y_m: self.furthest_y_m,
-            stairs: self.stairs(),
-        };
         let effort = self.simulation.effort();
         let middle = self.middle_m();
         let cost = self.conditions.energy_cost_per_kj * effort.energy_j / 1000.0;
-        let behaviour =
-            self.observer.behaviour(self.stairs(), middle.to_array(), self.frequency_hz);
+        let world = &self.conditions.world;
+        let moment = BehaviourMoment {
+            middle_m: middle.to_array(),
+            start_y_m: world.start_y_m,
+            weight_n: self.body().mass_kg() * world.physics.gravity_m_s2,
+            energy_j: effort.energy_j,
+            frequency_hz: self.frequency_hz,
+        };
+        let behaviour = self.observer.behaviour(self.stairs(), &moment);
         Evaluation {
-            fitness: state.score(self.conditions.fitness) - cost,
+            fitness: self.conditions.fitness.over(&self.recent).unwrap_or_else(|| self.score()) - cost,
             centre_y_m: middle.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
@@ -207,6 +218,26 @@ impl Rollout {
             effort: Some(effort),
             behaviour: Some(behaviour),
         }
+    }
+
+    /// The score of the present state alone.
+    fn score(&self) -> f32 {
+        let state = FinalState {
+            body: self.body(),
+            poses: &self.poses,
+            furthest_y_m: self.furthest_y_m,
+            stairs: self.stairs(),
+        };
+        state.score(self.conditions.fitness)
+    }
+
+    /// Remembers the score of the present state, and forgets those from more than [`SCORED_S`] ago.
+    fn remember_score(&mut self) {
+        let scored = steps_in(SCORED_S, &self.conditions.world.physics) as usize;
+        while self.recent.len() >= scored {
+            self.recent.pop_front();
+        }
+        self.recent.push_back(self.score());
     }
 
     /// Sets or ends the user's pull on a limb, from the next step on. A pull disturbs the rollout for good: its

@@ -9,6 +9,10 @@ choices! {
         BodyHeight = "body_height", "Height over the treads (m)", "Mean height of the snake over the treads.";
         Sideways = "sideways", "Distance from the middle (m)", "Mean distance from the middle of the stairs.";
         EnergyPerMetre = "energy_per_metre", "Energy per metre (J/m)", "Energy used per metre forward.";
+        CostOfTransport = "cost_of_transport", "Cost of transport",
+            "Energy used per weight and way along the stairs. A walking person has 0.2, a climbing snake more.";
+        ClimbingEfficiency = "climbing_efficiency", "Climbing efficiency",
+            "Share of the energy used that lifted the snake.";
         ContactDuty = "contact_duty", "Share of limbs in contact", "Mean share of limbs that touch something.";
         Frequency = "frequency", "Gait frequency (Hz)", "How often the motion repeats per second.";
     }
@@ -26,6 +30,8 @@ impl Descriptor {
             Self::BodyHeight => (0.3, 2.3),
             Self::Sideways => (0.0, 2.5),
             Self::EnergyPerMetre => (10.0, 10_000.0),
+            Self::CostOfTransport => (0.1, 100.0),
+            Self::ClimbingEfficiency => (0.0, 0.3),
             Self::ContactDuty => (0.0, 1.0),
             Self::Frequency => (0.0, 4.0),
         }
@@ -33,11 +39,11 @@ impl Descriptor {
 
     /// Whether its axis is logarithmic.
     pub fn is_logarithmic(self) -> bool {
-        self == Self::EnergyPerMetre
+        matches!(self, Self::EnergyPerMetre | Self::CostOfTransport)
     }
 
     /// Its value for an agent that started at `start_y_m`, in the unit of [`Self::label`]. None if it was not
-    /// observed. Without progress the energy per metre is infinite.
+    /// observed. Without progress the energy per metre and the cost of transport are infinite.
     pub fn value(self, evaluation: &Evaluation, start_y_m: f32) -> Option<f64> {
         let behaviour = evaluation.behaviour?;
         Some(match self {
@@ -48,6 +54,11 @@ impl Descriptor {
                 let energy_j = f64::from(evaluation.effort?.energy_j);
                 if progress_m > 0.0 { energy_j / progress_m } else { f64::INFINITY }
             }
+            Self::CostOfTransport => {
+                evaluation.effort?;
+                behaviour.cost_of_transport.map_or(f64::INFINITY, f64::from)
+            }
+            Self::ClimbingEfficiency => f64::from(behaviour.climbing_efficiency.unwrap_or(0.0)),
             Self::ContactDuty => f64::from(behaviour.contact_duty),
             Self::Frequency => f64::from(behaviour.frequency_hz),
         })

@@ -12,7 +12,9 @@ use crate::save::files::{numbered, read_text, refuse_link, single_line};
 use crate::save::folder::has_generations_left;
 use crate::save::plan::load_plan;
 use crate::save::record::load_log;
-use crate::save::{GenerationRecord, LoadedChampion, SaveError, load_generation, parse_champion};
+use crate::save::{
+    GenerationRecord, LoadedChampion, SaveError, exam_in_words, load_generation, parse_champion,
+};
 use crate::score::Fitness;
 
 /// The contents of an entry.
@@ -45,6 +47,8 @@ pub struct ChampionDetails {
     pub engine: u32,
     /// The controller of its joints.
     pub controller: ControllerKind,
+    /// The results of its exam in one line, if the file has them.
+    pub exam: Option<String>,
     /// The user's comment in the first line of the file.
     pub note: Option<String>,
     /// Its movement, seen from the side.
@@ -150,6 +154,7 @@ fn champion(path: &Path, text: &str) -> Result<EntryDetails, SaveError> {
         origin: champion.origin.clone(),
         engine: loaded.engine,
         controller: champion.genome.controller.kind(),
+        exam: exam_in_words(&loaded.exam),
         note: note(text),
         thumbnail: Thumbnail::of_champion(champion, loaded.recording.as_ref()),
     })))

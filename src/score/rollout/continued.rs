@@ -84,6 +84,12 @@ impl Rollout {
     pub(super) fn enter_change(&mut self) {
         if let Some(change) = self.change.take_if(|change| change.at_step == self.step) {
             self.simulation = self.simulation.continued_in(&change.to.world);
+            // Scores under other conditions cannot be averaged.
+            if self.conditions.fitness != change.to.fitness
+                || self.conditions.world.stairs != change.to.world.stairs
+            {
+                self.recent.clear();
+            }
             self.control.continue_in(&change.to.world.physics);
             self.conditions = change.to;
         }

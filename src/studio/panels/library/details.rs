@@ -76,6 +76,7 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
         let (controller, engine) = (champion.controller.name(), champion.engine);
         let duration_s = champion.duration_s;
         lines.push(format!("Duration {duration_s} s, controller {controller}, engine {engine}"));
+        lines.extend(champion.exam.as_ref().map(|exam| format!("Exam: {exam}")));
         lines.extend(champion.note.clone());
     }
     if let Some(run) = item.run() {
