@@ -70,6 +70,7 @@ pub mod studio;
 /// The command line.
 pub mod cli;
 
-/// Version of everything that determines the bits of a run: physics, controllers, random streams,
-/// strategies. Raised by hand whenever a change alters the bits on purpose; saves record it.
-pub const ENGINE_VERSION: u32 = 3;
+/// The version of the engine, and the processors on which it computes the same bits.
+mod engine;
+
+pub use engine::{ENGINE_VERSION, Engine, Processors};

@@ -5,7 +5,7 @@ use indicatif::ProgressBar;
 use super::args::Args;
 use super::error::CliError;
 use super::output::{cancel_on_interrupt, print};
-use crate::ENGINE_VERSION;
+use crate::{ENGINE_VERSION, Engine, Processors};
 use crate::run::verify::Trajectories;
 
 /// Computes the golden trajectories and compares them with the reference.
@@ -40,6 +40,7 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
         let line = serde_json::json!({
             "done": true,
             "engine": ENGINE_VERSION,
+            "processors": Processors::THIS,
             "fingerprint": fingerprint,
             "reference": reference.fingerprint(),
             "agrees": agrees,
@@ -52,7 +53,7 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
             let verdict = if found.hash == **expected { "the same" } else { expected };
             text += &format!("{:<width$}  {:<20}  {verdict}\n", found.what, found.hash);
         }
-        text += &format!("\nfingerprint  {fingerprint}  (engine {ENGINE_VERSION})\n");
+        text += &format!("\nfingerprint  {fingerprint}  (engine {})\n", Engine::THIS);
         if agrees {
             text += &format!(
                 "This machine computes the reference's bits in all {} trajectories: champions \

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::headless::HeadlessError;
 use super::json::short;
 use super::panics::caught;
-use crate::ENGINE_VERSION;
+use crate::Engine;
 use crate::evolve::Champion;
 use crate::save::{LoadedChampion, load_champion};
 use crate::score::{Evaluation, evaluate};
@@ -40,7 +40,8 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
             "sideways_m": found.effort.map(|effort| short(effort.sideways_m)),
             "disqualified": found.disqualified.map(|reason| reason.words()),
             "meaning": meaning,
-            "engine": loaded.engine,
+            "engine": loaded.engine.version,
+            "processors": loaded.engine.processors,
             "matches": matches,
         });
         writeln!(out, "{}", line)?;
@@ -93,7 +94,7 @@ fn difference(loaded: &LoadedChampion, found: &Evaluation) -> Option<String> {
     let engine = if loaded.is_of_this_engine() {
         "the file was edited, or this machine computes different results".to_owned()
     } else {
-        format!("recorded by engine {}, this is engine {ENGINE_VERSION}", loaded.engine)
+        format!("recorded by engine {}, this is engine {}", loaded.engine, Engine::THIS)
     };
     Some(format!(
         "fitness {}, {} steps, trace {:016x}; recorded {}, {} steps, {:016x} ({engine})",

@@ -13,7 +13,8 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::evaluator::Evaluator;
 use super::experiment::Experiment;
 use super::run_control::{Cancelled, RunControl};
-use crate::ENGINE_VERSION;
+use crate::schema::is_default;
+use crate::{ENGINE_VERSION, Processors};
 use crate::check::Invalid;
 use crate::save::SaveError;
 
@@ -32,8 +33,11 @@ pub struct Trajectory {
 /// The results of an engine.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Trajectories {
-    /// The engine.
+    /// The version of the engine.
     pub engine: u32,
+    /// The processors.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub processors: Processors,
     /// In a fixed order.
     pub trajectories: Vec<Trajectory>,
 }
@@ -50,6 +54,9 @@ pub enum VerifyError {
     /// The embedded reference is broken, which a test rules out.
     #[error("the reference is broken: {0}")]
     Reference(#[from] ron::error::SpannedError),
+    /// This build computes other bits than all for which there is a reference.
+    #[error("there is no reference for this processor, or for a build without SIMD; there are some for x86-64 and arm64")]
+    NoReference,
     /// The interrupt key was pressed.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -67,12 +74,17 @@ impl Trajectories {
         format!("{:016x}", hash.digest())
     }
 
-    /// The results of the reference machine with this engine.
+    /// The results of the reference machine with this engine and processors like these.
     ///
     /// # Errors
-    /// The embedded reference is broken, which a test rules out.
+    /// There is no reference for processors like these; or it is broken, which a test rules out.
     pub fn reference() -> Result<Self, VerifyError> {
-        Ok(ron::from_str(include_str!("../../assets/golden.ron"))?)
+        let text = match Processors::THIS {
+            Processors::X86_64 => include_str!("../../assets/golden.ron"),
+            Processors::Arm64 => include_str!("../../assets/golden-arm64.ron"),
+            Processors::Other => return Err(VerifyError::NoReference),
+        };
+        Ok(ron::from_str(text)?)
     }
 
     /// The results of this machine. Calls `progress` with the number of finished trajectories and their total.
@@ -98,7 +110,7 @@ impl Trajectories {
         }
         trajectories.push(drawn_points());
         progress(all, all);
-        Ok(Self { engine: ENGINE_VERSION, trajectories })
+        Ok(Self { engine: ENGINE_VERSION, processors: Processors::THIS, trajectories })
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::SaveError;
 use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, write_whole};
 use super::v5::{ChampionV5, FORMAT, KIND};
-use crate::ENGINE_VERSION;
+use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::Champion;
 use crate::schema::Choices;
@@ -16,8 +16,8 @@ use crate::score::{Recording, SuiteResult};
 pub struct LoadedChampion {
     /// The champion with its recorded evaluation.
     pub champion: Champion,
-    /// The engine that recorded it. An engine other than [`ENGINE_VERSION`] may compute other bits.
-    pub engine: u32,
+    /// The engine that recorded it. An engine other than [`Engine::THIS`] may compute other bits.
+    pub engine: Engine,
     /// Its recorded poses, if the file has them.
     pub recording: Option<Recording>,
     /// The results of its exam, if the file has them.
@@ -58,7 +58,7 @@ pub fn store_exam(
     exam: &[SuiteResult],
 ) -> Result<(), SaveError> {
     if !loaded.is_of_this_engine() {
-        let allowed = format!("{ENGINE_VERSION}, to write results of an exam beside its record");
+        let allowed = format!("{}, to write results of an exam beside its record", Engine::THIS);
         let source = Invalid::new("engine", loaded.engine.to_string(), allowed);
         return Err(SaveError::Invalid { path: path.to_owned(), source });
     }
@@ -133,7 +133,7 @@ pub fn shipped_champion() -> Result<LoadedChampion, SaveError> {
 pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
     Header::check(path, text, KIND, FORMAT)?;
     let file: ChampionV5 = parse(path, text)?;
-    let engine = file.engine;
+    let engine = Engine { version: file.engine, processors: file.processors };
     let (champion, recording, exam) = file.into_parts().map_err(SaveError::invalid(path))?;
     Ok(LoadedChampion { champion, engine, recording, exam })
 }
@@ -141,7 +141,7 @@ pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveErr
 impl LoadedChampion {
     /// Whether this program computes the same bits as the one that recorded the champion.
     pub fn is_of_this_engine(&self) -> bool {
-        self.engine == ENGINE_VERSION
+        self.engine == Engine::THIS
     }
 }
 
@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn the_shipped_champion_matches_its_record_and_climbs_all_steps() {
         let LoadedChampion { champion, engine, .. } = shipped_champion().expect("well formed");
-        assert_eq!(engine, ENGINE_VERSION);
+        assert_eq!(engine, Engine::THIS);
         assert!(evaluate(&champion.genome, &champion.trial).agrees_with(&champion.evaluation));
         let climbed = champion.trial.stairs.steps_climbed(champion.evaluation.centre_y_m.into());
         assert_eq!(climbed, 10, "a champion to open with climbs");

@@ -11,7 +11,8 @@ use super::plan::check_engine;
 use super::run_name::fingerprint;
 use super::v5::RecordedV5;
 use super::{GenerationRecord, SaveError};
-use crate::ENGINE_VERSION;
+use crate::schema::is_default;
+use crate::{ENGINE_VERSION, Engine, Processors};
 use crate::check::{Invalid, quoted, within};
 use crate::evolve::{Front, FrontMember, RunPlan, StrategyState, resume};
 use crate::genome::Genome;
@@ -28,6 +29,8 @@ struct CheckpointV3 {
     kind: String,
     format: u32,
     engine: u32,
+    #[serde(default, skip_serializing_if = "is_default")]
+    processors: Processors,
     /// Fingerprint of the run's plan.
     plan: String,
     /// Number of finished generations.
@@ -75,6 +78,7 @@ pub fn store_checkpoint(
         kind: KIND.to_owned(),
         format: FORMAT,
         engine: ENGINE_VERSION,
+        processors: Processors::THIS,
         plan: plan.to_owned(),
         generation,
         run_hash: format!("{run_hash:016x}"),
@@ -144,9 +148,9 @@ pub fn parse_checkpoint(
 ) -> Result<(u32, u64, SearchState), SaveError> {
     Header::check(path, text, KIND, FORMAT)?;
     let file: CheckpointV3 = parse(path, text)?;
-    let CheckpointV3 { engine, plan: of, generation, run_hash, strategy, front, .. } = file;
+    let CheckpointV3 { engine, processors, plan: of, generation, run_hash, strategy, front, .. } = file;
     let read = || {
-        check_engine(engine)?;
+        check_engine(Engine { version: engine, processors })?;
         let expected = fingerprint(plan);
         if of != expected {
             let allowed = format!(

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::files::{Header, parse, read_bytes, store_ron, text_of};
-use crate::ENGINE_VERSION;
+use crate::schema::is_default;
+use crate::{ENGINE_VERSION, Engine, Processors};
 use crate::check::{Invalid, within};
 use crate::evolve::StrategyKind;
 use crate::genome::ControllerKind;
@@ -30,6 +31,8 @@ pub struct Comparison {
     kind: String,
     format: u32,
     engine: u32,
+    #[serde(default, skip_serializing_if = "is_default")]
+    processors: Processors,
     /// Name of the preset of all runs.
     pub preset: String,
     /// Fingerprint of its settings; a comparison continues only with the same settings.
@@ -89,6 +92,7 @@ impl Comparison {
             kind: KIND.to_owned(),
             format: FORMAT,
             engine: ENGINE_VERSION,
+            processors: Processors::THIS,
             preset: preset.to_owned(),
             settings,
             evaluations,
@@ -109,7 +113,10 @@ impl Comparison {
     }
 
     fn check(&self) -> Result<(), Invalid> {
-        within("engine", self.engine, ENGINE_VERSION..=ENGINE_VERSION)?;
+        let engine = Engine { version: self.engine, processors: self.processors };
+        if engine != Engine::THIS {
+            return Err(Invalid::new("engine", engine.to_string(), Engine::THIS.to_string()));
+        }
         within("evaluations", self.evaluations, 1..=u32::MAX)?;
         within("runs", self.runs.len(), 0..=MAX_COMPARED_RUNS)?;
         for run in &self.runs {

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::files::{Header, parse, read_text, refuse_link, store_ron};
-use crate::ENGINE_VERSION;
+use crate::schema::is_default;
+use crate::{ENGINE_VERSION, Engine, Processors};
 use crate::check::{Invalid, name, quoted};
 use crate::evolve::{Founder, RunPlan, Settings};
 use crate::genome::Genome;
@@ -22,6 +23,8 @@ struct RunV4 {
     kind: String,
     format: u32,
     engine: u32,
+    #[serde(default, skip_serializing_if = "is_default")]
+    processors: Processors,
     preset: String,
     seed: u64,
     settings: Settings,
@@ -60,8 +63,8 @@ pub fn parse_plan(path: &Path, text: &str) -> Result<RunPlan, SaveError> {
 }
 
 fn plan_of(file: RunV4) -> Result<RunPlan, Invalid> {
-    let RunV4 { engine, preset, seed, settings, founder, .. } = file;
-    check_engine(engine)?;
+    let RunV4 { engine, processors, preset, seed, settings, founder, .. } = file;
+    check_engine(Engine { version: engine, processors })?;
     name("preset", &preset)?;
     settings.check().map_err(|error| error.inside("settings"))?;
     let plan = RunPlan::new(&preset, seed, settings);
@@ -75,12 +78,12 @@ fn plan_of(file: RunV4) -> Result<RunPlan, Invalid> {
 }
 
 /// Refuses a run of another engine, which would compute other bits.
-pub fn check_engine(engine: u32) -> Result<(), Invalid> {
-    if engine == ENGINE_VERSION {
+pub fn check_engine(engine: Engine) -> Result<(), Invalid> {
+    if engine == Engine::THIS {
         return Ok(());
     }
     let allowed =
-        format!("{ENGINE_VERSION}; its champions can be replayed, but the run cannot continue");
+        format!("{}; its champions can be replayed, but the run cannot continue", Engine::THIS);
     Err(Invalid::new("engine", engine, allowed))
 }
 
@@ -91,6 +94,7 @@ pub fn store_plan(path: &Path, plan: &RunPlan) -> Result<(), SaveError> {
             kind: KIND.to_owned(),
             format: FORMAT,
             engine: ENGINE_VERSION,
+            processors: Processors::THIS,
             preset: plan.preset.clone(),
             seed: plan.seed,
             settings: plan.settings.clone(),

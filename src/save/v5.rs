@@ -13,7 +13,8 @@ use super::engine_2;
 use super::file_structs::file_structs;
 use super::files::hash_of;
 use super::poses::PosesV5;
-use crate::ENGINE_VERSION;
+use crate::schema::is_default;
+use crate::{ENGINE_VERSION, Processors};
 use crate::check::{Invalid, name, quoted, within};
 use crate::evolve::{Champion, Origin};
 use crate::genome::Genome;
@@ -37,6 +38,8 @@ pub struct ChampionV5 {
     pub kind: String,
     pub format: u32,
     pub engine: u32,
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub processors: Processors,
     pub origin: OriginV5,
     pub recorded: RecordedV5,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -189,6 +192,7 @@ impl ChampionV5 {
             kind: KIND.to_owned(),
             format: FORMAT,
             engine: ENGINE_VERSION,
+            processors: Processors::THIS,
             origin: origin.into(),
             recorded: evaluation.into(),
             chosen_by,

@@ -4,6 +4,7 @@
 //! `assets/golden.ron`. They hold for debug and release, with and without the studio: this test runs in
 //! all of these builds.
 
+use snakes_and_stairs::Processors;
 use snakes_and_stairs::run::verify::Trajectories;
 use snakes_and_stairs::run::{LocalPool, RunControl};
 
@@ -22,7 +23,7 @@ fn runs_have_the_golden_bits() {
         golden,
         "\n\nThis build computes other bits than the golden ones (right).\n\
          If you did not intend to change results, your change is the bug: every save would replay\n\
-         differently. If you did: raise ENGINE_VERSION in src/lib.rs, regenerate with\n    \
+         differently. If you did: raise ENGINE_VERSION in src/engine.rs, regenerate with\n    \
          cargo test --no-default-features --test it golden -- --ignored\n\
          find new champions for saves/, and describe the change in CHANGELOG.md.\n\
          If only this machine differs, a step called a float function of its C library: see invariant 3.\n"
@@ -30,12 +31,17 @@ fn runs_have_the_golden_bits() {
 }
 
 #[test]
-#[ignore = "rewrites assets/golden.ron; run it by hand after an intended change of bits"]
+#[ignore = "rewrites the golden file of these processors; run it by hand after an intended change of bits"]
 fn regenerate_golden() {
     let layout = ron::ser::PrettyConfig::new();
     let text = ron::ser::to_string_pretty(&computed(), layout).expect("serialisable");
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/golden.ron");
-    std::fs::write(path, text + "\n").expect("written");
+    let name = match Processors::THIS {
+        Processors::X86_64 => "golden.ron",
+        Processors::Arm64 => "golden-arm64.ron",
+        Processors::Other => panic!("other processors have no reference"),
+    };
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/");
+    std::fs::write(format!("{folder}{name}"), text + "\n").expect("written");
 }
 
 #[test]

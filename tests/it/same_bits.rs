@@ -14,20 +14,46 @@ use std::process::Command;
 use serde_json::Value;
 use snakes_and_stairs::run::verify::Trajectories;
 
+/// The platform of 64-bit ARM, and what builds and runs its programs here.
+const ARM: &str = "aarch64-unknown-linux-gnu";
+const ARM_LINKER: &str = "aarch64-linux-gnu-gcc";
+const ARM_RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
+
 /// Builds the program into a separate folder and returns its path.
 fn build(name: &str, profile: &str, rustflags: &str, settings: &[String]) -> PathBuf {
+    build_for(None, name, profile, rustflags, settings)
+}
+
+fn build_for(
+    platform: Option<&str>,
+    name: &str,
+    profile: &str,
+    rustflags: &str,
+    settings: &[String],
+) -> PathBuf {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let mut command = Command::new(env!("CARGO"));
     command.args(["build", "--no-default-features", "--locked", "--profile", profile]);
     command.args(["--bin", "snakes", "--manifest-path"]);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
     command.arg("--target-dir").arg(&target).env("RUSTFLAGS", rustflags);
+    command.args(platform.into_iter().flat_map(|platform| ["--target", platform]));
     for setting in settings {
         command.args(["--config", setting]);
     }
     let output = command.output().expect("cargo starts");
     assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    let target = platform.map_or(target.clone(), |platform| target.join(platform));
     target.join(if profile == "dev" { "debug" } else { profile }).join("snakes")
+}
+
+/// Whether Rust's standard library for a platform is installed.
+fn has_platform(platform: &str) -> bool {
+    let root = Command::new("rustc").args(["--print", "sysroot"]).output();
+    root.is_ok_and(|root| {
+        let root = String::from_utf8_lossy(&root.stdout).trim().to_owned();
+        Path::new(&root).join("lib/rustlib").join(platform).join("lib").is_dir()
+    })
 }
 
 /// Settings for a build without any optimisation, in this package and in its dependencies.
@@ -57,6 +83,22 @@ fn fingerprint(program: &Path, runner: &[&str], variables: &[(&str, &str)]) -> S
     assert!(output.status.success(), "{runner:?}: {:?}\n{stdout}\n{stderr}", output.status);
     let last: Value = serde_json::from_str(stdout.lines().last().expect("a line")).expect("JSON");
     last["fingerprint"].as_str().expect("a fingerprint").to_owned()
+}
+
+/// Another family of processors has bits of its own, and one reference for all of them.
+#[test]
+#[ignore = "builds the program for 64-bit ARM and runs it in emulation: minutes"]
+fn arm_gives_the_fingerprint_of_its_own_reference() {
+    if !has_platform(ARM) || !is_installed(ARM_LINKER) || !is_installed(ARM_RUNNER[0]) {
+        println!(
+            "skipped: needs Rust's {ARM} (rustup target add {ARM}) and Debian's gcc-aarch64-linux-gnu and qemu-user"
+        );
+        return;
+    }
+    let linker = format!("target.{ARM}.linker={ARM_LINKER:?}");
+    let program = build_for(Some(ARM), "arm", "release", "", &[linker]);
+    let found = fingerprint(&program, &ARM_RUNNER, &[]);
+    println!("{found}  64-bit ARM, emulated: its own reference");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::list::SavePlace;
 use super::shipped::shipped_text;
 use super::thumbnail::Thumbnail;
+use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::{Origin, StrategyKind};
 use crate::genome::ControllerKind;
@@ -44,7 +45,7 @@ pub struct ChampionDetails {
     /// The run that found it, and its generation and index there.
     pub origin: Origin,
     /// The engine that found it.
-    pub engine: u32,
+    pub engine: Engine,
     /// The controller of its joints.
     pub controller: ControllerKind,
     /// The results of its exam in one line, if the file has them.
@@ -238,6 +239,7 @@ fn of_other_engine(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ENGINE_VERSION;
     use crate::save::library::fixtures::{champion_in, run_in, saves};
     use crate::save::library::list;
     use crate::save::library::shipped::SHIPPED;
@@ -286,7 +288,7 @@ mod tests {
         let place = run_in(&saves, 1);
         let file = place.path().expect("a folder").join("run.ron");
         let text = fs::read_to_string(&file).expect("read");
-        fs::write(&file, text.replace("engine: 2", "engine: 1")).expect("written");
+        fs::write(&file, text.replace(&format!("engine: {ENGINE_VERSION}"), "engine: 1")).expect("written");
         let EntryDetails::Run(run) = read_entry(&place).expect("seen") else { panic!("no run") };
         assert!(run.ended.expect("it has").contains("engine is 1"));
         assert!(load_entry(&place).is_ok());

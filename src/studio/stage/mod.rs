@@ -14,7 +14,7 @@ use bevy::prelude::*;
 use super::OpeningChampions;
 use super::schedule::FrameSet;
 use super::ui::notifications::Notices;
-use crate::ENGINE_VERSION;
+use crate::Engine;
 use crate::evolve::RunPlan;
 use crate::run::caught;
 use crate::world::{Disqualification, HealthLimits};
@@ -300,7 +300,8 @@ fn explain_other_engine(staged: &StagedChampion, notices: &mut Notices) {
         "It is simulated again, so its motion may differ."
     };
     notices.info(format!(
-        "This champion was found with engine {engine}; this is engine {ENGINE_VERSION}. {text}"
+        "This champion was found with engine {engine}; this is engine {}. {text}",
+        Engine::THIS
     ));
 }
 

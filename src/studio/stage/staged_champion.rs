@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::Champion;
 use crate::save::LoadedChampion;
@@ -15,7 +16,7 @@ pub(crate) struct StagedChampion {
     name: String,
     source: ChampionSource,
     /// The engine that found it and its recording, if that was another engine version.
-    elsewhere: Option<(u32, Option<Arc<Recording>>)>,
+    elsewhere: Option<(Engine, Option<Arc<Recording>>)>,
     shown_as: ShownAs,
 }
 
@@ -222,7 +223,7 @@ impl StagedChampion {
     }
 
     /// The engine that found it and its recording, if that was another engine version.
-    pub fn other_engine(&self) -> Option<u32> {
+    pub fn other_engine(&self) -> Option<Engine> {
         self.elsewhere.as_ref().map(|(engine, _)| *engine)
     }
 
