@@ -56,6 +56,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "moon",
     "mud",
     "trampoline",
+    "thick-air",
 ];
 
 /// The shipped presets, the default first.

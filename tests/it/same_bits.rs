@@ -64,9 +64,13 @@ fn unoptimised() -> Vec<String> {
     all.chain(["profile.dev.opt-level=0".to_owned()]).collect()
 }
 
-fn is_installed(program: &str) -> bool {
+fn is_found(program: &str) -> bool {
     let version = Command::new(program).arg("--version").output();
-    let is_found = version.is_ok_and(|output| output.status.success());
+    version.is_ok_and(|output| output.status.success())
+}
+
+fn is_installed(program: &str) -> bool {
+    let is_found = is_found(program);
     let required = env::var("SNAKES_SAME_BITS").is_ok_and(|value| value == "required");
     assert!(is_found || !required, "{program} is not installed");
     is_found
@@ -89,7 +93,7 @@ fn fingerprint(program: &Path, runner: &[&str], variables: &[(&str, &str)]) -> S
 #[test]
 #[ignore = "builds the program for 64-bit ARM and runs it in emulation: minutes"]
 fn arm_gives_the_fingerprint_of_its_own_reference() {
-    if !has_platform(ARM) || !is_installed(ARM_LINKER) || !is_installed(ARM_RUNNER[0]) {
+    if !has_platform(ARM) || !is_found(ARM_LINKER) || !is_found(ARM_RUNNER[0]) {
         println!(
             "skipped: needs Rust's {ARM} (rustup target add {ARM}) and Debian's gcc-aarch64-linux-gnu and qemu-user"
         );
