@@ -99,7 +99,9 @@ fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> Stri
         match (suite, champions.first()) {
             (ExamSuite::StepRate, Some((_, results))) => {
                 let of_rates = results.iter().filter(|result| result.suite == *suite);
-                head.extend(of_rates.flat_map(|result| &result.each).map(|(label, _)| label.clone()));
+                head.extend(
+                    of_rates.flat_map(|result| &result.each).map(|(label, _)| label.clone()),
+                );
             }
             _ => head.push(suite.choice().name.to_owned()),
         }
@@ -115,8 +117,7 @@ fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> Stri
         }
         cells
     };
-    let rows: Vec<Vec<String>> =
-        std::iter::once(head).chain(champions.iter().map(row)).collect();
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(champions.iter().map(row)).collect();
     let width = |column: usize| {
         rows.iter().filter_map(|row| Some(row.get(column)?.chars().count())).max().unwrap_or(0)
     };
@@ -162,7 +163,8 @@ mod tests {
             let rates = [("60 Hz", 1.0), ("240 Hz", 0.7)];
             vec![result(ExamSuite::Trials, &[]), result(ExamSuite::StepRate, &rates)]
         };
-        let text = table(&suites, &[("climber".to_owned(), results()), ("b".to_owned(), results())]);
+        let text =
+            table(&suites, &[("climber".to_owned(), results()), ("b".to_owned(), results())]);
         let expected = "\
 | champion |    trials | 60 Hz | 240 Hz |
 |:---------|----------:|------:|-------:|

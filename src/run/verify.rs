@@ -13,10 +13,10 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::evaluator::Evaluator;
 use super::experiment::Experiment;
 use super::run_control::{Cancelled, RunControl};
-use crate::schema::is_default;
-use crate::{ENGINE_VERSION, Processors};
 use crate::check::Invalid;
 use crate::save::SaveError;
+use crate::schema::is_default;
+use crate::{ENGINE_VERSION, Processors};
 
 use cases::cases;
 use drawn_points::drawn_points;
@@ -55,7 +55,9 @@ pub enum VerifyError {
     #[error("the reference is broken: {0}")]
     Reference(#[from] ron::error::SpannedError),
     /// This build computes other bits than all for which there is a reference.
-    #[error("there is no reference for this processor, or for a build without SIMD; there are some for x86-64 and arm64")]
+    #[error(
+        "there is no reference for this processor, or for a build without SIMD; there are some for x86-64 and arm64"
+    )]
     NoReference,
     /// The interrupt key was pressed.
     #[error(transparent)]

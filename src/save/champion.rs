@@ -64,7 +64,8 @@ pub fn store_exam(
     }
     let text = read_text(path)?;
     let comments = text.lines().take_while(|line| line.starts_with("//"));
-    let own = comments.filter(|line| !PROGRAMS_COMMENTS.iter().any(|start| line.starts_with(start)));
+    let own =
+        comments.filter(|line| !PROGRAMS_COMMENTS.iter().any(|start| line.starts_with(start)));
     let own: String = own.map(|line| format!("{line}\n")).collect();
     write_champion(path, &own, &loaded.champion, loaded.recording.as_ref(), exam)
 }

@@ -11,11 +11,11 @@ use super::plan::check_engine;
 use super::run_name::fingerprint;
 use super::v5::RecordedV5;
 use super::{GenerationRecord, SaveError};
-use crate::schema::is_default;
-use crate::{ENGINE_VERSION, Engine, Processors};
 use crate::check::{Invalid, quoted, within};
 use crate::evolve::{Front, FrontMember, RunPlan, StrategyState, resume};
 use crate::genome::Genome;
+use crate::schema::is_default;
+use crate::{ENGINE_VERSION, Engine, Processors};
 
 const KIND: &str = "snakes-and-stairs checkpoint";
 /// Format 2 had another state of strategies. It was never released, and is not read any more.
@@ -148,7 +148,9 @@ pub fn parse_checkpoint(
 ) -> Result<(u32, u64, SearchState), SaveError> {
     Header::check(path, text, KIND, FORMAT)?;
     let file: CheckpointV3 = parse(path, text)?;
-    let CheckpointV3 { engine, processors, plan: of, generation, run_hash, strategy, front, .. } = file;
+    let CheckpointV3 {
+        engine, processors, plan: of, generation, run_hash, strategy, front, ..
+    } = file;
     let read = || {
         check_engine(Engine { version: engine, processors })?;
         let expected = fingerprint(plan);

@@ -14,6 +14,7 @@ mod access;
 mod choice;
 mod declare;
 mod display;
+mod parts;
 mod per_part;
 mod setting;
 mod table;
@@ -24,8 +25,9 @@ pub use access::{check, find, list, set_text};
 pub use choice::{Choice, Choices};
 pub(crate) use declare::{choices, named_by_info, setting_group, settings};
 pub use display::DisplayUnit;
+pub use parts::Parts;
 pub use per_part::PerPart;
-pub use setting::{NumberRange, Parts, Setting, SettingKind, SettingRow};
+pub use setting::{NumberRange, Setting, SettingKind, SettingRow};
 pub use setting::{
     absent, choice, list_of_numbers, number, optional_per_part, per_part, switch, whole,
 };

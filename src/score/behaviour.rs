@@ -104,7 +104,10 @@ mod tests {
         };
         // On the landing: 35 m forward and 5 m up.
         let landed = of([0.0, 28.0, 5.5], 16_000.0);
-        assert_eq!((landed.cost_of_transport, landed.climbing_efficiency), (Some(2.0), Some(0.0625)));
+        assert_eq!(
+            (landed.cost_of_transport, landed.climbing_efficiency),
+            (Some(2.0), Some(0.0625))
+        );
         let beside = of([4.0, 28.0, 0.5], 16_000.0);
         assert_eq!(beside.climbing_efficiency, Some(0.0), "on the ground beside the stairs");
         let back = of([0.0, -9.0, 0.5], 0.0);

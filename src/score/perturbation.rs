@@ -171,8 +171,8 @@ impl Perturbation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::{Purpose, stream};
     use crate::genome::GenomeSpace;
+    use crate::rng::{Purpose, stream};
     use crate::schema::PerPart;
     use crate::score::Rollout;
     use std::collections::BTreeSet;

@@ -1,7 +1,9 @@
 //! Several trials per evaluation, all but the first perturbed, which rewards robust gaits.
 
 use super::PerturbationRange;
-use crate::schema::{is_default, Section, SettingGroup, Walk, choice, choices, setting_group, settings, whole};
+use crate::schema::{
+    Section, SettingGroup, Walk, choice, choices, is_default, setting_group, settings, whole,
+};
 
 setting_group! {
     /// Number of trials per evaluation, and how they differ.

@@ -210,7 +210,8 @@ impl Rollout {
         };
         let behaviour = self.observer.behaviour(self.stairs(), &moment);
         Evaluation {
-            fitness: self.conditions.fitness.over(&self.recent).unwrap_or_else(|| self.score()) - cost,
+            fitness: self.conditions.fitness.over(&self.recent).unwrap_or_else(|| self.score())
+                - cost,
             centre_y_m: middle.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),

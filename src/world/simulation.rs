@@ -8,6 +8,7 @@ mod balance;
 mod build;
 mod continued;
 mod damping;
+mod health_check;
 pub(super) mod observe;
 pub(super) mod patches;
 mod shove;
@@ -107,9 +108,6 @@ struct ContactSettings {
     substeps: u32,
     snake_kg: f32,
 }
-
-/// Height below which a snake has fallen through the ground, in metres; only a broken contact allows that.
-const LOWEST_Z_M: f32 = -2.0;
 
 impl Simulation {
     /// Builds the world: ground, stairs from the lowest up, limbs from the head, joints from the head.
@@ -313,62 +311,6 @@ impl Simulation {
         body.add_force_at_point(force, point, false);
         self.was_pulled = true;
         self.balance.has_unknown_work = true;
-    }
-
-    /// Half the length of a limb, as a vector in the world from its centre to its front face, in metres.
-    fn centre_to_front(&self, limb: usize) -> Vector {
-        let half_length = Vector::new(0.0, self.body.limbs[limb].length_m / 2.0, 0.0);
-        *self.physics.bodies[self.limbs[limb]].rotation() * half_length
-    }
-
-    /// Squared distance between the two anchors of a joint, in m².
-    fn drift_squared(&self, joint: &JointPlan) -> f32 {
-        let centre = |limb: usize| self.physics.bodies[self.limbs[limb]].translation();
-        let parent_rear = centre(joint.parent) - self.centre_to_front(joint.parent);
-        let child_front = centre(joint.child) + self.centre_to_front(joint.child);
-        parent_rear.distance_squared(child_front)
-    }
-
-    /// Checks the state after a step against the [`HealthLimits`] and returns its speeds and distances.
-    fn check_health(&self) -> Result<Effort, Disqualification> {
-        let mut seen = Effort::default();
-        // Rapier rolls a body with a non-finite state back and reports it here.
-        if !self.physics.quarantine().is_empty() {
-            return Err(Disqualification::NotFinite);
-        }
-        let speed_limit_squared = self.health.speed_m_s * self.health.speed_m_s;
-        let drift_limit_squared = self.health.joint_drift_m * self.health.joint_drift_m;
-        for (index, &limb) in self.limbs.iter().enumerate() {
-            let body = &self.physics.bodies[limb];
-            let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
-            if !(centre.is_finite() && speed_squared.is_finite()) {
-                return Err(Disqualification::NotFinite);
-            }
-            if speed_squared > speed_limit_squared {
-                return Err(Disqualification::TooFast);
-            }
-            if centre.x.abs() > self.health.arena_half_width_m
-                || centre.y < -self.health.arena_back_m
-                || centre.y > self.arena_front_y_m
-                || centre.z < LOWEST_Z_M
-            {
-                return Err(Disqualification::LeftArena);
-            }
-            // The order of these checks is part of the bits of a run: it decides which reason is reported.
-            let to_parents = self.body.joints.iter().filter(|joint| joint.child == index);
-            let drift_squared =
-                to_parents.map(|joint| self.drift_squared(joint)).fold(0.0, f32::max);
-            if drift_squared > drift_limit_squared {
-                return Err(Disqualification::JointBroke);
-            }
-            seen = seen.and(Effort {
-                energy_j: 0.0,
-                top_speed_m_s: speed_squared.sqrt(),
-                joint_drift_m: drift_squared.sqrt(),
-                sideways_m: centre.x.abs(),
-            });
-        }
-        Ok(seen)
     }
 }
 

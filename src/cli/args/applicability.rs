@@ -27,8 +27,8 @@ enum Task {
 }
 
 use Task::{
-    Bench, CheckReplay, Compare, Exam, Figures, Presets, Render, ReplayInWindow, Robust, Run, Settings,
-    SettingsAsMarkdown, Table1, Verify, Window,
+    Bench, CheckReplay, Compare, Exam, Figures, Presets, Render, ReplayInWindow, Robust, Run,
+    Settings, SettingsAsMarkdown, Table1, Verify, Window,
 };
 
 /// All tasks.

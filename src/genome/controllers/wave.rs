@@ -157,11 +157,7 @@ impl Waves {
 
     /// Widens a space so that it contains the frequency and the number of terms. Returns the ranges of offsets
     /// and amplitudes that these waves need about the bend and the twist axes, at least `bend` and `twist`.
-    pub(super) fn widen_from(
-        &self,
-        [bend, twist]: [f32; 2],
-        space: &mut GenomeSpace,
-    ) -> [f32; 2] {
+    pub(super) fn widen_from(&self, [bend, twist]: [f32; 2], space: &mut GenomeSpace) -> [f32; 2] {
         let wave = &mut space.wave;
         wave.frequency_min_hz = wave.frequency_min_hz.min(self.frequency_hz);
         wave.frequency_max_hz = wave.frequency_max_hz.max(self.frequency_hz);

@@ -33,7 +33,11 @@ const CASES: &[Case] = &[
          agent.bend_limit_rad=0.9",
     ),
     ("bouncing stairs", [3, 6, 2], "surface.bounce=0.5; first_riser_y_m=-1.5"),
-    ("stairs with a bounce velocity", [3, 6, 2], "surface.bounce_velocity_m_s=2; first_riser_y_m=-1.5"),
+    (
+        "stairs with a bounce velocity",
+        [3, 6, 2],
+        "surface.bounce_velocity_m_s=2; first_riser_y_m=-1.5",
+    ),
     (
         "soft stairs",
         [3, 6, 2],

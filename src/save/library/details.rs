@@ -288,7 +288,8 @@ mod tests {
         let place = run_in(&saves, 1);
         let file = place.path().expect("a folder").join("run.ron");
         let text = fs::read_to_string(&file).expect("read");
-        fs::write(&file, text.replace(&format!("engine: {ENGINE_VERSION}"), "engine: 1")).expect("written");
+        fs::write(&file, text.replace(&format!("engine: {ENGINE_VERSION}"), "engine: 1"))
+            .expect("written");
         let EntryDetails::Run(run) = read_entry(&place).expect("seen") else { panic!("no run") };
         assert!(run.ended.expect("it has").contains("engine is 1"));
         assert!(load_entry(&place).is_ok());

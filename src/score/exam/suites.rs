@@ -3,7 +3,7 @@
 use super::{ExamCondition, ExamSuite};
 use crate::rng::{Purpose, stream};
 use crate::score::perturbation::draw_shove;
-use crate::score::{PerturbationRange, Perturbation, Trial};
+use crate::score::{Perturbation, PerturbationRange, Trial};
 use crate::world::Stairs;
 
 /// How much later than without the shove a shoved snake may land, in s.

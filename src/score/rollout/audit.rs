@@ -11,11 +11,12 @@ fn mechanical_energy_j(simulation: &Simulation) -> f64 {
     let physics = simulation.physics();
     let parameters = &physics.integration_parameters;
     let half_substep_s = parameters.dt / parameters.num_solver_iterations as f32 / 2.0;
-    let energies_j = physics.bodies.iter().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| {
-        let height_m = body.center_of_mass().z - body.linvel().z * half_substep_s;
-        let weight_n = -physics.gravity.z * body.mass();
-        f64::from(body.kinetic_energy()) + f64::from(weight_n * height_m)
-    });
+    let energies_j =
+        physics.bodies.iter().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| {
+            let height_m = body.center_of_mass().z - body.linvel().z * half_substep_s;
+            let weight_n = -physics.gravity.z * body.mass();
+            f64::from(body.kinetic_energy()) + f64::from(weight_n * height_m)
+        });
     energies_j.sum()
 }
 
@@ -52,16 +53,33 @@ fn greatest_gain_j(genome: &Genome, trial: &Trial) -> (f64, Option<Disqualificat
     (most_j, rollout.evaluation().disqualified)
 }
 
-#[test]
-#[ignore = "measure"]
-fn measure_energy_gain() {
-    let trial = Trial::default();
-    for kind in [ControllerKind::Gait, ControllerKind::Signal] {
-        let mut gains: Vec<(f64, bool)> = (0..200).map(|individual| {
-            let (gain, reason) = greatest_gain_j(&random_genome(kind, individual, &trial), &trial);
-            (gain, reason.is_some())
-        }).collect();
-        gains.sort_by(|a, b| b.0.total_cmp(&a.0));
-        println!("{kind}: {:?}", &gains[..15]);
+/// Runs this number of random snakes of two kinds of controller. Those that are not disqualified must not gain energy.
+fn audit(snakes: u32) {
+    let mut trial = Trial::default();
+    for density_kg_m3 in [2.5, 9.0] {
+        trial.agent.density_kg_m3 = Some(density_kg_m3.into());
+        for kind in [ControllerKind::Gait, ControllerKind::Signal] {
+            let mut healthy = 0;
+            for individual in 0..snakes {
+                let genome = random_genome(kind, individual, &trial);
+                let (gained_j, disqualified) = greatest_gain_j(&genome, &trial);
+                if disqualified.is_none() {
+                    healthy += 1;
+                    assert!(gained_j < 1.0, "{kind} {individual}: {gained_j} J too much");
+                }
+            }
+            assert!(healthy > snakes * 4 / 5, "{kind}: {healthy} of {snakes} are not disqualified");
+        }
     }
+}
+
+#[test]
+fn random_snakes_gain_no_energy_from_nothing_or_are_disqualified() {
+    audit(25);
+}
+
+#[test]
+#[ignore = "a minute: cargo test --lib a_thousand_random_snakes -- --ignored"]
+fn a_thousand_random_snakes_gain_no_energy_from_nothing_or_are_disqualified() {
+    audit(250);
 }

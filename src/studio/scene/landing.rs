@@ -125,9 +125,8 @@ fn railing(stairs: &Stairs) -> MeshBuilder {
     let end_m = stairs.end_y_m();
     let at = |y_m: f32, z_m: f32| Vec3::new(x_m, y_m, z_m);
     // The handrail follows the middles of the treads, then the landing.
-    let on_tread = |step: u32| {
-        at(stairs.riser_y_m(step) + stairs.tread_m / 2.0, stairs.height_m(step + 1))
-    };
+    let on_tread =
+        |step: u32| at(stairs.riser_y_m(step) + stairs.tread_m / 2.0, stairs.height_m(step + 1));
     let last = stairs.steps.saturating_sub(1);
     let mut bends: Vec<Vec3> = match stairs.rise_m {
         PerPart::All(_) => vec![on_tread(0), on_tread(last)],

@@ -41,13 +41,17 @@ mod tests {
         let mut world = Simulation::new(&trial.world_plan(&genome));
         let torques = vec![JointTorque::default(); world.body().joints.len()];
         (0..60).for_each(|_| world.step(&torques).expect("healthy"));
-        let (speeds, lost_j) = (world.speeds_m_s().collect::<Vec<_>>(), world.energy_lost().total_j);
+        let (speeds, lost_j) =
+            (world.speeds_m_s().collect::<Vec<_>>(), world.energy_lost().total_j);
         world.shove(&Shove { limb: 1, at_s: 1.0, change_m_s: Vector::new(0.0, -2.0, 0.0) });
         let after: Vec<f32> = world.speeds_m_s().collect();
         assert!((after[1] - 2.0).abs() < 0.05, "{after:?}");
         assert_eq!((after[0], &after[2..]), (speeds[0], &speeds[2..]));
         assert!((world.energy_lost().total_j - lost_j).abs() < 0.01);
         (0..60).for_each(|_| world.step(&torques).expect("healthy"));
-        assert!(world.energy_lost().total_j > lost_j + 1.0, "friction has taken the energy of the shove");
+        assert!(
+            world.energy_lost().total_j > lost_j + 1.0,
+            "friction has taken the energy of the shove"
+        );
     }
 }

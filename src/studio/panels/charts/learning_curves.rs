@@ -252,7 +252,13 @@ mod tests {
             (StrategyKind::CmaEs, ControllerKind::Gait, 1, None),
             (StrategyKind::Halving, ControllerKind::Signal, 1, None),
         ] {
-            let best = ComparedBest { fitness: 24.5, steps_climbed: 10, energy_j_per_m: None, cost_of_transport: None, climbing_efficiency: None };
+            let best = ComparedBest {
+                fitness: 24.5,
+                steps_climbed: 10,
+                energy_j_per_m: None,
+                cost_of_transport: None,
+                climbing_efficiency: None,
+            };
             comparison.add(ComparedRun {
                 strategy,
                 controller,

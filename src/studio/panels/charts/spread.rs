@@ -102,7 +102,8 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
 /// Numbers of disqualified snakes by reason.
 fn disqualified(evaluations: &[Evaluation]) -> String {
     use Disqualification as D;
-    let all = [D::NotFinite, D::JointBroke, D::TooFast, D::LeftArena, D::EnergyFromNothing, D::Crashed];
+    let all =
+        [D::NotFinite, D::JointBroke, D::TooFast, D::LeftArena, D::EnergyFromNothing, D::Crashed];
     let count = |reason: D| evaluations.iter().filter(|of| of.disqualified == Some(reason)).count();
     let reasons: Vec<String> = (all.into_iter())
         .filter(|reason| count(*reason) > 0)
