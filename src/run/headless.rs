@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 
 use super::evaluator::{Evaluator, WorkersError};
-use super::json::short;
+use super::json::{short, with_short_numbers};
 use super::progress_bar::run_generation_with_bar;
 use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
@@ -228,10 +228,10 @@ fn report_json(report: &GenerationReport) -> Value {
     json!({
         "generation": report.generation,
         "mean": statistics.map(|s| s.mean),
-        "best": statistics.map(|s| s.best),
+        "best": statistics.map(|s| with_short_numbers(&s.best.into())),
         "median": statistics.map(|s| s.median),
         "std": statistics.map(|s| s.std),
-        "worst": statistics.map(|s| s.worst),
+        "worst": statistics.map(|s| with_short_numbers(&s.worst.into())),
         "disqualified": report.disqualified,
         "crashed": report.crashed,
         "on_landing": report.on_landing,

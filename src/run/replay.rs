@@ -44,7 +44,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
             "processors": loaded.engine.processors,
             "matches": matches,
         });
-        writeln!(out, "{}", line)?;
+        writeln!(out, "{line}")?;
     } else {
         let unit = loaded.champion.trial.fitness.unit();
         writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;

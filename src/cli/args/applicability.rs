@@ -1,13 +1,13 @@
 //! Which flags have an effect in which task of the program. A flag without effect is refused.
 
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Command};
+use clap::{ArgMatches, Command, ValueEnum};
 
 use super::flags::{Args, Subcommand};
 use crate::cli::error::CliError;
 
 /// A task of the program, chosen by the subcommand and `--no-render`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Task {
     Window,
     Run,
@@ -30,25 +30,6 @@ use Task::{
     Bench, CheckReplay, Compare, Exam, Figures, Presets, Render, ReplayInWindow, Robust, Run,
     Settings, SettingsAsMarkdown, Table1, Verify, Window,
 };
-
-/// All tasks.
-const ALL: [Task; 15] = [
-    Window,
-    Run,
-    ReplayInWindow,
-    CheckReplay,
-    Bench,
-    Verify,
-    Exam,
-    Robust,
-    Compare,
-    Table1,
-    Figures,
-    Render,
-    Presets,
-    Settings,
-    SettingsAsMarkdown,
-];
 
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
 const FLAGS: [(&str, &[Task]); 23] = [
@@ -143,14 +124,14 @@ pub(super) fn without_refused_flags(command: Command) -> Command {
         command.get_arguments().filter(|flag| flag.is_global_set()).cloned().collect();
     command.mut_subcommands(|subcommand| {
         let start = format!("snakes {}", subcommand.get_name());
-        let is_its_own = |task: &Task| {
+        let is_its_own = |task: &&Task| {
             let rest = task.words().strip_prefix(start.as_str());
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
         };
-        let tasks: Vec<Task> = ALL.into_iter().filter(is_its_own).collect();
+        let tasks: Vec<&Task> = Task::value_variants().iter().filter(is_its_own).collect();
         let is_refused = |flag: &&clap::Arg| {
             let row = FLAGS.iter().find(|(id, _)| *id == flag.get_id().as_str());
-            row.is_some_and(|(_, of)| !of.iter().any(|task| tasks.contains(task)))
+            row.is_some_and(|(_, of)| !of.iter().any(|task| tasks.contains(&task)))
         };
         // A subcommand's own definition of a global flag takes the place of the inherited one.
         let hidden = flags.iter().filter(is_refused).map(|flag| flag.clone().hide(true));
@@ -181,7 +162,7 @@ mod tests {
     use std::ffi::OsString;
 
     /// Every task, as words of the command line.
-    const TASKS: [(Task, &str); ALL.len()] = [
+    const TASKS: [(Task, &str); 14] = [
         (Window, ""),
         (Run, "--no-render"),
         (ReplayInWindow, "replay a.ron"),
@@ -231,6 +212,7 @@ mod tests {
 
     #[test]
     fn every_pair_of_a_flag_and_a_task_is_accepted_or_refused_by_name() {
+        assert_eq!(TASKS.len(), Task::value_variants().len());
         for (task, words) in TASKS {
             assert_eq!(Task::of(&parsed(words).expect("allowed")), task, "{words}");
             for (id, tasks) in FLAGS {

@@ -8,11 +8,11 @@ use crate::save::{SavesFolder, store_csv, store_picture};
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
 
 /// Writes a chart to the exports folder under a free name; the title of a picture has the name of its run, if the
-/// chart is about `run`. Returns the file's path.
+/// chart is about it. Returns the file's path.
 pub(crate) fn export(
     saves: &SavesFolder,
     export: &ChartExport,
-    run: &str,
+    run: impl FnOnce() -> String,
 ) -> Result<PathBuf, String> {
     let ChartExport { figure, name, format, is_of_run } = export;
     let folder = saves.exports();
@@ -21,7 +21,7 @@ pub(crate) fn export(
         ChartFormat::Png => {
             let path = folder.free_name(name, "png");
             let picture = match is_of_run {
-                true => plot::figure(&titled(figure, run)),
+                true => plot::figure(&titled(figure, &run())),
                 false => plot::figure(figure),
             };
             let picture = picture.map_err(|error| error.to_string())?;
@@ -63,7 +63,7 @@ mod tests {
         let write = |format| {
             let figure = Arc::clone(&figure);
             let of = ChartExport { figure, name: "fitness", format, is_of_run: true };
-            export(&saves, &of, "climb, seed 3").expect("written")
+            export(&saves, &of, || "climb, seed 3".to_owned()).expect("written")
         };
         assert_eq!(write(ChartFormat::Csv), folder.path().join("exports/fitness-1.csv"));
         let table = write(ChartFormat::Csv);

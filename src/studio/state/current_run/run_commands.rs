@@ -44,7 +44,7 @@ impl CurrentRun {
             RunCommand::ListRuns => self.list_runs(),
             RunCommand::Compare(folder) => self.others.toggle(folder),
             RunCommand::ExportChart(chart) => {
-                let path = chart_export::export(&self.context.saves, chart, &self.name())?;
+                let path = chart_export::export(&self.context.saves, chart, || self.name())?;
                 let text = format!("Chart saved to {}", path.display());
                 match chart.format {
                     ChartFormat::Png => offer_picture(notices, text, &path),

@@ -256,7 +256,7 @@ impl Palette {
         let ([r, g, b, _], over) = (light(seen), light(self.field));
         let channels = [(r, over[0]), (g, over[1]), (b, over[2])];
         let shares = channels.map(|(seen, over)| seen / over.max(1.0e-6));
-        // What is left of the light behind the band; some of each band stays visible behind another.
+        // Share of the light behind the band that passes through it: so low that no channel has to be darkened further.
         let left = shares.into_iter().fold(1.0 - BAND_OPACITY, f32::min);
         let added = |(seen, over): (f32, f32)| gamma_u8_from_linear_f32(seen - over * left);
         let [r, g, b] = channels.map(added);
