@@ -3,12 +3,24 @@
 //! Engine 2 had rates and shares per physics step: the effect of the same number depended on the step rate. Presets up to
 //! format 2 and champions of engine 2 hold such numbers.
 
+use crate::evolve::Settings;
 use crate::score::Trial;
 use crate::world::{ERP_TIME_S, Surface};
+
+/// The settings of a preset of format 2 in those of this engine.
+pub fn converted_settings(mut settings: Settings) -> Settings {
+    settings.trial = converted(settings.trial);
+    // One range was that of bends and twists.
+    let wave = &mut settings.genome.wave;
+    wave.twist_range_rad = wave.angle_range_rad;
+    settings
+}
 
 /// The trial of engine 2 in the numbers of this engine.
 pub fn converted(mut trial: Trial) -> Trial {
     let steps_per_s = trial.physics.steps_per_s as f32;
+    // It had one iteration per substep.
+    trial.physics.iterations = 1;
     // It divided by 1 + d h in each step.
     let damping = &mut trial.agent.angular_damping_per_s;
     *damping = steps_per_s * libm::log1pf(*damping / steps_per_s);

@@ -129,7 +129,7 @@ pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
     }
     let PresetFile { name, about, mut settings, .. } = parse(path, text)?;
     if format == 2 {
-        settings.trial = engine_2::converted(settings.trial);
+        settings = engine_2::converted_settings(settings);
     }
     let preset = Preset { name, about, settings };
     check::name("name", &preset.name).map_err(invalid)?;
@@ -193,6 +193,16 @@ mod tests {
         preset.settings.trial.ground = Some(Default::default());
         store_preset(&path, &preset).expect("written");
         assert_eq!(load_preset(&path.to_string_lossy()).expect("read"), preset);
+    }
+
+    #[test]
+    fn a_preset_of_format_2_drives_twists_in_the_range_of_bends() {
+        let settings = "(genome: (wave: (angle_range_rad: 0.7)), trial: (physics: (substeps: 4)))";
+        let text = format!("(format: 2, name: \"own\", about: \"\", settings: {settings})");
+        let settings = parse_preset(Path::new("own.ron"), &text).expect("well formed").settings;
+        assert_eq!(settings.genome.wave.twist_range_rad, 0.7);
+        let physics = settings.trial.physics;
+        assert_eq!((physics.substeps, physics.iterations), (4, 1));
     }
 
     #[test]

@@ -162,7 +162,7 @@ mod tests {
     use std::ffi::OsString;
 
     /// Every task, as words of the command line.
-    const TASKS: [(Task, &str); 14] = [
+    const TASKS: [(Task, &str); 15] = [
         (Window, ""),
         (Run, "--no-render"),
         (ReplayInWindow, "replay a.ron"),

@@ -56,7 +56,9 @@ pub(crate) enum LibraryCommand {
     },
     /// Copy champions or runs into the folder of saves.
     Import(Vec<PathBuf>),
-    /// Stop a batch operation after the current file.
+    /// Examine champions in the background, and write the results into their files.
+    Examine(Vec<SavePlace>),
+    /// Stop a batch operation after the current file, and an exam.
     Cancel,
     /// Show the champions that were loaded in the background.
     ShowLoaded,

@@ -169,7 +169,7 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     let aside = |pose: &Pose| Pose { translation: pose.translation + Vec3::X, ..*pose };
     let poses = recording.frames().flatten().map(aside).collect();
     loaded.recording = Recording::new(recording.every_steps(), recording.limbs(), poses);
-    loaded.engine = 1;
+    loaded.engine.version = 1;
     let last = loaded.recording.as_ref().expect("whole frames").at(1.0e9);
     let mut app = stage_of(vec![loaded.clone()]);
     play(&mut app, &[0.1], is_over);
@@ -357,7 +357,7 @@ fn a_recording_has_a_landing_time_and_a_trail() {
     let mut loaded = shipped();
     let Champion { genome, trial, .. } = &loaded.champion;
     loaded.recording = Some(Recording::of(genome, trial));
-    loaded.engine = 1;
+    loaded.engine.version = 1;
     let mut app = stage_of(vec![loaded, shipped()]);
     finish_lookahead(&mut app);
     clock(&mut app).hold_at(1.0e9);

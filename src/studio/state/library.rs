@@ -4,6 +4,7 @@
 
 mod apply;
 mod batch_jobs;
+mod examination;
 mod item;
 mod load;
 mod poll;
@@ -21,6 +22,7 @@ use crate::studio::commands::files::FileQuestion;
 use crate::studio::stage::Show;
 
 use batch_jobs::BatchJobs;
+use examination::Examination;
 
 pub(crate) use item::{LibraryItem, fitness_text};
 pub(crate) use load::founder_of;
@@ -46,6 +48,7 @@ pub(crate) struct Library {
     /// Incremented when a sort or search key changes.
     sortings: u64,
     batches: Vec<BatchJobs>,
+    examination: Option<Examination>,
     /// Champions being read for the stage.
     loading: Option<BackgroundTask<Result<Show, String>>>,
     /// Result of `loading`, until it is shown.
@@ -82,6 +85,7 @@ impl Library {
             listings: 0,
             sortings: 0,
             batches: Vec::new(),
+            examination: None,
             loading: None,
             loaded: None,
             newest: (0, None),

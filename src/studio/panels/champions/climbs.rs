@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn a_save_of_another_engine_is_drawn_from_its_recording() {
         let mut loaded = shipped_champion().expect("well formed");
-        loaded.engine += 1;
+        loaded.engine.version += 1;
         let picture = Climbs::default().of_save(&loaded).expect("at once").picture.clone();
         assert_eq!(picture, Thumbnail::of_champion(&loaded.champion, loaded.recording.as_ref()));
         assert!(!picture.way_m.is_empty(), "it has a recording");

@@ -77,6 +77,22 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
             first.place().clone(),
         ))),
     });
+    if places.iter().all(|place| place.run().is_none()) {
+        let refusal = if places.len() > MAX_LANES {
+            Some("At most ten champions can be examined at once")
+        } else if places.iter().any(|place| place.path().is_none()) {
+            Some("Built-in champions have their exams; duplicate it to examine it again")
+        } else {
+            replay_refusal
+        };
+        actions.push(LibraryAction {
+            name: "Examine",
+            hint: "Test it in some 300 other trials: other step rates, stairs, friction, and shoves. The results \
+                   are stored in its file and shown in its details",
+            refusal,
+            act: library_command(LibraryCommand::Examine(places.clone())),
+        });
+    }
     if let (Some(folder), 1) = (first.place().run(), chosen.len()) {
         actions.extend(of_run(library, first, folder));
     }

@@ -113,11 +113,14 @@ impl LibraryPanel {
     }
 }
 
-/// Progress of operations on many saves, with a button to cancel them.
+/// Progress of operations on many saves and of an exam, with a button to cancel them.
 fn batch_progress(ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
-    for (words, share) in library.under_way() {
+    let of_files = "Stop after the current file. Undo reverses the finished part";
+    let of_exam = "Stop the exam. The results of finished champions are kept";
+    let files = library.under_way().map(|progress| (progress, of_files));
+    let exam = library.exam_under_way().map(|progress| (progress, of_exam));
+    for ((words, share), hint) in files.chain(exam) {
         ui.horizontal(|ui| {
-            let hint = "Stop after the current file. Undo reverses the finished part";
             if ui.button("Cancel").on_hover_text(hint).clicked() {
                 send(commands, LibraryCommand::Cancel);
             }

@@ -8,7 +8,7 @@ use super::columns::{Columns, Part, VALUE_WIDTH};
 use super::form::{Sheet, Shown};
 use super::scale::{NUMBERS_HEIGHT, Scale};
 use super::values::{list_of, numbers, rounded};
-use crate::schema::{NumberRange, Parts};
+use crate::schema::NumberRange;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::number_field::select_all_on_focus;
 use crate::studio::ui::theme;

@@ -309,6 +309,7 @@ fn only_settings_that_allow_a_list_have_one_value_per_part() {
         let count = match range.parts {
             Parts::One | Parts::Limbs(_) => 5,
             Parts::Joints(_) => 4,
+            Parts::Steps(_) => 10,
         };
         let now = fields(run.next_settings()).into_iter().find(|(field, _)| *field == full);
         let value: f32 = now.expect("there").1.parse().expect("a number");

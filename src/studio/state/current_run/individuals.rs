@@ -23,7 +23,7 @@ impl CurrentRun {
             None => caught(|| evaluate(&genome, &trial)).ok()?,
         };
         let origin = self.origin(place.generation, place.individual);
-        Some(Champion { genome: (*genome).clone(), trial, evaluation, origin })
+        Some(Champion { genome: (*genome).clone(), trial, evaluation, chosen_by: None, origin })
     }
 
     /// A member of the Pareto front of distance and energy.
@@ -47,7 +47,7 @@ impl CurrentRun {
         let genome = space.genome_at(&elite.point, trial.genome_shape());
         let evaluation = caught(|| evaluate(&genome, trial)).ok()?;
         let origin = self.origin(elite.generation, elite.individual);
-        Some(Champion { genome, trial: trial.clone(), evaluation, origin })
+        Some(Champion { genome, trial: trial.clone(), evaluation, chosen_by: None, origin })
     }
 
     pub(super) fn origin(&self, generation: u32, individual: u32) -> Origin {

@@ -97,7 +97,14 @@ impl Library {
                 let act = move |path: PathBuf| import(&saves, &path).into();
                 self.send_out(BatchTask::Act(IMPORTED), paths.clone(), act)?;
             }
-            LibraryCommand::Cancel => self.cancel(),
+            LibraryCommand::Examine(places) => {
+                let paths = places.iter().filter_map(SavePlace::path);
+                self.examine(paths.map(ToOwned::to_owned).collect())?;
+            }
+            LibraryCommand::Cancel => {
+                self.cancel();
+                self.cancel_exam();
+            }
         }
         Ok(None)
     }

@@ -110,7 +110,7 @@ fn without_contact_it_says_none_and_a_recording_has_no_readings() {
     assert!(shows(&at_start, "none") && shows(&at_start, "Slip speed"));
     let mut loaded = shipped();
     loaded.recording = Some(Recording::of(&loaded.champion.genome, &loaded.champion.trial));
-    loaded.engine = 1;
+    loaded.engine.version = 1;
     let recorded = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
     let panel = panel(vec![&recorded], ReadSurface::Stairs, 320.0);
     assert!(shows(&panel, "Not available in a recording") && !shows(&panel, "Slip speed"));

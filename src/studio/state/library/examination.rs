@@ -1,0 +1,180 @@
+//! Examining champions in the background. The results are written into their files.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::{Library, name_of};
+use crate::run::exam::{exam_trials, examine};
+use crate::run::{BackgroundTask, LocalPool, RunControl, TaskProgress};
+use crate::save::{LoadedChampion, exam_in_words, load_champion, store_exam};
+use crate::schema::Choices;
+use crate::score::ExamSuite;
+use crate::studio::ui::notifications::Notices;
+
+/// Notices about an exam replace each other.
+const SUBJECT: &str = "exam";
+
+/// An exam of several champions that is under way.
+#[derive(Debug)]
+pub(super) struct Examination {
+    names: Vec<String>,
+    /// Trials of each champion.
+    trials: u32,
+    control: Arc<RunControl>,
+    work: BackgroundTask<Vec<ExamOutcome>>,
+}
+
+/// The results of a champion in one line, an error in one line, or none after a cancellation.
+type ExamOutcome = Option<Result<String, String>>;
+
+impl Examination {
+    /// The champion that is being examined, in words, and the finished share of the whole, 0 to 1.
+    fn progress(&self) -> (String, f32) {
+        let index = self.work.done().min(self.names.len() - 1);
+        let done = self.control.done().min(self.trials);
+        let words = format!("Examining {}: {done} of {} trials", self.names[index], self.trials);
+        let share = (index as f32 + done as f32 / self.trials as f32) / self.names.len() as f32;
+        (words, share)
+    }
+}
+
+impl Library {
+    /// Begins to examine the champions in these files with all suites.
+    ///
+    /// # Errors
+    /// A file cannot be read, its champion is another engine's, an exam is under way, or no thread can be started.
+    pub(super) fn examine(&mut self, paths: Vec<PathBuf>) -> Result<(), String> {
+        if self.examination.is_some() {
+            return Err("An exam is in progress: wait for it, or cancel it".to_owned());
+        }
+        let load = |path: PathBuf| {
+            let loaded = load_champion(&path).map_err(|error| error.to_string())?;
+            if !loaded.is_of_this_engine() {
+                let name = name_of(&path);
+                let engine = &loaded.engine;
+                return Err(format!("{name} moves differently here: {engine} recorded it"));
+            }
+            Ok((path, loaded))
+        };
+        let champions = paths.into_iter().map(load).collect::<Result<Vec<_>, String>>()?;
+        let Some((_, first)) = champions.first() else { return Ok(()) };
+        let trials = exam_trials(&first.champion, ExamSuite::OPTIONS);
+        let names = champions.iter().map(|(path, _)| name_of(path)).collect();
+        let control = Arc::new(RunControl::default());
+        let shared = Arc::clone(&control);
+        let work = BackgroundTask::start_counted(champions.len(), move |progress| {
+            examined(champions, &shared, progress)
+        });
+        let work = work.map_err(|error| format!("The exam could not be started: {error}"))?;
+        self.examination = Some(Examination { names, trials, control, work });
+        Ok(())
+    }
+
+    /// The progress of an exam that is under way, in words, and its finished share, 0 to 1.
+    pub fn exam_under_way(&self) -> Option<(String, f32)> {
+        self.examination.as_ref().map(Examination::progress)
+    }
+
+    /// Stops an exam. The results of the champions that are finished are kept.
+    pub(super) fn cancel_exam(&self) {
+        if let Some(examination) = &self.examination {
+            examination.control.cancel();
+        }
+    }
+
+    /// Reports the results of an exam that is finished.
+    pub(super) fn take_in_exam(&mut self, notices: &mut Notices) {
+        let Some(result) = self.examination.as_ref().and_then(|exam| exam.work.poll()) else {
+            return;
+        };
+        let names = self.examination.take().map(|exam| exam.names).unwrap_or_default();
+        self.look_again();
+        let outcomes = match result {
+            Ok(outcomes) => outcomes,
+            Err(problem) => {
+                return notices.problem(format!("The exam ended with an error: {problem}"));
+            }
+        };
+        let (mut finished, mut cancelled) = (Vec::new(), 0);
+        for (name, outcome) in names.into_iter().zip(outcomes) {
+            match outcome {
+                Some(Ok(results)) => finished.push((name, results)),
+                Some(Err(problem)) => notices.problem(problem),
+                None => cancelled += 1,
+            }
+        }
+        let mut said = match finished.as_slice() {
+            [] => String::new(),
+            [(name, results)] => format!("Exam of {name}: {results}."),
+            several => {
+                format!("{} champions examined; their details show the results.", several.len())
+            }
+        };
+        if cancelled > 0 {
+            said.push_str(" The exam was cancelled.");
+        }
+        if !said.is_empty() {
+            notices.update(SUBJECT, said.trim().to_owned());
+        }
+    }
+}
+
+/// Examines champions one after the other, and writes the results into their files.
+fn examined(
+    champions: Vec<(PathBuf, LoadedChampion)>,
+    control: &RunControl,
+    progress: &TaskProgress,
+) -> Vec<ExamOutcome> {
+    let pool = match LocalPool::new(1) {
+        Ok(pool) => pool,
+        Err(error) => return vec![Some(Err(format!("The exam could not be started: {error}")))],
+    };
+    let each = |(index, (path, loaded)): (usize, (PathBuf, LoadedChampion))| {
+        let results = examine(&loaded.champion, ExamSuite::OPTIONS, &pool, control).ok()?;
+        let stored = store_exam(&path, &loaded, &results).map_err(|error| error.to_string());
+        progress.set_done(index + 1);
+        Some(stored.map(|()| exam_in_words(&results).unwrap_or_default()))
+    };
+    champions.into_iter().enumerate().map(each).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::save::load_champion;
+    use crate::schema::Choices;
+    use crate::score::ExamSuite;
+    use crate::studio::commands::library::LibraryCommand;
+    use crate::studio::state::library::tests::Tried;
+
+    #[test]
+    fn an_exam_shows_its_progress_and_can_be_cancelled() {
+        let mut tried = Tried::new(&["a", "b"]);
+        let places = vec![tried.place("a"), tried.place("b")];
+        tried.apply(&LibraryCommand::Examine(places.clone())).expect("begun");
+        let (words, share) = tried.library.exam_under_way().expect("under way");
+        assert!(words.starts_with("Examining a: ") && share < 0.5, "{words} {share}");
+        let refusal = tried.apply(&LibraryCommand::Examine(places)).expect_err("in progress");
+        assert!(refusal.contains("in progress"), "{refusal}");
+        tried.apply(&LibraryCommand::Cancel).expect("cancelled");
+        while tried.library.exam_under_way().is_some() {
+            tried.take_in();
+        }
+        assert_eq!(tried.notices.last(), Some("The exam was cancelled."));
+        let path = tried.folder.path().join("b.ron");
+        assert!(load_champion(&path).expect("read").exam.is_empty());
+    }
+
+    #[test]
+    #[ignore = "takes about ten seconds: cargo test --release --lib the_results_of_an_exam_are -- --ignored"]
+    fn the_results_of_an_exam_are_written_into_the_file() {
+        let mut tried = Tried::new(&["a"]);
+        let a = tried.place("a");
+        tried.apply(&LibraryCommand::Examine(vec![a])).expect("begun");
+        while tried.library.exam_under_way().is_some() {
+            tried.take_in();
+        }
+        let path = tried.folder.path().join("a.ron");
+        let exam = load_champion(&path).expect("read").exam;
+        assert_eq!(exam.len(), ExamSuite::OPTIONS.len());
+    }
+}
