@@ -197,12 +197,15 @@ mod tests {
 
     #[test]
     fn a_preset_of_format_2_drives_twists_in_the_range_of_bends() {
-        let settings = "(genome: (wave: (angle_range_rad: 0.7)), trial: (physics: (substeps: 4)))";
-        let text = format!("(format: 2, name: \"own\", about: \"\", settings: {settings})");
-        let settings = parse_preset(Path::new("own.ron"), &text).expect("well formed").settings;
-        assert_eq!(settings.genome.wave.twist_range_rad, 0.7);
-        let physics = settings.trial.physics;
-        assert_eq!((physics.substeps, physics.iterations), (4, 1));
+        let (_, shipped) = SHIPPED[0];
+        let text = shipped.replacen("format: 3", "format: 2", 1).replace("iterations: 4, ", "");
+        let is_new = |line: &&str| line.contains("twist_range_rad");
+        assert_eq!(text.lines().filter(is_new).count(), 1);
+        let lines: Vec<&str> = text.lines().filter(|line| !is_new(line)).collect();
+        let settings = parse_preset(Path::new("own.ron"), &lines.join("\n"));
+        let Settings { trial, genome: space, .. } = settings.expect("well formed").settings;
+        assert_eq!(space.wave.twist_range_rad, space.wave.angle_range_rad);
+        assert_eq!(trial.physics.iterations, 1);
     }
 
     #[test]
