@@ -139,6 +139,7 @@ impl GenerationReport {
                     upper_quartile,
                 }
             }),
+            chosen_by: self.champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
             hash: format!("{:016x}", self.hash),
             elapsed_s: self.elapsed_s,
         }

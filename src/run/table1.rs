@@ -85,6 +85,13 @@ impl Table1 {
             .collect()
     }
 
+    /// Mean over the seeds of the number of individuals that were disqualified in a generation, counted from 0.
+    pub fn disqualified(&self, generation: usize) -> f64 {
+        let counts = self.seeds.iter().filter_map(|seed| seed.disqualified.get(generation));
+        let (sum, seeds) = counts.fold((0_u32, 0_u32), |(sum, seeds), one| (sum + one, seeds + 1));
+        f64::from(sum) / f64::from(seeds.max(1))
+    }
+
     /// Number of seeds in which the mean rises with every generation.
     pub fn rising(&self) -> usize {
         self.seeds.iter().filter(|seed| seed.rises()).count()
@@ -103,8 +110,8 @@ impl Table1 {
     /// The two tables side by side, as text. `meaning` expresses a mean in the report's words.
     pub fn text(&self, meaning: impl Fn(f64) -> String) -> String {
         let mut text = format!(
-            "{:>10} | {:>7}  {:<18} | {:>7}  {:>9}  {:>7}  {:>7}  {}\n",
-            "", "report", "in words", "ours", "std.dev.", "min", "max", "in words"
+            "{:>10} | {:>7}  {:<18} | {:>7}  {:>9}  {:>7}  {:>7}  {:>12}  {}\n",
+            "", "report", "in words", "ours", "std.dev.", "min", "max", "disqualified", "in words"
         );
         for (index, spread) in self.spreads().into_iter().enumerate() {
             let report = REPORT_MEANS.get(index);
@@ -112,11 +119,12 @@ impl Table1 {
             let words = report.map_or(String::new(), |mean| meaning(*mean));
             let ours = match spread {
                 Some(s) => format!(
-                    "{:>7.2}  {:>9.2}  {:>7.2}  {:>7.2}  {}",
+                    "{:>7.2}  {:>9.2}  {:>7.2}  {:>7.2}  {:>12.0}  {}",
                     s.mean,
                     s.std,
                     s.least,
                     s.greatest,
+                    self.disqualified(index),
                     meaning(s.mean)
                 ),
                 None => "all disqualified".to_owned(),
@@ -185,7 +193,7 @@ mod tests {
 
     #[test]
     fn the_table_counts_rising_and_reaching_seeds() {
-        let table = Table1 {
+        let mut table = Table1 {
             seeds: vec![
                 seed(1, &[-7.0, -5.0, -2.0, 3.0, 6.0, 9.0]),
                 seed(2, &[-7.0, -5.0, -2.0, 3.0, 2.9, 8.1]),
@@ -197,10 +205,11 @@ mod tests {
         assert!((last.mean - 25.1 / 3.0).abs() < 1e-9);
         assert_eq!((last.least, last.greatest), (8.0, 9.0));
         assert!((last.std - 0.5507).abs() < 1e-3, "{}", last.std);
+        table.seeds[0].disqualified[5] = 300;
         let text = table.text(|mean| format!("<{mean:.1}>"));
-        assert!(text.contains("8.05  <8.1>"), "{text}");
+        assert!(text.contains("8.05  <8.1>") && text.contains("  100  <8.4>"), "{text}");
         assert_eq!(table.records().len(), 19);
-        assert_eq!(table.records()[6][..5], ["1", "6", "9", "0", "8.05"]);
+        assert_eq!(table.records()[6][..5], ["1", "6", "9", "300", "8.05"]);
     }
 
     #[test]

@@ -36,6 +36,9 @@ pub struct GenerationRecord {
     pub first_on_landing: Option<u32>,
     /// Fitness statistics of the healthy individuals; none if all were disqualified.
     pub statistics: Option<StatisticsRecord>,
+    /// The champion's fitness over the varied trials on which the run chose it; none if it chose by the trial alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen_by: Option<f64>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
     pub hash: String,
     /// Wall-clock time since the generation began or the program was started, in seconds.
@@ -128,13 +131,15 @@ pub fn parse_records(
             within("first_on_landing", first, 0..=record.evaluations.saturating_sub(1))?;
         }
         within("elapsed_s", record.elapsed_s, 0.0..=1.0e9)?;
+        let (least, most) = (f64::from(*FITNESS_RANGE.start()), f64::from(*FITNESS_RANGE.end()));
+        if let Some(fitness) = record.chosen_by {
+            within("chosen_by", fitness, least..=most)?;
+        }
         if let Some(statistics) = record.statistics {
             let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m, .. } =
                 statistics;
             let quartiles = [statistics.lower_quartile, statistics.upper_quartile];
             let values = [mean, best, median, std, worst, mean_centre_y_m];
-            let (least, most) =
-                (f64::from(*FITNESS_RANGE.start()), f64::from(*FITNESS_RANGE.end()));
             let mut values = values.into_iter().chain(quartiles.into_iter().flatten());
             values.try_for_each(|value| within("statistics", value, least..=most))?;
         }

@@ -73,7 +73,8 @@ pub struct RunDetails {
     pub finished: u32,
     /// Number of generations in total; unknown for a run of another engine.
     pub generations: Option<u32>,
-    /// The best fitness with its generation; the first is 1.
+    /// The fitness of its best champion, with the generation; the first is 1. Where a run chooses its champions on varied
+    /// trials, they say which is the best.
     pub best: Option<(u32, f32)>,
     /// The best fitness of each generation in order; none where all were disqualified.
     pub best_of_each: Vec<Option<f32>>,
@@ -179,10 +180,16 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
     champions.retain(|generation| *generation as usize <= records.len());
     let best_of = |record: &GenerationRecord| record.statistics.map(|of| of.best as f32);
     let best_of_each: Vec<Option<f32>> = records.iter().map(best_of).collect();
-    let ranked = best_of_each.iter().zip(1..).filter_map(|(of, number)| Some((number, (*of)?)));
+    let rank = |record: &GenerationRecord| record.chosen_by.or(record.statistics.map(|of| of.best));
+    let ranked = records.iter().zip(1..).filter_map(|(of, number)| Some((number, rank(of)?)));
     // Of equal ones, the first.
     let best = ranked.reduce(|best, next| if next.1 > best.1 { next } else { best });
     let shown = best.and_then(|(generation, _)| load_generation(folder, generation).ok());
+    let best = best.and_then(|(generation, _)| {
+        let of_all = best_of_each.get(generation as usize - 1).copied().flatten();
+        let own = shown.as_ref().map(|of| of.champion.evaluation.fitness);
+        Some((generation, own.or(of_all)?))
+    });
     let thumbnail = match &shown {
         Some(of) => Thumbnail::of_champion(&of.champion, of.recording.as_ref()),
         None => Thumbnail::of_trial(&plan.settings.trial),
