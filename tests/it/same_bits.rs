@@ -4,6 +4,8 @@
 //!
 //!     cargo test --release --no-default-features --test it same_bits -- --ignored --nocapture
 //!
+//! WebAssembly has no case: plotters, which draws the charts, does not compile for `wasm32-wasip1` without its fonts.
+//!
 //! Cases that need a missing tool (Debian's `qemu-user` and `valgrind`) are skipped; with
 //! `SNAKES_SAME_BITS=required` the test fails instead.
 
