@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use snakes_and_stairs::save::{LoadedChampion, load_champion};
 use snakes_and_stairs::score::evaluate;
 
-/// A climber in the setting of the report; it reaches the fourth step.
+/// A climber in the setting of the report; it climbs three steps.
 const REPORT: &str = "first-climber.ron";
 
 fn saves() -> Vec<PathBuf> {

@@ -9,7 +9,7 @@ macro_rules! shipped {
 
 /// Their names, and their files' texts.
 pub const SHIPPED: &[(&str, &str)] =
-    shipped!["climber", "fast", "first-climber", "rearer", "robust", "thrifty", "twister"];
+    shipped!["by-heart", "climber", "fast", "first-climber", "rigid", "robust", "strong", "thrifty"];
 
 /// The text of one of them.
 pub fn shipped_text(name: &str) -> Option<&'static str> {
