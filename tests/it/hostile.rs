@@ -143,8 +143,8 @@ fn add_general(all: &mut Collection, opened: OpenedAs, text: &str) {
         "a field twice",
         opened,
         text.replacen("    settings: (", "    name: \"x\",\n    settings: (", 1).replacen(
-            "    engine: 2,",
-            "    engine: 2,\n    engine: 2,",
+            "    engine: 3,",
+            "    engine: 3,\n    engine: 3,",
             1,
         ),
     );
@@ -152,7 +152,7 @@ fn add_general(all: &mut Collection, opened: OpenedAs, text: &str) {
         "a field that is not known",
         opened,
         text.replacen("    settings: (", "    include: \"/etc/passwd\",\n    settings: (", 1)
-            .replacen("    engine: 2,", "    engine: 2,\n    include: \"/etc/passwd\",", 1),
+            .replacen("    engine: 3,", "    engine: 3,\n    include: \"/etc/passwd\",", 1),
     );
 }
 
@@ -263,8 +263,8 @@ fn runs(all: &mut Collection, good: &Path) {
         ("format: 4", "format: 1"),
         ("format: 4", "format: 3"),
         ("format: 4", "format: 5"),
-        ("engine: 2", "engine: 1"),
-        ("engine: 2", "engine: 3"),
+        ("engine: 3", "engine: 1"),
+        ("engine: 3", "engine: 4"),
         ("founder: None", "founder: Some(())"),
         ("founder: None", "founder: Some((name: \"x\", genome: 1))"),
         ("founder: None", "founder: None, founder: None"),
@@ -287,7 +287,7 @@ fn runs(all: &mut Collection, good: &Path) {
     for (from, to) in [
         ("format: 3", "format: 2"),
         ("format: 3", "format: 4"),
-        ("engine: 2", "engine: 1"),
+        ("engine: 3", "engine: 1"),
         ("generation: 2", "generation: 1"),
         ("run_hash: \"", "run_hash: \"0"),
         ("run_hash: \"", "run_hash: \"x"),

@@ -240,7 +240,7 @@ fn a_saved_champion_opens_in_the_studio() {
 fn a_champion_of_another_engine_is_shown_as_recorded_and_can_be_simulated() {
     let folder = folder();
     let save = folder.path().join("elsewhere.ron");
-    let text = include_str!("../../saves/first-climber.ron").replace("engine: 2", "engine: 1");
+    let text = include_str!("../../saves/first-climber.ron").replace("engine: 3", "engine: 1");
     std::fs::write(&save, text).expect("written");
     let arguments = format!("replay {} --preset quick", save.display());
     let Some(studio) = Studio::open("recorded", &arguments) else { return };

@@ -8,8 +8,16 @@ macro_rules! shipped {
 }
 
 /// Their names, and their files' texts.
-pub const SHIPPED: &[(&str, &str)] =
-    shipped!["by-heart", "climber", "fast", "first-climber", "rigid", "robust", "strong", "thrifty"];
+pub const SHIPPED: &[(&str, &str)] = shipped![
+    "by-heart",
+    "climber",
+    "fast",
+    "first-climber",
+    "rigid",
+    "robust",
+    "strong",
+    "thrifty"
+];
 
 /// The text of one of them.
 pub fn shipped_text(name: &str) -> Option<&'static str> {

@@ -129,7 +129,7 @@ fn furnish(folder: &Path, saves: &Path) -> Vec<u64> {
             .expect("copied");
     }
     let elsewhere =
-        include_str!("../../../saves/first-climber.ron").replace("engine: 2", "engine: 1");
+        include_str!("../../../saves/first-climber.ron").replace("engine: 3", "engine: 1");
     fs::write(saves.join("elsewhere.ron"), elsewhere).expect("written");
     let broken = "(kind: \"nothing\"";
     fs::write(saves.join("broken.ron"), broken).expect("written");
