@@ -3,7 +3,7 @@
 //! Each pose is a position, then a rotation. A coordinate is in whole millimetres, as the difference from the same limb
 //! in the previous frame, in zigzag and LEB128 encoding (the variable-length integers of DWARF and Protocol Buffers).
 //! A rotation is the three smaller components of its unit quaternion with ten bits each, and two bits for the index of
-//! the largest ("smallest three"): 32 bits, little-endian, accurate to 0.1°.
+//! the largest ("smallest three"): 32 bits, little-endian, accurate to 0.27°.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD as BASE64;
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn poses_are_read_back_within_a_millimetre_and_a_fifth_of_a_degree() {
+    fn poses_are_read_back_within_a_millimetre_and_the_resolution_of_a_rotation() {
         let recording = recording();
         let file = PosesV5::from(&recording);
         assert!(file.data.len() < 16_000, "{} bytes for five seconds", file.data.len());
@@ -182,7 +182,9 @@ mod tests {
         for (a, b) in recording.frames().flatten().zip(read.frames().flatten()) {
             assert!((a.translation - b.translation).abs().max_element() < 0.000_51);
             let angle = a.rotation.angle_between(b.rotation).to_degrees();
-            assert!(angle < 0.2, "{angle}°");
+            // Each of three components is off by up to half a step, s = √2 / 1023 / 2. With all four equal, the fourth
+            // is off by 3 s, and the angle by 2 √12 s.
+            assert!(angle < 0.275, "{angle}°");
         }
     }
 

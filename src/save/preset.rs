@@ -144,6 +144,7 @@ const MAX_ABOUT_BYTES: usize = 10_000;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::EvolutionSettings;
     use crate::rng::{Purpose, stream};
     use crate::score::evaluate;
 
@@ -160,7 +161,9 @@ mod tests {
     #[test]
     fn the_report_preset_keeps_what_the_report_states() {
         let report = load_preset("report").expect("it is shipped").settings;
-        assert_eq!(report.evolution, Default::default());
+        // It states 500 to 1,000 snakes per generation.
+        let stated = EvolutionSettings { population: 1000, ..Default::default() };
+        assert_eq!(report.evolution, stated);
         assert_eq!(report.trial.stairs, Default::default());
         assert_eq!(report.trial.start_y_m, -7.23);
         assert_eq!(report.genome.torque_range_nm, 1000.0);

@@ -149,7 +149,7 @@ mod tests {
         &[("ground.soft_cfm_m_s_per_n", "0.001")],
         &[("gravity_m_s2", "1.6")],
         &[("agent.density_kg_m3", "7")],
-        &[("agent.bend_limit_rad", "0.2")],
+        &[("agent.bend_limit_rad", "0.1")],
         &[("joint_damping_nms_per_rad", "3")],
         &[("angular_damping_per_s", "4")],
         &[("substeps", "9"), ("joint_cfm_m_s_per_n", "0.0001")],

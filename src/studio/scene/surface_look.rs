@@ -45,13 +45,13 @@ impl SurfaceLook {
         let ice = 1.0 - log_share(friction, 0.05, 0.7);
         let glue = log_share(friction, 1.3, 5.0);
         let resin = log_share(friction, 5.0, 150.0);
-        let soft = log_share(surface.soft_cfm_m_s_per_n, 1.0e-4, 0.05);
+        let soft = log_share(surface.soft_cfm_m_s_per_n, 3.0e-5, 0.014);
         let springs_back = share(surface.soft_erp, 0.2, 0.85);
-        let woven = log_share(surface.soft_cfm_m_s_per_n, 0.005, 0.2) * springs_back;
+        let woven = log_share(surface.soft_cfm_m_s_per_n, 0.0014, 0.056) * springs_back;
         // Impacts slower than the bounce velocity do not bounce, and few are faster than 10 m/s.
         let bounce = surface.bounce * (1.0 - share(surface.bounce_velocity_m_s, 0.5, 10.0));
         let rubber = share(bounce, 0.0, 0.7);
-        let wet = log_share(surface.slip_m_s_per_n, 1.0e-3, 0.1);
+        let wet = log_share(surface.slip_m_s_per_n, 3.0e-4, 0.03);
         let damped = share(surface.dampen_per_s, 0.0, 2.0).max(wet * 0.5);
         let hard_damped = share(surface.dampen_per_s, 0.0, 10.0);
         let sinks = soft * (1.0 - springs_back) * (0.3 + 0.7 * damped);
