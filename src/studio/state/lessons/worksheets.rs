@@ -30,11 +30,12 @@ const SHEETS: [Sheet; 5] = [
             "What goes wrong with too little friction, and what with too much?",
             "Why does this snake climb best near the friction on which it evolved?",
         ],
-        expected: "Of the tenths, 0.6 is the smallest friction that still lands. ",
+        expected: "Of the tenths, 0.5 is the smallest friction that still lands. ",
     },
     Sheet {
         steps: &[
-            "Begin lesson 2, give your guess, and watch the race to its end. Fill in the table.",
+            "Begin lesson 2, give your guess, and watch the race to its end. Fill in the table. Do the same with the \
+             robust snake.",
             "Choose \"The original at two playback speeds\" and guess. Play it to its end at × 1 and × 4.",
             "Write down the end position with all digits, and the first four characters of the hash.",
         ],
