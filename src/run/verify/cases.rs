@@ -36,7 +36,7 @@ const CASES: &[Case] = &[
     (
         "stairs with a bounce velocity",
         [3, 6, 2],
-        "surface.bounce_velocity_m_s=2; first_riser_y_m=-1.5",
+        "surface.bounce=0.6; surface.bounce_velocity_m_s=2; first_riser_y_m=-1.5",
     ),
     (
         "soft stairs",
@@ -113,7 +113,7 @@ const CASES: &[Case] = &[
     (
         "stairs with a height for each step",
         [3, 6, 2],
-        "stairs.steps=3; rise_m=[0.5, 0.2, 0.7]; first_riser_y_m=-1.5",
+        "stairs.steps=3; rise_m=[0.5, 0.2, 0.7]; start_y_m=-2.2",
     ),
     (
         "champions chosen on varied trials, the same for all",

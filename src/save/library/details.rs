@@ -270,7 +270,7 @@ mod tests {
         else {
             panic!("no champion");
         };
-        assert!(fast.note.expect("explained").starts_with("The fast one: gallops"));
+        assert!(fast.note.expect("explained").starts_with("The fast one: it has learned"));
     }
 
     #[test]

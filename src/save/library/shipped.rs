@@ -13,6 +13,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "climber",
     "fast",
     "first-climber",
+    "rearer",
     "rigid",
     "robust",
     "strong",

@@ -22,7 +22,7 @@ pub fn explored_run() -> CurrentRun {
     settings.evolution.population = 20;
     settings.genome.controller = ControllerKind::Gait;
     settings.trial.duration_s = 1.0;
-    let plan = RunPlan::new("test", 1, settings);
+    let plan = RunPlan::new("test", 2, settings);
     let mut experiment = Experiment::new(plan.clone());
     let pool = LocalPool::new(1).expect("threads");
     let mut run = run_of(plan);

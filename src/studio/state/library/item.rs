@@ -282,7 +282,7 @@ mod tests {
         }
         assert!(good.has_all(&["gait", "fas"]) && !good.has_all(&["gait", "slow"]));
         assert!(!good.has_all(&["damaged"]));
-        assert_eq!(good.label(), "fast, 24.05 m, climb, generation 95, built-in");
+        assert_eq!(good.label(), "fast, 26.00 m, climb, generation 102, built-in");
         let bad = item(false);
         assert!(bad.has_all(&["damaged"]) && !bad.has_all(&["climb"]));
         assert_eq!(bad.label(), "fast, damaged: cut off");

@@ -22,7 +22,7 @@ fn on_stone_and_ice() -> [Lane; 2] {
     let ice = stone.in_world(&trial, "a long name of a changed world".to_owned());
     [(stone, 0), (ice, 1)].map(|(staged, number)| {
         let mut lane = Lane::new(staged, number);
-        lane.show(0.9, None, 3000).expect("healthy");
+        lane.show(1.3, None, 3000).expect("healthy");
         assert!(lane.readings().meter.surface(false, |_| true).is_some());
         lane
     })
