@@ -135,8 +135,8 @@ fn another_run_is_drawn_and_a_damaged_one_is_reported() {
     let view = view_of(ChartKind::Runs, &run).expect("there");
     let names: Vec<&str> = view.figure.listed().iter().map(|series| &*series.name).collect();
     let expected = [
-        "this run (test, seed 1): median",
-        "this run (test, seed 1): best",
+        "this run (test, seed 2): median",
+        "this run (test, seed 2): best",
         "other, seed 7, halving: median",
         "other, seed 7, halving: best",
     ];

@@ -99,13 +99,13 @@ fn findings_follow_each_result_and_the_conclusion_all_of_them() {
 fn the_result_of_playback_speeds_cannot_be_asked_for_before_two_were_watched() {
     let commands = [
         LessonCommand::Begin(1),
-        LessonCommand::ShowScene(2),
+        LessonCommand::ShowScene(1),
         LessonCommand::Guess(0),
         LessonCommand::ShowResult,
     ];
     let of = after(&commands);
     assert!(shows(&of, "Play it to its end. The result appears after two speeds."));
-    let finding = LESSONS[1].scenes[2].question().expect("asks").finding;
+    let finding = LESSONS[1].scenes[1].question().expect("asks").finding;
     assert!(!shows(&of, "Show the result now") && !shows(&of, finding));
 }
 

@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn playbacks_are_compared_once_two_speeds_were_watched() {
-        let scene = &LESSONS[1].scenes[2];
+        let scene = &LESSONS[1].scenes[1];
         let mut of = Progress { guess: Some(1), is_revealed: true, ..Progress::default() };
         let mut play = |speed, trace_hash| {
             let end = Evaluation { trace_hash, ..Evaluation::of_fitness(26.0) };

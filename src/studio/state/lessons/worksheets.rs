@@ -34,8 +34,7 @@ const SHEETS: [Sheet; 5] = [
     },
     Sheet {
         steps: &[
-            "Begin lesson 2, give your guess, and watch the race to its end. Fill in the table. Do the same with the \
-             robust snake.",
+            "Begin lesson 2, give your guess, and watch the race to its end. Fill in the table.",
             "Choose \"The original at two playback speeds\" and guess. Play it to its end at × 1 and × 4.",
             "Write down the end position with all digits, and the first four characters of the hash.",
         ],
