@@ -14,9 +14,9 @@ use super::evaluator::Evaluator;
 use super::experiment::Experiment;
 use super::run_control::{Cancelled, RunControl};
 use crate::check::Invalid;
+use crate::engine::{ENGINE_VERSION, Processors};
 use crate::save::SaveError;
 use crate::schema::is_default;
-use crate::{ENGINE_VERSION, Processors};
 
 use cases::cases;
 use drawn_points::drawn_points;

@@ -7,6 +7,7 @@
 mod body;
 mod bounce;
 mod contact;
+mod damping;
 mod effort;
 mod energy;
 mod health;

@@ -15,6 +15,7 @@ mod shove;
 
 use super::bounce::{LimbVelocity, finish_bounce};
 use super::contact::{ContactHooks, ContactLaws, soften};
+use super::damping::HalfStepDamping;
 use super::energy::EnergyBalance;
 use super::surface::ContactLaw;
 use super::{
@@ -23,7 +24,6 @@ use super::{
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 pub use continued::Discontinuity;
-use damping::HalfStepDamping;
 pub use shove::Shove;
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
@@ -154,7 +154,12 @@ impl Simulation {
                 substeps: plan.physics.substeps,
                 snake_kg: plan.body.mass_kg(),
             },
-            damping: HalfStepDamping::of(plan),
+            damping: HalfStepDamping::of_rates(
+                plan.body.angular_damping_per_s,
+                plan.surface.dampen_per_s,
+                plan.ground.dampen_per_s,
+                plan.physics.step_s(),
+            ),
             damping_as_torque: 1.0 - plan.physics.joint_damping_in_solver(),
             torques_in_world: vec![Vector::ZERO; limbs.len()],
             damping_in_world: vec![Vector::ZERO; limbs.len()],

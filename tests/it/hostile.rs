@@ -187,7 +187,7 @@ fn champions(all: &mut Collection) {
         ("bend_nm: [", "bend_nm: [NaN, "),
         ("bend_nm: [", "bend_nm: [1.0e39, "),
         ("bend_nm: [", "bend_nm: [], was: ["),
-        ("fitness: centre", "fitness: kilos"),
+        ("fitness: steps_climbed", "fitness: kilos"),
         ("ground: None", "ground: Some(1)"),
         ("trace_hash: \"", "trace_hash: \"g"),
         ("trace_hash: \"", "trace_hash: \"00000000000000000"),

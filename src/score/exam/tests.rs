@@ -1,3 +1,5 @@
+//! Tests of the exam's suites.
+
 use super::*;
 use crate::schema::Choices;
 use crate::score::PerPart;

@@ -1,47 +1,9 @@
-//! Damping of the limbs by the air and by surfaces, with the same effect at every step rate.
-//!
-//! A velocity that decays at a rate d loses the factor `exp(-d h)` in a step of length h. Half of it acts before the
-//! engine's step and half after it (Strang's splitting, SIAM J. Numer. Anal. 5, 1968), so that the final velocity under a
-//! constant force agrees with `force / (d · mass)` up to `(d h)² / 24`. The engine's own damping divides by `1 + d h` at
-//! the end of a step instead, whose rate and final velocity both depend on the step.
+//! Damping of the limbs by the air and by surfaces.
 
 use rapier3d::prelude::*;
 
-use super::{Simulation, WorldPlan};
+use super::Simulation;
 use crate::world::TouchedSurface;
-
-/// Factors on velocities in half a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct HalfStepDamping {
-    /// Of the air, on the angular velocity.
-    air: f32,
-    /// Of the stairs, on both velocities of a limb that touches them.
-    stairs: f32,
-    /// Of the ground, likewise.
-    ground: f32,
-}
-
-impl HalfStepDamping {
-    /// The factors of a world.
-    pub fn of(plan: &WorldPlan) -> Self {
-        let half_step_s = plan.physics.step_s() / 2.0;
-        let factor = |rate_per_s: f32| libm::expf(-rate_per_s * half_step_s);
-        Self {
-            air: factor(plan.body.angular_damping_per_s),
-            stairs: factor(plan.surface.dampen_per_s),
-            ground: factor(plan.ground.dampen_per_s),
-        }
-    }
-
-    /// The factor of a surface; 1 for a limb.
-    fn of_surface(&self, touched: TouchedSurface) -> f32 {
-        match touched {
-            TouchedSurface::Ground => self.ground,
-            TouchedSurface::Stairs => self.stairs,
-            TouchedSurface::Limb(_) => 1.0,
-        }
-    }
-}
 
 impl Simulation {
     /// Lets air and surfaces slow the limbs for half a step.
@@ -73,7 +35,11 @@ impl Simulation {
 
     /// Factor of the surface that damps a limb most in half a step; 1 if it touches none that damps.
     pub(super) fn surface_factor(&self, limb: RigidBodyHandle) -> f32 {
-        self.strongest_damping(limb).map_or(1.0, |(touched, _)| self.damping.of_surface(touched))
+        match self.strongest_damping(limb) {
+            Some((TouchedSurface::Ground, _)) => self.damping.ground,
+            Some((TouchedSurface::Stairs, _)) => self.damping.stairs,
+            Some((TouchedSurface::Limb(_), _)) | None => 1.0,
+        }
     }
 }
 
