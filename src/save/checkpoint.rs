@@ -12,10 +12,10 @@ use super::run_name::fingerprint;
 use super::v5::RecordedV5;
 use super::{GenerationRecord, SaveError};
 use crate::check::{Invalid, quoted, within};
+use crate::engine::{ENGINE_VERSION, Engine, Processors};
 use crate::evolve::{Front, FrontMember, RunPlan, StrategyState, resume};
 use crate::genome::Genome;
 use crate::schema::is_default;
-use crate::{ENGINE_VERSION, Engine, Processors};
 
 const KIND: &str = "snakes-and-stairs checkpoint";
 /// Format 2 had another state of strategies. It was never released, and is not read any more.

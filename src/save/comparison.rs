@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use super::SaveError;
 use super::files::{Header, parse, read_bytes, store_ron, text_of};
 use crate::check::{Invalid, within};
+use crate::engine::{ENGINE_VERSION, Engine, Processors};
 use crate::evolve::StrategyKind;
 use crate::genome::ControllerKind;
 use crate::schema::is_default;
 use crate::score::{FITNESS_RANGE, Fitness};
-use crate::{ENGINE_VERSION, Engine, Processors};
 
 const KIND: &str = "snakes-and-stairs comparison";
 const FORMAT: u32 = 1;

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::SaveError;
 use super::files::{Header, parse, read_text, refuse_link, store_ron};
 use crate::check::{Invalid, name, quoted};
+use crate::engine::{ENGINE_VERSION, Engine, Processors};
 use crate::evolve::{Founder, RunPlan, Settings};
 use crate::genome::Genome;
 use crate::schema::is_default;
-use crate::{ENGINE_VERSION, Engine, Processors};
 
 const KIND: &str = "snakes-and-stairs run";
 const FORMAT: u32 = 4;

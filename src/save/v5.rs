@@ -14,6 +14,7 @@ use super::file_structs::file_structs;
 use super::files::hash_of;
 use super::poses::PosesV5;
 use crate::check::{Invalid, name, quoted, within};
+use crate::engine::{ENGINE_VERSION, Processors};
 use crate::evolve::{Champion, Origin};
 use crate::genome::Genome;
 use crate::schema::is_default;
@@ -21,7 +22,6 @@ use crate::score::{
     Behaviour, Evaluation, ExamSuite, FITNESS_RANGE, Recording, SuiteResult, Trial,
 };
 use crate::world::Effort;
-use crate::{ENGINE_VERSION, Processors};
 
 /// The kind that every champion's file states.
 pub const KIND: &str = "snakes-and-stairs champion";

@@ -1,6 +1,5 @@
 //! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
-use super::Trial;
 use crate::schema::{is_default, number, setting_group};
 use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Vector, WorldPlan};
 use rand::RngExt;
@@ -74,8 +73,8 @@ setting_group! {
 }
 
 impl PerturbationRange {
-    /// Draws a perturbation of a trial.
-    pub fn draw(&self, trial: &Trial, rng: &mut ChaCha8Rng) -> Perturbation {
+    /// Draws a perturbation of a trial of this length, in seconds, with this number of limbs.
+    pub fn draw(&self, duration_s: f32, limbs: u32, rng: &mut ChaCha8Rng) -> Perturbation {
         let mut draw = |range: f32| rng.random_range(-range..=range);
         Perturbation {
             friction: 1.0 + draw(self.friction),
@@ -88,8 +87,8 @@ impl PerturbationRange {
             step_rate: 1.0 + draw(self.step_rate),
             shove: (self.shove_m_s > 0.0).then(|| {
                 let change_m_s = rng.random_range(0.0..=self.shove_m_s);
-                let moment_s = [0.2, 0.6].map(|share| share * trial.duration_s);
-                draw_shove(change_m_s, moment_s, trial.agent.limbs, rng)
+                let moment_s = [0.2, 0.6].map(|share| share * duration_s);
+                draw_shove(change_m_s, moment_s, limbs, rng)
             }),
         }
     }
@@ -174,7 +173,7 @@ mod tests {
     use crate::genome::GenomeSpace;
     use crate::rng::{Purpose, stream};
     use crate::schema::PerPart;
-    use crate::score::Rollout;
+    use crate::score::{Rollout, Trial};
     use std::collections::BTreeSet;
 
     #[test]
@@ -187,8 +186,7 @@ mod tests {
             ..PerturbationRange::default()
         };
         let mut rng = stream(1, 0, 0, Purpose::Perturbation);
-        let trial = Trial { duration_s: 10.0, ..Trial::default() };
-        let drawn: Vec<Perturbation> = (0..1000).map(|_| range.draw(&trial, &mut rng)).collect();
+        let drawn: Vec<Perturbation> = (0..1000).map(|_| range.draw(10.0, 5, &mut rng)).collect();
         let span = |of: fn(&Perturbation) -> f32, least: f32, most: f32| {
             let values = || drawn.iter().map(of);
             assert!(values().all(|value| (least..=most).contains(&value)));

@@ -303,7 +303,11 @@ pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
         PerturbationList::Fixed => 0,
     };
     fitnesses.extend((1..repeats.trials).map(|number| {
-        let perturbation = repeats.off.draw(trial, &mut stream(seed, 0, number, Purpose::Repeat));
+        let perturbation = repeats.off.draw(
+            trial.duration_s,
+            trial.agent.limbs,
+            &mut stream(seed, 0, number, Purpose::Repeat),
+        );
         let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
         let at_start = rollout.evaluation().fitness;
         while rollout.advance() {}

@@ -57,7 +57,7 @@ pub fn varied(
     let one = |number| {
         let mut rng = stream(seed, 0, number, Purpose::Perturbation);
         ExamCondition {
-            perturbation: range.draw(trial, &mut rng),
+            perturbation: range.draw(trial.duration_s, trial.agent.limbs, &mut rng),
             ..condition(&format!("trial {}", number + 1), trial.clone())
         }
     };
