@@ -179,7 +179,7 @@ impl Comparison {
     /// The table as text.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>15}{:>13}\n",
+            "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>22}{:>22}\n",
             "strategy",
             "controller",
             "best fitness",
@@ -205,7 +205,7 @@ impl Comparison {
             };
             let landed = row.runs.iter().filter(|run| run.first_on_landing.is_some()).count();
             text += &format!(
-                "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>15}{:>13}\n",
+                "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>22}{:>22}\n",
                 row.strategy.name(),
                 row.controller.name(),
                 show(row.fitness(), 2),
@@ -215,8 +215,7 @@ impl Comparison {
                 show(row.energy_j_per_m(), 0),
                 show(row.of_best(|best| best.cost_of_transport), 1),
                 show(row.of_best(|best| best.climbing_efficiency), 3),
-                Quartiles::of(row.runs.iter().filter_map(|run| run.last_mean))
-                    .map_or("-".to_owned(), |mean| format!("{:.2}", mean.median)),
+                show(Quartiles::of(row.runs.iter().filter_map(|run| run.last_mean)), 2),
             );
         }
         text + "\nmedian [quartiles] over the seeds; a run that never reaches the landing counts as needing\n\

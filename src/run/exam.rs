@@ -49,7 +49,13 @@ pub fn exam_ends(
         control.wait_while_paused()?;
         let end = caught(|| ExamEnd::of(&champion.genome, &conditions[index]));
         control.count_one();
-        let disqualified = ExamEnd { steps: 0, way: 0.0, landed_s: None, is_disqualified: true };
+        let disqualified = ExamEnd {
+            steps: 0,
+            way: 0.0,
+            landed_s: None,
+            has_landed: false,
+            is_disqualified: true,
+        };
         Ok(end.unwrap_or(disqualified))
     })
 }

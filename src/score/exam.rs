@@ -46,8 +46,10 @@ pub struct ExamEnd {
     /// Share of the way from the start to the landing that the middle limb covered, 0 to 1; 0 after a disqualification.
     /// Beside the stairs only the way to the first riser counts.
     pub way: f32,
-    /// When the middle limb was first on the landing, in s, if it ended there.
+    /// When the middle limb was first on the landing, in s; none if it never was.
     pub landed_s: Option<f32>,
+    /// Whether it ended there.
+    pub has_landed: bool,
     /// Whether the snake was disqualified.
     pub is_disqualified: bool,
 }
@@ -103,7 +105,8 @@ impl ExamEnd {
         Self {
             steps,
             way: if is_disqualified { 0.0 } else { way(evaluation, steps, stairs, start_y_m) },
-            landed_s: landed_s.filter(|_| evaluation.is_on_landing(stairs)),
+            landed_s,
+            has_landed: evaluation.is_on_landing(stairs),
             is_disqualified,
         }
     }
@@ -128,11 +131,12 @@ impl SuiteResult {
         ends: &[ExamEnd],
     ) -> Self {
         let landed = |end: &&ExamEnd| match suite {
+            // Some snakes walk off the landing again within the long trial.
             ExamSuite::Shove => {
                 let latest_s = own.landed_s.map(|landed_s| landed_s + suites::RECOVERY_S);
                 end.landed_s.zip(latest_s).is_some_and(|(landed_s, latest_s)| landed_s <= latest_s)
             }
-            _ => end.landed_s.is_some(),
+            _ => end.has_landed,
         };
         let share = |end: &ExamEnd| if own.way > 0.0 { end.way / own.way } else { 0.0 };
         let each = match suite {

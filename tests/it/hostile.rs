@@ -233,8 +233,8 @@ fn presets(all: &mut Collection) {
     for name in ["../x", "/tmp/x", "", ".", "mud/../../x", "MUD", "m\\u{0}d"] {
         all.replace(OpenedAs::Preset, PRESET, "name: \"mud\"", &format!("name: \"{name}\""));
     }
-    for format in ["format: 0", "format: 1", "format: 3", "format: 2, format: 2"] {
-        all.replace(OpenedAs::Preset, PRESET, "format: 2", format);
+    for format in ["format: 0", "format: 1", "format: 4", "format: 3, format: 3"] {
+        all.replace(OpenedAs::Preset, PRESET, "format: 3", format);
     }
     all.replace(OpenedAs::Preset, PRESET, "population: 500", "population: 100000, x: ");
     let limits = "0.5,".repeat(2_500_000);

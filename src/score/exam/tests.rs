@@ -5,7 +5,8 @@ use crate::schema::Choices;
 use crate::score::PerPart;
 
 fn end(steps: u32, way: f32, landed_s: Option<f32>) -> ExamEnd {
-    ExamEnd { steps, way, landed_s, is_disqualified: false }
+    let has_landed = landed_s.is_some();
+    ExamEnd { steps, way, landed_s, has_landed, is_disqualified: false }
 }
 
 #[test]
