@@ -236,7 +236,7 @@ fn presets(all: &mut Collection) {
     for format in ["format: 0", "format: 1", "format: 4", "format: 3, format: 3"] {
         all.replace(OpenedAs::Preset, PRESET, "format: 3", format);
     }
-    all.replace(OpenedAs::Preset, PRESET, "population: 500", "population: 100000, x: ");
+    all.replace(OpenedAs::Preset, PRESET, "population: 30", "population: 100000, x: ");
     let limits = "0.5,".repeat(2_500_000);
     all.replace(
         OpenedAs::Preset,
