@@ -55,16 +55,8 @@ fn chosen(names: &[String]) -> Result<Vec<ExamSuite>, CliError> {
     if names.is_empty() {
         return Ok(ExamSuite::OPTIONS.to_vec());
     }
-    let find = |name: &String| {
-        let suite = ExamSuite::OPTIONS.iter().find(|suite| suite.choice().name == name.as_str());
-        suite.copied().ok_or_else(|| {
-            let all: Vec<&str> =
-                ExamSuite::OPTIONS.iter().map(|suite| suite.choice().name).collect();
-            let all = all.join(", ");
-            CliError::Usage(format!("--suite is {name:?}; allowed: {all} (see snakes exam --help)"))
-        })
-    };
-    let mut suites = names.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    let named = names.iter().map(|name| ExamSuite::named("--suite", name));
+    let mut suites = named.collect::<Result<Vec<_>, _>>()?;
     suites.sort_unstable();
     suites.dedup();
     Ok(suites)

@@ -65,7 +65,7 @@ mod tests {
     use crate::genome::{ControllerGenes, GenomeSpace};
     use crate::rng::{Purpose, stream};
     use crate::score::Trial;
-    use crate::world::{JointTorque, PhysicsSettings, Simulation, Vector};
+    use crate::world::{JointTorque, PhysicsSettings, Simulation, TESTED_RATES, Vector};
 
     /// Angles after each step of two floating limbs whose joint is twisted at 2 rad/s and pulled back by a servo.
     fn swing_rad(
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn a_servo_swings_a_joint_with_the_period_and_the_decay_of_its_spring_and_damper() {
-        for (steps_per_s, substeps) in [(60, 4), (120, 4), (240, 4), (60, 2), (60, 8)] {
+        for (steps_per_s, substeps) in TESTED_RATES {
             let physics = PhysicsSettings { steps_per_s, substeps, ..Default::default() };
             for (stiffness, joint_damping, servo_damping) in [
                 (60.0, 0.0, 0.0),

@@ -64,15 +64,17 @@ pub fn store_exam(
     }
     let text = read_text(path)?;
     let comments = text.lines().take_while(|line| line.starts_with("//"));
-    let own =
-        comments.filter(|line| !PROGRAMS_COMMENTS.iter().any(|start| line.starts_with(start)));
+    let own = comments.filter(|line| !is_programs_comment(line));
     let own: String = own.map(|line| format!("{line}\n")).collect();
     write_champion(path, &own, &loaded.champion, loaded.recording.as_ref(), exam)
 }
 
-/// The beginnings of the comments that the program writes.
-const PROGRAMS_COMMENTS: [&str; 4] =
-    ["// A champion of Snakes & Stairs", "// Fitness (", "// Exam:", "// Replay it exactly"];
+/// Whether the program writes comments that begin like this line at the top of a champion's file.
+pub(super) fn is_programs_comment(line: &str) -> bool {
+    ["// A champion of Snakes & Stairs", "// Fitness (", "// Exam:", "// Replay it exactly"]
+        .iter()
+        .any(|start| line.starts_with(start))
+}
 
 fn write_champion(
     path: &Path,

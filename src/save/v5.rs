@@ -82,49 +82,17 @@ file_structs! {
         joint_drift_m: f32,
         sideways_m: f32,
     }
-}
-
-/// How the champion moved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BehaviourV5 {
-    pub steps_climbed: u32,
-    pub mean_height_m: f32,
-    pub mean_sideways_m: f32,
-    pub contact_duty: f32,
-    pub frequency_hz: f32,
-    /// Engine 2 did not measure these.
-    #[serde(default)]
-    pub cost_of_transport: Option<f32>,
-    #[serde(default)]
-    pub climbing_efficiency: Option<f32>,
-}
-
-impl From<Behaviour> for BehaviourV5 {
-    fn from(behaviour: Behaviour) -> Self {
-        Self {
-            steps_climbed: behaviour.steps_climbed,
-            mean_height_m: behaviour.mean_height_m,
-            mean_sideways_m: behaviour.mean_sideways_m,
-            contact_duty: behaviour.contact_duty,
-            frequency_hz: behaviour.frequency_hz,
-            cost_of_transport: behaviour.cost_of_transport,
-            climbing_efficiency: behaviour.climbing_efficiency,
-        }
-    }
-}
-
-impl From<BehaviourV5> for Behaviour {
-    fn from(behaviour: BehaviourV5) -> Self {
-        Self {
-            steps_climbed: behaviour.steps_climbed,
-            mean_height_m: behaviour.mean_height_m,
-            mean_sideways_m: behaviour.mean_sideways_m,
-            contact_duty: behaviour.contact_duty,
-            frequency_hz: behaviour.frequency_hz,
-            cost_of_transport: behaviour.cost_of_transport,
-            climbing_efficiency: behaviour.climbing_efficiency,
-        }
+    BehaviourV5 = Behaviour {
+        steps_climbed: u32,
+        mean_height_m: f32,
+        mean_sideways_m: f32,
+        contact_duty: f32,
+        frequency_hz: f32,
+        // Engine 2 did not measure these.
+        #[serde(default)]
+        cost_of_transport: Option<f32>,
+        #[serde(default)]
+        climbing_efficiency: Option<f32>,
     }
 }
 

@@ -33,13 +33,13 @@ pub trait Choices: Copy + 'static {
         Self::OPTIONS.iter().map(|option| option.choice().name).collect()
     }
 
-    /// The value with this name; a flag may write - for _.
+    /// The value with this name; - and _ are the same in it.
     ///
     /// # Errors
     /// There is none; `field` is what the error calls the value.
     fn named(field: &str, text: &str) -> Result<Self, Invalid> {
-        let name = text.replace('-', "_");
-        let named = Self::OPTIONS.iter().find(|option| option.choice().name == name);
+        let plain = |name: &str| name.replace('-', "_");
+        let named = Self::OPTIONS.iter().find(|option| plain(option.choice().name) == plain(text));
         let unknown = || Invalid::new(field, format!("{text:?}"), Self::names().join(", "));
         named.copied().ok_or_else(unknown)
     }

@@ -21,6 +21,8 @@ pub use body::{BodyPlan, JointPlan, LimbPlan};
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
+#[cfg(test)]
+pub use physics::TESTED_RATES;
 pub use physics::{PhysicsSettings, STEP_RATES_HZ};
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};

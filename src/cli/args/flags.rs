@@ -182,11 +182,9 @@ fn fitness_help() -> String {
 
 /// Lists every suite of an exam.
 fn suite_help() -> String {
-    let rows = ExamSuite::OPTIONS.iter().map(|suite| {
-        let choice = suite.choice();
-        format!("{}: {}", choice.name, choice.sentence)
-    });
-    let rows: Vec<String> = rows.collect();
+    let choices = ExamSuite::choices().into_iter();
+    let rows: Vec<String> =
+        choices.map(|choice| format!("{}: {}", choice.name, choice.sentence)).collect();
     format!("Suite of the exam; may be repeated [default: all]. {}", rows.join(" "))
 }
 

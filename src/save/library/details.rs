@@ -9,6 +9,7 @@ use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::{Origin, StrategyKind};
 use crate::genome::ControllerKind;
+use crate::save::champion::is_programs_comment;
 use crate::save::files::{numbered, read_text, refuse_link, single_line};
 use crate::save::folder::has_generations_left;
 use crate::save::plan::load_plan;
@@ -164,8 +165,9 @@ fn champion(path: &Path, text: &str) -> Result<EntryDetails, SaveError> {
 
 /// The comment in the first line, unless the program wrote it.
 fn note(text: &str) -> Option<String> {
-    let line = text.lines().next()?.strip_prefix("//")?.trim();
-    let is_own = line.is_empty() || line.starts_with("A champion of Snakes & Stairs");
+    let comment = text.lines().next()?;
+    let line = comment.strip_prefix("//")?.trim();
+    let is_own = line.is_empty() || is_programs_comment(comment);
     (!is_own).then(|| single_line(line))
 }
 

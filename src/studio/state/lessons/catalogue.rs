@@ -343,8 +343,7 @@ pub(super) fn champions(
                 .map_err(|error| error.to_string())?;
             let same = original.clone().named("The same snake".to_owned());
             let changed = same.in_world(&settings.trial, (*name).to_owned());
-            let unchanged = original.clone().named((*name).to_owned());
-            let staged = if changed.is_changed() { changed } else { unchanged };
+            let staged = if changed.is_changed() { changed } else { original.clone() };
             staged.check().map_err(|error| error.to_string())?;
             Ok(staged)
         })
