@@ -66,6 +66,8 @@ pub struct JointTorque {
 /// A running world. A clone continues with the bits of the original.
 pub struct Simulation {
     physics: PhysicsWorld,
+    /// Whether more changed since the last step than velocities and torques.
+    is_changed: bool,
     contacts: ContactSettings,
     damping: HalfStepDamping,
     /// Share of the joints' damping that acts as a torque.
@@ -147,6 +149,7 @@ impl Simulation {
 
         let mut simulation = Self {
             physics,
+            is_changed: true,
             contacts: ContactSettings {
                 laws,
                 bounces,
@@ -234,6 +237,12 @@ impl Simulation {
             substeps: *substeps,
             snake_kg: *snake_kg,
         };
+        if self.is_changed {
+            mark_all_bodies(&mut self.physics.bodies);
+        } else {
+            unmark_all_bodies(&mut self.physics.bodies);
+        }
+        self.is_changed = false;
         let turns_before = self.limb_turns();
         if !self.contacts.bounces {
             self.physics.step_with_events(&hooks, &());
@@ -261,6 +270,7 @@ impl Simulation {
     /// The engine's state, for the bench, which steps rapier alone. The energy balance says nothing from then on.
     pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
         self.balance.has_unknown_work = true;
+        self.is_changed = true;
         &mut self.physics
     }
 
@@ -319,6 +329,18 @@ impl Simulation {
     }
 }
 
+/// Lets the next step of the engine process all that changed in any body.
+fn mark_all_bodies(bodies: &mut RigidBodySet) {
+    bodies.iter_mut().for_each(drop);
+}
+
+/// Spares the next step of the engine the changes of bodies. A torque or a velocity takes effect without, but the engine
+/// would take it for a change that concerns the joints, and assemble them anew in each step, with the same bits.
+fn unmark_all_bodies(bodies: &mut RigidBodySet) {
+    // The iterator clears the list of changed bodies, and lists each body that it yields.
+    drop(bodies.iter_mut());
+}
+
 impl Clone for Simulation {
     fn clone(&self) -> Self {
         let physics = &self.physics;
@@ -337,6 +359,7 @@ impl Clone for Simulation {
                 multibody_joints: physics.multibody_joints.clone(),
                 ccd_solver: physics.ccd_solver.clone(),
             },
+            is_changed: self.is_changed,
             contacts: self.contacts.clone(),
             body: self.body.clone(),
             limbs: self.limbs.clone(),

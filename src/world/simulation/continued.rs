@@ -105,6 +105,7 @@ impl Simulation {
             }
             continued
         };
+        continued.is_changed = true;
         continued.contacts = fresh.contacts;
         continued.damping = fresh.damping;
         continued.damping_as_torque = fresh.damping_as_torque;

@@ -1,6 +1,7 @@
 //! The world compared with the report and with closed forms.
 
 mod energy;
+mod marks;
 mod observe;
 mod patches;
 mod rates;

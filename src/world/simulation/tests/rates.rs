@@ -2,13 +2,11 @@
 
 use super::surface::{block, body, run};
 use super::*;
+use crate::world::TESTED_RATES;
 
-/// Step rates and substeps at which every closed form is tested.
-const RATES: [(u32, u32); 5] = [(60, 4), (120, 4), (240, 4), (60, 2), (60, 8)];
-
-/// Calls a test with the engine's settings of each of [`RATES`].
+/// Calls a test with the engine's settings of each of [`TESTED_RATES`].
 fn at_every_rate(test: impl Fn(&PhysicsSettings, &str)) {
-    for (steps_per_s, substeps) in RATES {
+    for (steps_per_s, substeps) in TESTED_RATES {
         let physics = PhysicsSettings { steps_per_s, substeps, ..Default::default() };
         test(&physics, &format!("{steps_per_s} steps a second, {substeps} substeps"));
     }

@@ -1,0 +1,45 @@
+//! What the engine may skip where no body is marked as changed.
+
+use super::*;
+
+/// Steps before and after the middle of the test.
+const STEPS: usize = 200;
+
+/// Poses after each step of a snake that bends and twists at the stairs, under another plan from the middle on. Where
+/// `marked`, the engine processes all bodies as changed in each step.
+fn poses(plan: &WorldPlan, then: &WorldPlan, marked: bool) -> Vec<Pose> {
+    let mut simulation = Simulation::new(plan);
+    let mut poses = Vec::new();
+    for step in 0..2 * STEPS {
+        if step == STEPS {
+            simulation = simulation.continued_in(then);
+        }
+        simulation.is_changed |= marked;
+        let bend_nm = 300.0 * libm::sinf(step as f32 / 12.0);
+        let torques = [bend_nm, -bend_nm, 0.5 * bend_nm, bend_nm]
+            .map(|bend_nm| JointTorque { bend_nm, twist_nm: 0.1 * bend_nm });
+        simulation.apply(&torques);
+        simulation.advance();
+        poses.extend(simulation.poses());
+    }
+    poses
+}
+
+#[test]
+fn without_marks_of_changed_bodies_the_engine_computes_the_same_bits() {
+    let mut hard = plan(5);
+    hard.start_y_m = -5.1;
+    let mut soft = hard.clone();
+    soft.surface.soft_cfm_m_s_per_n = 1e-4;
+    soft.ground.soft_cfm_m_s_per_n = 1e-4;
+    let mut bouncing = hard.clone();
+    bouncing.skin.bounce = 0.6;
+    let mut heavy = hard.clone();
+    heavy.body.limbs.iter_mut().for_each(|limb| limb.density_kg_m3 *= 3.0);
+    let plans = [&hard, &soft, &bouncing, &heavy];
+    for (index, plan) in plans.into_iter().enumerate() {
+        for then in plans {
+            assert!(poses(plan, then, false) == poses(plan, then, true), "plan {index}: {then:?}");
+        }
+    }
+}
