@@ -204,18 +204,18 @@ fn champions(all: &mut Collection) {
     // A flipped bit that leaves the file readable makes the champion move differently, which is reported. Only digits
     // before a decimal point: later ones may be too small to matter.
     let bytes = CHAMPION.as_bytes();
-    let digits = (600..CHAMPION.len() - 1)
-        .filter(|&place| bytes[place].is_ascii_digit() && bytes[place + 1] == b'.');
     let torques = CHAMPION.find("joints: [").expect("a genome");
-    let poses = CHAMPION.find("poses").expect("poses");
-    for place in digits.filter(|place| (torques..poses).contains(place)).step_by(3) {
+    let exam = CHAMPION.find("\n    exam: [").expect("an exam");
+    let digits =
+        (torques..exam).filter(|&place| bytes[place].is_ascii_digit() && bytes[place + 1] == b'.');
+    for place in digits.step_by(3) {
         let mut bytes = CHAMPION.as_bytes().to_vec();
         bytes[place] ^= 1;
         all.add(format!("the last bit of byte {place} flipped"), OpenedAs::Champion, bytes);
     }
-    for (place, byte) in
-        CHAMPION.bytes().enumerate().skip(500).filter(|(_, b)| b"(),:[]\"".contains(b)).step_by(9)
-    {
+    let values = CHAMPION.find("\n(").expect("comments, and then values");
+    let marks = CHAMPION.bytes().enumerate().skip(values);
+    for (place, byte) in marks.filter(|(_, byte)| b"(),:[]\"".contains(byte)).step_by(9) {
         let mut bytes = CHAMPION.as_bytes().to_vec();
         bytes[place] = byte ^ 0x40;
         all.add(
