@@ -137,7 +137,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 the same snake on a surface like ice, on its own surface and on a surface like glue.",
         to_try: "Guess which snake gets furthest, then watch the race. Afterwards select the original, go back to \
                  the start, open the World panel and drag Friction: a copy of the snake starts beside it with the new value.",
-        look_for: "How far each snake gets. The torques are the same in all lanes; only the surface differs.",
+        look_for: "How far each snake gets. The genome is the same in all lanes; only the surface differs.",
         conclusion: "A snake that evolved on one surface is fit for that surface and tolerates some change, but not \
                      any. The World panel lets you set every property of a surface as a number and \
                      see its effect at once.",
