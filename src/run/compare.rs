@@ -178,8 +178,7 @@ impl Comparison {
 
     /// The table as text.
     pub fn text(&self) -> String {
-        let mut text = format!(
-            "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>22}{:>22}\n",
+        let head = [
             "strategy",
             "controller",
             "best fitness",
@@ -189,8 +188,9 @@ impl Comparison {
             "energy J/m",
             "cost of transport",
             "climbing eff.",
-            "final mean"
-        );
+            "final mean",
+        ];
+        let mut lines = vec![head.map(str::to_owned)];
         for row in self.rows() {
             let show = |quartiles: Option<Quartiles>, digits: usize| match quartiles {
                 // Most runs never reached the landing, and neither did the fastest.
@@ -204,10 +204,9 @@ impl Comparison {
                 None => "-".to_owned(),
             };
             let landed = row.runs.iter().filter(|run| run.first_on_landing.is_some()).count();
-            text += &format!(
-                "{:<12}{:<10}{:>24}{:>18}{:>9}{:>26}{:>18}{:>19}{:>22}{:>22}\n",
-                row.strategy.name(),
-                row.controller.name(),
+            lines.push([
+                row.strategy.name().to_owned(),
+                row.controller.name().to_owned(),
                 show(row.fitness(), 2),
                 show(row.steps_climbed(), 1),
                 format!("{landed}/{}", row.runs.len()),
@@ -216,7 +215,20 @@ impl Comparison {
                 show(row.of_best(|best| best.cost_of_transport), 1),
                 show(row.of_best(|best| best.climbing_efficiency), 3),
                 show(Quartiles::of(row.runs.iter().filter_map(|run| run.last_mean)), 2),
-            );
+            ]);
+        }
+        let mut text = String::new();
+        for line in &lines {
+            let mut written = String::new();
+            for (column, cell) in line.iter().enumerate() {
+                let width = lines.iter().map(|line| line[column].len()).max().unwrap_or(0);
+                // Names to the left, numbers to the right.
+                let left = column < 2;
+                written +=
+                    &if left { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
+            }
+            text += written.trim_end();
+            text += "\n";
         }
         text + "\nmedian [quartiles] over the seeds; a run that never reaches the landing counts as needing\n\
          infinitely many evaluations; final mean: mean fitness of the last generation\n"
@@ -342,6 +354,11 @@ mod tests {
         assert_eq!(ga.run_hash, format!("{:016x}", experiment.run_hash()), "it is the run itself");
         assert_eq!(ga.curve.last().copied().flatten(), ga.best.map(|best| best.fitness));
         assert_eq!(comparison.rows().len(), plans.len());
-        assert_eq!(comparison.text().lines().count(), plans.len() + 4);
+        let text = comparison.text();
+        assert_eq!(text.lines().count(), plans.len() + 4);
+        for line in text.lines().take(plans.len() + 1) {
+            let cells = line.split("  ").filter(|cell| !cell.is_empty());
+            assert_eq!(cells.count(), 10, "{line}");
+        }
     }
 }
