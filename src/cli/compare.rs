@@ -48,13 +48,24 @@ fn check_compared(preset: &Settings, settings: &Settings) -> Result<(), Invalid>
         let allowed = "the preset's; --evaluations sets the budget";
         return refused("evolution.generations", &settings.evolution.generations, allowed);
     }
+    if settings.trial.repeats.champion_trials != preset.trial.repeats.champion_trials {
+        let allowed =
+            "the preset's; a comparison takes the best fitness and makes no trials for the choice";
+        return refused(
+            "repeats.champion_trials",
+            &settings.trial.repeats.champion_trials,
+            allowed,
+        );
+    }
     Ok(())
 }
 
 /// Performs the runs that the result's file does not have yet, and prints the result.
 pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
-    let (preset, settings) = args.settings()?;
+    let (preset, mut settings) = args.settings()?;
     check_compared(&args.preset()?.settings, &settings)?;
+    // The budget counts every simulation, and the table has the best fitness.
+    settings.trial.repeats.champion_trials = 0;
     let strategies: Vec<StrategyKind> = kinds("--strategies", &compared.strategies)?;
     let controllers: Vec<ControllerKind> = kinds("--controllers", &compared.controllers)?;
     within("--seeds", compared.seeds, 1..=10_000)?;

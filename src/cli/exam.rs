@@ -13,7 +13,7 @@ use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::HeadlessError;
 use crate::run::progress_bar::with_bar;
 use crate::run::{LocalPool, short};
-use crate::save::{load_champion, store_exam};
+use crate::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
 use crate::schema::Choices;
 use crate::score::{ExamSuite, SuiteResult};
 
@@ -25,11 +25,18 @@ pub fn exam(
     writes: bool,
 ) -> Result<(), CliError> {
     let suites = chosen(suites)?;
-    let champions = files.iter().map(|file| load_champion(file)).collect::<Result<Vec<_>, _>>()?;
+    let load = |file: &PathBuf| {
+        let loaded = load_champion(file)?;
+        if writes {
+            check_examinable(file, &loaded)?;
+        }
+        Ok(loaded)
+    };
+    let champions = files.iter().map(load).collect::<Result<Vec<_>, SaveError>>()?;
     let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
     let control = cancel_on_interrupt();
     let mut rows = Vec::new();
-    for (file, loaded) in files.iter().zip(champions) {
+    let mut examine_one = |file: &PathBuf, loaded: LoadedChampion| -> Result<(), CliError> {
         let matches = equals_record(file, &loaded)?;
         let bar = ProgressBar::new(exam_trials(&loaded.champion, &suites).into());
         let examined = || examine(&loaded.champion, &suites, &pool, &control);
@@ -43,6 +50,16 @@ pub fn exam(
         } else {
             rows.push((name(file), results));
         }
+        Ok(())
+    };
+    let mut each = files.iter().zip(champions);
+    let result = each.try_for_each(|(file, loaded)| examine_one(file, loaded));
+    if result.is_err() {
+        // What is finished took minutes.
+        if !rows.is_empty() {
+            print(&table(&suites, &rows))?;
+        }
+        return result;
     }
     if args.json {
         return print(&format!("{}\n", json!({"done": true, "files": files.len()})));

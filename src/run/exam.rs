@@ -8,11 +8,11 @@ use crate::score::{ExamCondition, ExamEnd, ExamSuite, SuiteResult};
 
 /// Number of trials that the suites take for a champion, the undisturbed ones included.
 pub fn exam_trials(champion: &Champion, suites: &[ExamSuite]) -> u32 {
-    let trials = suites.iter().map(|suite| suite.conditions(&champion.trial).len() as u32 + 1);
-    trials.sum()
+    let trials = suites.iter().map(|suite| suite.conditions(&champion.trial).len() as u32);
+    trials.filter(|&conditions| conditions > 0).map(|conditions| conditions + 1).sum()
 }
 
-/// Examines a champion in each suite.
+/// Examines a champion in each suite that has conditions for it: without steps none can be higher.
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was.
@@ -23,8 +23,8 @@ pub fn examine(
     control: &RunControl,
 ) -> Result<Vec<SuiteResult>, Cancelled> {
     control.start_generation();
-    let result = |&suite: &ExamSuite| {
-        let mut conditions = suite.conditions(&champion.trial);
+    let suites = suites.iter().map(|suite| (*suite, suite.conditions(&champion.trial)));
+    let result = |(suite, mut conditions): (ExamSuite, Vec<ExamCondition>)| {
         let first = conditions.len();
         conditions.push(suite.undisturbed(&champion.trial));
         let mut ends = exam_ends(champion, &conditions, pool, control)?;
@@ -32,7 +32,7 @@ pub fn examine(
         conditions.truncate(first);
         Ok(SuiteResult::of(suite, &own, &conditions, &ends))
     };
-    suites.iter().map(result).collect()
+    suites.filter(|(_, conditions)| !conditions.is_empty()).map(result).collect()
 }
 
 /// How a champion ends in each condition. A trial whose simulation panics counts as disqualified.

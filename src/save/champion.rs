@@ -48,25 +48,47 @@ pub fn store_champion(
     write_champion(path, "", champion, recording, &[])
 }
 
-/// Writes the results of an exam into a champion's file, atomically. The user's comments at its top are kept.
+/// Writes the results of an exam into a champion's file, atomically. Results of other suites and what the user wrote
+/// above the champion are kept.
 ///
 /// # Errors
-/// Another engine recorded the champion, or the file cannot be read or written.
+/// Another engine recorded the champion, the file now holds another champion, or it cannot be read or written.
 pub fn store_exam(
     path: &Path,
     loaded: &LoadedChampion,
     exam: &[SuiteResult],
 ) -> Result<(), SaveError> {
-    if !loaded.is_of_this_engine() {
-        let allowed = format!("{}, to write results of an exam beside its record", Engine::THIS);
-        let source = Invalid::new("engine", loaded.engine.to_string(), allowed);
+    check_examinable(path, loaded)?;
+    let text = read_text(path)?;
+    // A long exam leaves time to rename files.
+    let present = parse_champion(path, &text)?;
+    if present.champion != loaded.champion {
+        let allowed = "the champion that was examined";
+        let source = Invalid::new("champion", "another one by now", allowed);
         return Err(SaveError::Invalid { path: path.to_owned(), source });
     }
-    let text = read_text(path)?;
-    let comments = text.lines().take_while(|line| line.starts_with("//"));
-    let own = comments.filter(|line| !is_programs_comment(line));
+    let above = text.lines().take_while(|line| !line.starts_with('('));
+    let own = above.filter(|line| !is_programs_comment(line));
     let own: String = own.map(|line| format!("{line}\n")).collect();
-    write_champion(path, &own, &loaded.champion, loaded.recording.as_ref(), exam)
+    let is_new = |earlier: &SuiteResult| exam.iter().any(|result| result.suite == earlier.suite);
+    let mut all = present.exam;
+    all.retain(|earlier| !is_new(earlier));
+    all.extend_from_slice(exam);
+    all.sort_by_key(|result| result.suite);
+    write_champion(path, &own, &present.champion, present.recording.as_ref(), &all)
+}
+
+/// Checks that results of an exam may stand in a champion's file, beside its record.
+///
+/// # Errors
+/// Another engine recorded the champion.
+pub fn check_examinable(path: &Path, loaded: &LoadedChampion) -> Result<(), SaveError> {
+    if loaded.is_of_this_engine() {
+        return Ok(());
+    }
+    let allowed = format!("{}, to write results of an exam beside its record", Engine::THIS);
+    let source = Invalid::new("engine", loaded.engine.to_string(), allowed);
+    Err(SaveError::Invalid { path: path.to_owned(), source })
 }
 
 /// Whether the program writes comments that begin like this line at the top of a champion's file.
@@ -215,6 +237,39 @@ mod tests {
         fs::write(&path, text.replace("landed: 4", "landed: 6")).expect("written");
         let error = load_champion(&path).expect_err("more than there were").to_string();
         assert!(error.contains("exam.landed is 6; allowed: 0 to 5"), "{error}");
+    }
+
+    #[test]
+    fn an_exam_of_one_suite_keeps_the_results_of_the_others_and_never_overwrites_another_champion()
+    {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("champion.ron");
+        store_champion(&path, &champion(), None).expect("written");
+        let text = fs::read_to_string(&path).expect("read");
+        fs::write(&path, format!("// Mine.\n\n// For the lesson.\n{text}")).expect("written");
+        let loaded = load_champion(&path).expect("read");
+        let of = |suite| SuiteResult {
+            suite,
+            trials: 5,
+            landed: 4,
+            disqualified: 0,
+            median_steps: 10.0,
+            kept: 0.7,
+            each: Vec::new(),
+        };
+        for suite in [ExamSuite::Shove, ExamSuite::Trials] {
+            store_exam(&path, &loaded, &[of(suite)]).expect("written");
+        }
+        let exam = load_champion(&path).expect("read").exam;
+        assert_eq!(exam, [of(ExamSuite::Trials), of(ExamSuite::Shove)]);
+        let text = fs::read_to_string(&path).expect("read");
+        assert!(text.starts_with("// Mine.\n\n// For the lesson.\n// A champion of"), "{text}");
+        let mut other = champion();
+        other.origin.seed += 1;
+        store_champion(&path, &other, None).expect("renamed to this name meanwhile");
+        let error = store_exam(&path, &loaded, &[of(ExamSuite::Shove)]).expect_err("another one");
+        assert!(error.to_string().contains("the champion that was examined"), "{error}");
+        assert_eq!(load_champion(&path).expect("kept").champion, other);
     }
 
     #[test]

@@ -79,9 +79,11 @@ pub struct ComparedBest {
     pub steps_climbed: u32,
     /// Energy per metre of progress, in J/m; none without progress.
     pub energy_j_per_m: Option<f64>,
-    /// Energy per weight and way; none without a way.
+    /// Energy per weight and way; none without a way. Engine 2 did not measure it.
+    #[serde(default)]
     pub cost_of_transport: Option<f32>,
-    /// Share of the energy that lifted the snake; none without energy.
+    /// Share of the energy that lifted the snake; none without energy. Engine 2 did not measure it.
+    #[serde(default)]
     pub climbing_efficiency: Option<f32>,
 }
 

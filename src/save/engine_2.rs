@@ -1,6 +1,6 @@
 //! Worlds of engine 2 in the numbers of this engine, in which they act as they did.
 //!
-//! Engine 2 had rates and shares per physics step: the effect of the same number depended on the step rate. Presets up to
+//! Engine 2 had rates and shares per physics step: the effect of the same number depended on the step rate. Presets of
 //! format 2 and champions of engine 2 hold such numbers.
 
 use crate::evolve::Settings;
@@ -31,13 +31,19 @@ pub fn converted(mut trial: Trial) -> Trial {
     convert_softness(&mut skin.soft_erp, &mut skin.soft_cfm_m_s_per_n, steps_per_s);
     // The same stiffness. The damping of a soft joint follows it, because joints have no ERP of their own.
     let stiffer = 1.0 / (ERP_TIME_S * steps_per_s);
-    trial.agent.joint_cfm_m_s_per_n = trial.agent.joint_cfm_m_s_per_n.map(|cfm| cfm * stiffer);
+    trial.agent.joint_cfm_m_s_per_n =
+        trial.agent.joint_cfm_m_s_per_n.map(|cfm| (cfm * stiffer).min(MOST_JOINT_CFM));
     trial
 }
 
 /// Largest damping of a surface, in 1/s. Engine 2 stopped limbs within one step at the highest damping and the lowest
 /// step rate, which no rate can do.
 const MOST_DAMPING_PER_S: f32 = 20.0;
+/// Least ERP of a material, greatest CFM of one, and of a joint: at low step rates numbers at the limits of engine 2 are
+/// beyond those of this one.
+const LEAST_ERP: f32 = 0.01;
+const MOST_CFM: f32 = 1.0;
+const MOST_JOINT_CFM: f32 = 0.1;
 
 fn convert_surface(surface: &mut Surface, steps_per_s: f32) {
     // It multiplied by 1 - d h in each step.
@@ -53,20 +59,38 @@ fn convert_softness(erp: &mut f32, cfm_m_s_per_n: &mut f32, steps_per_s: f32) {
         return;
     }
     if *cfm_m_s_per_n == 0.0 {
-        *erp = 1.0 - libm::powf(1.0 - *erp, steps);
+        *erp = (1.0 - libm::powf(1.0 - *erp, steps)).max(LEAST_ERP);
         return;
     }
     // The same spring ERP / (h CFM) and the same damper (1 - ERP) / CFM.
     let stiff = *erp * steps;
     let new_erp = stiff / (stiff + 1.0 - *erp);
-    *cfm_m_s_per_n *= new_erp / stiff;
-    *erp = new_erp;
+    *cfm_m_s_per_n = (*cfm_m_s_per_n * new_erp / stiff).min(MOST_CFM);
+    *erp = new_erp.max(LEAST_ERP);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::world::PhysicsSettings;
+
+    #[test]
+    fn numbers_at_the_limits_stay_within_those_of_this_engine() {
+        for steps_per_s in [20_u32, 30, 60, 240, 960] {
+            for (soft_erp, soft_cfm_m_s_per_n) in [(0.02, 0.0), (1.0, 0.0), (0.02, 1.0), (1.0, 1.0)]
+            {
+                let mut trial = Trial {
+                    physics: PhysicsSettings { steps_per_s, ..Default::default() },
+                    ..Trial::default()
+                };
+                trial.surface.soft_erp = soft_erp;
+                trial.surface.soft_cfm_m_s_per_n = soft_cfm_m_s_per_n;
+                trial.agent.joint_cfm_m_s_per_n = 0.1.into();
+                let new = converted(trial);
+                assert_eq!(new.check(), Ok(()), "{steps_per_s}, {soft_erp}, {soft_cfm_m_s_per_n}");
+            }
+        }
+    }
 
     #[test]
     fn rates_and_shares_of_a_step_become_those_of_time() {

@@ -32,8 +32,8 @@ mod run_name;
 mod v5;
 
 pub use champion::{
-    LoadedChampion, exam_in_words, load_champion, parse_champion, shipped_champion, store_champion,
-    store_exam,
+    LoadedChampion, check_examinable, exam_in_words, load_champion, parse_champion,
+    shipped_champion, store_champion, store_exam,
 };
 pub use change::parse_changes;
 pub use checkpoint::{SearchState, parse_checkpoint};

@@ -34,7 +34,7 @@ setting_group! {
         joint_damping_nms_per_rad: PerPart = 30.0.into();
         /// Constraint force mixing of the joints, in m/s per N: 0 is rigid, larger is softer.
         joint_cfm_m_s_per_n: PerPart = 0.0.into();
-        /// Share of a limb's angular velocity lost per second, in 1/s.
+        /// Rate d at which the air slows a limb's rotation, in 1/s: exp(-d t) of it is left after the time t.
         angular_damping_per_s: f32 = 2.0;
         /// The material of the limbs.
         skin: Skin = Skin::default();

@@ -20,10 +20,11 @@ choices! {
         Stairs = "stairs", "Other stairs",
             "100 staircases: rise 0.3 to 0.7 m, tread 1.5 to 3 m, 5 positions of the first riser; 30 s each.";
         Surprise = "surprise", "A higher step",
-            "One step of the fourth to ninth has 1.4 times the rise; 5 positions of the first riser; 30 s each.";
+            "One step, of the fourth to ninth where there are so many, has 1.4 times the rise; 5 positions of the first riser; \
+             30 s each.";
         Shove = "shove", "Shoves",
-            "One limb's velocity changes by 2 m/s, 3 to 8 s after the start. It lands if it does so at most 5 s later than \
-             without the shove.";
+            "One limb's velocity changes by 2 m/s, 3 to 8 s after the start. A landing counts if it comes at most 5 s later \
+             than without the shove.";
     }
 }
 
@@ -134,7 +135,8 @@ impl SuiteResult {
             // Some snakes walk off the landing again within the long trial.
             ExamSuite::Shove => {
                 let latest_s = own.landed_s.map(|landed_s| landed_s + suites::RECOVERY_S);
-                end.landed_s.zip(latest_s).is_some_and(|(landed_s, latest_s)| landed_s <= latest_s)
+                let in_time = |(landed_s, latest_s)| landed_s <= latest_s;
+                !end.is_disqualified && end.landed_s.zip(latest_s).is_some_and(in_time)
             }
             _ => end.has_landed,
         };

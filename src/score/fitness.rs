@@ -17,7 +17,7 @@ choices! {
         #[default]
         Centre = "centre", "Centre, y",
             "The y of the middle block at the end.\n\
-             Unintended rewards: Passing beside the stairs, and being caught in mid-leap at the end.";
+             Unintended rewards: Passing beside the stairs, and a leap in the last half second.";
         Head = "head", "Head, y",
             "The y of the head at the end.\n\
              Unintended rewards: Stretching or throwing the head forward.";
@@ -41,7 +41,7 @@ choices! {
         /// the whole snake stands there.
         Climb = "climb", "Climb: y on the stairs",
             "The y of the middle block at the end. Beside the stairs, only the distance to the first riser counts.\n\
-             Unintended rewards: Being caught in mid-leap over the stairs at the end.";
+             Unintended rewards: A leap over the stairs in the last half second.";
     }
 }
 

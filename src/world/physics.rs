@@ -58,7 +58,8 @@ fn one_iteration() -> u32 {
 
 /// Step rates, in Hz, and substeps at which every closed form is tested.
 #[cfg(test)]
-pub const TESTED_RATES: [(u32, u32); 5] = [(60, 4), (120, 4), (240, 4), (60, 2), (60, 8)];
+pub const TESTED_RATES: [(u32, u32); 7] =
+    [(60, 4), (120, 4), (240, 4), (60, 2), (60, 8), (120, 2), (240, 2)];
 
 impl PhysicsSettings {
     /// Length of one physics step, in seconds.

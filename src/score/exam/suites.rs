@@ -16,10 +16,12 @@ const SEED: u64 = 1;
 const DURATION_S: f32 = 30.0;
 /// Depth of their landing, in m: a snake that lands early has room for the rest of the time.
 const LANDING_M: f32 = 100.0;
-/// Positions of the first riser, in m.
-const FIRST_RISERS_M: [f32; 5] = [2.4, 2.7, 3.0, 3.3, 3.6];
+/// How much further the first riser is than in the champion's own trial, in m.
+const FURTHER_M: [f32; 5] = [-0.6, -0.3, 0.0, 0.3, 0.6];
 /// Factor on the rise of the surprising step.
 const SURPRISE: f32 = 1.4;
+/// Greatest rise that a staircase may have, in m.
+const HIGHEST_RISE_M: f32 = 5.0;
 /// Change of a limb's velocity by a shove, in m/s.
 const SHOVE_M_S: f32 = 2.0;
 /// First and last moment of a shove, in s.
@@ -93,11 +95,13 @@ fn other_stairs(trial: &Trial) -> Vec<ExamCondition> {
     let mut all = Vec::new();
     for rise_m in [0.3, 0.4, 0.5, 0.6, 0.7] {
         for tread_m in [1.5, 2.0, 2.5, 3.0] {
-            for first_riser_y_m in FIRST_RISERS_M {
+            for further_m in FURTHER_M {
                 let mut other = long(trial);
+                let first_riser_y_m = other.stairs.first_riser_y_m + further_m;
                 let rise = rise_m.into();
                 other.stairs = Stairs { rise_m: rise, tread_m, first_riser_y_m, ..other.stairs };
-                let label = format!("rise {rise_m} m, tread {tread_m} m, from {first_riser_y_m} m");
+                let label =
+                    format!("rise {rise_m} m, tread {tread_m} m, from {first_riser_y_m:.1} m");
                 all.push(condition(&label, other));
             }
         }
@@ -107,16 +111,20 @@ fn other_stairs(trial: &Trial) -> Vec<ExamCondition> {
 
 fn higher_steps(trial: &Trial) -> Vec<ExamCondition> {
     let mut all = Vec::new();
-    // Index 0 is the first step.
-    for high in 3..9 {
-        for first_riser_y_m in FIRST_RISERS_M {
+    let steps = trial.stairs.steps;
+    // Index 0 is the first step. Shorter stairs surprise with any of theirs.
+    let places = if steps > 3 { 3..steps.min(9) } else { 0..steps };
+    for high in places {
+        for further_m in FURTHER_M {
             let mut other = long(trial);
-            let rises = (0..other.stairs.steps).map(|step| {
-                other.stairs.step_rise_m(step) * if step == high { SURPRISE } else { 1.0 }
+            let first_riser_y_m = other.stairs.first_riser_y_m + further_m;
+            let rises = (0..steps).map(|step| {
+                let rise_m = other.stairs.step_rise_m(step);
+                if step == high { (rise_m * SURPRISE).min(HIGHEST_RISE_M) } else { rise_m }
             });
             let rise_m = crate::schema::PerPart::Each(rises.collect());
             other.stairs = Stairs { rise_m, first_riser_y_m, ..other.stairs };
-            let label = format!("step {} higher, from {first_riser_y_m} m", high + 1);
+            let label = format!("step {} higher, from {first_riser_y_m:.1} m", high + 1);
             all.push(condition(&label, other));
         }
     }

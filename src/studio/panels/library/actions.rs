@@ -87,8 +87,8 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
         };
         actions.push(LibraryAction {
             name: "Examine",
-            hint: "Test it in some 300 other trials: other step rates, stairs, friction, and shoves. The results \
-                   are stored in its file and shown in its details",
+            hint: "Test each champion in some 300 other trials: other step rates, stairs, friction, and shoves. The \
+                   results are stored in its file and shown in its details",
             refusal,
             act: library_command(LibraryCommand::Examine(places.clone())),
         });

@@ -189,7 +189,8 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 label: "More physics steps per second",
                 champion: "by-heart",
                 question: Some(furthest(
-                    "This snake has learned one calculation by heart; with other steps it may fail.",
+                    "This snake has learned one calculation by heart. With 120 steps it falls off the stairs, and gets further on \
+                     the ground; with other steps, a snake may fail.",
                 )),
                 lanes: &[
                     lane("original", &[]),

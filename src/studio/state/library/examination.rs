@@ -52,7 +52,7 @@ impl Library {
             if !loaded.is_of_this_engine() {
                 let name = name_of(&path);
                 let engine = &loaded.engine;
-                return Err(format!("{name} moves differently here: {engine} recorded it"));
+                return Err(format!("{name} moves differently here: engine {engine} recorded it"));
             }
             Ok((path, loaded))
         };

@@ -91,3 +91,19 @@ fn without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_
         assert_eq!(lost.rotation_damping_j > 0.5, angular_damping_per_s > 0.0, "{case}");
     }
 }
+
+#[test]
+fn a_snake_that_gains_energy_without_its_joints_is_disqualified() {
+    let (plan, mut simulation) = weightless(2);
+    let still = vec![JointTorque::default(); plan.body.joints.len()];
+    simulation.begin_balance();
+    simulation.step(&still).expect("nothing moves");
+    let limb = simulation.limbs[0];
+    // 5 kg at 1 m/s have 2.5 J, more than the limit of 1 J; at 0.5 m/s they have 0.6 J.
+    for (speed_m_s, expected) in [(0.5, Ok(())), (1.0, Err(Disqualification::EnergyFromNothing))] {
+        let mut pushed = simulation.clone();
+        let body = &mut pushed.physics.bodies[limb];
+        body.set_linvel(Vector::new(speed_m_s, 0.0, 0.0), true);
+        assert_eq!(pushed.step(&still), expected, "{speed_m_s} m/s");
+    }
+}
