@@ -189,7 +189,7 @@ pub(crate) const LESSONS: [Lesson; 5] = [
                 label: "More physics steps per second",
                 champion: "by-heart",
                 question: Some(furthest(
-                    "It has learned one calculation by heart. With 120 steps it falls off the stairs and gets further on the ground.",
+                    "With 120 steps it falls off the stairs, and goes further on the ground.",
                 )),
                 lanes: &[
                     lane("original", &[]),
