@@ -81,7 +81,11 @@ impl Trajectories {
     /// # Errors
     /// There is no reference for processors like these; or it is broken, which a test rules out.
     pub fn reference() -> Result<Self, VerifyError> {
-        let text = match Processors::THIS {
+        Self::reference_of(Processors::THIS)
+    }
+
+    fn reference_of(processors: Processors) -> Result<Self, VerifyError> {
+        let text = match processors {
             Processors::X86_64 => include_str!("../../assets/golden.ron"),
             Processors::Arm64 => include_str!("../../assets/golden-arm64.ron"),
             Processors::Other => return Err(VerifyError::NoReference),
@@ -155,6 +159,20 @@ mod tests {
         hashes.sort();
         hashes.dedup();
         assert_eq!(hashes.len(), all, "two cases compute the same");
+    }
+
+    /// The reference for ARM named no processors, so that `snakes verify` found equal bits there and still failed.
+    #[test]
+    fn each_reference_names_its_processors_and_holds_the_same_cases() {
+        let names = |of: &Trajectories| -> Vec<String> {
+            of.trajectories.iter().map(|trajectory| trajectory.what.clone()).collect()
+        };
+        let first = Trajectories::reference_of(Processors::X86_64).expect("well formed");
+        for processors in [Processors::X86_64, Processors::Arm64] {
+            let reference = Trajectories::reference_of(processors).expect("well formed");
+            assert_eq!((reference.engine, reference.processors), (ENGINE_VERSION, processors));
+            assert_eq!(names(&reference), names(&first), "{processors:?}");
+        }
     }
 
     #[test]
