@@ -1,56 +1,35 @@
 //! Periodic joint angles, followed by a servo.
 
+use super::servo::JointServos;
 use super::{Controller, Observation, Senses};
-use crate::genome::controllers::{Gait, Wave};
+use crate::genome::controllers::{Gait, Waves};
 use crate::world::JointTorque;
 
 /// Pulls every joint towards the angle of a gait.
 #[derive(Debug, Clone)]
 pub struct GaitFollower {
-    gait: Gait,
-    /// Rates of each joint before the last step, bend and twist, in rad/s.
-    last_rates: Vec<[f32; 2]>,
+    waves: Waves,
+    servo: JointServos,
 }
 
 impl GaitFollower {
     /// The follower of a gait before the first step.
     pub fn new(gait: Gait) -> Self {
-        Self { gait, last_rates: Vec::new() }
-    }
-
-    /// The torque of a proportional-derivative servo on a joint axis, in N·m.
-    fn torque_nm(&self, target_rad: f32, angle_rad: f32, rate_rad_s: f32) -> f32 {
-        self.gait.stiffness_nm_per_rad * (target_rad - angle_rad)
-            - self.gait.servo_damping_nms_per_rad * rate_rad_s
+        let Gait { stiffness_nm_per_rad, servo_damping_nms_per_rad, waves } = gait;
+        Self { waves, servo: JointServos::new(stiffness_nm_per_rad, servo_damping_nms_per_rad) }
     }
 }
 
 impl Controller for GaitFollower {
     fn needs(&self) -> Senses {
-        Senses { joints: true }
+        Senses::JOINTS
     }
 
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
-        if self.last_rates.is_empty() {
-            self.last_rates
-                .extend(observation.joints.iter().map(|now| [now.bend_rad_s, now.twist_rad_s]));
-        }
-        let waves = &self.gait.waves;
-        let periods = observation.periods(waves.frequency_hz);
-        let pull = |wave: &Wave, angle_rad, rate_rad_s| {
-            self.torque_nm(wave.at(periods), angle_rad, rate_rad_s)
-        };
-        // The rate in the middle of the step, by the method of Adams and Bashforth: the torque holds for all of it.
-        let middle = |now: f32, last: f32| 1.5 * now - 0.5 * last;
-        let joints = waves.joints.iter().zip(observation.joints_ahead()).zip(&self.last_rates);
-        for (torque, ((joint, state), last)) in torques.iter_mut().zip(joints) {
-            let [bend, twist] = *last;
-            torque.bend_nm = pull(&joint.bend, state.bend_rad, middle(state.bend_rad_s, bend));
-            torque.twist_nm = pull(&joint.twist, state.twist_rad, middle(state.twist_rad_s, twist));
-        }
-        for (last, now) in self.last_rates.iter_mut().zip(&observation.joints) {
-            *last = [now.bend_rad_s, now.twist_rad_s];
-        }
+        let periods = observation.periods(self.waves.frequency_hz);
+        let targets =
+            self.waves.joints.iter().map(|joint| [joint.bend.at(periods), joint.twist.at(periods)]);
+        self.servo.pull(observation, targets, torques);
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {
@@ -60,7 +39,7 @@ impl Controller for GaitFollower {
 
 #[cfg(test)]
 mod tests {
-    use crate::control::ControlLoop;
+    use crate::control::{ActiveSenses, ControlLoop};
     use crate::genome::controllers::{Gait, JointWaves, Wave, Waves};
     use crate::genome::{ControllerGenes, GenomeSpace};
     use crate::rng::{Purpose, stream};
@@ -96,7 +75,7 @@ mod tests {
             limb.set_translation(above, true);
             limb.set_angvel(Vector::new(0.0, if index == 0 { 1.0 } else { -1.0 }, 0.0), true);
         }
-        let mut control = ControlLoop::new(&genome.controller, physics);
+        let mut control = ControlLoop::new(&genome.controller, physics, ActiveSenses::default());
         let mut torques = [JointTorque::default()];
         let step = |step| {
             control.act(step, &world, &mut torques);

@@ -4,13 +4,21 @@
 //! `genome/controllers`.
 
 mod controller;
+mod ctrnn;
 mod gait;
+mod network;
 mod observation;
+mod perception;
+mod reflex;
+mod sense;
+mod servo;
 mod signal;
 mod wave;
 
 pub use controller::Controller;
 pub use observation::{Observation, Senses};
+pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
+pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
 
 use crate::genome::ControllerGenes;
 use crate::world::{JointTorque, PhysicsSettings, Simulation};
@@ -21,6 +29,10 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Signal(signals) => Box::new(signal::SignalPlayer(signals.clone())),
         ControllerGenes::Wave(waves) => Box::new(wave::WavePlayer(waves.clone())),
         ControllerGenes::Gait(gait) => Box::new(gait::GaitFollower::new(gait.clone())),
+        ControllerGenes::Reflex(genes) => Box::new(reflex::ReflexFollower::new(genes.clone())),
+        ControllerGenes::Modular(genes) => Box::new(network::ModularController::new(genes.clone())),
+        ControllerGenes::Central(genes) => Box::new(network::CentralController::new(genes.clone())),
+        ControllerGenes::Ctrnn(genes) => Box::new(ctrnn::CtrnnController::new(genes.clone())),
     }
 }
 
@@ -29,27 +41,39 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
 pub struct ControlLoop {
     controller: Box<dyn Controller>,
     observation: Observation,
+    active: ActiveSenses,
 }
 
 impl ControlLoop {
-    /// The control loop of a genome in a world with these settings of the engine.
-    pub fn new(genes: &ControllerGenes, physics: &PhysicsSettings) -> Self {
-        Self::of(controller_of(genes), physics)
+    /// The control loop of a genome in a world with these settings of the engine, with the senses that work.
+    pub fn new(genes: &ControllerGenes, physics: &PhysicsSettings, active: ActiveSenses) -> Self {
+        Self::of(controller_of(genes), physics, active)
     }
 
-    fn of(controller: Box<dyn Controller>, physics: &PhysicsSettings) -> Self {
-        Self { controller, observation: Observation::at_start(physics) }
+    fn of(
+        controller: Box<dyn Controller>,
+        physics: &PhysicsSettings,
+        active: ActiveSenses,
+    ) -> Self {
+        Self { controller, observation: Observation::at_start(physics), active }
     }
 
-    /// Goes on in a world with other settings of the engine, with steps of the same length.
-    pub fn continue_in(&mut self, physics: &PhysicsSettings) {
+    /// Goes on in a world with other settings of the engine, with steps of the same length, and with the senses that
+    /// work from now on.
+    pub fn continue_in(&mut self, physics: &PhysicsSettings, active: ActiveSenses) {
         self.observation.take_lead(physics);
+        self.active = active;
     }
 
     /// Writes the torques of step number `step` (0 is the first), one per joint from the head.
     pub fn act(&mut self, step: u32, world: &Simulation, torques: &mut [JointTorque]) {
-        self.observation.update(step, world, self.controller.needs());
+        self.observation.update(step, world, self.controller.needs(), &self.active);
         self.controller.act(&self.observation, torques);
+    }
+
+    /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.
+    pub fn perception(&self) -> &Perception {
+        &self.observation.perception
     }
 }
 
@@ -92,8 +116,9 @@ mod tests {
             let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
             let world = Simulation::new(&trial.world_plan(&genome));
             let mut torques = vec![JointTorque::default(); world.joint_states().len()];
-            let counter = Counter { senses: Senses { joints }, acted: 0.0 };
-            let mut original = ControlLoop::of(Box::new(counter), &trial.physics);
+            let counter = Counter { senses: Senses { joints, surroundings: false }, acted: 0.0 };
+            let active = ActiveSenses::default();
+            let mut original = ControlLoop::of(Box::new(counter), &trial.physics, active);
             original.act(0, &world, &mut torques);
             let mut clone = original.clone();
             for step in 1..4 {

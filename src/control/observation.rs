@@ -1,5 +1,6 @@
 //! The state of the world as a controller perceives it.
 
+use super::{ActiveSenses, Perception};
 use crate::world::{JointState, PhysicsSettings, Simulation};
 
 /// The senses that a controller needs. Others are not computed.
@@ -7,6 +8,15 @@ use crate::world::{JointState, PhysicsSettings, Simulation};
 pub struct Senses {
     /// Angle and rate of every joint.
     pub joints: bool,
+    /// Contacts, attitude, and the stairs ahead: see [`Perception`].
+    pub surroundings: bool,
+}
+
+impl Senses {
+    /// The joints alone.
+    pub const JOINTS: Self = Self { joints: true, surroundings: false };
+    /// All there are.
+    pub const ALL: Self = Self { joints: true, surroundings: true };
 }
 
 /// The moment at which a controller acts.
@@ -21,6 +31,8 @@ pub struct Observation {
     pub lead_s: f32,
     /// State of each joint from the head; empty unless the controller needs it.
     pub joints: Vec<JointState>,
+    /// All senses, scaled for controllers; empty unless the controller needs the surroundings.
+    pub perception: Perception,
 }
 
 impl Observation {
@@ -39,6 +51,7 @@ impl Observation {
     /// Takes the lead of a world with these settings of the engine.
     pub(super) fn take_lead(&mut self, physics: &PhysicsSettings) {
         self.lead_s = (physics.step_s() - physics.substep_s()) / 2.0;
+        self.perception.take_step(physics);
     }
 
     /// Periods of an oscillation that have passed at the moment for which the controller acts, computed from the number
@@ -59,11 +72,20 @@ impl Observation {
     }
 
     /// Observes the world before a step. Buffers are reused: nothing is allocated after the first step.
-    pub(super) fn update(&mut self, step: u32, world: &Simulation, senses: Senses) {
+    pub(super) fn update(
+        &mut self,
+        step: u32,
+        world: &Simulation,
+        senses: Senses,
+        active: &ActiveSenses,
+    ) {
         self.step = step;
         if senses.joints {
             self.joints.clear();
             self.joints.extend(world.joint_states());
+        }
+        if senses.surroundings {
+            self.perception.update(world, &self.joints, active);
         }
     }
 }

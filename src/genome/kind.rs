@@ -13,9 +13,25 @@ pub enum ControllerKind {
     Wave,
     /// Periodic joint angles, followed by a servo.
     Gait,
+    /// A gait with reflexes.
+    Reflex,
+    /// The same small network at each joint.
+    Modular,
+    /// One network for the whole snake.
+    Central,
+    /// A continuous-time recurrent neural network.
+    Ctrnn,
 }
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 3] = [Self::Signal, Self::Wave, Self::Gait];
+    pub const ALL: [Self; 7] = [
+        Self::Signal,
+        Self::Wave,
+        Self::Gait,
+        Self::Reflex,
+        Self::Modular,
+        Self::Central,
+        Self::Ctrnn,
+    ];
 }

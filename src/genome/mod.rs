@@ -11,6 +11,7 @@ mod fit;
 mod gene;
 mod individual;
 mod kind;
+mod network_space;
 mod space;
 mod wave_space;
 
@@ -19,6 +20,7 @@ pub use controllers::{ControllerGenes, JointCommands};
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;
 pub use kind::ControllerKind;
+pub use network_space::NetworkSpace;
 pub use space::{
     DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD, LARGEST_TORQUE_NM,
     POINTS_PER_S_RANGE,

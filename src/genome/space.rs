@@ -1,10 +1,12 @@
 //! The space genomes are drawn from: the range of every gene.
 
 use super::kind::ControllerKind;
+use super::network_space::NetworkSpace;
 use super::wave_space::WaveSpace;
 use crate::check::{Invalid, within};
 use crate::schema::{
-    Section, SettingGroup, Walk, choice, list_of_numbers, number, setting_group, settings,
+    Section, SettingGroup, Walk, choice, is_default, list_of_numbers, number, setting_group,
+    settings,
 };
 
 setting_group! {
@@ -14,6 +16,9 @@ setting_group! {
         controller: ControllerKind = ControllerKind::Signal;
         /// Ranges of periodic controllers.
         wave: WaveSpace = WaveSpace::default();
+        /// Ranges of reflexes and networks.
+        #[serde(default, skip_serializing_if = "is_default")]
+        network: NetworkSpace = NetworkSpace::default();
         /// A torque, of a signal or a wave, stays within plus and minus this, in N·m. The report has 1000.
         torque_range_nm: f32 = 1000.0;
         /// Greatest difference between neighbouring points of a random signal, in N·m. The report has 1000.
@@ -50,6 +55,7 @@ impl SettingGroup for GenomeSpace {
         let Self {
             controller,
             wave,
+            network,
             torque_range_nm,
             torque_step_nm,
             points_per_s,
@@ -84,6 +90,7 @@ impl SettingGroup for GenomeSpace {
         }
         walk.used_if(kind.uses("wave.harmonics"));
         walk.group("wave", wave);
+        walk.group("network", network);
         walk.section(Section {
             title: "Random snakes",
             about: "Where joint limits and densities of snakes come from, unless they have fixed values.",

@@ -120,7 +120,7 @@ fn steps_per_s(
 /// drive this snake with rapier. Returns the world at the end.
 fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
     let mut simulation = Simulation::new(&trial.world_plan(genome));
-    let mut control = ControlLoop::new(&genome.controller, &trial.physics);
+    let mut control = ControlLoop::new(&genome.controller, &trial.physics, trial.agent.senses);
     let mut torques = vec![JointTorque::default(); simulation.body().joints.len()];
     for step in 0..trial.steps() {
         control.act(step, &simulation, &mut torques);

@@ -1,8 +1,9 @@
 //! Settings of the snake's body: its limbs, its joints, its skin.
 
+use crate::control::ActiveSenses;
 use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD};
 use crate::schema::{
-    Parts, PerPart, Section, SettingGroup, Walk, number, optional_per_part, per_part,
+    Parts, PerPart, Section, SettingGroup, Walk, is_default, number, optional_per_part, per_part,
     setting_group, settings, whole,
 };
 use crate::world::{BodyPlan, JointPlan, LimbPlan, Skin};
@@ -38,6 +39,9 @@ setting_group! {
         angular_damping_per_s: f32 = 2.0;
         /// The material of the limbs.
         skin: Skin = Skin::default();
+        /// The senses that work.
+        #[serde(default, skip_serializing_if = "is_default")]
+        senses: ActiveSenses = ActiveSenses::default();
     }
 }
 
@@ -59,6 +63,7 @@ impl SettingGroup for AgentSettings {
             joint_cfm_m_s_per_n,
             angular_damping_per_s,
             skin,
+            senses,
         } = self;
         walk.section(Self::SKIN);
         walk.group("skin", skin);
@@ -141,6 +146,7 @@ impl SettingGroup for AgentSettings {
                 .slider(0.0, 0.1)
                 .logarithmic_from(1.0e-6);
         }
+        walk.group("senses", senses);
     }
 }
 

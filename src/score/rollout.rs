@@ -123,7 +123,7 @@ impl Rollout {
     fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
         let simulation = Simulation::new(&plan);
         let mut rollout = Self {
-            control: ControlLoop::new(&genome.controller, &plan.physics),
+            control: ControlLoop::new(&genome.controller, &plan.physics, trial.agent.senses),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             poses: simulation.poses().collect(),
             simulation,

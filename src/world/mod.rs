@@ -14,6 +14,7 @@ mod health;
 mod physics;
 mod pull;
 mod simulation;
+mod stair_profile;
 mod stairs;
 mod surface;
 
@@ -29,6 +30,7 @@ pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
 pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
+pub use simulation::sensing::{LimbReading, SnakeReading};
 pub use simulation::{Discontinuity, JointTorque, Shove, Simulation, WorldPlan};
 pub use stairs::{StairBox, Stairs};
 pub use surface::{ERP_TIME_S, Skin, Surface};

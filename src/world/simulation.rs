@@ -11,12 +11,14 @@ mod damping;
 mod health_check;
 pub(super) mod observe;
 pub(super) mod patches;
+pub(super) mod sensing;
 mod shove;
 
 use super::bounce::{LimbVelocity, finish_bounce};
 use super::contact::{ContactHooks, ContactLaws, soften};
 use super::damping::HalfStepDamping;
 use super::energy::EnergyBalance;
+use super::stair_profile::StairProfile;
 use super::surface::ContactLaw;
 use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld,
@@ -69,6 +71,7 @@ pub struct Simulation {
     /// Whether more changed since the last step than velocities and torques.
     is_changed: bool,
     contacts: ContactSettings,
+    profile: StairProfile,
     damping: HalfStepDamping,
     /// Share of the joints' damping that acts as a torque.
     damping_as_torque: f32,
@@ -157,6 +160,7 @@ impl Simulation {
                 substeps: plan.physics.substeps,
                 snake_kg: plan.body.mass_kg(),
             },
+            profile: StairProfile::of(&plan.stairs),
             damping: HalfStepDamping::of_rates(
                 plan.body.angular_damping_per_s,
                 plan.surface.dampen_per_s,
@@ -361,6 +365,7 @@ impl Clone for Simulation {
             },
             is_changed: self.is_changed,
             contacts: self.contacts.clone(),
+            profile: self.profile.clone(),
             body: self.body.clone(),
             limbs: self.limbs.clone(),
             health: self.health.clone(),

@@ -16,6 +16,8 @@ pub struct ControllerInfo {
     pub title: &'static str,
     /// A sentence about it.
     pub words: &'static str,
+    /// Whether it senses contacts, attitude and the stairs ahead, beside its joints.
+    pub senses_surroundings: bool,
     /// The settings below `genome` that only matter to some kinds, and matter to this one.
     pub settings: &'static [&'static str],
 }

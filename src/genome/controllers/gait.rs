@@ -28,6 +28,7 @@ impl ControllerEncoding for Gait {
             name: "gait",
             title: "Gait",
             words: "Periodic joint angles, followed by a servo that senses the joint.",
+            senses_surroundings: false,
             settings: &[
                 "wave.frequency_min_hz",
                 "wave.frequency_max_hz",

@@ -3,13 +3,25 @@
 //! A new kind is a variant of [`ControllerKind`], a line in `registry!` below, and the file that it names; what
 //! moves the joints by these genes is registered in [`crate::control`].
 
+mod central;
+mod ctrnn;
 mod encoding;
 mod gait;
+mod layer;
+mod modular;
+mod reflex;
+mod servo;
 mod signal;
 mod wave;
 
+pub use central::{CentralNetwork, sense_count};
+pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
+pub use layer::Layer;
+pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
+pub use reflex::{REFLEX_INPUTS, ReflexGait};
+pub use servo::ServoGenes;
 pub use signal::{JointSignals, TorqueSignals};
 pub use wave::{Harmonic, JointWaves, Wave, Waves};
 
@@ -64,6 +76,14 @@ registry! {
     Wave(Waves),
     /// Periodic joint angles, followed by a servo.
     Gait(Gait),
+    /// A gait with reflexes.
+    Reflex(ReflexGait),
+    /// The same small network at each joint.
+    Modular(ModularNetwork),
+    /// One network for the whole snake.
+    Central(CentralNetwork),
+    /// A continuous-time recurrent neural network.
+    Ctrnn(CtrnnGenes),
 }
 
 named_by_info!(ControllerKind);
@@ -74,6 +94,11 @@ impl ControllerKind {
     pub fn uses(self, setting: &str) -> bool {
         let names = |kind: Self| kind.info().settings.contains(&setting);
         names(self) || !Self::ALL.into_iter().any(names)
+    }
+
+    /// Whether it senses contacts, attitude and the stairs ahead, beside its joints.
+    pub fn senses_surroundings(self) -> bool {
+        self.info().senses_surroundings
     }
 }
 

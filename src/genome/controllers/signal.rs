@@ -58,6 +58,7 @@ impl ControllerEncoding for TorqueSignals {
             name: "signal",
             title: "Signal",
             words: "Free torque signals, point by point, as in the report.",
+            senses_surroundings: false,
             settings: &["torque_range_nm", "torque_step_nm", "points_per_s"],
         }
     }

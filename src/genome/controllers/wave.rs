@@ -190,6 +190,7 @@ impl ControllerEncoding for Waves {
             name: "wave",
             title: "Wave",
             words: "Periodic torques: a wave per joint axis, one frequency.",
+            senses_surroundings: false,
             settings: &[
                 "torque_range_nm",
                 "wave.frequency_min_hz",

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Rollout;
+use crate::control::ActiveSenses;
 use crate::genome::Genome;
 use crate::score::trial::steps_in;
 use crate::score::{Fitness, Trial};
@@ -13,6 +14,7 @@ pub(super) struct Conditions {
     pub world: WorldPlan,
     pub fitness: Fitness,
     pub energy_cost_per_kj: f32,
+    pub senses: ActiveSenses,
     pub last_step: u32,
 }
 
@@ -24,6 +26,7 @@ impl Conditions {
             world,
             fitness: trial.fitness,
             energy_cost_per_kj: trial.energy_cost_per_kj,
+            senses: trial.agent.senses,
         }
     }
 }
@@ -90,7 +93,7 @@ impl Rollout {
             {
                 self.recent.clear();
             }
-            self.control.continue_in(&change.to.world.physics);
+            self.control.continue_in(&change.to.world.physics, change.to.senses);
             self.conditions = change.to;
         }
     }

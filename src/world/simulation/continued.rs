@@ -107,6 +107,7 @@ impl Simulation {
         };
         continued.is_changed = true;
         continued.contacts = fresh.contacts;
+        continued.profile = fresh.profile;
         continued.damping = fresh.damping;
         continued.damping_as_torque = fresh.damping_as_torque;
         continued.body = fresh.body;

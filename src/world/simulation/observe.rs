@@ -117,7 +117,7 @@ impl Simulation {
     }
 
     /// Whether a collider is the ground or the stairs.
-    fn is_world(&self, collider: ColliderHandle) -> bool {
+    pub(super) fn is_world(&self, collider: ColliderHandle) -> bool {
         collider == self.contacts.ground || self.physics.colliders[collider].parent().is_none()
     }
 }

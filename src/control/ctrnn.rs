@@ -1,0 +1,146 @@
+//! A continuous-time recurrent network at work.
+
+use super::network::{place, servos};
+use super::servo::JointServos;
+use super::{Controller, Observation, Senses};
+use crate::genome::controllers::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, ServoGenes};
+use crate::world::JointTorque;
+
+/// Integrates three leaky neurons at each joint.
+#[derive(Debug, Clone)]
+pub struct CtrnnController {
+    genes: CtrnnGenes,
+    servo: JointServos,
+    /// Share of the way to its input that each neuron goes in a step: 1 - exp(-h/τ), exact for an input that stays. It is
+    /// stable for every time constant, unlike Euler's rule.
+    shares: [f32; CTRNN_NEURONS],
+    /// States of the neurons of each joint.
+    states: Vec<[f32; CTRNN_NEURONS]>,
+    /// Their outputs, 0 to 1.
+    outputs: Vec<[f32; CTRNN_NEURONS]>,
+}
+
+impl CtrnnController {
+    /// The controller before the first step: all states are 0.
+    pub fn new(genes: CtrnnGenes) -> Self {
+        let joints = genes.joints as usize;
+        let mut controller = Self {
+            servo: servos(&genes.servo),
+            shares: [0.0; CTRNN_NEURONS],
+            states: vec![[0.0; CTRNN_NEURONS]; joints],
+            outputs: vec![[0.0; CTRNN_NEURONS]; joints],
+            genes,
+        };
+        controller.compute_outputs();
+        controller
+    }
+
+    fn compute_outputs(&mut self) {
+        for (outputs, states) in self.outputs.iter_mut().zip(&self.states) {
+            for ((output, state), neuron) in outputs.iter_mut().zip(states).zip(&self.genes.neurons)
+            {
+                *output = 1.0 / (1.0 + libm::expf(-(state + neuron.bias)));
+            }
+        }
+    }
+
+    fn inputs(&self, joint: usize, observation: &Observation) -> [f32; CTRNN_INPUTS.len()] {
+        let senses = &observation.perception;
+        let first = |index: Option<usize>| {
+            index.and_then(|index| self.outputs.get(index)).map_or(0.0, |outputs| outputs[0])
+        };
+        let own = senses.joints[joint];
+        let (front, rear) = (senses.limbs[joint], senses.limbs[joint + 1]);
+        [
+            first(joint.checked_sub(1)),
+            first(Some(joint + 1)),
+            own.bend,
+            own.bend_rate,
+            front.touch,
+            front.blocked,
+            front.pitch,
+            front.gap,
+            front.step_up,
+            rear.touch,
+            rear.load,
+            rear.pitch,
+            place(joint, senses.joints.len()),
+        ]
+    }
+}
+
+impl Controller for CtrnnController {
+    fn needs(&self) -> Senses {
+        Senses::ALL
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        if self.shares[0] == 0.0 {
+            let step_s = 1.0 / observation.steps_per_s as f32;
+            for (share, neuron) in self.shares.iter_mut().zip(&self.genes.neurons) {
+                *share = 1.0 - libm::expf(-step_s / neuron.time_constant_s());
+            }
+        }
+        for joint in 0..self.states.len() {
+            let inputs = self.inputs(joint, observation);
+            for (index, neuron) in self.genes.neurons.iter().enumerate() {
+                let mut sum = 0.0;
+                for (output, weight) in self.outputs[joint].iter().zip(&neuron.own) {
+                    sum += output * weight;
+                }
+                for (input, weight) in inputs.iter().zip(&neuron.inputs) {
+                    sum += input * weight;
+                }
+                let state = &mut self.states[joint][index];
+                *state += (sum - *state) * self.shares[index];
+            }
+        }
+        self.compute_outputs();
+        let ServoGenes { bend_range_rad, twist_range_rad, .. } = self.genes.servo;
+        let targets = self.outputs.iter().map(|[bend, twist, _]| {
+            [(2.0 * bend - 1.0) * bend_range_rad, (2.0 * twist - 1.0) * twist_range_rad]
+        });
+        self.servo.pull(observation, targets, torques);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::perception::{JointSenses, LimbSenses};
+    use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
+    use crate::rng::{Purpose, stream};
+    use crate::score::Trial;
+
+    #[test]
+    fn a_neuron_leaks_towards_its_input_at_the_same_speed_at_every_step_rate() {
+        let space = GenomeSpace { controller: ControllerKind::Ctrnn, ..GenomeSpace::default() };
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = space.random_genome(Trial::default().genome_shape(), &mut rng);
+        let ControllerGenes::Ctrnn(mut genes) = genome.controller else { panic!("ctrnn") };
+        for neuron in &mut genes.neurons {
+            neuron.log_time_constant = 0.0;
+            neuron.own = [0.0; 3];
+            neuron.inputs = [0.0; CTRNN_INPUTS.len()];
+        }
+        // The pitch of the front limb, 0.5, draws the first neuron to 2.
+        genes.neurons[0].inputs[6] = 4.0;
+        for steps_per_s in [30, 60, 240] {
+            let mut observation = Observation { steps_per_s, ..Observation::default() };
+            observation.joints = vec![Default::default(); 4];
+            observation.perception.joints = vec![JointSenses::default(); 4];
+            let limb = LimbSenses { pitch: 0.5, ..LimbSenses::default() };
+            observation.perception.limbs = vec![limb; 5];
+            let mut controller = CtrnnController::new(genes.clone());
+            let mut torques = [JointTorque::default(); 4];
+            (0..steps_per_s).for_each(|_| controller.act(&observation, &mut torques));
+            let expected = 2.0 * (1.0 - libm::expf(-1.0));
+            let found = controller.states[2][0];
+            assert!((found - expected).abs() < 1e-4, "{found} at {steps_per_s} steps per second");
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Networks of tanh neurons: one for each joint, or one for the whole snake.
+
+use super::perception::Perception;
+use super::servo::JointServos;
+use super::{Controller, Observation, Senses};
+use crate::genome::controllers::{CentralNetwork, MODULE_INPUTS, ModularNetwork, ServoGenes};
+use crate::world::JointTorque;
+
+/// The servos of a network's genes.
+pub(super) fn servos(genes: &ServoGenes) -> JointServos {
+    JointServos::new(genes.stiffness_nm_per_rad, genes.damping_nms_per_rad)
+}
+
+/// Place of a joint along the body, from -1 at the head to 1 at the tail.
+pub(super) fn place(joint: usize, joints: usize) -> f32 {
+    if joints < 2 { 0.0 } else { 2.0 * joint as f32 / (joints - 1) as f32 - 1.0 }
+}
+
+/// Sine and cosine of a beat after this many periods, delayed by an angle.
+fn beat(periods: f64, delay_rad: f32) -> [f32; 2] {
+    let (sine, cosine) = libm::sincos(std::f64::consts::TAU * periods - f64::from(delay_rad));
+    [sine as f32, cosine as f32]
+}
+
+/// Lets the same network act at each joint.
+#[derive(Debug, Clone)]
+pub struct ModularController {
+    genes: ModularNetwork,
+    servo: JointServos,
+    /// Activities of the hidden neurons of all modules, from the head.
+    hidden: Vec<f32>,
+    /// Activities of the output neurons of all modules, from the head.
+    outputs: Vec<f32>,
+}
+
+impl ModularController {
+    /// The controller before the first step.
+    pub fn new(genes: ModularNetwork) -> Self {
+        let joints = genes.joints as usize;
+        Self {
+            servo: servos(&genes.servo),
+            hidden: vec![0.0; joints * genes.hidden.neurons()],
+            outputs: vec![0.0; joints * genes.outputs.neurons()],
+            genes,
+        }
+    }
+
+    /// The inputs of a joint's module; messages are those of the last step.
+    fn inputs(
+        &self,
+        joint: usize,
+        senses: &Perception,
+        periods: f64,
+    ) -> [f32; MODULE_INPUTS.len()] {
+        let joints = senses.joints.len();
+        let bend = |index: Option<usize>| {
+            index.and_then(|index| senses.joints.get(index)).map_or(0.0, |joint| joint.bend)
+        };
+        let message = |index: Option<usize>| {
+            let at = index.map(|index| index * self.genes.outputs.neurons() + 1);
+            at.and_then(|at| self.outputs.get(at)).copied().unwrap_or(0.0)
+        };
+        let (own, ahead) = (senses.joints[joint], joint.checked_sub(1));
+        let behind = Some(joint + 1).filter(|&behind| behind < joints);
+        let (front, rear) = (senses.limbs[joint], senses.limbs[joint + 1]);
+        let [sine, cosine] = beat(periods, joint as f32 * self.genes.lag_rad);
+        [
+            own.bend,
+            own.bend_rate,
+            own.twist,
+            bend(ahead),
+            bend(behind),
+            front.touch,
+            front.blocked,
+            front.pitch,
+            front.gap,
+            front.step_up,
+            rear.touch,
+            rear.load,
+            rear.pitch,
+            place(joint, joints),
+            message(ahead),
+            message(behind),
+            sine,
+            cosine,
+        ]
+    }
+}
+
+impl Controller for ModularController {
+    fn needs(&self) -> Senses {
+        Senses::ALL
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let periods = observation.periods(self.genes.frequency_hz);
+        let senses = &observation.perception;
+        // All modules read the messages of the last step before one of them writes.
+        let (neurons, outputs) = (self.genes.hidden.neurons(), self.genes.outputs.neurons());
+        for joint in 0..senses.joints.len() {
+            let inputs = self.inputs(joint, senses, periods);
+            let hidden = &mut self.hidden[joint * neurons..][..neurons];
+            self.genes.hidden.respond(&inputs, hidden);
+        }
+        for (hidden, output) in
+            self.hidden.chunks_exact(neurons).zip(self.outputs.chunks_exact_mut(outputs))
+        {
+            self.genes.outputs.respond(hidden, output);
+        }
+        let ServoGenes { bend_range_rad, twist_range_rad, .. } = self.genes.servo;
+        let targets = self.outputs.chunks_exact(outputs).map(|output| {
+            let twist = output.get(2).copied().unwrap_or(0.0);
+            [output[0] * bend_range_rad, twist * twist_range_rad]
+        });
+        self.servo.pull(observation, targets, torques);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}
+
+/// Lets one network act for the whole snake.
+#[derive(Debug, Clone)]
+pub struct CentralController {
+    genes: CentralNetwork,
+    servo: JointServos,
+    inputs: Vec<f32>,
+    hidden: Vec<f32>,
+    outputs: Vec<f32>,
+}
+
+impl CentralController {
+    /// The controller before the first step.
+    pub fn new(genes: CentralNetwork) -> Self {
+        Self {
+            servo: servos(&genes.servo),
+            inputs: Vec::new(),
+            hidden: vec![0.0; genes.hidden.neurons()],
+            outputs: vec![0.0; genes.outputs.neurons()],
+            genes,
+        }
+    }
+}
+
+impl Controller for CentralController {
+    fn needs(&self) -> Senses {
+        Senses::ALL
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let periods = observation.periods(self.genes.frequency_hz);
+        self.inputs.clear();
+        self.inputs.extend(observation.perception.values());
+        self.inputs.extend(beat(periods, 0.0));
+        self.genes.hidden.respond(&self.inputs, &mut self.hidden);
+        self.genes.outputs.respond(&self.hidden, &mut self.outputs);
+        let ServoGenes { bend_range_rad, twist_range_rad, .. } = self.genes.servo;
+        let joints = self.genes.joints as usize;
+        let targets = (0..joints).map(|joint| {
+            let twist = self.outputs.get(joints + joint).copied().unwrap_or(0.0);
+            [self.outputs[joint] * bend_range_rad, twist * twist_range_rad]
+        });
+        self.servo.pull(observation, targets, torques);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::perception::{JointSenses, LimbSenses};
+    use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
+    use crate::rng::{Purpose, stream};
+    use crate::score::Trial;
+
+    fn modular() -> ModularNetwork {
+        let space = GenomeSpace { controller: ControllerKind::Modular, ..GenomeSpace::default() };
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = space.random_genome(Trial::default().genome_shape(), &mut rng);
+        let ControllerGenes::Modular(network) = genome.controller else { panic!("modular") };
+        network
+    }
+
+    fn standing() -> Observation {
+        let mut observation = Observation { steps_per_s: 60, ..Observation::default() };
+        observation.joints = vec![Default::default(); 4];
+        observation.perception.joints = vec![JointSenses::default(); 4];
+        observation.perception.limbs = vec![LimbSenses::default(); 5];
+        observation
+    }
+
+    #[test]
+    fn a_touch_at_the_head_reaches_the_tail_by_messages_one_joint_a_step() {
+        let mut genes = modular();
+        genes.frequency_hz = 0.01;
+        // Saturated neurons would swallow a small message.
+        let rows = genes.hidden.rows.iter_mut().chain(&mut genes.outputs.rows);
+        rows.flatten().for_each(|weight| *weight *= 0.25);
+        let mut plain = ModularController::new(genes);
+        let mut touched = plain.clone();
+        let mut torques = [JointTorque::default(); 4];
+        let (still, mut touch) = (standing(), standing());
+        touch.perception.limbs[0].touch = 1.0;
+        for steps in 1..=4 {
+            plain.act(&still, &mut torques);
+            touched.act(&touch, &mut torques);
+            let outputs = plain.genes.outputs.neurons();
+            let differ = |joint: usize| {
+                let at = joint * outputs..(joint + 1) * outputs;
+                plain.outputs[at.clone()] != touched.outputs[at]
+            };
+            let reached = (0..4).filter(|&joint| differ(joint)).count();
+            assert_eq!(reached, steps, "after {steps} steps");
+        }
+    }
+
+    #[test]
+    fn places_run_from_the_head_to_the_tail() {
+        assert_eq!([0, 1, 2].map(|joint| place(joint, 3)), [-1.0, 0.0, 1.0]);
+        assert_eq!(place(0, 1), 0.0);
+    }
+}

@@ -1,0 +1,134 @@
+//! A gait whose targets and phases yield to the senses.
+
+use super::perception::{JointSenses, LimbSenses};
+use super::servo::JointServos;
+use super::{Controller, Observation, Senses};
+use crate::genome::controllers::{REFLEX_INPUTS, ReflexGait, Wave};
+use crate::world::JointTorque;
+
+/// Follows a gait with reflexes.
+#[derive(Debug, Clone)]
+pub struct ReflexFollower {
+    genes: ReflexGait,
+    servo: JointServos,
+    /// Shift of each joint's phase since the start, in radians.
+    shifts_rad: Vec<f64>,
+}
+
+impl ReflexFollower {
+    /// The follower before the first step.
+    pub fn new(genes: ReflexGait) -> Self {
+        let servo =
+            JointServos::new(genes.gait.stiffness_nm_per_rad, genes.gait.servo_damping_nms_per_rad);
+        Self { servo, shifts_rad: vec![0.0; genes.gait.waves.joints.len()], genes }
+    }
+
+    /// Angle by which a reflex moves a target, in radians.
+    fn reach_rad(
+        &self,
+        weights: &[f32; REFLEX_INPUTS.len()],
+        own: [f32; 2],
+        around: [f32; 6],
+    ) -> f32 {
+        let inputs = own.into_iter().chain(around).chain([1.0]);
+        let mut sum = 0.0;
+        for (input, weight) in inputs.zip(weights) {
+            sum += input * weight;
+        }
+        self.genes.reach_rad * libm::tanhf(sum)
+    }
+}
+
+/// The senses of the limbs before and behind a joint that a reflex uses.
+fn around(front: &LimbSenses, rear: &LimbSenses) -> [f32; 6] {
+    [front.touch, front.blocked, front.gap, front.step_up, rear.touch, rear.pitch]
+}
+
+/// Phase of a wave's fundamental, in radians, after this many periods.
+fn phase_rad(wave: &Wave, periods: f64) -> f64 {
+    let start_rad = wave.harmonics.first().map_or(0.0, |harmonic| f64::from(harmonic.phase_rad));
+    std::f64::consts::TAU * periods + start_rad
+}
+
+impl Controller for ReflexFollower {
+    fn needs(&self) -> Senses {
+        Senses::ALL
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let waves = &self.genes.gait.waves;
+        let periods = observation.periods(waves.frequency_hz);
+        let senses = &observation.perception;
+        let pairs = || senses.limbs.iter().zip(senses.limbs.iter().skip(1));
+        let joints = waves.joints.iter().zip(&senses.joints).zip(pairs()).zip(&self.shifts_rad);
+        let targets: Vec<[f32; 2]> = joints
+            .map(|(((joint, own), (front, rear)), shift_rad)| {
+                let JointSenses { bend, twist, bend_rate, twist_rate } = *own;
+                // Without a shift this is the very number that a gait has.
+                let shifted = periods + shift_rad / std::f64::consts::TAU;
+                let around = around(front, rear);
+                let bend = self.reach_rad(&self.genes.bend_weights, [bend, bend_rate], around);
+                let twist = self.reach_rad(&self.genes.twist_weights, [twist, twist_rate], around);
+                [joint.bend.at(shifted) + bend, joint.twist.at(shifted) + twist]
+            })
+            .collect();
+        let step_s = 1.0 / f64::from(observation.steps_per_s);
+        let [load, blocked] = [self.genes.load_phase_rad_per_s, self.genes.blocked_phase_rad_per_s];
+        for ((joint, (front, rear)), shift_rad) in
+            waves.joints.iter().zip(pairs()).zip(&mut self.shifts_rad)
+        {
+            let phase_rad = phase_rad(&joint.bend, periods) + *shift_rad;
+            let drawn = f64::from(load * rear.load) * libm::cos(phase_rad);
+            *shift_rad -= (drawn + f64::from(blocked * front.blocked)) * step_s;
+        }
+        self.servo.pull(observation, targets.into_iter(), torques);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Champion;
+    use crate::genome::{ControllerGenes, Genome};
+    use crate::save::shipped_champion;
+    use crate::score::evaluate;
+
+    fn with_reflexes(genome: &Genome, change: impl FnOnce(&mut ReflexGait)) -> Genome {
+        let ControllerGenes::Gait(gait) = &genome.controller else { panic!("a gait") };
+        let mut reflexes = ReflexGait {
+            gait: gait.clone(),
+            reach_rad: 0.0,
+            bend_weights: [0.0; REFLEX_INPUTS.len()],
+            twist_weights: [0.0; REFLEX_INPUTS.len()],
+            load_phase_rad_per_s: 0.0,
+            blocked_phase_rad_per_s: 0.0,
+        };
+        change(&mut reflexes);
+        Genome { controller: ControllerGenes::Reflex(reflexes), ..genome.clone() }
+    }
+
+    #[test]
+    fn without_weights_a_reflex_gait_leaves_the_trace_of_its_gait() {
+        let Champion { genome, trial, evaluation, .. } =
+            shipped_champion().expect("well formed").champion;
+        let trace = |genome: &Genome| evaluate(genome, &trial).trace_hash;
+        assert_eq!(trace(&genome), evaluation.trace_hash);
+        assert_eq!(trace(&with_reflexes(&genome, |_| ())), evaluation.trace_hash);
+        // A reach without a weight moves nothing either, and a weight without a reach.
+        let only_reach = with_reflexes(&genome, |genes| genes.reach_rad = 0.5);
+        assert_eq!(trace(&only_reach), evaluation.trace_hash);
+        let only_weights = with_reflexes(&genome, |genes| genes.bend_weights = [2.0; 9]);
+        assert_eq!(trace(&only_weights), evaluation.trace_hash);
+        for change in [
+            |genes: &mut ReflexGait| (genes.reach_rad, genes.bend_weights[4]) = (0.1, 1.0),
+            |genes: &mut ReflexGait| genes.load_phase_rad_per_s = 0.5,
+            |genes: &mut ReflexGait| genes.blocked_phase_rad_per_s = 0.5,
+        ] {
+            assert_ne!(trace(&with_reflexes(&genome, change)), evaluation.trace_hash);
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The ranges of controllers that sense their surroundings.
+
+use std::ops::RangeInclusive;
+
+use crate::schema::{number, setting_group, whole};
+
+setting_group! {
+    /// Ranges of the genes of reflexes and networks.
+    pub struct NetworkSpace in "Reflexes and networks": "Ranges of controllers that sense their surroundings." {
+        /// Greatest size of a weight of a network of tanh neurons.
+        weight_range: f32 = 4.0,
+            number("Weight range", WEIGHT_RANGES).advanced()
+                .hint("Weights of a network stay between minus and plus this value. Large weights make neurons switches")
+                .slider(0.1, 20.0)
+                .logarithmic_from(0.1);
+
+        /// Hidden neurons of a modular or central network.
+        hidden: u32 = 4,
+            whole("Hidden neurons", 1..=MOST_HIDDEN)
+                .hint("Neurons between senses and joints: of each joint's module, or of the whole central network")
+                .slider(1.0, 16.0);
+
+        /// Greatest size of a reflex's weight.
+        reflex_weight_range: f32 = 1.0,
+            number("Reflex weight range", WEIGHT_RANGES).advanced()
+                .hint("Weights of the senses in a reflex stay between minus and plus this value")
+                .slider(0.1, 10.0)
+                .logarithmic_from(0.1);
+
+        /// Greatest angle by which reflexes move a joint's target, in radians.
+        reflex_reach_rad: f32 = 0.2,
+            number("Reflex reach", 0.0..=super::LARGEST_LIMIT_RAD)
+                .unit("rad")
+                .hint("Maximum angle by which reflexes move a joint's target away from its gait")
+                .slider(0.0, 1.5);
+
+        /// Greatest rate at which load or resistance shifts the phase of a joint, in rad/s.
+        reflex_phase_rad_per_s: f32 = 1.0,
+            number("Reflex phase rate", 0.0..=60.0).advanced()
+                .unit("rad/s")
+                .hint("Maximum rate at which load or resistance delays or advances a joint's wave")
+                .slider(0.0, 10.0);
+
+        /// Greatest size of a weight or bias of a continuous-time network.
+        ctrnn_weight_range: f32 = 16.0,
+            number("CTRNN weight range", WEIGHT_RANGES).advanced()
+                .hint("Weights and biases of a continuous-time network stay between minus and plus this value")
+                .slider(1.0, 30.0);
+    }
+}
+
+/// The range of every range of weights.
+const WEIGHT_RANGES: RangeInclusive<f32> = 0.01..=100.0;
+/// The most hidden neurons. Beyond them no evolution finds its way.
+pub const MOST_HIDDEN: u32 = 32;
+/// The range of every weight in a file.
+pub const WEIGHT_RANGE: RangeInclusive<f32> = -100.0..=100.0;

@@ -1,0 +1,174 @@
+//! What the limbs feel and see: touch and load, attitude, and the way to the next step.
+
+use rapier3d::prelude::*;
+
+use super::Simulation;
+use super::patches::solved_points;
+use crate::world::contact::other_collider;
+
+/// The senses of one limb, in units of the world.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LimbReading {
+    /// Whether it touches the ground or the stairs.
+    pub is_touching: bool,
+    /// Force of the contacts upwards, in N; at least 0.
+    pub load_n: f32,
+    /// Force of the contacts against the limb's forward axis, in N; at least 0.
+    pub blocked_n: f32,
+    /// Sine of the pitch: upward part of the forward axis.
+    pub pitch: f32,
+    /// Sine of the roll: upward part of the axis to the right.
+    pub roll: f32,
+    /// Way along y from the centre of the front face to the next riser, in metres, and the height of the tread behind it
+    /// over the limb's lowest corner, in metres. None without a riser ahead.
+    pub next_step: Option<[f32; 2]>,
+    /// Height of the lowest corner over the surface below the limb's centre, in metres.
+    pub clearance_m: f32,
+}
+
+/// The senses of the snake as a whole, in units of the world.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SnakeReading {
+    /// Sine of the yaw: sideways part of the head's forward axis.
+    pub yaw: f32,
+    /// Velocity of the middle limb along y and z, in m/s.
+    pub velocity_m_s: [f32; 2],
+    /// Distance of the middle limb from the middle of the stairs, as a share of half their width.
+    pub aside: f32,
+}
+
+impl Simulation {
+    /// Weight of the snake, in N.
+    pub fn weight_n(&self) -> f32 {
+        self.contacts.snake_kg * self.physics.gravity.z.abs()
+    }
+
+    /// Reads the senses of all limbs, head first, into a buffer that is reused.
+    pub fn read_limbs(&self, readings: &mut Vec<LimbReading>) {
+        readings.clear();
+        readings.extend((0..self.limbs.len()).map(|limb| self.read_limb(limb)));
+    }
+
+    /// The senses of the snake as a whole.
+    pub fn read_snake(&self) -> SnakeReading {
+        let head = &self.physics.bodies[self.limbs[0]];
+        let middle = &self.physics.bodies[self.limbs[self.body.middle_limb()]];
+        let velocity = middle.linvel();
+        SnakeReading {
+            yaw: (*head.rotation() * Vector::Y).x,
+            velocity_m_s: [velocity.y, velocity.z],
+            aside: middle.translation().x / self.profile.half_width_m(),
+        }
+    }
+
+    fn read_limb(&self, limb: usize) -> LimbReading {
+        let body = &self.physics.bodies[self.limbs[limb]];
+        let (centre, turn) = (body.translation(), *body.rotation());
+        let [right, forward, up] = [Vector::X, Vector::Y, Vector::Z].map(|axis| turn * axis);
+        let half_m = self.body.limbs[limb].size_m().map(|size_m| size_m / 2.0);
+        let reach_m = [right.z, forward.z, up.z].into_iter().zip(half_m);
+        let lowest_z_m = centre.z - reach_m.map(|(part, half)| part.abs() * half).sum::<f32>();
+        let front = centre + forward * half_m[1];
+        let next = self.profile.next_step(front.x, front.y);
+        let (is_touching, force_n) = self.contact_force(body.colliders()[0]);
+        LimbReading {
+            is_touching,
+            load_n: force_n.z.max(0.0),
+            blocked_n: (-force_n.dot(forward)).max(0.0),
+            pitch: forward.z,
+            roll: right.z,
+            next_step: next.map(|next| [next.gap_m, next.top_z_m - lowest_z_m]),
+            clearance_m: lowest_z_m - self.profile.surface_z_m(centre.x, centre.y),
+        }
+    }
+
+    /// Whether a limb's collider touches ground or stairs, and the force of these contacts on it in the last substep, in
+    /// N: the sum of [`Self::contact_forces`], without their list.
+    fn contact_force(&self, collider: ColliderHandle) -> (bool, Vector) {
+        let substep_s =
+            self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
+        let (mut is_touching, mut impulse) = (false, Vector::ZERO);
+        for pair in self.physics.narrow_phase.contact_pairs_with(collider) {
+            if !self.is_world(other_collider(pair, collider)) {
+                continue;
+            }
+            is_touching |= pair.has_any_active_contact();
+            let side = if pair.collider1 == collider { -1.0 } else { 1.0 };
+            for manifold in pair.solver_manifolds() {
+                // The engine has one friction impulse for all points of a manifold.
+                let mut friction = None;
+                for point in solved_points(manifold) {
+                    if point.data.warmstart_impulse > 0.0 {
+                        friction = Some(point.data.warmstart_tangent_world);
+                        let normal = manifold.data.normal * point.data.warmstart_impulse;
+                        impulse += normal * side;
+                    }
+                }
+                impulse -= friction.unwrap_or(Vector::ZERO) * side;
+            }
+        }
+        (is_touching, impulse / substep_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::GenomeSpace;
+    use crate::rng::{Purpose, stream};
+    use crate::score::{Rollout, Trial};
+
+    #[test]
+    fn limbs_feel_what_the_contacts_say() {
+        let trial = Trial::default();
+        let space = GenomeSpace::default();
+        let (mut readings, mut touches) = (Vec::new(), 0);
+        for individual in 0..5 {
+            let mut rng = stream(1, 1, individual, Purpose::Birth);
+            let mut rollout =
+                Rollout::new(&space.random_genome(trial.genome_shape(), &mut rng), &trial);
+            while rollout.advance() {
+                let world = rollout.simulation();
+                world.read_limbs(&mut readings);
+                let touching = readings.iter().filter(|limb| limb.is_touching).count();
+                assert_eq!(touching, world.limbs_in_contact());
+                touches += touching;
+                let forces = world.contact_forces();
+                for (limb, reading) in readings.iter().enumerate() {
+                    let on_it = forces.iter().filter(|contact| contact.limb == limb);
+                    let up_n: f32 = on_it.map(|contact| contact.force_n.z).sum();
+                    let off_n = (reading.load_n - up_n.max(0.0)).abs();
+                    assert!(off_n < 1e-3 * (1.0 + up_n.abs()), "{reading:?} for {up_n} N");
+                }
+            }
+        }
+        assert!(touches > 100);
+    }
+
+    #[test]
+    fn a_resting_snake_carries_its_weight_and_sees_the_first_riser() {
+        let mut trial = Trial::default();
+        trial.stairs.first_riser_y_m = 0.0;
+        trial.start_y_m = -6.0;
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let mut world = Simulation::new(&trial.world_plan(&genome));
+        for _ in 0..60 {
+            world.step(&[Default::default(); 4]).expect("healthy");
+        }
+        let mut readings = Vec::new();
+        world.read_limbs(&mut readings);
+        let load_n: f32 = readings.iter().map(|limb| limb.load_n).sum();
+        assert!((load_n / world.weight_n() - 1.0).abs() < 0.02, "{load_n} N");
+        for (limb, reading) in readings.iter().enumerate() {
+            let [gap_m, up_m] = reading.next_step.expect("a riser ahead");
+            assert!((gap_m - (1.0 + 2.0 * limb as f32)).abs() < 0.01, "{gap_m} m of limb {limb}");
+            assert!((up_m - 0.5).abs() < 0.01, "{up_m} m");
+            assert!(reading.is_touching && reading.blocked_n < 1.0);
+            assert!(reading.pitch.abs() < 0.01 && reading.roll.abs() < 0.01);
+            assert!(reading.clearance_m.abs() < 0.01);
+        }
+        let snake = world.read_snake();
+        assert!(snake.yaw.abs() < 0.01 && snake.aside.abs() < 0.01, "{snake:?}");
+    }
+}

@@ -1,0 +1,114 @@
+//! The staircase in profile, as a snake senses it: the next riser and the surface below a point.
+//!
+//! Every question is answered in constant time from the shape of the stairs, without a ray through the engine.
+
+use super::Stairs;
+
+/// The profile of a staircase.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StairProfile {
+    first_riser_y_m: f32,
+    tread_m: f32,
+    half_width_m: f32,
+    end_y_m: f32,
+    /// Height over the ground after each number of steps, from none to all, in metres.
+    heights_m: Vec<f32>,
+}
+
+/// The next step ahead of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NextStep {
+    /// Way along y to its riser, in metres.
+    pub gap_m: f32,
+    /// Height of its tread over the ground, in metres.
+    pub top_z_m: f32,
+}
+
+impl StairProfile {
+    /// The profile of a staircase.
+    pub fn of(stairs: &Stairs) -> Self {
+        Self {
+            first_riser_y_m: stairs.first_riser_y_m,
+            tread_m: stairs.tread_m,
+            half_width_m: stairs.width_m / 2.0,
+            end_y_m: stairs.end_y_m(),
+            heights_m: (0..=stairs.steps).map(|steps| stairs.height_m(steps)).collect(),
+        }
+    }
+
+    /// The next step ahead of a point of the floor plan, in metres. None on the landing, beside the stairs and
+    /// behind them.
+    pub fn next_step(&self, x_m: f32, y_m: f32) -> Option<NextStep> {
+        if !self.is_in_line(x_m, y_m) {
+            return None;
+        }
+        let passed = self.risers_passed(y_m);
+        let top_z_m = *self.heights_m.get(passed + 1)?;
+        let riser_y_m = self.first_riser_y_m + passed as f32 * self.tread_m;
+        Some(NextStep { gap_m: riser_y_m - y_m, top_z_m })
+    }
+
+    /// Height of the tread, the landing or the ground at a point of the floor plan, in metres.
+    pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
+        let passed = if self.is_in_line(x_m, y_m) { self.risers_passed(y_m) } else { 0 };
+        self.heights_m.get(passed).copied().unwrap_or(0.0)
+    }
+
+    /// Half the width of the stairs, in metres.
+    pub fn half_width_m(&self) -> f32 {
+        self.half_width_m
+    }
+
+    /// Whether a point is within the width of the stairs and not behind their landing.
+    fn is_in_line(&self, x_m: f32, y_m: f32) -> bool {
+        x_m.abs() <= self.half_width_m && y_m <= self.end_y_m
+    }
+
+    /// Number of risers at or before a place on the y axis.
+    fn risers_passed(&self, y_m: f32) -> usize {
+        let steps = self.heights_m.len() - 1;
+        if y_m < self.first_riser_y_m {
+            return 0;
+        }
+        // A number that is not finite becomes 0 or the greatest.
+        let passed = libm::floorf((y_m - self.first_riser_y_m) / self.tread_m) as usize;
+        passed.saturating_add(1).min(steps)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::PerPart;
+
+    #[test]
+    fn the_next_step_is_ahead_and_as_high_as_the_tread_behind_its_riser() {
+        let rise_m = PerPart::Each(vec![0.5, 0.75, 0.25]);
+        let stairs = Stairs { steps: 3, rise_m, ..Stairs::default() };
+        let profile = StairProfile::of(&stairs);
+        let next = |y_m| profile.next_step(0.0, y_m).map(|next| (next.gap_m, next.top_z_m));
+        assert_eq!(next(1.0), Some((2.0, 0.5)));
+        assert_eq!(next(3.0), Some((2.0, 1.25)), "at a riser, the next one is ahead");
+        assert_eq!(next(4.5), Some((0.5, 1.25)));
+        assert_eq!(next(6.9), next(6.9).filter(|(gap_m, _)| (gap_m - 0.1).abs() < 1e-5));
+        assert_eq!(next(7.0), None, "on the landing");
+        assert_eq!(profile.next_step(2.6, 1.0), None, "beside the stairs");
+        assert_eq!(next(stairs.end_y_m() + 1.0), None, "behind the stairs");
+        assert_eq!(StairProfile::of(&Stairs { steps: 0, ..stairs }).next_step(0.0, 1.0), None);
+    }
+
+    #[test]
+    fn the_surface_is_that_of_the_stairs() {
+        let stairs = Stairs::default();
+        let profile = StairProfile::of(&stairs);
+        for x_m in [0.0, 2.4, -2.6] {
+            for number in -40..500_i16 {
+                // Between the risers, where both agree whatever the rounding.
+                let y_m = f32::from(number) * 0.1 + 0.05;
+                let expected = stairs.surface_z_m(x_m, y_m);
+                assert_eq!(profile.surface_z_m(x_m, y_m), expected, "at {x_m}, {y_m}");
+            }
+        }
+        assert_eq!(profile.surface_z_m(0.0, f32::NAN), 0.0);
+    }
+}
