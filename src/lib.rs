@@ -36,6 +36,9 @@
 pub mod check;
 pub mod rng;
 
+/// Learners that improve from the outcome of actions within a run, away from any snake.
+pub mod learn;
+
 /// Rows that describe each setting, and the walk through them.
 pub mod schema;
 

@@ -30,6 +30,12 @@ pub enum Purpose {
     Archive = 8,
     /// Drawing the shoves of an exam.
     Shove = 9,
+    /// Drawing the trials that a generation has in common.
+    Stairs = 10,
+    /// Exploring actions in an episode.
+    Explore = 11,
+    /// Learning from the episodes of a generation.
+    Learn = 12,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

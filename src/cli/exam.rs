@@ -117,11 +117,16 @@ fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> Stri
     }
     let row = |(name, results): &(String, Vec<SuiteResult>)| {
         let mut cells = vec![name.clone()];
-        for result in results {
-            if result.each.is_empty() {
-                cells.push(format!("{} of {}", result.landed, result.trials));
-            } else {
-                cells.extend(result.each.iter().map(|(_, kept)| format!("{kept:.2}")));
+        for suite in suites {
+            match results.iter().find(|result| result.suite == *suite) {
+                // The suite has no conditions for this champion.
+                None => cells.push("–".to_owned()),
+                Some(result) if result.each.is_empty() => {
+                    cells.push(format!("{} of {}", result.landed, result.trials));
+                }
+                Some(result) => {
+                    cells.extend(result.each.iter().map(|(_, kept)| format!("{kept:.2}")));
+                }
             }
         }
         cells

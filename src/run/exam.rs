@@ -8,11 +8,13 @@ use crate::score::{ExamCondition, ExamEnd, ExamSuite, SuiteResult};
 
 /// Number of trials that the suites take for a champion, the undisturbed ones included.
 pub fn exam_trials(champion: &Champion, suites: &[ExamSuite]) -> u32 {
-    let trials = suites.iter().map(|suite| suite.conditions(&champion.trial).len() as u32);
+    let suites = suites.iter().filter(|suite| suite.concerns(&champion.genome));
+    let trials = suites.map(|suite| suite.conditions(&champion.trial).len() as u32);
     trials.filter(|&conditions| conditions > 0).map(|conditions| conditions + 1).sum()
 }
 
-/// Examines a champion in each suite that has conditions for it: without steps none can be higher.
+/// Examines a champion in each suite that has conditions for it: without steps none can be higher, and a controller
+/// without senses loses nothing with them.
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was.
@@ -23,7 +25,8 @@ pub fn examine(
     control: &RunControl,
 ) -> Result<Vec<SuiteResult>, Cancelled> {
     control.start_generation();
-    let suites = suites.iter().map(|suite| (*suite, suite.conditions(&champion.trial)));
+    let suites = suites.iter().filter(|suite| suite.concerns(&champion.genome));
+    let suites = suites.map(|suite| (*suite, suite.conditions(&champion.trial)));
     let result = |(suite, mut conditions): (ExamSuite, Vec<ExamCondition>)| {
         let first = conditions.len();
         conditions.push(suite.undisturbed(&champion.trial));

@@ -277,7 +277,7 @@ impl Experiment {
         control: &RunControl,
         record: &(dyn Fn(u32, &Evaluation) + Sync),
     ) -> Result<Vec<EvaluationResult>, Cancelled> {
-        let trial = &self.plan.settings.trial;
+        let trial = &self.plan.trial_in(self.finished + 1);
         let result_of = |index: usize| match self.known.get(&(index as u32)) {
             Some(known) => OnceLock::from(Ok(*known)),
             None => OnceLock::new(),

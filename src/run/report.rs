@@ -69,7 +69,7 @@ impl EvaluatedGeneration<'_> {
     pub fn individual(&self, index: usize) -> Champion {
         Champion {
             genome: self.genomes[index].clone(),
-            trial: self.plan.settings.trial.clone(),
+            trial: self.plan.trial_in(self.generation),
             evaluation: self.evaluations[index],
             chosen_by: None,
             origin: Origin {

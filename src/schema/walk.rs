@@ -67,6 +67,8 @@ pub struct Walk<'a> {
 struct State {
     section: Section,
     is_used: bool,
+    /// Paths of groups without an effect.
+    unused: &'static [&'static str],
     fixed: Option<&'static str>,
 }
 
@@ -76,7 +78,7 @@ const UNUSED: &str = "Takes effect with the next run, because the current run do
 /// Takes a visitor to every setting of a group.
 pub fn walk(group: &mut dyn SettingGroup, visitor: &mut dyn SettingVisitor) {
     let section = Section { title: "Settings", about: "All settings." };
-    let state = State { section, is_used: true, fixed: None };
+    let state = State { section, is_used: true, unused: &[], fixed: None };
     let mut walk = Walk { visitor, path: String::new(), state };
     group.walk(&mut walk);
     walk.visitor.leave("", group);
@@ -93,6 +95,12 @@ impl Walk<'_> {
         self.state.is_used = is_used;
     }
 
+    /// Sets the groups, by their paths from the beginning of the walk, whose settings have no effect, given the choices
+    /// made elsewhere.
+    pub fn unused(&mut self, groups: &'static [&'static str]) {
+        self.state.unused = groups;
+    }
+
     /// Sets the reason, as a sentence, why the next settings of this group may not change during a run.
     pub fn fixed(&mut self, reason: &'static str) {
         self.state.fixed = Some(reason);
@@ -105,8 +113,13 @@ impl Walk<'_> {
         row: SettingRow<T>,
         field: &mut T,
     ) {
-        let State { section, is_used, fixed } = self.state;
-        let is_used = is_used && row.is_used;
+        let State { section, is_used, unused, fixed } = self.state;
+        let is_in = |group: &&&str| {
+            self.path
+                .strip_prefix(**group)
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let is_used = is_used && row.is_used && unused.iter().find(is_in).is_none();
         let setting = Setting { name, ..row.setting };
         let live = match fixed {
             Some(reason) => Err(reason),

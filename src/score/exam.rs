@@ -25,6 +25,9 @@ choices! {
         Shove = "shove", "Shoves",
             "One limb's velocity changes by 2 m/s, 3 to 8 s after the start. A landing counts if it comes at most 5 s later \
              than without the shove.";
+        Lesion = "lesion", "Frozen senses",
+            "The 100 other stairs, on which sight, touch and balance keep the values of the snake at rest: what remains is \
+             what the snake does without them. Only for controllers that sense their surroundings.";
     }
 }
 
@@ -73,6 +76,13 @@ pub struct SuiteResult {
     pub kept: f32,
     /// The share in each condition, for a suite of few conditions.
     pub each: Vec<(String, f32)>,
+}
+
+impl ExamSuite {
+    /// Whether the suite can say anything of a genome: senses that a controller does not use cannot be taken from it.
+    pub fn concerns(self, genome: &Genome) -> bool {
+        self != Self::Lesion || genome.controller.kind().senses_surroundings()
+    }
 }
 
 impl ExamEnd {

@@ -1,6 +1,11 @@
 //! Several trials per evaluation, all but the first perturbed, which rewards robust gaits.
 
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
 use super::PerturbationRange;
+use crate::check::{Invalid, within};
+use crate::rng::{Purpose, stream};
 use crate::schema::{
     Section, SettingGroup, Walk, choice, choices, is_default, setting_group, settings, whole,
 };
@@ -21,6 +26,10 @@ setting_group! {
         champion_trials: u32 = 0;
         /// Maximum perturbation of the other trials.
         off: PerturbationRange = PerturbationRange::default();
+        /// Number of the list of a generation's perturbations, which its run draws; 0 for any other list. It is no
+        /// setting: a champion's file has that of its generation.
+        #[serde(default, skip_serializing_if = "is_default")]
+        list_number: u32 = 0;
     }
 }
 
@@ -41,12 +50,14 @@ choices! {
             "Each snake has perturbations of its own, so none can adapt to a few fixed ones.";
         Fixed = "fixed", "The same for all",
             "All snakes of all generations have the same list, which compares them fairly.";
+        Generation = "generation", "New in each generation",
+            "All snakes of a generation have the same list, and each generation has another one, so none can be learned by heart.";
     }
 }
 
 impl SettingGroup for Repeats {
     fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { trials, counts, list, champion_trials, off } = self;
+        let Self { trials, counts, list, champion_trials, off, list_number: _ } = self;
         walk.section(Section {
             title: "Repeated trials",
             about: "Several slightly different trials per snake favour robust motion.",
@@ -69,6 +80,40 @@ impl SettingGroup for Repeats {
         }
         walk.group("off", off);
     }
+
+    fn check_together(&self) -> Result<(), Invalid> {
+        let is_drawn = self.list == PerturbationList::Generation;
+        let most = if is_drawn { LARGEST_LIST_NUMBER } else { 0 };
+        within("list_number", self.list_number, 0..=most)
+    }
+}
+
+/// The greatest number of a list.
+const LARGEST_LIST_NUMBER: u32 = 0xff_ffff;
+
+impl Repeats {
+    /// These repeats for a generation of a run with this seed.
+    #[must_use]
+    pub fn in_generation(&self, seed: u64, generation: u32) -> Self {
+        let list_number = match self.list {
+            PerturbationList::Generation => {
+                stream(seed, generation, 0, Purpose::Stairs).random_range(1..=LARGEST_LIST_NUMBER)
+            }
+            PerturbationList::Own | PerturbationList::Fixed => 0,
+        };
+        Self { list_number, ..self.clone() }
+    }
+
+    /// The stream of perturbation number `number` of a genome with this hash.
+    pub(super) fn stream(&self, genome_hash: u64, number: u32) -> ChaCha8Rng {
+        match self.list {
+            PerturbationList::Own => stream(genome_hash, 0, number, Purpose::Repeat),
+            PerturbationList::Fixed => stream(0, 0, number, Purpose::Repeat),
+            PerturbationList::Generation => {
+                stream(u64::from(self.list_number), 0, number, Purpose::Stairs)
+            }
+        }
+    }
 }
 
 impl RepeatAggregate {
@@ -81,5 +126,53 @@ impl RepeatAggregate {
             }
             Self::Worst => fitnesses.iter().copied().fold(f32::MAX, f32::min),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::score::Trial;
+
+    fn varied() -> Trial {
+        let mut trial = Trial::default();
+        trial.repeats.trials = 4;
+        trial.repeats.list = PerturbationList::Generation;
+        trial
+    }
+
+    #[test]
+    fn each_generation_of_each_run_has_a_list_of_its_own() {
+        let repeats = varied().repeats;
+        let number = |seed, generation| repeats.in_generation(seed, generation).list_number;
+        assert_eq!(number(1, 5), number(1, 5));
+        assert!(number(1, 5) != number(1, 6) && number(1, 5) != number(2, 5));
+        let fixed = Repeats { list: PerturbationList::Fixed, ..repeats };
+        assert_eq!(fixed.in_generation(1, 5), fixed);
+    }
+
+    #[test]
+    fn all_snakes_of_a_generation_have_the_same_perturbations() {
+        let trial = varied();
+        let draw = |generation: u32, hash: u64| {
+            let repeats = trial.repeats.in_generation(1, generation);
+            let draw = |number| {
+                let mut rng = repeats.stream(hash, number);
+                repeats.off.draw(trial.duration_s, trial.agent.limbs, &mut rng)
+            };
+            [1, 2, 3].map(draw)
+        };
+        assert_eq!(draw(1, 17), draw(1, 99));
+        assert_ne!(draw(1, 17), draw(2, 17));
+    }
+
+    #[test]
+    fn a_list_number_without_such_a_list_is_refused() {
+        let mut trial = varied();
+        trial.repeats.list_number = 77;
+        trial.check().expect("that of a generation");
+        trial.repeats.list = PerturbationList::Fixed;
+        let error = trial.check().expect_err("refused").to_string();
+        assert_eq!(error, "repeats.list_number is 77; allowed: 0 to 0");
     }
 }

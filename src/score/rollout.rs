@@ -12,10 +12,9 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::behaviour::{BehaviourMoment, BehaviourObserver};
 use super::fitness::FinalState;
 use super::trial::steps_in;
-use super::{Behaviour, Perturbation, PerturbationList, Trial};
+use super::{Behaviour, Perturbation, Trial};
 use crate::control::ControlLoop;
 use crate::genome::Genome;
-use crate::rng::{Purpose, stream};
 use crate::world::{
     BodyPlan, Disqualification, Effort, JointTorque, Pose, Pull, Shove, Simulation, Stairs, Vector,
     WorldPlan,
@@ -289,8 +288,8 @@ impl Rollout {
 /// Scores a genome: runs its rollout to the end, and then its perturbed trials, if the settings ask for them.
 /// Of these only the fitness counts: see [`super::Repeats`].
 ///
-/// The perturbations are derived from the genome's own bits, or from a fixed seed. A champion's file is therefore enough
-/// to score it again.
+/// The perturbations are derived from the genome's own bits, from a fixed seed, or from the number of a generation's list,
+/// which its trial holds. A champion's file is therefore enough to score it again.
 pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
     let nominal = finished(Rollout::new(genome, trial));
     let repeats = &trial.repeats;
@@ -298,15 +297,12 @@ pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
         return nominal;
     }
     let mut fitnesses = vec![nominal.fitness];
-    let seed = match repeats.list {
-        PerturbationList::Own => genome.hash(),
-        PerturbationList::Fixed => 0,
-    };
+    let hash = genome.hash();
     fitnesses.extend((1..repeats.trials).map(|number| {
         let perturbation = repeats.off.draw(
             trial.duration_s,
             trial.agent.limbs,
-            &mut stream(seed, 0, number, Purpose::Repeat),
+            &mut repeats.stream(hash, number),
         );
         let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
         let at_start = rollout.evaluation().fitness;

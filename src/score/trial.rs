@@ -130,7 +130,8 @@ impl Trial {
     pub fn that_chooses_champions(&self) -> Option<Self> {
         let varied = self.repeats.champion_trials;
         let list = PerturbationList::Fixed;
-        let repeats = || Repeats { trials: varied + 1, list, ..self.repeats.clone() };
+        let repeats =
+            || Repeats { trials: varied + 1, list, list_number: 0, ..self.repeats.clone() };
         (varied > 0).then(|| Self { repeats: repeats(), ..self.clone() })
     }
 

@@ -97,9 +97,9 @@ fn test_modules_are_removed_and_the_rest_of_a_file_is_scanned() {
 }
 
 /// The modules in the order of the pipeline: each may use only those before it.
-const PIPELINE: [&str; 14] = [
-    "check", "rng", "schema", "engine", "world", "genome", "control", "score", "evolve", "save",
-    "run", "plot", "studio", "cli",
+const PIPELINE: [&str; 15] = [
+    "check", "rng", "learn", "schema", "engine", "world", "genome", "control", "score", "evolve",
+    "save", "run", "plot", "studio", "cli",
 ];
 
 /// Lines without those that are only comments.

@@ -9,6 +9,7 @@ pub use live_changes::{MOST_CHANGES, SettingChange, SettingChanges, may_change_d
 use std::sync::Arc;
 
 use super::settings::Settings;
+use crate::score::Trial;
 
 /// Everything that determines the bits of a run, and its name.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,5 +31,11 @@ impl RunPlan {
     pub fn new(preset: &str, seed: u64, settings: Settings) -> Self {
         let (founder, changes) = (None, SettingChanges::default());
         Self { preset: preset.to_owned(), seed, settings, founder, changes }
+    }
+
+    /// The trial of a generation: that of the settings, with the perturbations that the generation has in common.
+    pub fn trial_in(&self, generation: u32) -> Trial {
+        let trial = &self.settings.trial;
+        Trial { repeats: trial.repeats.in_generation(self.seed, generation), ..trial.clone() }
     }
 }

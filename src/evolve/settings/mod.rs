@@ -200,6 +200,9 @@ impl SettingGroup for Settings {
             "Takes effect with the next run, because existing genomes would not fit new ones.",
         );
         walk.group("genome", genome);
+        if !genome.controller.senses_surroundings() {
+            walk.unused(&["trial.agent.senses"]);
+        }
         walk.fixed(
             "Takes effect with the next run, because the fitness of earlier generations could not be compared.",
         );
@@ -235,6 +238,18 @@ mod tests {
                 assert_ne!(other.info().color, kind.info().color, "{other}, {kind}");
                 assert_ne!(other.title(), kind.title());
             }
+        }
+    }
+
+    #[test]
+    fn senses_are_settings_of_controllers_that_have_them() {
+        for (controller, expected) in [("gait", false), ("reflex", true)] {
+            let settings = with_field(&Settings::default(), "genome.controller", controller);
+            let listed = fields(&settings.expect("allowed"));
+            let sight = listed.iter().find(|field| field.path == "trial.agent.senses.sight");
+            assert_eq!(sight.expect("a setting").is_used, expected, "{controller}");
+            let limbs = listed.iter().find(|field| field.path == "trial.agent.limbs");
+            assert!(limbs.expect("a setting").is_used);
         }
     }
 

@@ -1,6 +1,7 @@
 //! The conditions of each suite.
 
 use super::{ExamCondition, ExamSuite};
+use crate::control::ActiveSenses;
 use crate::rng::{Purpose, stream};
 use crate::score::perturbation::draw_shove;
 use crate::score::{Perturbation, PerturbationRange, Trial};
@@ -32,7 +33,7 @@ impl ExamSuite {
     pub fn undisturbed(self, trial: &Trial) -> ExamCondition {
         let trial = match self {
             Self::Trials | Self::StepRate => trial.clone(),
-            Self::Stairs | Self::Surprise | Self::Shove => long(trial),
+            Self::Stairs | Self::Surprise | Self::Shove | Self::Lesion => long(trial),
         };
         condition("undisturbed", trial)
     }
@@ -45,6 +46,7 @@ impl ExamSuite {
             Self::Stairs => other_stairs(trial),
             Self::Surprise => higher_steps(trial),
             Self::Shove => shoves(trial),
+            Self::Lesion => other_stairs(&without_senses(trial)),
         }
     }
 }
@@ -74,6 +76,13 @@ fn condition(label: &str, trial: Trial) -> ExamCondition {
 fn long(trial: &Trial) -> Trial {
     let stairs = Stairs { landing_m: LANDING_M, ..trial.stairs.clone() };
     Trial { duration_s: DURATION_S, stairs, ..trial.clone() }
+}
+
+/// The trial with all outer senses frozen.
+fn without_senses(trial: &Trial) -> Trial {
+    let mut trial = trial.clone();
+    trial.agent.senses = ActiveSenses::NONE;
+    trial
 }
 
 fn step_rates(trial: &Trial) -> Vec<ExamCondition> {

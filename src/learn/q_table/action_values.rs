@@ -1,0 +1,202 @@
+//! The table: what each action in each state has proved to be worth.
+//!
+//! Every method accepts any numbers. A state or an action outside the table is no reason to end a
+//! program that is reading an old save; such a transition teaches nothing.
+
+use serde::{Deserialize, Serialize};
+
+use super::q_rule::QRule;
+use super::sparse_values::SparseValues;
+use super::transition::check_index;
+use super::transition::{Next, Transition};
+use crate::check::Invalid;
+
+/// The largest size of a value. Values are held within it, so that a table that was learned can always be
+/// read back, also where rewards without discount grow without limit.
+pub const LARGEST_VALUE: f32 = 1e9;
+
+/// The values of all actions in all states, all 0 at first, with the number of visits of each pair.
+///
+/// A save contains only the states that were visited ([`SparseValues`]).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "SparseValues", try_from = "SparseValues")]
+pub struct ActionValues {
+    pub(super) states: usize,
+    pub(super) actions: usize,
+    /// State by state, one per action.
+    pub(super) values: Vec<f32>,
+    /// The number of experiences with each pair; it stays at its maximum once there.
+    pub(super) visits: Vec<u16>,
+}
+
+impl ActionValues {
+    /// A table without experience. The caller keeps `states` times `actions` within
+    /// [`MOST_PAIRS`](super::MOST_PAIRS); a larger table could not be read back from a save.
+    pub fn new(states: usize, actions: usize) -> Self {
+        let pairs = states.saturating_mul(actions);
+        Self { states, actions, values: vec![0.0; pairs], visits: vec![0; pairs] }
+    }
+
+    /// The number of states.
+    pub fn states(&self) -> usize {
+        self.states
+    }
+
+    /// The number of actions in each state.
+    pub fn actions(&self) -> usize {
+        self.actions
+    }
+
+    /// The values of all actions in a state; empty if there is no such state.
+    pub fn values(&self, state: usize) -> &[f32] {
+        row(&self.values, state, self.actions)
+    }
+
+    /// The visits of all actions in a state; empty if there is no such state.
+    pub fn visits(&self, state: usize) -> &[u16] {
+        row(&self.visits, state, self.actions)
+    }
+
+    /// The number of pairs of state and action that were visited.
+    pub fn visited_pairs(&self) -> usize {
+        self.visits.iter().filter(|&&visits| visits > 0).count()
+    }
+
+    /// Learns from one transition, counts the visit, and returns the error of the value before:
+    /// reward + discount^ticks · (largest value of the next state) - value. The last product is 0
+    /// after a terminal transition.
+    ///
+    /// A transition outside the table, or with numbers that are not finite, changes nothing and returns 0.
+    pub fn update(&mut self, transition: &Transition, rule: &QRule) -> f32 {
+        let Some((pair, error)) = self.learn(transition, rule) else { return 0.0 };
+        self.visits[pair] = self.visits[pair].saturating_add(1);
+        error
+    }
+
+    /// Checks that the table has as many states and actions as its user.
+    ///
+    /// # Errors
+    ///
+    /// The number that differs.
+    pub fn check(&self, states: usize, actions: usize) -> Result<(), Invalid> {
+        for (field, count, expected) in
+            [("states", self.states, states), ("actions", self.actions, actions)]
+        {
+            if count != expected {
+                return Err(Invalid::new(field, count, expected.to_string()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the value of a transition's pair without counting a visit. Returns the pair's place in the
+    /// table and the error of the value before; `None` if the transition teaches nothing.
+    pub(super) fn learn(&mut self, transition: &Transition, rule: &QRule) -> Option<(usize, f32)> {
+        let (state, action) = (transition.state as usize, usize::from(transition.action));
+        check_index("state", state, self.states).ok()?;
+        check_index("action", action, self.actions).ok()?;
+        let future = match transition.next {
+            Next::Terminal => 0.0,
+            Next::State(next) => {
+                check_index("next", next as usize, self.states).ok()?;
+                rule.discount(transition.ticks) * self.largest(next as usize)
+            }
+        };
+        let pair = state * self.actions + action;
+        let error = transition.reward + future - self.values[pair];
+        let moved = self.values[pair] + rule.rate(self.visits[pair]) * error;
+        if !(error.is_finite() && moved.is_finite()) {
+            return None;
+        }
+        self.values[pair] = moved.clamp(-LARGEST_VALUE, LARGEST_VALUE);
+        Some((pair, error))
+    }
+}
+
+/// The entries of one state; empty if there is no such state.
+fn row<T>(entries: &[T], state: usize, actions: usize) -> &[T] {
+    let start = state.saturating_mul(actions);
+    entries.get(start..start.saturating_add(actions)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HALF: QRule =
+        QRule { discount_per_tick: 0.5, rate_scale: 0.5, rate_power: 0.0, rate_floor: 0.0 };
+
+    fn transition(state: u32, action: u16, reward: f32, next: Next) -> Transition {
+        Transition { state, action, reward, ticks: 2, next }
+    }
+
+    #[test]
+    fn an_update_moves_the_value_by_the_rate_times_the_error() {
+        let mut table = ActionValues::new(3, 2);
+        assert_eq!(table.update(&transition(1, 0, 8.0, Next::Terminal), &HALF), 8.0);
+        assert_eq!(table.values(1), [4.0, 0.0]);
+        // Two ticks at 0.5 each: the target is 1 + 0.25 · 4 = 2, and half of it is learned.
+        assert_eq!(table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF), 2.0);
+        assert_eq!(table.values(0), [0.0, 1.0]);
+        assert_eq!(table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF), 1.0);
+        assert_eq!(table.values(0), [0.0, 1.5]);
+        assert_eq!(
+            (table.visits(0), table.visits(1), table.visits(2)),
+            (&[0, 2][..], &[1, 0][..], &[0, 0][..])
+        );
+        assert_eq!(table.visited_pairs(), 2);
+    }
+
+    #[test]
+    fn the_rate_of_an_update_is_that_of_the_visits_before_it() {
+        let rule = QRule { rate_power: 1.0, rate_scale: 1.0, ..HALF };
+        let mut table = ActionValues::new(1, 1);
+        // With rates 1, 1/2, 1/3 the value is the mean of the rewards.
+        for (reward, mean) in [(6.0, 6.0), (2.0, 4.0), (1.0, 3.0)] {
+            table.update(&transition(0, 0, reward, Next::Terminal), &rule);
+            assert!((table.values(0)[0] - mean).abs() < 1e-6, "{:?}", table.values(0));
+        }
+    }
+
+    #[test]
+    fn the_end_of_time_counts_the_state_in_which_it_came_and_a_terminal_one_does_not() {
+        let mut table = ActionValues::new(2, 1);
+        table.update(&transition(1, 0, 8.0, Next::Terminal), &HALF);
+        let (mut out_of_time, mut ended) = (table.clone(), table);
+        out_of_time.update(&transition(0, 0, 0.0, Next::State(1)), &HALF);
+        ended.update(&transition(0, 0, 0.0, Next::Terminal), &HALF);
+        assert_eq!((out_of_time.values(0), ended.values(0)), (&[0.5][..], &[0.0][..]));
+    }
+
+    #[test]
+    fn numbers_outside_the_table_do_no_harm() {
+        let mut table = ActionValues::new(2, 2);
+        let untouched = table.clone();
+        for bad in [
+            transition(2, 0, 1.0, Next::Terminal),
+            transition(u32::MAX, u16::MAX, 1.0, Next::Terminal),
+            transition(0, 2, 1.0, Next::Terminal),
+            transition(0, 0, 1.0, Next::State(2)),
+            transition(0, 0, f32::NAN, Next::Terminal),
+            transition(0, 0, f32::INFINITY, Next::State(1)),
+        ] {
+            assert_eq!(table.update(&bad, &HALF), 0.0, "{bad:?}");
+        }
+        let unchecked = QRule { rate_scale: f32::INFINITY, ..HALF };
+        assert_eq!(table.update(&transition(0, 0, 1.0, Next::Terminal), &unchecked), 0.0);
+        assert_eq!(table, untouched);
+        assert_eq!((table.values(2).len(), table.visits(usize::MAX).len()), (0, 0));
+        assert_eq!(table.check(2, 12).unwrap_err().to_string(), "actions is 2; allowed: 12");
+    }
+
+    #[test]
+    fn values_and_visits_stay_within_their_limits() {
+        let mut table = ActionValues::new(1, 1);
+        let rule = QRule::with_constant_rate(1.0, 1.0);
+        let gain = transition(0, 0, f32::MAX, Next::State(0));
+        for _ in 0..70_000 {
+            table.update(&gain, &rule);
+        }
+        assert_eq!((table.values(0), table.visits(0)), (&[LARGEST_VALUE][..], &[u16::MAX][..]));
+    }
+}

@@ -1,0 +1,125 @@
+//! How boldly each actor of a generation explores.
+
+use serde::{Deserialize, Serialize};
+
+use crate::check::Invalid;
+use crate::check::within;
+
+/// The settings of the exploration ladder: the shares of random actions fall from generation to
+/// generation, and within a generation from actor 1 to the last.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExplorationLadder {
+    /// The share of the boldest actor in generation 0: 0 to 1.
+    pub first: f32,
+    /// The factor of the boldest actor's share per generation: 0 to 1.
+    pub decay: f32,
+    /// The least share of the boldest actor of any generation: 0 to 1.
+    pub least_of_boldest: f32,
+    /// The least share of any exploring actor: 0 to 1. Without any exploration an actor whose table does
+    /// not change can stay in a loop for a whole episode.
+    pub least: f32,
+    /// The share of the last actor is that of the boldest to the power of 1 + `spread`: 0 to 20.
+    pub spread: f32,
+}
+
+impl Default for ExplorationLadder {
+    /// A ladder of powers after Horgan and others ("Distributed prioritized experience replay", ICLR
+    /// 2018), with a base that falls over the generations.
+    fn default() -> Self {
+        Self { first: 0.6, decay: 0.985, least_of_boldest: 0.1, least: 0.02, spread: 3.0 }
+    }
+}
+
+impl ExplorationLadder {
+    /// Checks every setting.
+    ///
+    /// # Errors
+    ///
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Result<(), Invalid> {
+        within("first", self.first, 0.0..=1.0)?;
+        within("decay", self.decay, 0.0..=1.0)?;
+        within("least_of_boldest", self.least_of_boldest, 0.0..=1.0)?;
+        within("least", self.least, 0.0..=1.0)?;
+        within("spread", self.spread, 0.0..=20.0)
+    }
+}
+
+/// The share of random actions, 0 to 1, of actor `actor` of `actors`, both from 0.
+///
+/// Actor 0 is greedy: it shows what the table can do. Actor i from 1 has
+/// max(`least`, e^(1 + `spread` · (i - 1) / (`actors` - 2))) with
+/// e = max(`least_of_boldest`, `first` · `decay`^`generation`).
+pub fn epsilon(generation: u32, actor: u32, actors: u32, ladder: &ExplorationLadder) -> f32 {
+    let Some(rung) = actor.checked_sub(1) else { return 0.0 };
+    let fallen =
+        f64::from(ladder.first) * libm::pow(f64::from(ladder.decay), f64::from(generation));
+    let boldest = fallen.max(f64::from(ladder.least_of_boldest));
+    // A single explorer is the boldest.
+    let last_rung = actors.saturating_sub(2).max(1);
+    let height = f64::from(rung) / f64::from(last_rung);
+    let share = libm::pow(boldest, 1.0 + f64::from(ladder.spread) * height);
+    share.max(f64::from(ladder.least)) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: f32, b: f32) -> bool {
+        (a - b).abs() < 1e-6
+    }
+
+    #[test]
+    fn a_generation_spans_greedy_bold_and_careful_actors() {
+        let ladder = ExplorationLadder::default();
+        let shares: Vec<f32> = (0..32).map(|actor| epsilon(0, actor, 32, &ladder)).collect();
+        assert_eq!(shares[0], 0.0);
+        assert!(close(shares[1], 0.6), "{shares:?}");
+        // 0.6^(1 + 3 · 15/30) and 0.6^4.
+        assert!(close(shares[16], 0.278_854_8) && close(shares[31], 0.129_6), "{shares:?}");
+        assert!(shares[1..].windows(2).all(|pair| pair[0] > pair[1]), "{shares:?}");
+    }
+
+    #[test]
+    fn shares_fall_over_the_generations_to_their_least() {
+        let ladder = ExplorationLadder::default();
+        // 0.6 · 0.985^50.
+        assert!(close(epsilon(50, 1, 32, &ladder), 0.281_814_4), "{}", epsilon(50, 1, 32, &ladder));
+        for generation in [200, u32::MAX] {
+            assert!(close(epsilon(generation, 1, 32, &ladder), 0.1));
+            assert!(close(epsilon(generation, 31, 32, &ladder), 0.02));
+            assert_eq!(epsilon(generation, 0, 32, &ladder), 0.0);
+        }
+    }
+
+    #[test]
+    fn few_actors_and_extreme_settings_still_have_a_share() {
+        let ladder = ExplorationLadder::default();
+        assert!(close(epsilon(0, 1, 2, &ladder), 0.6));
+        assert!(close(epsilon(0, 1, 3, &ladder), 0.6) && close(epsilon(0, 2, 3, &ladder), 0.1296));
+        let none = ExplorationLadder { first: 0.0, least_of_boldest: 0.0, least: 0.0, ..ladder };
+        for (actor, actors) in [(0, 0), (1, 0), (5, 1), (u32::MAX, u32::MAX)] {
+            assert!((0.0..=1.0).contains(&epsilon(3, actor, actors, &ladder)));
+            assert_eq!(epsilon(3, actor, actors, &none), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_setting_outside_its_range_is_refused() {
+        let good = ExplorationLadder::default();
+        assert_eq!(good.check(), Ok(()));
+        for bad in [
+            ExplorationLadder { first: 1.1, ..good },
+            ExplorationLadder { decay: -0.1, ..good },
+            ExplorationLadder { least_of_boldest: f32::NAN, ..good },
+            ExplorationLadder { least: 2.0, ..good },
+            ExplorationLadder { spread: f32::INFINITY, ..good },
+        ] {
+            assert!(bad.check().is_err(), "{bad:?}");
+        }
+        let bad = ExplorationLadder { spread: -1.0, ..good };
+        assert_eq!(bad.check().unwrap_err().to_string(), "spread is -1; allowed: 0 to 20");
+    }
+}

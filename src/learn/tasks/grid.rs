@@ -1,0 +1,66 @@
+//! What the grid worlds of the tests have in common: cells as states, and four moves as actions.
+
+/// The moves, in the order of their numbers: up, right, down, left, as (rows, columns).
+const MOVES: [(i32, i32); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];
+
+/// A rectangular world. The state is the number of the cell, row by row from the upper left.
+pub trait GridWorld {
+    /// The number of rows.
+    const ROWS: u32;
+    /// The number of columns.
+    const COLUMNS: u32;
+    /// The number of cells, which are the states.
+    const STATES: u32 = Self::ROWS * Self::COLUMNS;
+    /// The number of actions.
+    const ACTIONS: u16 = 4;
+    /// The row and column at which an episode starts.
+    const START: (u32, u32);
+    /// The row and column at which it ends.
+    const GOAL: (u32, u32);
+
+    /// The row and column after a move from a cell, and the reward.
+    fn outcome(cell: (u32, u32), action: u16) -> ((u32, u32), f32);
+
+    /// The state of a cell.
+    fn state((row, column): (u32, u32)) -> u32 {
+        row * Self::COLUMNS + column
+    }
+
+    /// The state after an action, `None` for the goal, and the reward.
+    fn act(state: u32, action: u16) -> (Option<u32>, f32) {
+        let (cell, reward) = Self::outcome((state / Self::COLUMNS, state % Self::COLUMNS), action);
+        ((cell != Self::GOAL).then(|| Self::state(cell)), reward)
+    }
+
+    /// The cell beside a cell; at the edge of the world the cell itself.
+    fn beside(cell: (u32, u32), action: u16) -> (u32, u32) {
+        let (rows, columns) = MOVES[usize::from(action)];
+        Self::shifted(cell, rows, columns)
+    }
+
+    /// The cell some rows and columns away, held within the world.
+    fn shifted((row, column): (u32, u32), rows: i32, columns: i32) -> (u32, u32) {
+        let row = row.saturating_add_signed(rows).min(Self::ROWS - 1);
+        (row, column.saturating_add_signed(columns).min(Self::COLUMNS - 1))
+    }
+}
+
+/// The least number of actions from start to goal, by breadth-first search.
+pub fn shortest_path<W: GridWorld>() -> u32 {
+    let mut distance = vec![None; W::STATES as usize];
+    let mut queue = vec![W::state(W::START)];
+    distance[W::state(W::START) as usize] = Some(0);
+    let mut first = 0;
+    while let Some(&state) = queue.get(first) {
+        first += 1;
+        let steps = distance[state as usize].unwrap_or(0) + 1;
+        for action in 0..W::ACTIONS {
+            let Some(next) = W::act(state, action).0 else { return steps };
+            if distance[next as usize].is_none() {
+                distance[next as usize] = Some(steps);
+                queue.push(next);
+            }
+        }
+    }
+    panic!("the goal cannot be reached");
+}
