@@ -75,7 +75,14 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     })?;
     let mut plans = Vec::new();
     for &strategy in &strategies {
-        for &controller in &controllers {
+        let fitting = controllers.iter().filter(|kind| strategy.improves(**kind));
+        let fitting: Vec<ControllerKind> = fitting.copied().collect();
+        if fitting.is_empty() {
+            let names: Vec<&str> = strategy.controllers().map(ControllerKind::name).collect();
+            let allowed = format!("all, or a list with one of {} for {strategy}", names.join(", "));
+            return Err(Invalid::new("--controllers", &compared.controllers, allowed).into());
+        }
+        for controller in fitting {
             for seed in first_seed..=last_seed {
                 let planned = PlannedRun { strategy, controller, seed };
                 let plan = planned.plan(&preset, &settings, compared.evaluations);
@@ -110,11 +117,12 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     if let Some(note) = note_on_single_generations(&plans) {
         say(&note);
     }
+    let all = plans.len();
     plans.retain(|plan| !is_done(&comparison, plan));
     say(&format!(
         "preset {preset}: {} of {} runs left, {} evaluations each",
         plans.len(),
-        strategies.len() * controllers.len() * compared.seeds as usize,
+        all,
         compared.evaluations
     ));
     let bar = ProgressBar::new(u64::from(compared.evaluations) * plans.len() as u64);

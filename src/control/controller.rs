@@ -1,6 +1,7 @@
 //! The interface of a controller.
 
 use super::{Observation, Senses};
+use crate::learn::Episode;
 use crate::world::JointTorque;
 
 /// Turns observations into torques, step after step.
@@ -16,6 +17,11 @@ pub trait Controller: Send + Sync {
     /// Writes the torques of the step that begins, one per joint from the head. They are clamped to the joints'
     /// limits later.
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]);
+
+    /// Ends the episode after the last step: the experience of a controller that learns from it.
+    fn finish(&mut self, _observation: &Observation, _is_disqualified: bool) -> Option<Episode> {
+        None
+    }
 
     /// A copy with the same state.
     fn boxed_clone(&self) -> Box<dyn Controller>;

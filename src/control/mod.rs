@@ -5,14 +5,18 @@
 
 mod controller;
 mod ctrnn;
+mod decisions;
 mod gait;
 mod network;
 mod observation;
 mod perception;
+mod postures;
 mod reflex;
+mod rewards;
 mod sense;
 mod servo;
 mod signal;
+mod situation;
 mod wave;
 
 pub use controller::Controller;
@@ -21,6 +25,7 @@ pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
 pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
 
 use crate::genome::ControllerGenes;
+use crate::learn::Episode;
 use crate::world::{JointTorque, PhysicsSettings, Simulation};
 
 /// The controller that genes encode, in its state before the first step.
@@ -33,6 +38,9 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Modular(genes) => Box::new(network::ModularController::new(genes.clone())),
         ControllerGenes::Central(genes) => Box::new(network::CentralController::new(genes.clone())),
         ControllerGenes::Ctrnn(genes) => Box::new(ctrnn::CtrnnController::new(genes.clone())),
+        ControllerGenes::Decisions(genes) => {
+            Box::new(decisions::DecisionController::new(genes.clone()))
+        }
     }
 }
 
@@ -69,6 +77,19 @@ impl ControlLoop {
     pub fn act(&mut self, step: u32, world: &Simulation, torques: &mut [JointTorque]) {
         self.observation.update(step, world, self.controller.needs(), &self.active);
         self.controller.act(&self.observation, torques);
+    }
+
+    /// Ends the episode after step number `step - 1`, the last: the experience of a controller that learns from it.
+    pub fn finish(
+        &mut self,
+        step: u32,
+        world: &Simulation,
+        is_disqualified: bool,
+    ) -> Option<Episode> {
+        if !is_disqualified {
+            self.observation.update(step, world, self.controller.needs(), &self.active);
+        }
+        self.controller.finish(&self.observation, is_disqualified)
     }
 
     /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.
@@ -116,7 +137,7 @@ mod tests {
             let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
             let world = Simulation::new(&trial.world_plan(&genome));
             let mut torques = vec![JointTorque::default(); world.joint_states().len()];
-            let counter = Counter { senses: Senses { joints, surroundings: false }, acted: 0.0 };
+            let counter = Counter { senses: Senses { joints, ..Senses::default() }, acted: 0.0 };
             let active = ActiveSenses::default();
             let mut original = ControlLoop::of(Box::new(counter), &trial.physics, active);
             original.act(0, &world, &mut torques);

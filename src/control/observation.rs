@@ -1,7 +1,7 @@
 //! The state of the world as a controller perceives it.
 
 use super::{ActiveSenses, Perception};
-use crate::world::{JointState, PhysicsSettings, Simulation};
+use crate::world::{Climb, JointState, PhysicsSettings, Simulation};
 
 /// The senses that a controller needs. Others are not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -10,13 +10,15 @@ pub struct Senses {
     pub joints: bool,
     /// Contacts, attitude, and the stairs ahead: see [`Perception`].
     pub surroundings: bool,
+    /// The progress up the stairs, of which rewards are made. No posture or torque may depend on it.
+    pub climb: bool,
 }
 
 impl Senses {
     /// The joints alone.
-    pub const JOINTS: Self = Self { joints: true, surroundings: false };
-    /// All there are.
-    pub const ALL: Self = Self { joints: true, surroundings: true };
+    pub const JOINTS: Self = Self { joints: true, surroundings: false, climb: false };
+    /// All that a snake has.
+    pub const ALL: Self = Self { joints: true, surroundings: true, climb: false };
 }
 
 /// The moment at which a controller acts.
@@ -33,6 +35,8 @@ pub struct Observation {
     pub joints: Vec<JointState>,
     /// All senses, scaled for controllers; empty unless the controller needs the surroundings.
     pub perception: Perception,
+    /// Progress up the stairs; zero unless the controller needs it.
+    pub climb: Climb,
 }
 
 impl Observation {
@@ -86,6 +90,9 @@ impl Observation {
         }
         if senses.surroundings {
             self.perception.update(world, &self.joints, active);
+        }
+        if senses.climb {
+            self.climb = world.climb();
         }
     }
 }

@@ -17,9 +17,10 @@ pub use plan::{
     Founder, MOST_CHANGES, RunPlan, SettingChange, SettingChanges, may_change_during_run,
 };
 pub use settings::{
-    CmaEsSettings, Crossover, EvolutionSettings, GaSettings, HalvingSettings, LARGEST_POPULATION,
-    MapElitesSettings, Mutation, NoveltySettings, ParentSelection, RestartKind, Settings,
-    StrategyInfo, StrategyKind, fields, with_field, with_fields,
+    CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings, HalvingSettings,
+    LARGEST_POPULATION, MapElitesSettings, Mutation, NoveltySettings, ParentSelection,
+    QLearningSettings, RestartKind, Settings, StrategyInfo, StrategyKind, fields, with_field,
+    with_fields,
 };
 pub use strategies::{begin, resume};
 pub use strategy::{Strategy, StrategyState, ranking};

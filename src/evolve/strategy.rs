@@ -10,6 +10,7 @@ use super::parents::{IndividualId, Parents};
 use super::plan::RunPlan;
 use crate::check::Invalid;
 use crate::genome::Genome;
+use crate::learn::Episode;
 use crate::score::Evaluation;
 
 /// A way to search, one generation at a time.
@@ -39,6 +40,20 @@ pub trait Strategy: Send {
 
     /// Learns from the evaluations of the genomes that the last `ask` returned, in the same order.
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]);
+
+    /// Whether it learns from the experience of episodes, beside their evaluations.
+    fn learns_from_episodes(&self) -> bool {
+        false
+    }
+
+    /// Learns from the episodes of the genomes that the last `ask` returned, in the same order, before it is told their
+    /// evaluations. An evaluation that failed has none.
+    fn learn(&mut self, _episodes: Vec<Option<Episode>>) {}
+
+    /// Whether an individual of the generation that `ask` returns may become a champion.
+    fn may_be_champion(&self, _individual: usize) -> bool {
+        true
+    }
 
     /// Everything it has learned: together with settings, seed and the number of finished generations, enough to
     /// continue bit for bit.

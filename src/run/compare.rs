@@ -321,7 +321,12 @@ mod tests {
         let mut settings = Settings::default();
         settings.trial.duration_s = 0.5;
         settings.evolution.population = 6;
-        let planned = |strategy| PlannedRun { strategy, controller: ControllerKind::Gait, seed: 3 };
+        let planned = |strategy: StrategyKind| {
+            let gait = ControllerKind::Gait;
+            let controller = strategy.controllers().find(|kind| *kind == gait);
+            let controller = controller.or(strategy.controllers().next()).expect("a controller");
+            PlannedRun { strategy, controller, seed: 3 }
+        };
         StrategyKind::ALL
             .map(|strategy| planned(strategy).plan("test", &settings, 24).expect("allowed"))
             .to_vec()

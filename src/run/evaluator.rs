@@ -16,10 +16,10 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::panics::caught;
 use super::run_control::{Cancelled, RunControl};
 use crate::genome::Genome;
-use crate::score::{Evaluation, Trial, evaluate};
+use crate::score::{Scored, Trial, score};
 
 /// The result of evaluating one genome; an error is the message of the panic in it.
-pub type EvaluationResult = Result<Evaluation, String>;
+pub type EvaluationResult = Result<Scored, String>;
 
 /// Evaluates batches of genomes.
 pub trait Evaluator: Debug + Send + Sync {
@@ -67,7 +67,7 @@ pub fn available_cores() -> usize {
 /// # Errors
 /// The evaluation panicked.
 pub fn evaluate_caught(genome: &Genome, trial: &Trial) -> EvaluationResult {
-    caught(|| evaluate(genome, trial))
+    caught(|| score(genome, trial))
 }
 
 /// Evaluates on threads of this process.

@@ -21,7 +21,7 @@ use crate::evolve::{
 };
 use crate::genome::Genome;
 use crate::save::{IndividualRecord, LineageRecord, SavedProgress, SearchState};
-use crate::score::Evaluation;
+use crate::score::{Evaluation, Scored};
 use crate::world::Disqualification;
 use choice::choose_champion;
 
@@ -227,15 +227,21 @@ impl Experiment {
         let (genomes, parents) = (self.strategy.ask(), self.strategy.parents());
         let record = |individual, evaluation: &_| record(generation, individual, evaluation);
         let results = self.evaluate(&genomes, evaluator, control, &record)?;
-        let (evaluations, messages): (Vec<Evaluation>, Vec<Option<String>>) = results
-            .into_iter()
-            .map(|result| match result {
-                Ok(evaluation) => (evaluation, None),
-                Err(message) => (void_evaluation(), Some(message)),
-            })
-            .unzip();
+        let (mut evaluations, mut episodes, mut messages) = (Vec::new(), Vec::new(), Vec::new());
+        for result in results {
+            let (scored, message) = match result {
+                Ok(scored) => (scored, None),
+                Err(message) => {
+                    (Scored { evaluation: void_evaluation(), episode: None }, Some(message))
+                }
+            };
+            evaluations.push(scored.evaluation);
+            episodes.push(scored.episode);
+            messages.push(message);
+        }
 
-        let ranking = ranking(&evaluations);
+        let mut ranking = ranking(&evaluations);
+        ranking.retain(|&index| self.strategy.may_be_champion(index));
         let evaluated = EvaluatedGeneration {
             plan: &self.plan,
             generation,
@@ -249,6 +255,9 @@ impl Experiment {
 
         let start_y_m = self.plan.settings.trial.start_y_m;
         for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
+            if !self.strategy.may_be_champion(index) {
+                continue;
+            }
             // Clone only the few genomes that enter the front.
             if self.front.accepts(genome, evaluation, start_y_m) {
                 let (genome, evaluation) = (genome.clone(), *evaluation);
@@ -257,6 +266,7 @@ impl Experiment {
                 self.front.add(member, start_y_m);
             }
         }
+        self.strategy.learn(episodes);
         self.strategy.tell(&genomes, &evaluations);
         self.finished = generation;
         self.evaluated += evaluations.len() as u64;
@@ -278,16 +288,20 @@ impl Experiment {
         record: &(dyn Fn(u32, &Evaluation) + Sync),
     ) -> Result<Vec<EvaluationResult>, Cancelled> {
         let trial = &self.plan.trial_in(self.finished + 1);
+        // A journal of evaluations has no experience to learn from; it is computed again, with the same bits.
+        let is_enough = !self.strategy.learns_from_episodes();
         let result_of = |index: usize| match self.known.get(&(index as u32)) {
-            Some(known) => OnceLock::from(Ok(*known)),
-            None => OnceLock::new(),
+            Some(known) if is_enough => {
+                OnceLock::from(Ok(Scored { evaluation: *known, episode: None }))
+            }
+            _ => OnceLock::new(),
         };
         let results: Vec<OnceLock<EvaluationResult>> = (0..genomes.len()).map(result_of).collect();
         let unknown: Vec<usize> =
             (0..genomes.len()).filter(|&index| results[index].get().is_none()).collect();
         (unknown.len()..genomes.len()).for_each(|_| control.count_one());
         let store = |index: usize, result: EvaluationResult| {
-            let evaluation = result.as_ref().ok().copied();
+            let evaluation = result.as_ref().ok().map(|scored| scored.evaluation);
             if results[index].set(result).is_err() {
                 return;
             }

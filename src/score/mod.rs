@@ -13,6 +13,7 @@ mod perturbation;
 mod recording;
 mod repeats;
 mod rollout;
+mod scored;
 mod trial;
 
 pub use agent::AgentSettings;
@@ -23,7 +24,8 @@ pub use history::KeyframeHistory;
 pub use perturbation::{Perturbation, PerturbationRange};
 pub use recording::Recording;
 pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
-pub use rollout::{Evaluation, Rollout, evaluate};
+pub use rollout::{Evaluation, Rollout};
+pub use scored::{Scored, evaluate, score};
 pub use trial::Trial;
 
 pub use crate::schema::PerPart;

@@ -13,8 +13,9 @@ use super::behaviour::{BehaviourMoment, BehaviourObserver};
 use super::fitness::FinalState;
 use super::trial::steps_in;
 use super::{Behaviour, Perturbation, Trial};
-use crate::control::ControlLoop;
+use crate::control::{ControlLoop, Perception};
 use crate::genome::Genome;
+use crate::learn::Episode;
 use crate::world::{
     BodyPlan, Disqualification, Effort, JointTorque, Pose, Pull, Shove, Simulation, Stairs, Vector,
     WorldPlan,
@@ -279,48 +280,22 @@ impl Rollout {
         steps > 0 && self.stairs().steps_under(self.middle_m().to_array()) == steps
     }
 
+    /// Ends the episode: the experience of a controller that learns from it. A disturbed rollout teaches nothing.
+    pub fn finish(&mut self) -> Option<Episode> {
+        let is_disqualified = self.disqualified.is_some();
+        let episode = self.control.finish(self.step, &self.simulation, is_disqualified);
+        episode.filter(|_| !self.is_disturbed)
+    }
+
+    /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.
+    pub fn perception(&self) -> &Perception {
+        self.control.perception()
+    }
+
     /// The world, for reading.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
-}
-
-/// Scores a genome: runs its rollout to the end, and then its perturbed trials, if the settings ask for them.
-/// Of these only the fitness counts: see [`super::Repeats`].
-///
-/// The perturbations are derived from the genome's own bits, from a fixed seed, or from the number of a generation's list,
-/// which its trial holds. A champion's file is therefore enough to score it again.
-pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
-    let nominal = finished(Rollout::new(genome, trial));
-    let repeats = &trial.repeats;
-    if repeats.trials <= 1 || nominal.disqualified.is_some() {
-        return nominal;
-    }
-    let mut fitnesses = vec![nominal.fitness];
-    let hash = genome.hash();
-    fitnesses.extend((1..repeats.trials).map(|number| {
-        let perturbation = repeats.off.draw(
-            trial.duration_s,
-            trial.agent.limbs,
-            &mut repeats.stream(hash, number),
-        );
-        let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
-        let at_start = rollout.evaluation().fitness;
-        while rollout.advance() {}
-        let evaluation = rollout.evaluation();
-        // A disqualified trial scores at most its starting fitness. It may score less where energy costs.
-        if evaluation.disqualified.is_some() {
-            at_start.min(evaluation.fitness)
-        } else {
-            evaluation.fitness
-        }
-    }));
-    Evaluation { fitness: repeats.counts.of(&fitnesses), ..nominal }
-}
-
-fn finished(mut rollout: Rollout) -> Evaluation {
-    while rollout.advance() {}
-    rollout.evaluation()
 }
 
 #[cfg(test)]
@@ -328,6 +303,7 @@ mod tests {
     use super::*;
     use crate::genome::{ControllerGenes, GenomeSpace};
     use crate::rng::{Purpose, stream};
+    use crate::score::evaluate;
 
     fn random_genome(individual: u32, trial: &Trial) -> Genome {
         let mut rng = stream(1, 1, individual, Purpose::Birth);

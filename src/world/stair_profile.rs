@@ -2,7 +2,7 @@
 //!
 //! Every question is answered in constant time from the shape of the stairs, without a ray through the engine.
 
-use super::Stairs;
+use super::{Climb, Stairs};
 
 /// The profile of a staircase.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +54,20 @@ impl StairProfile {
         self.heights_m.get(passed).copied().unwrap_or(0.0)
     }
 
+    /// The progress up the stairs of a limb whose centre is at a place, in metres: see
+    /// [`Stairs::steps_under`](super::Stairs::steps_under).
+    pub fn climb(&self, [x_m, y_m, z_m]: [f32; 3]) -> Climb {
+        let passed = if self.is_in_line(x_m, y_m) { self.risers_passed(y_m) } else { 0 };
+        let is_over = self.heights_m.get(passed).is_some_and(|height_m| z_m >= *height_m);
+        let steps = if is_over { passed } else { 0 };
+        Climb {
+            steps: steps as u32,
+            way_m: if steps > 0 { y_m } else { y_m.min(self.first_riser_y_m) },
+            tread_m: self.tread_m,
+            is_on_landing: steps > 0 && steps + 1 == self.heights_m.len(),
+        }
+    }
+
     /// Half the width of the stairs, in metres.
     pub fn half_width_m(&self) -> f32 {
         self.half_width_m
@@ -95,6 +109,16 @@ mod tests {
         assert_eq!(profile.next_step(2.6, 1.0), None, "beside the stairs");
         assert_eq!(next(stairs.end_y_m() + 1.0), None, "behind the stairs");
         assert_eq!(StairProfile::of(&Stairs { steps: 0, ..stairs }).next_step(0.0, 1.0), None);
+    }
+
+    #[test]
+    fn the_climb_counts_steps_under_the_limb_and_beside_the_stairs_only_the_way_to_them() {
+        let profile = StairProfile::of(&Stairs::default());
+        let climb = |at| profile.climb(at);
+        assert_eq!((climb([0.0, 5.5, 1.6]).steps, climb([0.0, 5.5, 1.6]).way_m), (2, 5.5));
+        assert_eq!((climb([0.0, 5.5, 0.9]).steps, climb([0.0, 5.5, 0.9]).way_m), (0, 3.0));
+        assert_eq!(climb([3.0, 5.5, 0.5]).way_m, 3.0, "beside the stairs");
+        assert!(climb([0.0, 21.5, 5.5]).is_on_landing && !climb([0.0, 20.5, 5.5]).is_on_landing);
     }
 
     #[test]

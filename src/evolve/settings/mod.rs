@@ -4,8 +4,10 @@ mod by_name;
 mod cma_es;
 mod ga;
 mod halving;
+mod learning;
 mod map_elites;
 mod novelty;
+mod partners;
 mod size;
 mod strategy_kind;
 
@@ -13,6 +15,7 @@ pub use by_name::{fields, with_field, with_fields};
 pub use cma_es::{CmaEsSettings, RestartKind};
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
 pub use halving::HalvingSettings;
+pub use learning::{ExplorationSettings, QLearningSettings};
 pub use map_elites::MapElitesSettings;
 pub use novelty::NoveltySettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE, LARGEST_STATE_GENES};
@@ -21,9 +24,10 @@ pub use strategy_kind::StrategyInfo;
 use serde::{Deserialize, Serialize};
 
 use crate::check::Invalid;
-use crate::genome::{GenomeSpace, LARGEST_GENOME_TORQUES};
+use crate::genome::{ControllerKind, GenomeSpace, LARGEST_GENOME_TORQUES};
 use crate::schema::{
-    self, Section, SettingGroup, Walk, choice, named_by_info, setting_group, settings, whole,
+    self, Section, SettingGroup, Walk, choice, is_default, named_by_info, setting_group, settings,
+    whole,
 };
 use crate::score::Trial;
 use strategy_kind::strategy_kinds;
@@ -61,6 +65,12 @@ setting_group! {
         map_elites: MapElitesSettings = MapElitesSettings::default();
         /// Novelty search.
         novelty: NoveltySettings = NoveltySettings::default();
+        /// Q-learning.
+        #[serde(default, skip_serializing_if = "is_default")]
+        q_learning: QLearningSettings = QLearningSettings::default();
+        /// Exploration of all learners.
+        #[serde(default, skip_serializing_if = "is_default")]
+        exploration: ExplorationSettings = ExplorationSettings::default();
     }
 }
 
@@ -129,14 +139,35 @@ strategy_kinds! {
         color: [0x80, 0x80, 0x80],
         ..StrategyInfo::PLAIN
     };
+    /// Tabular Q-learning, of one table that all episodes share.
+    QLearning = StrategyInfo {
+        name: "q_learning",
+        title: "Q-learning",
+        words: "Learns by trial and error what each posture is worth in each situation.",
+        color: [0x56, 0xb4, 0xe9],
+        settings: &["q_learning", "exploration"],
+        only_controller: Some(ControllerKind::Decisions),
+        check_size: |evolution, size| QLearningSettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
 }
 
 named_by_info!(StrategyKind);
 
 impl SettingGroup for EvolutionSettings {
     fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { strategy, population, generations, halving, ga, cma_es, map_elites, novelty } =
-            self;
+        let Self {
+            strategy,
+            population,
+            generations,
+            halving,
+            ga,
+            cma_es,
+            map_elites,
+            novelty,
+            q_learning,
+            exploration,
+        } = self;
         walk.section(Self::RUN);
         let sizes = whole("Population", 1..=LARGEST_POPULATION)
             .hint("Number of snakes in a generation. More find better solutions, but take longer");
@@ -153,12 +184,14 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 5] = [
+        let groups: [(&str, &mut dyn SettingGroup); 7] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
             ("map_elites", map_elites),
             ("novelty", novelty),
+            ("q_learning", q_learning),
+            ("exploration", exploration),
         ];
         for (name, group) in groups {
             walk.used_if(used.contains(&name));
@@ -211,6 +244,7 @@ impl SettingGroup for Settings {
 
     /// Checks that a generation, and what the strategy keeps, fit into memory.
     fn check_together(&self) -> Result<(), Invalid> {
+        self.check_partners()?;
         let points = self.genome.points(self.trial.duration_s);
         let torque_points = 2 * self.trial.agent.joints() * points;
         if torque_points > LARGEST_GENOME_TORQUES {
@@ -245,7 +279,7 @@ mod tests {
     fn senses_are_settings_of_controllers_that_have_them() {
         for (controller, expected) in [("gait", false), ("reflex", true)] {
             let settings = with_field(&Settings::default(), "genome.controller", controller);
-            let listed = fields(&settings.expect("allowed"));
+            let listed = schema::list(&settings.expect("allowed"));
             let sight = listed.iter().find(|field| field.path == "trial.agent.senses.sight");
             assert_eq!(sight.expect("a setting").is_used, expected, "{controller}");
             let limbs = listed.iter().find(|field| field.path == "trial.agent.limbs");

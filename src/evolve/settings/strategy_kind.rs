@@ -3,6 +3,7 @@
 use super::size::LARGEST_GENERATION_GENES;
 use super::{EvolutionSettings, GenomeSize};
 use crate::check::Invalid;
+use crate::genome::ControllerKind;
 
 /// The facts about a strategy that are the same for all its runs.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +22,8 @@ pub struct StrategyInfo {
     /// Whether it chooses the size of each generation itself. The population is then the size of the first, and
     /// the run ends when the evaluations are spent that population and generations allow.
     pub is_budget_driven: bool,
+    /// The only kind of controller that it improves, which no other strategy of genes does; none for all others.
+    pub only_controller: Option<ControllerKind>,
     /// Whether it keeps an archive of elites over two descriptors.
     pub has_archive: bool,
     /// Number of generations in a comparison, where more would not continue the search; none for any number.
@@ -38,6 +41,7 @@ impl StrategyInfo {
         color: [0; 3],
         settings: &[],
         is_budget_driven: false,
+        only_controller: None,
         has_archive: false,
         compared_generations: None,
         check_size: |evolution, size| {

@@ -7,6 +7,7 @@ mod cma;
 mod cma_es;
 mod ga;
 mod halving;
+mod learning;
 mod map_elites;
 mod novelty;
 mod random;
@@ -25,6 +26,7 @@ fn constructors(kind: StrategyKind) -> Constructors {
         StrategyKind::CmaEs => Constructors::of::<cma_es::CmaEs>(),
         StrategyKind::MapElites => Constructors::of::<map_elites::MapElites>(),
         StrategyKind::Novelty => Constructors::of::<novelty::Novelty>(),
+        StrategyKind::QLearning => Constructors::of::<learning::Learning>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }
 }

@@ -1,6 +1,7 @@
 //! The interface of a kind of controller to the rest of the genome.
 
 use rand_chacha::ChaCha8Rng;
+use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::check::Invalid;
 use crate::genome::body::BodyGenes;
@@ -95,6 +96,9 @@ pub trait ControllerEncoding {
         body.genes(space, &mut shift);
         self.genes(space, &mut shift);
     }
+
+    /// Adds the bits of what was learned, beside the genes, to a genome's hash.
+    fn hash_learned(&self, _hash: &mut Xxh3Default) {}
 
     /// A few features that stand for all genes, where these are too many to compare.
     fn summary(&self, _space: &GenomeSpace) -> Option<Vec<Feature>> {

@@ -5,6 +5,7 @@
 
 mod central;
 mod ctrnn;
+mod decisions;
 mod encoding;
 mod gait;
 mod layer;
@@ -16,6 +17,7 @@ mod wave;
 
 pub use central::{CentralNetwork, sense_count};
 pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
+pub use decisions::{DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, TABLE_STATES};
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
 pub use layer::Layer;
@@ -84,6 +86,8 @@ registry! {
     Central(CentralNetwork),
     /// A continuous-time recurrent neural network.
     Ctrnn(CtrnnGenes),
+    /// Learned decisions among a few postures.
+    Decisions(DecisionGenes),
 }
 
 named_by_info!(ControllerKind);

@@ -7,15 +7,6 @@ use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
 use crate::genome::space::{GenomeSpace, LARGEST_LIMIT_RAD};
 use crate::genome::wave_space::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
 
-/// The settings below `genome` that matter to a controller with such a servo.
-pub(super) const SERVO_SETTINGS: [&str; 5] = [
-    "wave.angle_range_rad",
-    "wave.twist_range_rad",
-    "wave.stiffness_min_nm_per_rad",
-    "wave.stiffness_max_nm_per_rad",
-    "wave.servo_damping_nms_per_rad",
-];
-
 /// The servo of a controller whose outputs from -1 to 1 are target angles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -48,6 +39,16 @@ impl ServoGenes {
 
     /// Visits the genes.
     pub fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        let twist_range_rad = Self::zeroed(space).twist_range_rad;
+        self.genes_with(space, twist_range_rad, visit);
+    }
+
+    /// Visits the genes of a controller that holds all twists straight.
+    pub fn genes_without_twist(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        self.genes_with(space, 0.0, visit);
+    }
+
+    fn genes_with(&mut self, space: &GenomeSpace, twist_range_rad: f32, visit: GeneVisitor<'_>) {
         let wave = &space.wave;
         let range =
             GeneRange::Between(wave.stiffness_min_nm_per_rad, wave.stiffness_max_nm_per_rad);
@@ -65,7 +66,7 @@ impl ServoGenes {
         let (field, name) = (format_args!("servo.bend_range_rad"), format_args!("bend range"));
         visit_fixed(field, name, "rad", fixed.bend_range_rad, &mut self.bend_range_rad);
         let (field, name) = (format_args!("servo.twist_range_rad"), format_args!("twist range"));
-        visit_fixed(field, name, "rad", fixed.twist_range_rad, &mut self.twist_range_rad);
+        visit_fixed(field, name, "rad", twist_range_rad, &mut self.twist_range_rad);
     }
 
     /// Checks every value.

@@ -39,7 +39,7 @@ pub(super) fn choose_champion(
         let result = result.into_inner().unwrap_or_else(|| evaluate_caught(genome, &trial));
         // A candidate that fails on the list is no champion, and the evaluator's report of its own trial stands.
         let Ok(on_list) = result else { continue };
-        let chosen_by = Some(on_list.fitness);
+        let chosen_by = Some(on_list.evaluation.fitness);
         let candidate = Champion { chosen_by, ..evaluated.individual(index) };
         if best.as_ref().is_none_or(|best| candidate.rank() > best.rank()) {
             best = Some(candidate);

@@ -36,6 +36,13 @@ fn evolve(run: &mut RecordedRun, generations: u32) {
     }
 }
 
+/// Two kinds of controllers for a strategy of genes; for others, their own.
+fn controllers_of(strategy: StrategyKind) -> Vec<ControllerKind> {
+    let all: Vec<ControllerKind> = strategy.controllers().collect();
+    let usual = [ControllerKind::Signal, ControllerKind::Gait];
+    if all.contains(&usual[0]) { usual.to_vec() } else { all }
+}
+
 fn uninterrupted(plan: &RunPlan) -> Experiment {
     let mut experiment = Experiment::new(plan.clone());
     while !experiment.is_over() {
@@ -48,7 +55,7 @@ fn uninterrupted(plan: &RunPlan) -> Experiment {
 #[test]
 fn a_run_stopped_after_any_generation_continues_bit_for_bit() {
     for strategy in StrategyKind::ALL {
-        for controller in [ControllerKind::Signal, ControllerKind::Gait] {
+        for controller in controllers_of(strategy) {
             let mut plan = plan();
             plan.settings.evolution.strategy = strategy;
             plan.settings.genome.controller = controller;
@@ -415,7 +422,7 @@ fn a_run_whose_changes_were_edited_is_refused() {
 fn a_run_with_a_founder_continues_bit_for_bit_and_differs_from_one_without() {
     let mut rng = crate::rng::stream(9, 1, 0, crate::rng::Purpose::Birth);
     for strategy in StrategyKind::ALL {
-        for controller in [ControllerKind::Signal, ControllerKind::Gait] {
+        for controller in controllers_of(strategy) {
             let mut plan = plan();
             plan.settings.evolution.strategy = strategy;
             plan.settings.evolution.generations = 3;

@@ -1,0 +1,149 @@
+//! Decisions at work: a posture four times a second, and the experience that comes of it.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::network::servos;
+use super::postures::bend;
+use super::rewards::RewardMeter;
+use super::servo::JointServos;
+use super::situation::{Situation, way_m};
+use super::{Controller, Observation, Senses};
+use crate::genome::controllers::{DECISIONS_PER_S, DecisionGenes, POSTURES, Policy};
+use crate::learn::Episode;
+use crate::learn::q_table::{Next, Transition};
+use crate::rng::{Purpose, stream};
+use crate::world::JointTorque;
+
+/// Ticks of 1/60 s that a decision lasts: the unit of the learner's discount, whatever the step rate.
+const TICKS: u16 = 60 / DECISIONS_PER_S as u16;
+/// The posture before the first decision: straight.
+const FIRST_POSTURE: usize = 1;
+
+/// Decides by a learned policy. An explorer decides at random now and then, and learns in its own copy of a table.
+#[derive(Debug, Clone)]
+pub struct DecisionController {
+    genes: DecisionGenes,
+    servo: JointServos,
+    rng: Option<ChaCha8Rng>,
+    /// Number of the decision that holds; none before the first step.
+    decision: Option<u64>,
+    situation: Option<Situation>,
+    action: usize,
+    /// The last posture other than holding one.
+    posture: usize,
+    /// Bends at the last decision, and those that it asks for, in radians.
+    bends_rad: Vec<[f32; 2]>,
+    moved_m: f32,
+    rewards: RewardMeter,
+    /// The experience so far.
+    transitions: Vec<Transition>,
+    /// Whether the episode is over, and there is nothing more to learn.
+    has_ended: bool,
+}
+
+impl DecisionController {
+    /// The controller before the first step.
+    pub fn new(genes: DecisionGenes) -> Self {
+        let rng = genes.explorer.as_ref().map(|explorer| {
+            stream(explorer.seed, explorer.generation, explorer.individual, Purpose::Explore)
+        });
+        Self {
+            servo: servos(&genes.servo),
+            rng,
+            decision: None,
+            situation: None,
+            action: 0,
+            posture: FIRST_POSTURE,
+            bends_rad: vec![[0.0; 2]; genes.joints as usize],
+            moved_m: 0.0,
+            rewards: RewardMeter::default(),
+            transitions: Vec::new(),
+            has_ended: false,
+            genes,
+        }
+    }
+
+    /// Ends the decision that held, and takes the next one.
+    fn decide(&mut self, observation: &Observation) {
+        let situation = Situation::of(&observation.perception, self.posture, self.moved_m);
+        self.close(Next::State(situation.table_state() as u32));
+        self.rewards.begin_decision();
+        self.moved_m = 0.0;
+        let Policy::Table(table) = &self.genes.policy;
+        let state = situation.table_state();
+        self.action = match (&self.genes.explorer, &mut self.rng) {
+            (Some(explorer), Some(rng)) => table.epsilon_greedy(state, explorer.epsilon, rng),
+            _ => table.greedy(state),
+        };
+        self.situation = Some(situation);
+        if self.action > 0 && self.action < POSTURES.len() {
+            self.posture = self.action;
+        }
+        let joints = self.bends_rad.len();
+        for (joint, [from, to]) in self.bends_rad.iter_mut().enumerate() {
+            *from = *to;
+            if let Some(share) = bend(self.action, joint, joints) {
+                *to = share * self.genes.servo.bend_range_rad;
+            }
+        }
+    }
+
+    /// Adds the experience of the decision that held until now.
+    fn close(&mut self, next: Next) {
+        let Some(situation) = self.situation.filter(|_| !self.has_ended) else { return };
+        let transition = Transition {
+            state: situation.table_state() as u32,
+            action: self.action as u16,
+            reward: self.rewards.of_decision(next == Next::Terminal),
+            ticks: TICKS,
+            next,
+        };
+        self.has_ended = next == Next::Terminal;
+        if let Some(explorer) = &self.genes.explorer {
+            let Policy::Table(table) = &mut self.genes.policy;
+            std::sync::Arc::make_mut(table).update(&transition, &explorer.rule);
+        }
+        self.transitions.push(transition);
+    }
+}
+
+impl Controller for DecisionController {
+    fn needs(&self) -> Senses {
+        Senses { climb: true, ..Senses::ALL }
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        self.rewards.observe(&observation.climb);
+        if self.rewards.has_landed() {
+            self.close(Next::Terminal);
+        }
+        let rate = u64::from(observation.steps_per_s);
+        let quarters = u64::from(observation.step) * u64::from(DECISIONS_PER_S);
+        if self.decision != Some(quarters / rate) {
+            self.decision = Some(quarters / rate);
+            self.decide(observation);
+        }
+        self.moved_m += way_m(&observation.perception, observation.steps_per_s);
+        // The bends move on a straight line, and arrive with the next decision.
+        let share = (quarters % rate + u64::from(DECISIONS_PER_S)).min(rate) as f32 / rate as f32;
+        let targets = self.bends_rad.iter().map(|[from, to]| [from + (to - from) * share, 0.0]);
+        self.servo.pull(observation, targets, torques);
+    }
+
+    fn finish(&mut self, observation: &Observation, is_disqualified: bool) -> Option<Episode> {
+        if is_disqualified {
+            self.rewards.disqualify();
+            self.close(Next::Terminal);
+        } else {
+            // Time that is up is no end: the snake would go on.
+            self.rewards.observe(&observation.climb);
+            let situation = Situation::of(&observation.perception, self.posture, self.moved_m);
+            self.close(Next::State(situation.table_state() as u32));
+        }
+        Some(Episode::Table(std::mem::take(&mut self.transitions)))
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}

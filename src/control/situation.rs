@@ -1,0 +1,130 @@
+//! What the snake senses as one of a few situations, by which decisions are learned.
+
+use super::Perception;
+use super::sense::{GAP_SCALE_M, SPEED_SCALE_M_S};
+
+/// The edges between near and far gaps of the head, in metres.
+const GAP_EDGES_M: [f32; 2] = [0.25, 1.0];
+/// The edges between flat ground, a low step and a high one ahead of the head, in metres.
+const STEP_EDGES_M: [f32; 2] = [0.05, 0.6];
+/// The edges between a lowered, a level and a raised head, as sines of its pitch.
+const PITCH_EDGES: [f32; 2] = [-0.3, 0.3];
+/// The way since the last decision from which on the snake has moved, in metres.
+const MOVED_M: f32 = 0.1;
+/// The gap below which the middle limb is near a riser, in metres.
+const MIDDLE_GAP_M: f32 = 1.0;
+
+/// A situation in which a decision is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Situation {
+    /// The last posture that was taken, other than holding one: an index of the postures.
+    pub posture: usize,
+    /// Gap of the head: 0 near, 1 within reach, 2 far.
+    pub gap: usize,
+    /// The step ahead of the head: 0 none, 1 low, 2 high.
+    pub step: usize,
+    /// Pitch of the head: 0 down, 1 level, 2 up.
+    pub pitch: usize,
+    /// Whether the snake has moved ahead since the last decision.
+    pub has_moved: bool,
+    /// Whether the middle limb is near a riser.
+    pub middle_near: bool,
+}
+
+/// The half-open bin of a value: `edges[i-1] <= value < edges[i]`.
+fn bin(value: f32, edges: [f32; 2]) -> usize {
+    edges.iter().filter(|edge| value >= **edge).count()
+}
+
+impl Situation {
+    /// The situation that the senses show, after a way in metres since the last decision.
+    pub fn of(senses: &Perception, posture: usize, moved_m: f32) -> Self {
+        let head = senses.limbs.first().copied().unwrap_or_default();
+        let middle = senses.limbs.get(senses.limbs.len() / 2).copied().unwrap_or_default();
+        Self {
+            posture,
+            gap: bin(head.gap * GAP_SCALE_M, GAP_EDGES_M),
+            step: bin(head.step_up, STEP_EDGES_M),
+            pitch: bin(head.pitch, PITCH_EDGES),
+            has_moved: moved_m > MOVED_M,
+            middle_near: middle.gap * GAP_SCALE_M < MIDDLE_GAP_M,
+        }
+    }
+
+    /// Its number among the states of a table, in mixed radix.
+    pub fn table_state(&self) -> usize {
+        let mut state = self.posture.saturating_sub(1);
+        for (digit, radix) in [
+            (self.gap, 3),
+            (self.step, 3),
+            (self.pitch, 3),
+            (usize::from(self.has_moved), 2),
+            (usize::from(self.middle_near), 2),
+        ] {
+            state = state * radix + digit;
+        }
+        state
+    }
+
+    /// The situation in words.
+    pub fn words(&self) -> String {
+        let of = |words: [&'static str; 3], index: usize| words[index.min(2)];
+        let mut parts = vec![
+            of(["riser at the head", "riser near", "no riser near"], self.gap),
+            of(["nothing to climb", "low step ahead", "high step ahead"], self.step),
+            of(["head down", "head level", "head up"], self.pitch),
+            if self.has_moved { "moving" } else { "not moving" },
+        ];
+        if self.middle_near {
+            parts.push("middle at a riser");
+        }
+        parts.join(", ")
+    }
+}
+
+/// The way ahead that a perceived speed makes in a step, in metres.
+pub fn way_m(senses: &Perception, steps_per_s: u32) -> f32 {
+    senses.snake.speed_ahead * SPEED_SCALE_M_S / steps_per_s as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::perception::LimbSenses;
+    use crate::genome::controllers::{POSTURES, TABLE_STATES};
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_situation_has_a_state_of_its_own() {
+        let mut states = BTreeSet::new();
+        for posture in 1..POSTURES.len() {
+            for number in 0..27 {
+                for flags in 0..4 {
+                    let situation = Situation {
+                        posture,
+                        gap: number % 3,
+                        step: number / 3 % 3,
+                        pitch: number / 9,
+                        has_moved: flags & 1 == 1,
+                        middle_near: flags & 2 == 2,
+                    };
+                    states.insert(situation.table_state());
+                }
+            }
+        }
+        assert_eq!(states.len(), TABLE_STATES);
+        assert_eq!(states.last(), Some(&(TABLE_STATES - 1)));
+    }
+
+    #[test]
+    fn bins_are_half_open() {
+        let mut senses = Perception::default();
+        senses.limbs = vec![LimbSenses { gap: 0.125, ..LimbSenses::default() }; 5];
+        assert_eq!(Situation::of(&senses, 1, 0.0).gap, 1, "0.25 m belongs to the upper bin");
+        senses.limbs[0].gap = 0.124;
+        senses.limbs[0].pitch = -0.31;
+        let situation = Situation::of(&senses, 1, 0.2);
+        assert_eq!((situation.gap, situation.pitch, situation.has_moved), (0, 0, true));
+        assert!(situation.words().starts_with("riser at the head, "), "{}", situation.words());
+    }
+}

@@ -1,0 +1,69 @@
+//! Which strategies go with which controllers.
+//!
+//! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure
+//! needs genomes that grow: each of these goes with one kind of controller, and that kind with nothing else.
+
+use super::{Settings, StrategyKind};
+use crate::check::Invalid;
+use crate::genome::ControllerKind;
+use crate::schema::Choices;
+
+impl StrategyKind {
+    /// Whether the strategy can improve controllers of this kind.
+    pub fn improves(self, controller: ControllerKind) -> bool {
+        let is_partner = |kind: Self| kind.info().only_controller == Some(controller);
+        match self.info().only_controller {
+            Some(only) => only == controller,
+            None => !Self::ALL.into_iter().any(is_partner),
+        }
+    }
+
+    /// The kinds of controllers that the strategy can improve.
+    pub fn controllers(self) -> impl Iterator<Item = ControllerKind> {
+        ControllerKind::OPTIONS.iter().copied().filter(move |kind| self.improves(*kind))
+    }
+}
+
+impl Settings {
+    /// Checks that the strategy can improve the controller.
+    pub(super) fn check_partners(&self) -> Result<(), Invalid> {
+        let (strategy, controller) = (self.evolution.strategy, self.genome.controller);
+        if strategy.improves(controller) {
+            return Ok(());
+        }
+        let names: Vec<&str> = strategy.controllers().map(|kind| kind.name()).collect();
+        let allowed = format!("{} with evolution.strategy {strategy}", names.join(", "));
+        Err(Invalid::new("genome.controller", controller, allowed))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_controller_has_a_strategy_and_every_strategy_a_controller() {
+        for controller in ControllerKind::OPTIONS {
+            let strategies =
+                StrategyKind::ALL.into_iter().filter(|kind| kind.improves(*controller));
+            assert!(strategies.count() > 0, "{controller}");
+        }
+        for strategy in StrategyKind::ALL {
+            assert!(strategy.controllers().count() > 0, "{strategy}");
+        }
+    }
+
+    #[test]
+    fn a_strategy_that_cannot_improve_the_controller_is_refused() {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::QLearning;
+        let error = settings.check().expect_err("refused").to_string();
+        let expected =
+            "genome.controller is signal; allowed: decisions with evolution.strategy q_learning";
+        assert_eq!(error, expected);
+        settings.genome.controller = ControllerKind::Decisions;
+        settings.check().expect("allowed");
+        settings.evolution.strategy = StrategyKind::Ga;
+        assert!(settings.check().is_err());
+    }
+}

@@ -1,0 +1,143 @@
+//! Decisions: four times a second the snake takes one of a few postures, by what it has learned to be worth in its
+//! situation.
+
+mod policy;
+
+pub use policy::Policy;
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::servo::ServoGenes;
+use crate::check::{Invalid, within};
+use crate::genome::gene::{GeneVisitor, GenomeShape};
+use crate::genome::space::GenomeSpace;
+use crate::learn::q_table::QRule;
+
+/// Decisions per second.
+pub const DECISIONS_PER_S: u32 = 4;
+
+/// The postures among which a decision chooses. The first keeps the posture; a frozen policy takes it in a situation that
+/// it does not know.
+pub const POSTURES: [&str; 12] = [
+    "hold",
+    "straight",
+    "head up",
+    "head down",
+    "arch in front",
+    "arch in the middle",
+    "arch behind",
+    "wave, first quarter",
+    "wave, second quarter",
+    "wave, third quarter",
+    "wave, last quarter",
+    "curl up",
+];
+
+/// Number of situations that a table distinguishes: eleven last postures, three gaps, heights and pitches of the head,
+/// whether the snake has moved, and whether the middle limb is near a riser.
+pub const TABLE_STATES: usize = (POSTURES.len() - 1) * 3 * 3 * 3 * 2 * 2;
+
+/// A learned policy, and the servos that move the joints to its postures. It does not evolve: it has no genes, but learns
+/// from the outcome of its decisions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DecisionGenes {
+    /// Number of joints.
+    pub joints: u32,
+    /// The servos; the bend range is the angle of a full bend.
+    pub servo: ServoGenes,
+    /// What was learned.
+    pub policy: Policy,
+    /// How it explores; none for play without chance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explorer: Option<Explorer>,
+}
+
+/// How an individual of a learning run explores.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Explorer {
+    /// Probability of a random posture.
+    pub epsilon: f32,
+    /// Seed of the run.
+    pub seed: u64,
+    /// The generation.
+    pub generation: u32,
+    /// Its index there.
+    pub individual: u32,
+    /// The rule by which a table learns in its own copy during the episode.
+    pub rule: QRule,
+}
+
+impl Explorer {
+    fn check(&self) -> Result<(), Invalid> {
+        within("explorer.epsilon", self.epsilon, 0.0..=1.0)?;
+        self.rule.check().map_err(|error| error.inside("explorer.rule"))
+    }
+}
+
+impl ControllerEncoding for DecisionGenes {
+    fn info() -> &'static ControllerInfo {
+        &ControllerInfo {
+            name: "decisions",
+            title: "Decisions",
+            words: "Takes one of twelve postures four times a second, as it has learned to.",
+            senses_surroundings: true,
+            settings: &[
+                "wave.angle_range_rad",
+                "wave.stiffness_min_nm_per_rad",
+                "wave.stiffness_max_nm_per_rad",
+                "wave.servo_damping_nms_per_rad",
+            ],
+        }
+    }
+
+    fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
+        Self {
+            joints: shape.joints as u32,
+            servo: ServoGenes { twist_range_rad: 0.0, ..ServoGenes::zeroed(space) },
+            policy: Policy::default(),
+            explorer: None,
+        }
+    }
+
+    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        self.servo.genes_without_twist(space, visit);
+    }
+
+    fn joints(&self) -> usize {
+        self.joints as usize
+    }
+
+    /// Half the rate of decisions: that of a posture that changes with each.
+    fn frequency_hz(&self) -> f32 {
+        DECISIONS_PER_S as f32 / 2.0
+    }
+
+    fn check(&self) -> Result<(), Invalid> {
+        let inside = |error: Invalid| error.inside("decisions");
+        self.servo.check().map_err(inside)?;
+        within("servo.twist_range_rad", self.servo.twist_range_rad, 0.0..=0.0).map_err(inside)?;
+        self.policy.check().map_err(inside)?;
+        self.explorer.as_ref().map_or(Ok(()), Explorer::check).map_err(inside)
+    }
+
+    fn widen(&self, space: &mut GenomeSpace) {
+        let twist_range_rad = space.wave.twist_range_rad;
+        self.servo.widen(space);
+        space.wave.twist_range_rad = twist_range_rad;
+    }
+
+    fn hash_learned(&self, hash: &mut Xxh3Default) {
+        self.policy.hash(hash);
+        if let Some(explorer) = &self.explorer {
+            let Explorer { epsilon, seed, generation, individual, rule: _ } = explorer;
+            hash.update(&epsilon.to_bits().to_le_bytes());
+            hash.update(&seed.to_le_bytes());
+            hash.update(&generation.to_le_bytes());
+            hash.update(&individual.to_le_bytes());
+        }
+    }
+}

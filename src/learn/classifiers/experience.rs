@@ -1,0 +1,127 @@
+//! What a classifier system learns from: recorded decisions, how an episode ended, and a report of the replay.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use super::condition::all_bits;
+use crate::check::{Invalid, within};
+
+/// One decision of an episode: what was seen, what was done, and what it earned until the next decision.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordedDecision {
+    /// The bits of the situation.
+    pub bits: u32,
+    /// The chosen action.
+    pub action: u16,
+    /// The reward that followed it.
+    pub reward: f32,
+}
+
+impl RecordedDecision {
+    /// Checks a decision for a learner of `length` bits and `actions` actions.
+    ///
+    /// # Errors
+    /// A bit beyond the length, an unknown action, or a reward outside `rewards`.
+    pub fn check(
+        &self,
+        length: usize,
+        actions: usize,
+        rewards: RangeInclusive<f32>,
+    ) -> Result<(), Invalid> {
+        within("bits", self.bits, 0..=all_bits(length))?;
+        within("action", usize::from(self.action), 0..=actions.saturating_sub(1))?;
+        within("reward", self.reward, rewards)
+    }
+}
+
+/// How an episode ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EpisodeEnd {
+    /// The task was over: nothing could follow, so the last action is worth its reward.
+    Terminal,
+    /// Time was up while the task went on (Pardo et al. 2018). The last action is worth its reward plus the
+    /// discounted worth of the situation it led to; if no rule matches that situation, nothing is learned from the
+    /// last action.
+    TimeOut {
+        /// The bits of the situation after the last action.
+        bits: u32,
+    },
+}
+
+impl EpisodeEnd {
+    /// Checks the end of an episode for a learner of `length` bits.
+    ///
+    /// # Errors
+    /// A bit beyond the length.
+    pub fn check(&self, length: usize) -> Result<(), Invalid> {
+        match *self {
+            Self::Terminal => Ok(()),
+            Self::TimeOut { bits } => within("bits", bits, 0..=all_bits(length)),
+        }
+    }
+}
+
+/// How a learner chooses its action.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ActionChoice {
+    /// The action was chosen elsewhere and is learned from; see [`RecordedDecision`].
+    Given(usize),
+    /// As the textbook explores: XCS draws any action, all equally likely, ZCS by roulette on strength.
+    Explore,
+    /// The best known action, a random one among equals. XCS still corrects its rules, but breeds no new ones.
+    Exploit,
+}
+
+/// What a replay met.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ReplayReport {
+    /// Decisions replayed.
+    pub decisions: u32,
+    /// Decisions for which a rule was missing and had to be made.
+    pub covered: u32,
+}
+
+impl ReplayReport {
+    /// The share of decisions for which a rule had to be made; 0 without decisions.
+    pub fn covering_share(&self) -> f32 {
+        if self.decisions == 0 { 0.0 } else { self.covered as f32 / self.decisions as f32 }
+    }
+
+    /// Adds another replay to the report.
+    pub fn add(&mut self, other: Self) {
+        self.decisions = self.decisions.saturating_add(other.decisions);
+        self.covered = self.covered.saturating_add(other.covered);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hostile_decisions_are_refused_with_field_value_and_range() {
+        let good = RecordedDecision { bits: 7, action: 1, reward: 0.0 };
+        let refused = |decision: RecordedDecision| {
+            decision.check(3, 2, 0.0..=1000.0).unwrap_err().to_string()
+        };
+        assert_eq!(good.check(3, 2, 0.0..=1000.0), Ok(()));
+        assert_eq!(refused(RecordedDecision { bits: 8, ..good }), "bits is 8; allowed: 0 to 7");
+        assert_eq!(refused(RecordedDecision { action: 2, ..good }), "action is 2; allowed: 0 to 1");
+        assert!(
+            refused(RecordedDecision { reward: f32::NAN, ..good }).starts_with("reward is NaN")
+        );
+        assert!(EpisodeEnd::TimeOut { bits: 8 }.check(3).is_err());
+        assert_eq!(EpisodeEnd::TimeOut { bits: u32::MAX }.check(32), Ok(()));
+    }
+
+    #[test]
+    fn reports_add_up() {
+        let mut report = ReplayReport::default();
+        assert_eq!(report.covering_share(), 0.0);
+        report.add(ReplayReport { decisions: 3, covered: 1 });
+        report.add(ReplayReport { decisions: 1, covered: 0 });
+        assert_eq!(report.covering_share(), 0.25);
+    }
+}

@@ -1,0 +1,52 @@
+//! Learning classifier systems: populations of rules "if the situation looks like this, do that".
+//!
+//! A situation is a word of 1 to 32 bits, an action a small number. [`Xcs`] values a rule by how accurately it
+//! predicts the payoff (Wilson 1995), [`Zcs`] by the payoff itself (Wilson 1994). Both learn from recorded
+//! experience with `learn`, or one decision at a time with `episode`, and act on what they know with
+//! `frozen_action`, which changes nothing and draws no random number.
+//!
+//! Rules stand in order of birth, sums run in that order, and every random number comes from the stream that is
+//! passed in, so the same experience and the same stream give the same population on every machine.
+
+mod chance;
+mod condition;
+mod experience;
+mod mask_table;
+#[cfg(test)]
+mod replay_tests;
+#[cfg(test)]
+mod speed;
+mod xcs;
+mod xcs_deletion;
+mod xcs_discovery;
+mod xcs_episode;
+mod xcs_rules;
+mod xcs_saved;
+mod xcs_settings;
+mod xcs_subsumption;
+#[cfg(test)]
+mod xcs_textbook;
+mod xcs_update;
+mod zcs;
+mod zcs_episode;
+mod zcs_rules;
+#[cfg(test)]
+mod zcs_textbook;
+
+pub use condition::Condition;
+pub use experience::{ActionChoice, EpisodeEnd, RecordedDecision, ReplayReport};
+pub use xcs::Xcs;
+pub use xcs_episode::XcsEpisode;
+pub use xcs_rules::XcsRule;
+pub use xcs_saved::SavedXcs;
+pub use xcs_settings::XcsSettings;
+pub use zcs::{SavedZcs, Zcs};
+pub use zcs_episode::ZcsEpisode;
+pub use zcs_rules::{ZcsRule, ZcsSettings};
+
+/// Maximum number of actions of a classifier system.
+pub const MOST_ACTIONS: usize = 256;
+/// Maximum number of rules of a classifier system.
+pub const MOST_RULES: u32 = 100_000;
+/// Maximum size of the reward of one decision, in units of reward.
+pub const MOST_REWARD: f32 = 1.0e6;

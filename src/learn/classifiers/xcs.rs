@@ -1,0 +1,281 @@
+//! XCS: a population of rules that each predict the payoff of an action, kept for how accurate they are.
+//!
+//! Wilson, "Classifier fitness based on accuracy" (Evolutionary Computation 3(2), 1995), in the form of Butz and
+//! Wilson, "An algorithmic description of XCS" (LNAI 1996, 2001). This file is the population and what can be asked
+//! of it; one decision of learning is in `xcs_episode`, the discovery of new rules in `xcs_discovery`.
+
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+
+use super::chance::first_largest;
+use super::condition::LENGTHS;
+use super::experience::{ActionChoice, EpisodeEnd, RecordedDecision, ReplayReport};
+use super::mask_table::MaskTable;
+use super::xcs_episode::XcsEpisode;
+use super::xcs_rules::{XcsRule, check_rules};
+use super::xcs_saved::SavedXcs;
+use super::xcs_settings::XcsSettings;
+use super::{MOST_ACTIONS, MOST_REWARD};
+use crate::check::{Invalid, within};
+
+/// An XCS over situations of a fixed number of bits and a fixed number of actions.
+///
+/// It is saved as [`SavedXcs`]; what is read is checked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SavedXcs", into = "SavedXcs")]
+pub struct Xcs {
+    pub(super) settings: XcsSettings,
+    pub(super) situation_bits: usize,
+    pub(super) actions: usize,
+    /// Decisions learned from so far.
+    pub(super) time: u64,
+    /// The rules in order of birth.
+    pub(super) rules: Vec<XcsRule>,
+    /// The conditions and actions of `rules`, for matching.
+    pub(super) masks: MaskTable,
+    /// The sum of the rules' numerosities.
+    pub(super) numerosity: u32,
+}
+
+impl Xcs {
+    /// An XCS without rules.
+    ///
+    /// # Errors
+    /// A setting outside its range, bits not from 1 to 32, actions not from 1 to 256 or more than the population.
+    pub fn new(
+        settings: XcsSettings,
+        situation_bits: usize,
+        actions: usize,
+    ) -> Result<Self, Invalid> {
+        SavedXcs { settings, situation_bits, actions, time: 0, rules: Vec::new() }.try_into()
+    }
+
+    /// Learns from one recorded episode: the full cycle of covering, update, discovery and deletion for every
+    /// decision, with the recorded action in place of a choice.
+    ///
+    /// # Errors
+    /// A decision or the end does not fit the learner, or a reward is not from -1e6 to 1e6. Nothing is learned then.
+    pub fn learn(
+        &mut self,
+        decisions: &[RecordedDecision],
+        end: EpisodeEnd,
+        rng: &mut impl Rng,
+    ) -> Result<ReplayReport, Invalid> {
+        for (index, decision) in decisions.iter().enumerate() {
+            decision
+                .check(self.situation_bits, self.actions, -MOST_REWARD..=MOST_REWARD)
+                .map_err(|error| error.inside(&format!("decisions[{index}]")))?;
+        }
+        end.check(self.situation_bits)?;
+        let mut episode = self.episode();
+        for decision in decisions {
+            episode.decide(decision.bits, ActionChoice::Given(usize::from(decision.action)), rng);
+            episode.reward(decision.reward);
+        }
+        Ok(episode.finish(end, rng))
+    }
+
+    /// Starts an episode that is learned from one decision at a time.
+    pub fn episode(&mut self) -> XcsEpisode<'_> {
+        XcsEpisode::new(self)
+    }
+
+    /// The action of the largest predicted payoff, the lowest among equals; `None` if no rule matches. Makes no
+    /// rules and draws no random number.
+    pub fn frozen_action(&self, bits: u32) -> Option<usize> {
+        first_largest(&self.prediction_array(bits))
+    }
+
+    /// The predicted payoff of each action: the mean of its matching rules' predictions, weighted by fitness; `None`
+    /// for an action without a matching rule.
+    pub fn prediction_array(&self, bits: u32) -> Vec<Option<f32>> {
+        self.predictions(&self.match_set(bits))
+    }
+
+    /// The indices of the rules that match a situation, in order of birth.
+    pub fn match_set(&self, bits: u32) -> Vec<usize> {
+        let mut matched = Vec::new();
+        self.masks.match_into(bits, &mut matched);
+        matched
+    }
+
+    /// The prediction array of a match set.
+    pub(super) fn predictions(&self, matched: &[usize]) -> Vec<Option<f32>> {
+        let mut sums = vec![PredictionSum::default(); self.actions];
+        for &index in matched {
+            sums[self.masks.action(index)].add(&self.rules[index]);
+        }
+        sums.iter().map(PredictionSum::mean).collect()
+    }
+
+    /// The rules in order of birth.
+    pub fn rules(&self) -> &[XcsRule] {
+        &self.rules
+    }
+
+    /// The parameters.
+    pub fn settings(&self) -> &XcsSettings {
+        &self.settings
+    }
+
+    /// Bits of a situation.
+    pub fn situation_bits(&self) -> usize {
+        self.situation_bits
+    }
+
+    /// Number of actions.
+    pub fn actions(&self) -> usize {
+        self.actions
+    }
+
+    /// Decisions learned from so far.
+    pub fn time(&self) -> u64 {
+        self.time
+    }
+
+    /// Sum of the rules' numerosities, which the population limits.
+    pub fn numerosity(&self) -> u32 {
+        self.numerosity
+    }
+
+    /// Share of `#` among the symbols of all conditions, each rule counted as often as its numerosity; 0 without
+    /// rules.
+    pub fn mean_generality(&self) -> f32 {
+        let wildcards = |rule: &XcsRule| u64::from(rule.condition.wildcards() * rule.numerosity);
+        let symbols = u64::from(self.numerosity) * self.situation_bits as u64;
+        let wildcards: u64 = self.rules.iter().map(wildcards).sum();
+        if symbols == 0 { 0.0 } else { wildcards as f32 / symbols as f32 }
+    }
+
+    /// Goes on with other parameters, for instance without crossover and mutation, which condenses the population.
+    ///
+    /// # Errors
+    /// A setting is outside its range, or the population is below the present sum of numerosities.
+    pub fn set_settings(&mut self, settings: XcsSettings) -> Result<(), Invalid> {
+        self.check_with(&settings)?;
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// Checks the parameters and every rule.
+    ///
+    /// # Errors
+    /// The first fault found: field, value and allowed range.
+    pub fn check(&self) -> Result<(), Invalid> {
+        self.check_with(&self.settings)
+    }
+
+    fn check_with(&self, settings: &XcsSettings) -> Result<(), Invalid> {
+        settings.check().map_err(|error| error.inside("settings"))?;
+        within("situation_bits", self.situation_bits, LENGTHS)?;
+        within("actions", self.actions, 1..=MOST_ACTIONS)?;
+        // Every action of a situation has a rule, so there must be room for that.
+        within("actions", self.actions, 1..=settings.population as usize)?;
+        // No learner counts that far, but a hostile file may claim it, and then the count must not overflow.
+        within("time", self.time, 0..=1 << 62)?;
+        check_rules(&self.rules, settings.population, self.situation_bits, self.actions, self.time)
+    }
+}
+
+/// The sums behind the predicted payoff of one action.
+#[derive(Debug, Clone, Copy, Default)]
+struct PredictionSum {
+    fitness: f64,
+    weighted_by_fitness: f64,
+    numerosity: f64,
+    weighted_by_numerosity: f64,
+}
+
+impl PredictionSum {
+    fn add(&mut self, rule: &XcsRule) {
+        let (prediction, fitness) = (f64::from(rule.prediction), f64::from(rule.fitness));
+        self.fitness += fitness;
+        self.weighted_by_fitness += prediction * fitness;
+        self.numerosity += f64::from(rule.numerosity);
+        self.weighted_by_numerosity += prediction * f64::from(rule.numerosity);
+    }
+
+    /// The mean prediction. Only where rounding has taken the fitness of all rules to zero do they count alike.
+    fn mean(&self) -> Option<f32> {
+        if self.fitness > 0.0 {
+            Some((self.weighted_by_fitness / self.fitness) as f32)
+        } else if self.numerosity > 0.0 {
+            Some((self.weighted_by_numerosity / self.numerosity) as f32)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::{Purpose, stream};
+
+    fn rule(condition: &str, action: u16, prediction: f32, fitness: f32) -> XcsRule {
+        XcsRule {
+            condition: condition.parse().unwrap(),
+            action,
+            prediction,
+            error: 0.0,
+            fitness,
+            experience: 1,
+            time_stamp: 0,
+            action_set_size: 1.0,
+            numerosity: 1,
+        }
+    }
+
+    fn saved(rules: Vec<XcsRule>) -> SavedXcs {
+        let settings = XcsSettings { population: 10, ..XcsSettings::default() };
+        SavedXcs { settings, situation_bits: 3, actions: 3, time: 5, rules }
+    }
+
+    #[test]
+    fn predictions_are_means_weighted_by_fitness() {
+        let rules = vec![
+            rule("1##", 0, 100.0, 0.25),
+            rule("##0", 0, 500.0, 0.75),
+            rule("0##", 1, 900.0, 1.0),
+            rule("###", 2, 400.0, 0.5),
+        ];
+        let xcs = Xcs::try_from(saved(rules)).unwrap();
+        assert_eq!(xcs.match_set(0b001), [0, 1, 3]);
+        assert_eq!(xcs.prediction_array(0b001), [Some(400.0), None, Some(400.0)]);
+        assert_eq!(xcs.frozen_action(0b001), Some(0), "ties go to the lowest action");
+        assert_eq!(xcs.frozen_action(0b000), Some(1));
+        assert!((xcs.mean_generality() - 9.0 / 12.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn rules_whose_fitness_vanished_still_predict() {
+        let xcs = Xcs::try_from(saved(vec![rule("###", 0, 8.0, 0.0)])).unwrap();
+        assert_eq!(xcs.prediction_array(0), [Some(8.0), None, None]);
+    }
+
+    #[test]
+    fn frozen_play_never_covers() {
+        let xcs = Xcs::try_from(saved(vec![rule("1##", 0, 1.0, 1.0)])).unwrap();
+        let before = xcs.clone();
+        assert_eq!(xcs.frozen_action(0b000), None);
+        assert_eq!(xcs, before);
+    }
+
+    #[test]
+    fn hostile_experience_changes_nothing() {
+        let mut xcs = Xcs::try_from(saved(vec![rule("1##", 0, 1.0, 1.0)])).unwrap();
+        let before = xcs.clone();
+        let good = RecordedDecision { bits: 0, action: 0, reward: 0.0 };
+        let mut rng = stream(7, 0, 0, Purpose::Birth);
+        for bad in [
+            RecordedDecision { bits: 8, ..good },
+            RecordedDecision { action: 3, ..good },
+            RecordedDecision { reward: f32::NAN, ..good },
+        ] {
+            let error = xcs.learn(&[good, bad], EpisodeEnd::Terminal, &mut rng).unwrap_err();
+            assert!(error.field.starts_with("decisions[1]."), "{error}");
+        }
+        assert!(xcs.learn(&[good], EpisodeEnd::TimeOut { bits: 8 }, &mut rng).is_err());
+        assert_eq!(xcs, before);
+    }
+}
