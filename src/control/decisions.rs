@@ -1,5 +1,8 @@
 //! Decisions at work: a posture four times a second, and the experience that comes of it.
 
+use std::sync::Arc;
+
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::network::servos;
@@ -10,6 +13,7 @@ use super::situation::{Situation, way_m};
 use super::{Controller, Observation, Senses};
 use crate::genome::controllers::{DECISIONS_PER_S, DecisionGenes, POSTURES, Policy};
 use crate::learn::Episode;
+use crate::learn::classifiers::{EpisodeEnd, RecordedDecision};
 use crate::learn::q_table::{Next, Transition};
 use crate::rng::{Purpose, stream};
 use crate::world::JointTorque;
@@ -27,7 +31,8 @@ pub struct DecisionController {
     rng: Option<ChaCha8Rng>,
     /// Number of the decision that holds; none before the first step.
     decision: Option<u64>,
-    situation: Option<Situation>,
+    /// The situation in which it was taken.
+    at: Option<Place>,
     action: usize,
     /// The last posture other than holding one.
     posture: usize,
@@ -35,10 +40,18 @@ pub struct DecisionController {
     bends_rad: Vec<[f32; 2]>,
     moved_m: f32,
     rewards: RewardMeter,
-    /// The experience so far.
+    /// The experience so far, of a table or of rules.
     transitions: Vec<Transition>,
-    /// Whether the episode is over, and there is nothing more to learn.
-    has_ended: bool,
+    decisions: Vec<RecordedDecision>,
+    /// The end of the episode, after which there is nothing more to learn.
+    end: Option<EpisodeEnd>,
+}
+
+/// A situation as tables and rules distinguish it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Place {
+    state: u32,
+    bits: u32,
 }
 
 impl DecisionController {
@@ -51,31 +64,27 @@ impl DecisionController {
             servo: servos(&genes.servo),
             rng,
             decision: None,
-            situation: None,
+            at: None,
             action: 0,
             posture: FIRST_POSTURE,
             bends_rad: vec![[0.0; 2]; genes.joints as usize],
             moved_m: 0.0,
             rewards: RewardMeter::default(),
             transitions: Vec::new(),
-            has_ended: false,
+            decisions: Vec::new(),
+            end: None,
             genes,
         }
     }
 
     /// Ends the decision that held, and takes the next one.
     fn decide(&mut self, observation: &Observation) {
-        let situation = Situation::of(&observation.perception, self.posture, self.moved_m);
-        self.close(Next::State(situation.table_state() as u32));
+        let place = self.place(observation);
+        self.close(Some(place));
         self.rewards.begin_decision();
         self.moved_m = 0.0;
-        let Policy::Table(table) = &self.genes.policy;
-        let state = situation.table_state();
-        self.action = match (&self.genes.explorer, &mut self.rng) {
-            (Some(explorer), Some(rng)) => table.epsilon_greedy(state, explorer.epsilon, rng),
-            _ => table.greedy(state),
-        };
-        self.situation = Some(situation);
+        self.action = self.choice(&place);
+        self.at = Some(place);
         if self.action > 0 && self.action < POSTURES.len() {
             self.posture = self.action;
         }
@@ -88,22 +97,66 @@ impl DecisionController {
         }
     }
 
-    /// Adds the experience of the decision that held until now.
-    fn close(&mut self, next: Next) {
-        let Some(situation) = self.situation.filter(|_| !self.has_ended) else { return };
-        let transition = Transition {
-            state: situation.table_state() as u32,
-            action: self.action as u16,
-            reward: self.rewards.of_decision(next == Next::Terminal),
-            ticks: TICKS,
-            next,
+    /// The situation that the senses show now.
+    fn place(&self, observation: &Observation) -> Place {
+        let senses = &observation.perception;
+        let situation = Situation::of(senses, self.posture, self.moved_m);
+        Place { state: situation.table_state() as u32, bits: situation.bits(senses) }
+    }
+
+    /// The posture that the policy takes, or the explorer's.
+    fn choice(&mut self, place: &Place) -> usize {
+        let explorer = self.genes.explorer.as_ref().zip(self.rng.as_mut());
+        let frozen = match &self.genes.policy {
+            Policy::Table(table) => {
+                let state = place.state as usize;
+                return match explorer {
+                    Some((explorer, rng)) => table.epsilon_greedy(state, explorer.epsilon, rng),
+                    None => table.greedy(state),
+                };
+            }
+            Policy::Xcs(rules) => rules.frozen_action(place.bits),
+            Policy::Zcs(rules) => rules.frozen_action(place.bits),
         };
-        self.has_ended = next == Next::Terminal;
-        if let Some(explorer) = &self.genes.explorer {
-            let Policy::Table(table) = &mut self.genes.policy;
-            std::sync::Arc::make_mut(table).update(&transition, &explorer.rule);
+        // An explorer draws both numbers in each decision, so that its stream does not depend on what it knows.
+        let random = explorer.map(|(explorer, rng)| {
+            let is_random = rng.random::<f32>() < explorer.epsilon;
+            (is_random, rng.random_range(0..POSTURES.len() as u32) as usize)
+        });
+        match (random, frozen) {
+            (Some((true, random)), _) | (Some((false, random)), None) => random,
+            (_, Some(frozen)) => frozen,
+            // Without a rule the snake keeps its posture: covering would change the champion.
+            (None, None) => 0,
         }
-        self.transitions.push(transition);
+    }
+
+    /// Adds the experience of the decision that held until now. `next` is where it led; nothing follows an end.
+    fn close(&mut self, next: Option<Place>) {
+        let Some(at) = self.at.filter(|_| self.end.is_none()) else { return };
+        let is_end = next.is_none();
+        match &mut self.genes.policy {
+            Policy::Table(table) => {
+                let transition = Transition {
+                    state: at.state,
+                    action: self.action as u16,
+                    reward: self.rewards.of_decision(is_end),
+                    ticks: TICKS,
+                    next: next.map_or(Next::Terminal, |next| Next::State(next.state)),
+                };
+                if let Some(explorer) = &self.genes.explorer {
+                    Arc::make_mut(table).update(&transition, &explorer.rule);
+                }
+                self.transitions.push(transition);
+            }
+            Policy::Xcs(_) | Policy::Zcs(_) => {
+                let (action, reward) = (self.action as u16, self.rewards.of_rules(is_end));
+                self.decisions.push(RecordedDecision { bits: at.bits, action, reward });
+            }
+        }
+        if is_end {
+            self.end = Some(EpisodeEnd::Terminal);
+        }
     }
 }
 
@@ -115,7 +168,7 @@ impl Controller for DecisionController {
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         self.rewards.observe(&observation.climb);
         if self.rewards.has_landed() {
-            self.close(Next::Terminal);
+            self.close(None);
         }
         let rate = u64::from(observation.steps_per_s);
         let quarters = u64::from(observation.step) * u64::from(DECISIONS_PER_S);
@@ -133,14 +186,21 @@ impl Controller for DecisionController {
     fn finish(&mut self, observation: &Observation, is_disqualified: bool) -> Option<Episode> {
         if is_disqualified {
             self.rewards.disqualify();
-            self.close(Next::Terminal);
-        } else {
-            // Time that is up is no end: the snake would go on.
-            self.rewards.observe(&observation.climb);
-            let situation = Situation::of(&observation.perception, self.posture, self.moved_m);
-            self.close(Next::State(situation.table_state() as u32));
+            self.close(None);
         }
-        Some(Episode::Table(std::mem::take(&mut self.transitions)))
+        // Time that is up is no end: the snake would go on.
+        let now = self.place(observation);
+        if self.end.is_none() {
+            self.rewards.observe(&observation.climb);
+            self.close(Some(now));
+        }
+        let end = self.end.unwrap_or(EpisodeEnd::TimeOut { bits: now.bits });
+        Some(match &self.genes.policy {
+            Policy::Table(_) => Episode::Table(std::mem::take(&mut self.transitions)),
+            Policy::Xcs(_) | Policy::Zcs(_) => {
+                Episode::Rules(std::mem::take(&mut self.decisions), end)
+            }
+        })
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {
@@ -171,7 +231,7 @@ mod tests {
         let rows = (0..TABLE_STATES).map(row).collect();
         let saved = SparseValues { states: TABLE_STATES, actions: POSTURES.len(), rows };
         let ControllerGenes::Decisions(genes) = &mut genome.controller else { panic!("decisions") };
-        genes.policy = Policy::Table(std::sync::Arc::new(saved.try_into().expect("a table")));
+        genes.policy = Policy::Table(Arc::new(saved.try_into().expect("a table")));
         genome
     }
 

@@ -16,6 +16,8 @@ const DISQUALIFICATION: f32 = -5.0;
 /// Potential of a tread's depth of way. Differences of potential are added to the reward, which leaves the best policy as
 /// it is (Ng, Harada and Russell, 1999).
 const POTENTIAL_PER_TREAD: f32 = 0.5;
+/// Reward of rules for a tread's depth of new ground, and for the landing.
+const RULE_REWARD: f32 = 1000.0;
 /// What is left of a reward after a decision.
 pub const DISCOUNT: f32 = 0.98;
 
@@ -29,6 +31,8 @@ pub struct RewardMeter {
     reward: f32,
     /// Potential at the beginning of the decision.
     potential: f32,
+    /// The furthest way so far, in treads from the start, and that at the beginning of the decision.
+    record: [f32; 2],
 }
 
 impl RewardMeter {
@@ -43,6 +47,7 @@ impl RewardMeter {
             self.reward += STEP * (climb.steps - self.most_steps) as f32;
             self.most_steps = climb.steps;
         }
+        self.record[0] = self.record[0].max(self.treads());
     }
 
     /// Whether the snake is on the landing.
@@ -59,6 +64,7 @@ impl RewardMeter {
     pub fn begin_decision(&mut self) {
         self.reward = 0.0;
         self.potential = self.potential_now();
+        self.record[1] = self.record[0];
     }
 
     /// The reward of the decision that ends now. At the end of an episode the potential is 0: otherwise it could change
@@ -69,9 +75,22 @@ impl RewardMeter {
         shaped(DECISION + self.reward + landing, self.potential, next, DISCOUNT)
     }
 
+    /// The reward of the decision that ends now, for rules: 0 or more, because a roulette needs it, and only for ground
+    /// that is won for the first time, so that nothing is gained by going back and forth.
+    pub fn of_rules(&self, is_end: bool) -> f32 {
+        let won = (self.record[0] - self.record[1]).clamp(0.0, 1.0);
+        let landing = if is_end && self.has_landed() { RULE_REWARD } else { 0.0 };
+        RULE_REWARD * won + landing
+    }
+
     fn potential_now(&self) -> f32 {
+        POTENTIAL_PER_TREAD * self.treads()
+    }
+
+    /// The way from the start, in treads.
+    fn treads(&self) -> f32 {
         let way_m = self.now.way_m - self.start_m.unwrap_or(self.now.way_m);
-        if self.now.tread_m > 0.0 { POTENTIAL_PER_TREAD * way_m / self.now.tread_m } else { 0.0 }
+        if self.now.tread_m > 0.0 { way_m / self.now.tread_m } else { 0.0 }
     }
 }
 
@@ -97,6 +116,19 @@ mod tests {
         }
         let expected = DECISION + 2.0 + DISCOUNT * 0.5 - 0.5;
         assert!((rewards.of_decision(false) - expected).abs() < 1e-6);
+    }
+
+    #[test]
+    fn rules_are_paid_for_new_ground_only() {
+        let mut rewards = RewardMeter::default();
+        rewards.observe(&at(0, -7.0));
+        let mut paid = |way_m: f32| {
+            rewards.begin_decision();
+            rewards.observe(&at(0, way_m));
+            rewards.of_rules(false)
+        };
+        assert_eq!([paid(-6.0), paid(-8.0), paid(-6.0), paid(-5.5)], [500.0, 0.0, 0.0, 250.0]);
+        assert_eq!(paid(5.0), 1000.0, "at most");
     }
 
     #[test]

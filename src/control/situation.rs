@@ -1,7 +1,10 @@
 //! What the snake senses as one of a few situations, by which decisions are learned.
 
 use super::Perception;
+use super::perception::LimbSenses;
+use super::postures::bend;
 use super::sense::{GAP_SCALE_M, SPEED_SCALE_M_S};
+use crate::genome::controllers::SITUATION_BITS;
 
 /// The edges between near and far gaps of the head, in metres.
 const GAP_EDGES_M: [f32; 2] = [0.25, 1.0];
@@ -66,6 +69,47 @@ impl Situation {
         state
     }
 
+    /// The bits by which rules distinguish it: see [`SITUATION_BITS`].
+    pub fn bits(&self, senses: &Perception) -> u32 {
+        let limbs = senses.limbs.len();
+        let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
+        let (head, tail) = (limb(0), limb(limbs.saturating_sub(1)));
+        let near = |limb: &LimbSenses, gap_m: f32| limb.gap * GAP_SCALE_M < gap_m;
+        let touches = |index: usize| limb(index).touch > 0.5;
+        let joints = limbs.saturating_sub(1);
+        let bent = |joint: usize, least: f32| {
+            bend(self.posture, joint, joints).is_some_and(|bend| bend.abs() >= least)
+        };
+        let (third, last) = (joints.saturating_sub(2), joints.saturating_sub(1));
+        let bits: [bool; SITUATION_BITS.len()] = [
+            near(&head, 0.25),
+            near(&head, 0.5),
+            near(&head, 1.0),
+            head.step_up >= 0.05,
+            head.step_up >= 0.3,
+            head.step_up >= 0.6,
+            head.pitch >= 0.3,
+            head.pitch < -0.3,
+            touches(0),
+            touches(1),
+            touches(limbs / 2),
+            touches(limbs.saturating_sub(2)),
+            touches(limbs.saturating_sub(1)),
+            self.has_moved,
+            self.middle_near,
+            near(&tail, 1.0),
+            bent(0, 0.25),
+            bent(1, 0.25),
+            bent(third, 0.25),
+            bent(last, 0.25),
+            bent(0, 0.75),
+            bent(1, 0.75),
+            bent(third, 0.75),
+            bent(last, 0.75),
+        ];
+        bits.iter().enumerate().map(|(index, bit)| u32::from(*bit) << index).sum()
+    }
+
     /// The situation in words.
     pub fn words(&self) -> String {
         let of = |words: [&'static str; 3], index: usize| words[index.min(2)];
@@ -90,7 +134,6 @@ pub fn way_m(senses: &Perception, steps_per_s: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::perception::LimbSenses;
     use crate::genome::controllers::{POSTURES, TABLE_STATES};
     use std::collections::BTreeSet;
 

@@ -19,8 +19,8 @@ pub use plan::{
 pub use settings::{
     CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings, HalvingSettings,
     LARGEST_POPULATION, MapElitesSettings, Mutation, NoveltySettings, ParentSelection,
-    QLearningSettings, RestartKind, Settings, StrategyInfo, StrategyKind, fields, with_field,
-    with_fields,
+    QLearningSettings, RestartKind, Settings, StrategyInfo, StrategyKind, XcsRunSettings,
+    ZcsRunSettings, fields, with_field, with_fields,
 };
 pub use strategies::{begin, resume};
 pub use strategy::{Strategy, StrategyState, ranking};

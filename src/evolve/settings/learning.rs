@@ -1,9 +1,11 @@
 //! Settings of the learners.
 
+use super::EvolutionSettings;
 use super::size::GenomeSize;
 use crate::check::{Invalid, within};
+use crate::learn::classifiers::{XcsSettings, ZcsSettings};
 use crate::learn::q_table::{ExplorationLadder, QRule};
-use crate::schema::{number, setting_group};
+use crate::schema::{number, setting_group, whole};
 
 setting_group! {
     /// How boldly the snakes of a generation of learners explore.
@@ -59,12 +61,126 @@ impl QLearningSettings {
         let Self { rate_power, rate_floor } = *self;
         QRule { rate_power, rate_floor, ..QRule::default() }
     }
+}
 
-    /// Checks that a generation of tables fits into memory.
-    pub(super) fn check_size(population: u32, _: &GenomeSize<'_>) -> Result<(), Invalid> {
-        within("evolution.population", population, 2..=MOST_LEARNERS)
+/// Checks that the experience of a generation of learners fits into memory.
+pub(super) fn check_learners(
+    evolution: &EvolutionSettings,
+    _: &GenomeSize<'_>,
+) -> Result<(), Invalid> {
+    within("evolution.population", evolution.population, 2..=MOST_LEARNERS)
+}
+
+setting_group! {
+    /// Settings of XCS.
+    pub struct XcsRunSettings in "XCS": "Keeps rules that predict what a posture is worth." {
+        /// Greatest number of rules, counted with their copies.
+        rules: u32 = 2000,
+            whole("Rules at most", 12..=MOST_SYSTEM_RULES)
+                .hint("Maximum number of rules, copies included. More rules distinguish more situations")
+                .slider(100.0, 5000.0);
+
+        /// Probability that a bit does not matter in a rule for a new situation.
+        wildcard_share: f32 = 0.5,
+            number("Wildcards", 0.0..=1.0)
+                .hint("Probability that a new rule ignores a bit of the situation. More wildcards make rules more general")
+                .slider(0.0, 1.0);
+
+        /// Worth of what follows a decision.
+        discount: f32 = 0.9,
+            number("Worth of the future", 0.0..=0.99)
+                .hint("What a reward counts one decision later, relative to one now")
+                .slider(0.0, 0.99);
+
+        /// Learning rate.
+        learning_rate: f32 = 0.2,
+            number("Learning rate", 0.001..=1.0).advanced()
+                .hint("How fast the predictions of rules follow experience")
+                .slider(0.01, 0.5);
+
+        /// Mean number of decisions between two runs of the genetic algorithm in a set of rules.
+        ga_interval: f32 = 50.0,
+            number("Decisions between new rules", 0.0..=10_000.0).advanced()
+                .hint("Mean number of decisions after which rules of an action set have children")
+                .slider(1.0, 500.0);
+
+        /// Error below which a rule counts as accurate, in units of reward.
+        error_threshold: f32 = 10.0,
+            number("Accurate below", 0.001..=1000.0).advanced()
+                .hint("Error of its prediction below which a rule counts as accurate. A whole tread is worth 1,000")
+                .slider(1.0, 200.0);
     }
 }
+
+impl XcsRunSettings {
+    /// The parameters of the classifier system.
+    pub fn parameters(&self) -> XcsSettings {
+        let Self { rules, wildcard_share, discount, learning_rate, ga_interval, error_threshold } =
+            *self;
+        XcsSettings {
+            population: rules,
+            wildcard_share,
+            discount,
+            learning_rate,
+            ga_interval,
+            error_threshold,
+            ..XcsSettings::default()
+        }
+    }
+}
+
+setting_group! {
+    /// Settings of ZCS.
+    pub struct ZcsRunSettings in "ZCS": "Rules grow stronger with what their postures earn." {
+        /// Number of rules.
+        rules: u32 = 2000,
+            whole("Rules", 12..=MOST_SYSTEM_RULES)
+                .hint("Number of rules. More rules distinguish more situations")
+                .slider(100.0, 5000.0);
+
+        /// Probability that a bit does not matter in a new rule.
+        wildcard_share: f32 = 0.5,
+            number("Wildcards", 0.0..=1.0)
+                .hint("Probability that a new rule ignores a bit of the situation. More wildcards make rules more general")
+                .slider(0.0, 1.0);
+
+        /// Share of a payment that reaches the rules of the decision before.
+        discount: f32 = 0.71,
+            number("Worth of the future", 0.0..=0.99)
+                .hint("What a reward counts one decision later, relative to one now")
+                .slider(0.0, 0.99);
+
+        /// Share of its strength that a rule pays and earns.
+        learning_rate: f32 = 0.2,
+            number("Learning rate", 0.001..=1.0).advanced()
+                .hint("How fast the strengths of rules follow experience")
+                .slider(0.01, 0.5);
+
+        /// Probability that the genetic algorithm runs after a decision.
+        ga_rate: f32 = 0.25,
+            number("New rules per decision", 0.0..=1.0).advanced()
+                .hint("Probability that two rules have children after a decision")
+                .slider(0.0, 1.0);
+    }
+}
+
+impl ZcsRunSettings {
+    /// The parameters of the classifier system.
+    pub fn parameters(&self) -> ZcsSettings {
+        let Self { rules, wildcard_share, discount, learning_rate, ga_rate } = *self;
+        ZcsSettings {
+            population: rules,
+            wildcard_share,
+            discount,
+            learning_rate,
+            ga_rate,
+            ..ZcsSettings::default()
+        }
+    }
+}
+
+/// The most rules of a classifier system of a run: a checkpoint writes each in some hundred characters.
+const MOST_SYSTEM_RULES: u32 = 20_000;
 
 /// The most individuals of a generation of learners: each holds the experience of its episode, and its own copy of a table
 /// while it learns.

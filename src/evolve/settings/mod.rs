@@ -15,7 +15,7 @@ pub use by_name::{fields, with_field, with_fields};
 pub use cma_es::{CmaEsSettings, RestartKind};
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
 pub use halving::HalvingSettings;
-pub use learning::{ExplorationSettings, QLearningSettings};
+pub use learning::{ExplorationSettings, QLearningSettings, XcsRunSettings, ZcsRunSettings};
 pub use map_elites::MapElitesSettings;
 pub use novelty::NoveltySettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE, LARGEST_STATE_GENES};
@@ -30,6 +30,7 @@ use crate::schema::{
     whole,
 };
 use crate::score::Trial;
+use learning::check_learners;
 use strategy_kind::strategy_kinds;
 
 /// The settings of an experiment. Equal settings and an equal seed give equal bits.
@@ -68,6 +69,12 @@ setting_group! {
         /// Q-learning.
         #[serde(default, skip_serializing_if = "is_default")]
         q_learning: QLearningSettings = QLearningSettings::default();
+        /// XCS.
+        #[serde(default, skip_serializing_if = "is_default")]
+        xcs: XcsRunSettings = XcsRunSettings::default();
+        /// ZCS.
+        #[serde(default, skip_serializing_if = "is_default")]
+        zcs: ZcsRunSettings = ZcsRunSettings::default();
         /// Exploration of all learners.
         #[serde(default, skip_serializing_if = "is_default")]
         exploration: ExplorationSettings = ExplorationSettings::default();
@@ -147,7 +154,29 @@ strategy_kinds! {
         color: [0x56, 0xb4, 0xe9],
         settings: &["q_learning", "exploration"],
         only_controller: Some(ControllerKind::Decisions),
-        check_size: |evolution, size| QLearningSettings::check_size(evolution.population, size),
+        check_size: check_learners,
+        ..StrategyInfo::PLAIN
+    };
+    /// XCS, of one population of rules that all episodes share.
+    Xcs = StrategyInfo {
+        name: "xcs",
+        title: "XCS",
+        words: "Learns rules that predict accurately what a posture is worth, and breeds from them.",
+        color: [0x8c, 0x56, 0x4b],
+        settings: &["xcs", "exploration"],
+        only_controller: Some(ControllerKind::Decisions),
+        check_size: check_learners,
+        ..StrategyInfo::PLAIN
+    };
+    /// ZCS, of one population of rules that all episodes share.
+    Zcs = StrategyInfo {
+        name: "zcs",
+        title: "ZCS",
+        words: "Learns rules that grow stronger with what they earn, and breeds from the strong.",
+        color: [0x9a, 0x9b, 0x1a],
+        settings: &["zcs", "exploration"],
+        only_controller: Some(ControllerKind::Decisions),
+        check_size: check_learners,
         ..StrategyInfo::PLAIN
     };
 }
@@ -166,6 +195,8 @@ impl SettingGroup for EvolutionSettings {
             map_elites,
             novelty,
             q_learning,
+            xcs,
+            zcs,
             exploration,
         } = self;
         walk.section(Self::RUN);
@@ -184,13 +215,15 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 7] = [
+        let groups: [(&str, &mut dyn SettingGroup); 9] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
             ("map_elites", map_elites),
             ("novelty", novelty),
             ("q_learning", q_learning),
+            ("xcs", xcs),
+            ("zcs", zcs),
             ("exploration", exploration),
         ];
         for (name, group) in groups {

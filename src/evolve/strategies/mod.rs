@@ -26,7 +26,9 @@ fn constructors(kind: StrategyKind) -> Constructors {
         StrategyKind::CmaEs => Constructors::of::<cma_es::CmaEs>(),
         StrategyKind::MapElites => Constructors::of::<map_elites::MapElites>(),
         StrategyKind::Novelty => Constructors::of::<novelty::Novelty>(),
-        StrategyKind::QLearning => Constructors::of::<learning::Learning>(),
+        StrategyKind::QLearning | StrategyKind::Xcs | StrategyKind::Zcs => {
+            Constructors::of::<learning::Learning>()
+        }
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }
 }

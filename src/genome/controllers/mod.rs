@@ -17,7 +17,9 @@ mod wave;
 
 pub use central::{CentralNetwork, sense_count};
 pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
-pub use decisions::{DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, TABLE_STATES};
+pub use decisions::{
+    DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, SITUATION_BITS, TABLE_STATES,
+};
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
 pub use layer::Layer;

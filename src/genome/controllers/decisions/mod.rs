@@ -39,6 +39,34 @@ pub const POSTURES: [&str; 12] = [
 /// whether the snake has moved, and whether the middle limb is near a riser.
 pub const TABLE_STATES: usize = (POSTURES.len() - 1) * 3 * 3 * 3 * 2 * 2;
 
+/// The bits by which rules distinguish situations, in their order.
+pub const SITUATION_BITS: [&str; 24] = [
+    "riser at the head",
+    "riser within half a metre",
+    "riser within a metre",
+    "step ahead",
+    "step of 0.3 m",
+    "step of 0.6 m",
+    "head up",
+    "head down",
+    "head touches",
+    "second limb touches",
+    "middle touches",
+    "last limb but one touches",
+    "tail touches",
+    "moving",
+    "riser at the middle",
+    "riser at the tail",
+    "first joint bent",
+    "second joint bent",
+    "last joint but one bent",
+    "last joint bent",
+    "first joint folded",
+    "second joint folded",
+    "last joint but one folded",
+    "last joint folded",
+];
+
 /// A learned policy, and the servos that move the joints to its postures. It does not evolve: it has no genes, but learns
 /// from the outcome of its decisions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,12 +1,13 @@
-//! What was learned about decisions: a table of values.
+//! What was learned about decisions: a table of values, or a population of rules.
 
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::{POSTURES, TABLE_STATES};
-use crate::check::Invalid;
+use super::{POSTURES, SITUATION_BITS, TABLE_STATES};
+use crate::check::{Invalid, within};
+use crate::learn::classifiers::{Condition, Xcs, Zcs};
 use crate::learn::q_table::ActionValues;
 
 /// What was learned about decisions. Clones share it.
@@ -15,6 +16,12 @@ pub enum Policy {
     /// The value of each posture in each situation.
     #[serde(with = "shared")]
     Table(Arc<ActionValues>),
+    /// Rules that predict what a posture is worth, kept for their accuracy.
+    #[serde(with = "shared")]
+    Xcs(Arc<Xcs>),
+    /// Rules that grow stronger with their reward.
+    #[serde(with = "shared")]
+    Zcs(Arc<Zcs>),
 }
 
 impl Default for Policy {
@@ -29,11 +36,16 @@ impl Policy {
     /// # Errors
     /// The number that differs.
     pub fn check(&self) -> Result<(), Invalid> {
-        match self {
-            Self::Table(table) => {
-                table.check(TABLE_STATES, POSTURES.len()).map_err(|error| error.inside("policy"))
-            }
-        }
+        let same = |bits: usize, actions: usize| {
+            within("situation_bits", bits, SITUATION_BITS.len()..=SITUATION_BITS.len())?;
+            within("actions", actions, POSTURES.len()..=POSTURES.len())
+        };
+        let checked = match self {
+            Self::Table(table) => table.check(TABLE_STATES, POSTURES.len()),
+            Self::Xcs(rules) => same(rules.situation_bits(), rules.actions()),
+            Self::Zcs(rules) => same(rules.situation_bits(), rules.actions()),
+        };
+        checked.map_err(|error| error.inside("policy"))
     }
 
     /// Adds the bits of everything that was learned to a hash.
@@ -49,8 +61,29 @@ impl Policy {
                     }
                 }
             }
+            Self::Xcs(rules) => {
+                for rule in rules.rules() {
+                    hash_rule(&rule.condition, rule.action, hash);
+                    for number in [rule.prediction, rule.error, rule.fitness] {
+                        hash.update(&number.to_bits().to_le_bytes());
+                    }
+                    hash.update(&rule.numerosity.to_le_bytes());
+                }
+            }
+            Self::Zcs(rules) => {
+                for rule in rules.rules() {
+                    hash_rule(&rule.condition, rule.action, hash);
+                    hash.update(&rule.strength.to_bits().to_le_bytes());
+                }
+            }
         }
     }
+}
+
+fn hash_rule(condition: &Condition, action: u16, hash: &mut Xxh3Default) {
+    hash.update(&condition.care().to_le_bytes());
+    hash.update(&condition.value().to_le_bytes());
+    hash.update(&action.to_le_bytes());
 }
 
 /// Writes shared data as if it were not shared.
