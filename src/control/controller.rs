@@ -1,6 +1,6 @@
 //! The interface of a controller.
 
-use super::{Observation, Senses};
+use super::{Observation, Senses, WaveUses};
 use crate::world::JointTorque;
 
 /// Turns observations into torques, step after step.
@@ -16,6 +16,11 @@ pub trait Controller: Send + Sync {
     /// Writes the torques of the step that begins, one per joint from the head. They are clamped to the joints'
     /// limits later.
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]);
+
+    /// How often it chose each wave of its library; none if it has none.
+    fn wave_uses(&self) -> Option<WaveUses> {
+        None
+    }
 
     /// A copy with the same state.
     fn boxed_clone(&self) -> Box<dyn Controller>;

@@ -10,15 +10,18 @@ mod network;
 mod observation;
 mod perception;
 mod reflex;
+mod rules;
 mod sense;
 mod servo;
 mod signal;
 mod wave;
+mod wave_uses;
 
 pub use controller::Controller;
 pub use observation::{Observation, Senses};
 pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
 pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
+pub use wave_uses::WaveUses;
 
 use crate::genome::ControllerGenes;
 use crate::world::{JointTorque, PhysicsSettings, Simulation};
@@ -32,6 +35,7 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Reflex(genes) => Box::new(reflex::ReflexFollower::new(genes.clone())),
         ControllerGenes::Modular(genes) => Box::new(network::ModularController::new(genes.clone())),
         ControllerGenes::Central(genes) => Box::new(network::CentralController::new(genes.clone())),
+        ControllerGenes::Rules(genes) => Box::new(rules::RuleFollower::new(genes.clone())),
         ControllerGenes::Ctrnn(genes) => Box::new(ctrnn::CtrnnController::new(genes.clone())),
     }
 }
@@ -69,6 +73,11 @@ impl ControlLoop {
     pub fn act(&mut self, step: u32, world: &Simulation, torques: &mut [JointTorque]) {
         self.observation.update(step, world, self.controller.needs(), &self.active);
         self.controller.act(&self.observation, torques);
+    }
+
+    /// How often each wave of a library was chosen so far; none for a controller without one.
+    pub fn wave_uses(&self) -> Option<WaveUses> {
+        self.controller.wave_uses()
     }
 
     /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.

@@ -11,6 +11,7 @@ mod map_elites;
 mod novelty;
 mod random;
 mod search;
+mod wave_takeover;
 
 use super::plan::RunPlan;
 use super::settings::StrategyKind;
