@@ -1,6 +1,6 @@
 //! The interface of a controller.
 
-use super::{Observation, Senses};
+use super::{Observation, Senses, WaveUses};
 use crate::learn::Episode;
 use crate::world::JointTorque;
 
@@ -17,6 +17,11 @@ pub trait Controller: Send + Sync {
     /// Writes the torques of the step that begins, one per joint from the head. They are clamped to the joints'
     /// limits later.
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]);
+
+    /// How often it chose each wave of its library; none if it has none.
+    fn wave_uses(&self) -> Option<WaveUses> {
+        None
+    }
 
     /// Ends the episode after the last step: the experience of a controller that learns from it.
     fn finish(&mut self, _observation: &Observation, _is_disqualified: bool) -> Option<Episode> {

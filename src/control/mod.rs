@@ -13,16 +13,19 @@ mod perception;
 mod postures;
 mod reflex;
 mod rewards;
+mod rules;
 mod sense;
 mod servo;
 mod signal;
 mod situation;
 mod wave;
+mod wave_uses;
 
 pub use controller::Controller;
 pub use observation::{Observation, Senses};
 pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
 pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
+pub use wave_uses::WaveUses;
 
 use crate::genome::ControllerGenes;
 use crate::learn::Episode;
@@ -37,6 +40,7 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Reflex(genes) => Box::new(reflex::ReflexFollower::new(genes.clone())),
         ControllerGenes::Modular(genes) => Box::new(network::ModularController::new(genes.clone())),
         ControllerGenes::Central(genes) => Box::new(network::CentralController::new(genes.clone())),
+        ControllerGenes::Rules(genes) => Box::new(rules::RuleFollower::new(genes.clone())),
         ControllerGenes::Ctrnn(genes) => Box::new(ctrnn::CtrnnController::new(genes.clone())),
         ControllerGenes::Decisions(genes) => {
             Box::new(decisions::DecisionController::new(genes.clone()))
@@ -77,6 +81,11 @@ impl ControlLoop {
     pub fn act(&mut self, step: u32, world: &Simulation, torques: &mut [JointTorque]) {
         self.observation.update(step, world, self.controller.needs(), &self.active);
         self.controller.act(&self.observation, torques);
+    }
+
+    /// How often each wave of a library was chosen so far; none for a controller without one.
+    pub fn wave_uses(&self) -> Option<WaveUses> {
+        self.controller.wave_uses()
     }
 
     /// Ends the episode after step number `step - 1`, the last: the experience of a controller that learns from it.

@@ -2,52 +2,43 @@
 //!
 //! Contacts, height and speed are not rewarded: each can be had without climbing.
 
+use crate::genome::controllers::DECISION_DISCOUNT;
 use crate::learn::q_table::shaped;
 use crate::world::Climb;
 
 /// Cost of each decision, so that a shorter way is worth more.
 const DECISION: f32 = -0.02;
-/// Reward of each step that is climbed for the first time in the episode.
-const STEP: f32 = 1.0;
+/// Reward of a tread's depth of new ground.
+const GROUND_PER_TREAD: f32 = 1.0;
 /// Reward of the landing.
 const LANDING: f32 = 10.0;
 /// Cost of a disqualification. A greater one would teach to lie still.
 const DISQUALIFICATION: f32 = -5.0;
-/// Potential of a tread's depth of way. Differences of potential are added to the reward, which leaves the best policy as
-/// it is (Ng, Harada and Russell, 1999).
+/// Potential lost for each tread's depth by which the snake is behind its furthest way. Differences of potential are added
+/// to the reward, which leaves the best policy as it is (Ng, Harada and Russell, 1999). A potential of the place itself
+/// would be shaped as well, but the situations do not tell places apart, so that its size would be noise to a learner.
 const POTENTIAL_PER_TREAD: f32 = 0.5;
 /// Reward of rules for a tread's depth of new ground, and for the landing.
 const RULE_REWARD: f32 = 1000.0;
-/// What is left of a reward after a decision.
-pub const DISCOUNT: f32 = 0.98;
 
 /// Adds up the rewards of the decision that holds.
 #[derive(Debug, Clone, Default)]
 pub struct RewardMeter {
     start_m: Option<f32>,
     now: Climb,
-    most_steps: u32,
-    /// Reward of the decision so far, without its potential.
-    reward: f32,
+    /// The furthest way so far, in treads from the start, and that at the beginning of the decision.
+    furthest: [f32; 2],
     /// Potential at the beginning of the decision.
     potential: f32,
-    /// The furthest way so far, in treads from the start, and that at the beginning of the decision.
-    record: [f32; 2],
+    is_disqualified: bool,
 }
 
 impl RewardMeter {
     /// Takes in the progress before a step.
     pub fn observe(&mut self, climb: &Climb) {
         self.now = *climb;
-        if self.start_m.is_none() {
-            self.start_m = Some(climb.way_m);
-            self.most_steps = climb.steps;
-        }
-        if climb.steps > self.most_steps {
-            self.reward += STEP * (climb.steps - self.most_steps) as f32;
-            self.most_steps = climb.steps;
-        }
-        self.record[0] = self.record[0].max(self.treads());
+        self.start_m = self.start_m.or(Some(climb.way_m));
+        self.furthest[0] = self.furthest[0].max(self.treads());
     }
 
     /// Whether the snake is on the landing.
@@ -57,34 +48,43 @@ impl RewardMeter {
 
     /// Takes in a disqualification.
     pub fn disqualify(&mut self) {
-        self.reward += DISQUALIFICATION;
+        self.is_disqualified = true;
     }
 
     /// Begins a decision.
     pub fn begin_decision(&mut self) {
-        self.reward = 0.0;
         self.potential = self.potential_now();
-        self.record[1] = self.record[0];
+        self.furthest[1] = self.furthest[0];
     }
 
     /// The reward of the decision that ends now. At the end of an episode the potential is 0: otherwise it could change
     /// the best policy.
     pub fn of_decision(&self, is_end: bool) -> f32 {
-        let landing = if is_end && self.has_landed() { LANDING } else { 0.0 };
+        let mut reward = DECISION + GROUND_PER_TREAD * self.new_ground();
+        if is_end && self.has_landed() {
+            reward += LANDING;
+        }
+        if self.is_disqualified {
+            reward += DISQUALIFICATION;
+        }
         let next = if is_end { 0.0 } else { self.potential_now() };
-        shaped(DECISION + self.reward + landing, self.potential, next, DISCOUNT)
+        shaped(reward, self.potential, next, DECISION_DISCOUNT)
     }
 
     /// The reward of the decision that ends now, for rules: 0 or more, because a roulette needs it, and only for ground
     /// that is won for the first time, so that nothing is gained by going back and forth.
     pub fn of_rules(&self, is_end: bool) -> f32 {
-        let won = (self.record[0] - self.record[1]).clamp(0.0, 1.0);
         let landing = if is_end && self.has_landed() { RULE_REWARD } else { 0.0 };
-        RULE_REWARD * won + landing
+        RULE_REWARD * self.new_ground().min(1.0) + landing
+    }
+
+    /// The ground that the decision won for the first time, in treads.
+    fn new_ground(&self) -> f32 {
+        self.furthest[0] - self.furthest[1]
     }
 
     fn potential_now(&self) -> f32 {
-        POTENTIAL_PER_TREAD * self.treads()
+        POTENTIAL_PER_TREAD * (self.treads() - self.furthest[0])
     }
 
     /// The way from the start, in treads.
@@ -102,20 +102,39 @@ mod tests {
         Climb { steps, way_m, tread_m: 2.0, is_on_landing: steps == 10 }
     }
 
+    fn near(found: f32, expected: f32) {
+        assert!((found - expected).abs() < 1e-6, "{found} instead of {expected}");
+    }
+
     #[test]
-    fn each_step_is_rewarded_once_and_the_way_by_its_potential() {
+    fn ground_is_rewarded_once_and_being_behind_is_a_loss_of_potential() {
         let mut rewards = RewardMeter::default();
         rewards.observe(&at(0, -7.0));
+        let mut decision = |ways_m: &[f32]| {
+            rewards.begin_decision();
+            ways_m.iter().for_each(|way_m| rewards.observe(&at(0, *way_m)));
+            rewards.of_decision(false)
+        };
+        near(decision(&[-6.0, -5.0]), DECISION + 1.0);
+        near(decision(&[-7.0]), DECISION - DECISION_DISCOUNT * 0.5);
+        near(decision(&[-5.0]), DECISION + 0.5);
+        near(decision(&[-4.0, -5.0]), DECISION + 0.5 - DECISION_DISCOUNT * 0.25);
+    }
+
+    #[test]
+    fn ends_have_no_potential() {
+        let mut rewards = RewardMeter::default();
+        rewards.observe(&at(9, 19.0));
         rewards.begin_decision();
-        rewards.observe(&at(0, -5.0));
-        let expected = DECISION + DISCOUNT * 0.5;
-        assert!((rewards.of_decision(false) - expected).abs() < 1e-6);
+        rewards.observe(&at(10, 21.0));
+        assert!(rewards.has_landed());
+        near(rewards.of_decision(true), DECISION + 1.0 + LANDING);
+        let mut rewards = RewardMeter::default();
+        rewards.observe(&at(0, -3.0));
+        rewards.observe(&at(0, -7.0));
         rewards.begin_decision();
-        for steps in [1, 2, 1, 2] {
-            rewards.observe(&at(steps, -5.0));
-        }
-        let expected = DECISION + 2.0 + DISCOUNT * 0.5 - 0.5;
-        assert!((rewards.of_decision(false) - expected).abs() < 1e-6);
+        rewards.disqualify();
+        near(rewards.of_decision(true), DECISION + DISQUALIFICATION + 1.0);
     }
 
     #[test]
@@ -129,22 +148,5 @@ mod tests {
         };
         assert_eq!([paid(-6.0), paid(-8.0), paid(-6.0), paid(-5.5)], [500.0, 0.0, 0.0, 250.0]);
         assert_eq!(paid(5.0), 1000.0, "at most");
-    }
-
-    #[test]
-    fn ends_have_no_potential() {
-        let mut rewards = RewardMeter::default();
-        rewards.observe(&at(9, 19.0));
-        rewards.begin_decision();
-        rewards.observe(&at(10, 21.0));
-        assert!(rewards.has_landed());
-        assert!((rewards.of_decision(true) - (DECISION + STEP + LANDING)).abs() < 1e-6);
-        let mut rewards = RewardMeter::default();
-        rewards.observe(&at(0, -7.0));
-        rewards.observe(&at(0, -3.0));
-        rewards.begin_decision();
-        rewards.disqualify();
-        let expected = DECISION + DISQUALIFICATION - 1.0;
-        assert!((rewards.of_decision(true) - expected).abs() < 1e-6);
     }
 }

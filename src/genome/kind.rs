@@ -23,11 +23,13 @@ pub enum ControllerKind {
     Ctrnn,
     /// Learned decisions among a few postures.
     Decisions,
+    /// Rules that choose among waves.
+    Rules,
 }
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Signal,
         Self::Wave,
         Self::Gait,
@@ -36,5 +38,6 @@ impl ControllerKind {
         Self::Central,
         Self::Ctrnn,
         Self::Decisions,
+        Self::Rules,
     ];
 }

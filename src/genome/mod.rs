@@ -20,7 +20,7 @@ pub use controllers::{ControllerGenes, JointCommands};
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;
 pub use kind::ControllerKind;
-pub use network_space::NetworkSpace;
+pub use network_space::{MOST_LIBRARY_WAVES, NetworkSpace};
 pub use space::{
     DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD, LARGEST_TORQUE_NM,
     POINTS_PER_S_RANGE,

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use crate::schema::{number, setting_group, whole};
 
 setting_group! {
-    /// Ranges of the genes of reflexes and networks.
-    pub struct NetworkSpace in "Reflexes and networks": "Ranges of controllers that sense their surroundings." {
+    /// Ranges of the genes of reflexes, networks and rules.
+    pub struct NetworkSpace in "Reflexes, networks and rules": "Ranges of controllers that sense their surroundings." {
         /// Greatest size of a weight of a network of tanh neurons.
         weight_range: f32 = 4.0,
             number("Weight range", WEIGHT_RANGES).advanced()
@@ -46,12 +46,51 @@ setting_group! {
             number("CTRNN weight range", WEIGHT_RANGES).advanced()
                 .hint("Weights and biases of a continuous-time network stay between minus and plus this value")
                 .slider(1.0, 30.0);
+
+        /// Waves among which rules choose.
+        #[serde(default = "usual_waves", skip_serializing_if = "are_usual_waves")]
+        library_waves: u32 = USUAL_WAVES,
+            whole("Waves to choose from", 1..=MOST_LIBRARY_WAVES as u32)
+                .hint("Number of waves among which rules choose. Each has a frequency of its own")
+                .slider(1.0, 8.0);
+
+        /// Rules that choose among waves.
+        #[serde(default = "usual_rules", skip_serializing_if = "are_usual_rules")]
+        wave_rules: u32 = USUAL_RULES,
+            whole("Rules", 1..=MOST_WAVE_RULES as u32)
+                .hint("Number of rules that choose a wave by what the snake senses")
+                .slider(1.0, 32.0);
     }
+}
+
+/// The number of waves in files that do not state one.
+const USUAL_WAVES: u32 = 4;
+/// The number of rules in files that do not state one.
+const USUAL_RULES: u32 = 12;
+
+fn usual_waves() -> u32 {
+    USUAL_WAVES
+}
+
+fn are_usual_waves(waves: &u32) -> bool {
+    *waves == USUAL_WAVES
+}
+
+fn usual_rules() -> u32 {
+    USUAL_RULES
+}
+
+fn are_usual_rules(rules: &u32) -> bool {
+    *rules == USUAL_RULES
 }
 
 /// The range of every range of weights.
 const WEIGHT_RANGES: RangeInclusive<f32> = 0.01..=100.0;
 /// The most hidden neurons. Beyond them no evolution finds its way.
 pub const MOST_HIDDEN: u32 = 32;
+/// The most waves among which rules choose.
+pub const MOST_LIBRARY_WAVES: usize = 8;
+/// The most rules that choose among waves.
+pub const MOST_WAVE_RULES: usize = 64;
 /// The range of every weight in a file.
 pub const WEIGHT_RANGE: RangeInclusive<f32> = -100.0..=100.0;

@@ -64,38 +64,33 @@ impl SettingGroup for GenomeSpace {
             density_min_kg_m3,
             density_max_kg_m3,
         } = self;
+        walk.without_effect(controller.unused_settings());
         walk.section(Self::CONTROLLER);
         settings! { walk, controller: choice("Controller").hint("How the genome drives the joints"); }
         walk.section(Section {
             title: "Torques",
             about: "Range of the torques, and how random signals vary within it.",
         });
-        let kind = *controller;
         settings! { walk,
             torque_range_nm: number("Torque range", 0.001..=1.0e6)
                 .unit("N·m")
                 .hint("Torques of signals and waves stay between minus and plus this value")
-                .slider(1.0, 2000.0)
-                .used_if(kind.uses("torque_range_nm"));
+                .slider(1.0, 2000.0);
             torque_step_nm: number("Torque step", 0.0..=1.0e6).advanced()
                 .unit("N·m")
                 .hint("Maximum change between adjacent points of a random signal")
-                .slider(0.0, 2000.0)
-                .used_if(kind.uses("torque_step_nm"));
+                .slider(0.0, 2000.0);
             points_per_s: number("Points per second", POINTS_PER_S_RANGE)
                 .hint("How often a signal's torque changes. One to three points per second move a snake; many cancel out")
                 .slider(0.5, 60.0)
-                .logarithmic_from(0.5)
-                .used_if(kind.uses("points_per_s"));
+                .logarithmic_from(0.5);
         }
-        walk.used_if(kind.uses("wave.harmonics"));
         walk.group("wave", wave);
         walk.group("network", network);
         walk.section(Section {
             title: "Random snakes",
             about: "Where joint limits and densities of snakes come from, unless they have fixed values.",
         });
-        walk.used_if(true);
         settings! { walk,
             bend_limits_rad: list_of_numbers("Bend limits to choose from", 0.0..=LARGEST_LIMIT_RAD)
                 .unit("rad")

@@ -177,11 +177,17 @@ mod tests {
     use std::fs;
 
     use crate::evolve::{RunPlan, Settings};
+    use crate::genome::ControllerKind;
     use crate::run::{Experiment, LocalPool, RunControl};
     use crate::score::{Rollout, evaluate};
 
     fn champion() -> Champion {
+        champion_of(ControllerKind::Signal)
+    }
+
+    fn champion_of(controller: ControllerKind) -> Champion {
         let mut settings = Settings::default();
+        settings.genome.controller = controller;
         settings.evolution.population = 4;
         settings.trial.duration_s = 1.0;
         let mut experiment = Experiment::new(RunPlan::new("test", 5, settings));
@@ -204,6 +210,32 @@ mod tests {
         assert!(loaded.is_of_this_engine());
         let files = fs::read_dir(folder.path()).expect("a folder").count();
         assert_eq!(files, 1, "no other file is left in the folder");
+    }
+
+    #[test]
+    fn only_files_of_rules_have_uses_of_waves_and_their_conditions_are_readable() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("champion.ron");
+        for controller in ControllerKind::ALL {
+            let champion = champion_of(controller);
+            store_champion(&path, &champion, None).expect("written");
+            assert_eq!(load_champion(&path).expect("read").champion, champion);
+            let text = fs::read_to_string(&path).expect("read");
+            let has_rules = controller == ControllerKind::Rules;
+            assert_eq!(text.contains("wave_uses"), has_rules, "{controller}");
+            assert_eq!(text.contains("condition: \""), has_rules);
+        }
+        store_champion(&path, &champion_of(ControllerKind::Rules), None).expect("written");
+        let text = fs::read_to_string(&path).expect("read");
+        for (from, to, says) in [
+            ("condition: \"", "condition: \"2", "condition is \"2"),
+            ("wave: ", "wave: 9", "genome.rules.rules[0].wave is 9"),
+            ("group: ", "group: x", "damaged"),
+        ] {
+            fs::write(&path, text.replacen(from, to, 1)).expect("written");
+            let error = load_champion(&path).expect_err(to).to_string();
+            assert!(error.contains(says), "{error}");
+        }
     }
 
     #[test]

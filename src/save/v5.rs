@@ -14,6 +14,7 @@ use super::file_structs::file_structs;
 use super::files::hash_of;
 use super::poses::PosesV5;
 use crate::check::{Invalid, name, quoted, within};
+use crate::control::WaveUses;
 use crate::engine::{ENGINE_VERSION, Processors};
 use crate::evolve::{Champion, Origin};
 use crate::genome::Genome;
@@ -93,6 +94,9 @@ file_structs! {
         cost_of_transport: Option<f32>,
         #[serde(default)]
         climbing_efficiency: Option<f32>,
+        // Only controllers with a library of waves have these.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        wave_uses: Option<WaveUses>,
     }
 }
 

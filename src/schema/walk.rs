@@ -63,12 +63,12 @@ pub struct Walk<'a> {
 }
 
 /// State of a walk; it applies to the settings that come next, until the end of their group.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct State {
     section: Section,
     is_used: bool,
-    /// Paths of groups without an effect.
-    unused: &'static [&'static str],
+    /// Names of settings without effect, below the path with this length.
+    without_effect: (usize, Vec<&'static str>),
     fixed: Option<&'static str>,
 }
 
@@ -78,7 +78,7 @@ const UNUSED: &str = "Takes effect with the next run, because the current run do
 /// Takes a visitor to every setting of a group.
 pub fn walk(group: &mut dyn SettingGroup, visitor: &mut dyn SettingVisitor) {
     let section = Section { title: "Settings", about: "All settings." };
-    let state = State { section, is_used: true, unused: &[], fixed: None };
+    let state = State { section, is_used: true, without_effect: (0, Vec::new()), fixed: None };
     let mut walk = Walk { visitor, path: String::new(), state };
     group.walk(&mut walk);
     walk.visitor.leave("", group);
@@ -95,10 +95,9 @@ impl Walk<'_> {
         self.state.is_used = is_used;
     }
 
-    /// Sets the groups, by their paths from the beginning of the walk, whose settings have no effect, given the choices
-    /// made elsewhere.
-    pub fn unused(&mut self, groups: &'static [&'static str]) {
-        self.state.unused = groups;
+    /// Names the settings of this group that have no effect, given the choices made elsewhere, by their paths below it.
+    pub fn without_effect(&mut self, names: Vec<&'static str>) {
+        self.state.without_effect = (self.path.len(), names);
     }
 
     /// Sets the reason, as a sentence, why the next settings of this group may not change during a run.
@@ -113,20 +112,15 @@ impl Walk<'_> {
         row: SettingRow<T>,
         field: &mut T,
     ) {
-        let State { section, is_used, unused, fixed } = self.state;
-        let is_in = |group: &&&str| {
-            self.path
-                .strip_prefix(**group)
-                .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        };
-        let is_used = is_used && row.is_used && unused.iter().find(is_in).is_none();
         let setting = Setting { name, ..row.setting };
+        let length = self.enter(setting.name);
+        let State { section, fixed, .. } = self.state;
+        let is_used = self.state.is_used && row.is_used && self.has_effect();
         let live = match fixed {
             Some(reason) => Err(reason),
             None if !is_used => Err(UNUSED),
             None => setting.fixed.map_or(Ok(()), Err),
         };
-        let length = self.enter(setting.name);
         let fixed = fixed.or(setting.fixed);
         let (path, value) = (self.path.clone(), field.value());
         let listed = ListedSetting { path, section, setting, value, is_used, fixed, live };
@@ -136,12 +130,19 @@ impl Walk<'_> {
 
     /// Visits a group of settings below this one.
     pub fn group(&mut self, name: &str, group: &mut dyn SettingGroup) {
-        let state = self.state;
+        let state = self.state.clone();
         let length = self.enter(name);
         group.walk(self);
         self.visitor.leave(&self.path, group);
         self.path.truncate(length);
         self.state = state;
+    }
+
+    /// Whether the setting at the present path is not among those without effect.
+    fn has_effect(&self) -> bool {
+        let (below, names) = &self.state.without_effect;
+        let name = self.path.get(*below..).unwrap_or_default();
+        !names.contains(&name.strip_prefix('.').unwrap_or(name))
     }
 
     /// Goes one name down. Returns the length of the path before.

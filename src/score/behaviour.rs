@@ -1,5 +1,6 @@
 //! Measures of how a snake moves, which distinguish a roller from an inchworm.
 
+use crate::control::WaveUses;
 use crate::world::{Simulation, Stairs};
 
 /// Measures of an agent's motion over a rollout.
@@ -21,6 +22,8 @@ pub struct Behaviour {
     /// Climbing efficiency: share of the energy spent that lifted the snake up the steps under its middle limb,
     /// `m g Δz / E`. None without energy.
     pub climbing_efficiency: Option<f32>,
+    /// How often the controller chose each wave of its library. None for a controller without one.
+    pub wave_uses: Option<WaveUses>,
 }
 
 /// What the [`Behaviour`] at a moment needs to know of the rollout.
@@ -36,6 +39,8 @@ pub struct BehaviourMoment {
     pub energy_j: f32,
     /// Frequency of the controller, in Hz.
     pub frequency_hz: f32,
+    /// Uses of the waves of the controller's library.
+    pub wave_uses: Option<WaveUses>,
 }
 
 /// Accumulates a [`Behaviour`] step by step.
@@ -69,7 +74,8 @@ impl BehaviourObserver {
 
     /// The behaviour so far.
     pub fn behaviour(&self, stairs: &Stairs, moment: &BehaviourMoment) -> Behaviour {
-        let &BehaviourMoment { middle_m, start_y_m, weight_n, energy_j, frequency_hz } = moment;
+        let &BehaviourMoment { middle_m, start_y_m, weight_n, energy_j, frequency_hz, wave_uses } =
+            moment;
         let mean = |sum: f64| (sum / f64::from(self.steps.max(1))) as f32;
         let steps_climbed = stairs.steps_under(middle_m);
         let climbed_m = stairs.height_m(steps_climbed);
@@ -82,6 +88,7 @@ impl BehaviourObserver {
             mean_sideways_m: mean(self.sideways_m),
             contact_duty: mean(self.contacts),
             frequency_hz,
+            wave_uses,
         }
     }
 }
@@ -99,6 +106,7 @@ mod tests {
                 weight_n: 200.0,
                 energy_j,
                 frequency_hz: 1.0,
+                wave_uses: None,
             };
             BehaviourObserver::default().behaviour(&Stairs::default(), &moment)
         };

@@ -207,6 +207,7 @@ impl Rollout {
             weight_n: self.body().mass_kg() * world.physics.gravity_m_s2,
             energy_j: effort.energy_j,
             frequency_hz: self.frequency_hz,
+            wave_uses: self.control.wave_uses(),
         };
         let behaviour = self.observer.behaviour(self.stairs(), &moment);
         Evaluation {

@@ -54,7 +54,29 @@ setting_group! {
             whole("Elites", 0..=LARGEST_POPULATION)
                 .hint("Number of best snakes copied unchanged into the next generation")
                 .slider(0.0, 20.0);
+
+        /// Probability with which a child of rules takes over a wave of one of the best, in place of the least used of its
+        /// own. Has no effect on other controllers, nor in novelty search.
+        #[serde(default = "usual_takeover", skip_serializing_if = "is_usual_takeover")]
+        wave_takeover: f32 = USUAL_TAKEOVER,
+            number("Wave takeover", 0.0..=1.0).advanced()
+                .hint(
+                    "For the controller rules: share of children that replace their parent's least used wave by the most \
+                     used one of another of the best four",
+                )
+                .slider(0.0, 1.0);
     }
+}
+
+/// The takeover in files that do not state one.
+const USUAL_TAKEOVER: f32 = 0.2;
+
+fn usual_takeover() -> f32 {
+    USUAL_TAKEOVER
+}
+
+fn is_usual_takeover(share: &f32) -> bool {
+    *share == USUAL_TAKEOVER
 }
 
 choices! {

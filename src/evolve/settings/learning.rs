@@ -3,6 +3,7 @@
 use super::EvolutionSettings;
 use super::size::GenomeSize;
 use crate::check::{Invalid, within};
+use crate::genome::controllers::{DECISION_DISCOUNT, DECISIONS_PER_S};
 use crate::learn::classifiers::{XcsSettings, ZcsSettings};
 use crate::learn::q_table::{ExplorationLadder, QRule};
 use crate::schema::{number, setting_group, whole};
@@ -59,7 +60,10 @@ impl QLearningSettings {
     /// The rule of the updates.
     pub fn rule(&self) -> QRule {
         let Self { rate_power, rate_floor } = *self;
-        QRule { rate_power, rate_floor, ..QRule::default() }
+        // A tick is 1/60 s.
+        let ticks = 60.0 / DECISIONS_PER_S as f32;
+        let discount_per_tick = libm::powf(DECISION_DISCOUNT, 1.0 / ticks);
+        QRule { discount_per_tick, rate_power, rate_floor, ..QRule::default() }
     }
 }
 

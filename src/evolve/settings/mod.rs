@@ -261,13 +261,23 @@ impl Settings {
 impl SettingGroup for Settings {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let Self { trial, genome, evolution } = self;
+        // Novelty search has the group's other settings in common with the genetic algorithm.
+        let takes_over = evolution.strategy == StrategyKind::Ga
+            && genome.controller.uses("network.library_waves");
+        if !takes_over {
+            walk.without_effect(vec!["evolution.ga.wave_takeover"]);
+        }
         walk.group("evolution", evolution);
         walk.fixed(
             "Takes effect with the next run, because existing genomes would not fit new ones.",
         );
         walk.group("genome", genome);
         if !genome.controller.senses_surroundings() {
-            walk.unused(&["trial.agent.senses"]);
+            walk.without_effect(vec![
+                "trial.agent.senses.sight",
+                "trial.agent.senses.touch",
+                "trial.agent.senses.balance",
+            ]);
         }
         walk.fixed(
             "Takes effect with the next run, because the fitness of earlier generations could not be compared.",
@@ -317,6 +327,34 @@ mod tests {
             assert_eq!(sight.expect("a setting").is_used, expected, "{controller}");
             let limbs = listed.iter().find(|field| field.path == "trial.agent.limbs");
             assert!(limbs.expect("a setting").is_used);
+        }
+    }
+
+    #[test]
+    fn settings_without_effect_on_the_chosen_strategy_and_controller_are_marked() {
+        use crate::genome::ControllerKind::{Ctrnn, Gait, Rules};
+        use StrategyKind::{CmaEs, Ga, Novelty};
+        let is_used = |strategy, controller, path: &str| {
+            let mut settings = Settings::default();
+            (settings.evolution.strategy, settings.genome.controller) = (strategy, controller);
+            let listed = schema::list(&settings);
+            listed.into_iter().find(|listed| listed.path == path).expect(path).is_used
+        };
+        let takeover = "evolution.ga.wave_takeover";
+        assert!(is_used(Ga, Rules, takeover));
+        for (strategy, controller) in [(Ga, Gait), (Novelty, Rules), (CmaEs, Rules)] {
+            assert!(!is_used(strategy, controller, takeover), "{strategy}, {controller}");
+        }
+        assert!(is_used(Novelty, Rules, "evolution.ga.elites"));
+        for (path, users) in [
+            ("genome.network.library_waves", [false, false, true]),
+            ("genome.network.ctrnn_weight_range", [false, true, false]),
+            ("genome.wave.harmonics", [true, false, true]),
+            ("genome.wave.angle_range_rad", [true, true, true]),
+            ("genome.points_per_s", [false; 3]),
+            ("genome.density_min_kg_m3", [true; 3]),
+        ] {
+            assert_eq!([Gait, Ctrnn, Rules].map(|kind| is_used(Ga, kind, path)), users, "{path}");
         }
     }
 

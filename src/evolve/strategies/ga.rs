@@ -8,7 +8,9 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::search::{Search, normal};
+use super::wave_takeover::WaveTakeover;
 use crate::check::{Invalid, within};
+use crate::control::WaveUses;
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{Crossover, GaSettings, Mutation, ParentSelection};
@@ -30,6 +32,9 @@ pub struct GaMember {
     pub step: f64,
     /// The genes, as coordinates of the unit cube.
     pub point: Vec<f64>,
+    /// How often it chose each wave of its library, if it has one and that is to be known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uses: Option<WaveUses>,
 }
 
 /// How an individual is made; the numbers are indices in the last generation, best first.
@@ -38,8 +43,8 @@ enum Variation {
     Random,
     /// An unchanged copy.
     Elite(usize),
-    /// A child of one parent, or two.
-    Child(usize, Option<usize>),
+    /// A child of one parent, or two, and of one of whom it has a wave.
+    Child { first: usize, second: Option<usize>, wave_of: Option<usize> },
 }
 
 /// The genetic algorithm. Which individuals are the best may also be decided from outside: see [`Self::select`].
@@ -52,9 +57,20 @@ pub struct Ga {
     members: Vec<GaMember>,
     /// Their ids; empty if they are unknown.
     ids: Vec<IndividualId>,
+    takeover: WaveTakeover,
 }
 
 impl Ga {
+    fn with(plan: &RunPlan, finished: u32, members: Vec<GaMember>) -> Self {
+        Self {
+            settings: plan.settings.evolution.ga.clone(),
+            search: Search::new(plan, finished),
+            members,
+            ids: Vec::new(),
+            takeover: WaveTakeover::new(plan),
+        }
+    }
+
     /// A search after the first `finished` generations, of which the last is known.
     ///
     /// # Errors
@@ -64,14 +80,14 @@ impl Ga {
         finished: u32,
         members: Vec<GaMember>,
     ) -> Result<Self, Invalid> {
-        let search = Search::new(plan, finished);
-        within("members", members.len(), 0..=search.population)?;
-        for member in &members {
+        let ga = Self::with(plan, finished, members);
+        within("members", ga.members.len(), 0..=ga.search.population)?;
+        for member in &ga.members {
             within("step", member.step, STEPS)?;
-            search.check(&member.point)?;
+            ga.search.check(&member.point)?;
+            ga.takeover.check(member)?;
         }
-        let settings = plan.settings.evolution.ga.clone();
-        Ok(Self { settings, search, members, ids: Vec::new() })
+        Ok(ga)
     }
 
     /// The last generation, best first.
@@ -87,7 +103,10 @@ impl Ga {
     /// Ends a generation: `order` lists its indices, best first.
     pub fn select(&mut self, order: &[usize]) {
         let generation = self.generation();
-        self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
+        let member = |&index: &usize| {
+            generation.get(index).map(|member| GaMember { uses: None, ..member.clone() })
+        };
+        self.members = order.iter().filter_map(member).collect();
         self.ids = IndividualId::all(self.search.generation, order);
         self.search.generation += 1;
     }
@@ -105,7 +124,10 @@ impl Ga {
         } else {
             let first = self.parent(&mut rng);
             let is_crossed = rng.random_range(0.0..1.0) < f64::from(self.settings.crossover_share);
-            Variation::Child(first, is_crossed.then(|| self.parent(&mut rng)))
+            let second = is_crossed.then(|| self.parent(&mut rng));
+            let share = self.settings.wave_takeover;
+            let wave_of = self.takeover.donor(&self.members, first, share, &mut rng);
+            Variation::Child { first, second, wave_of }
         };
         (variation, rng)
     }
@@ -113,14 +135,17 @@ impl Ga {
     fn individual(&self, individual: usize) -> GaMember {
         let parents = &self.members;
         let (variation, mut rng) = self.variation(individual);
-        let (first, second) = match variation {
+        let (first, second, wave_of) = match variation {
             Variation::Random => return self.first(individual),
             Variation::Elite(index) => return parents[index].clone(),
-            Variation::Child(first, second) => (first, second),
+            Variation::Child { first, second, wave_of } => (first, second, wave_of),
         };
         let mut child = parents[first].clone();
         if let Some(other) = second {
             self.cross(&mut child, &parents[other], &mut rng);
+        }
+        if let Some(other) = wave_of {
+            self.takeover.take_over(&mut child.point, &parents[first], &parents[other]);
         }
         self.mutate(&mut child, &mut rng);
         child
@@ -130,9 +155,10 @@ impl Ga {
     fn first(&self, individual: usize) -> GaMember {
         let step = f64::from(self.settings.step).max(*STEPS.start());
         let Some(founder) = self.search.founder() else {
-            return GaMember { step, point: self.search.random_genome_point(individual) };
+            let point = self.search.random_genome_point(individual);
+            return GaMember { step, point, uses: None };
         };
-        let mut member = GaMember { step, point: founder.to_vec() };
+        let mut member = GaMember { step, point: founder.to_vec(), uses: None };
         if !Search::is_founder_mutant(individual) {
             member.point = self.search.random_genome_point(individual);
         } else if individual > 0 {
@@ -192,8 +218,7 @@ impl Ga {
 
 impl Strategy for Ga {
     fn begin(plan: &RunPlan) -> Self {
-        let settings = plan.settings.evolution.ga.clone();
-        Self { settings, search: Search::new(plan, 0), members: Vec::new(), ids: Vec::new() }
+        Self::with(plan, 0, Vec::new())
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
@@ -211,7 +236,9 @@ impl Strategy for Ga {
     }
 
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        self.select(&full_ranking(evaluations));
+        let order = full_ranking(evaluations);
+        self.select(&order);
+        self.takeover.learn(&mut self.members, &order, evaluations);
     }
 
     fn state(&self) -> StrategyState {
@@ -228,12 +255,12 @@ impl Strategy for Ga {
             let id = |index: usize| self.ids.get(index).copied();
             let parents = match self.variation(individual).0 {
                 Variation::Random => Some(Parents::None),
-                Variation::Elite(index) | Variation::Child(index, None) => {
-                    id(index).map(Parents::One)
-                }
-                Variation::Child(first, Some(second)) => {
-                    id(first).zip(id(second)).map(|(a, b)| Parents::Two(a, b))
-                }
+                Variation::Elite(index) => id(index).map(Parents::One),
+                // Of three, the one that has given a single wave is left out.
+                Variation::Child { first, second, wave_of } => match second.or(wave_of) {
+                    None => id(first).map(Parents::One),
+                    Some(second) => id(first).zip(id(second)).map(|(a, b)| Parents::Two(a, b)),
+                },
             };
             parents.unwrap_or(Parents::Unknown)
         };
@@ -318,7 +345,7 @@ mod tests {
     fn crossover_takes_every_gene_from_one_of_the_two() {
         for crossover in [Crossover::Uniform, Crossover::OnePoint] {
             let ga = ga(|settings| settings.crossover = crossover);
-            let parent = |gene| GaMember { step: 0.1, point: vec![gene; 40] };
+            let parent = |gene| GaMember { step: 0.1, point: vec![gene; 40], uses: None };
             let mut rng = ga.search.stream(5, Purpose::Mutation);
             let mut switches = 0;
             for _ in 0..50 {

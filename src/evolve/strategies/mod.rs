@@ -12,6 +12,7 @@ mod map_elites;
 mod novelty;
 mod random;
 mod search;
+mod wave_takeover;
 
 use super::plan::RunPlan;
 use super::settings::StrategyKind;

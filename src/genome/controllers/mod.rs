@@ -11,23 +11,28 @@ mod gait;
 mod layer;
 mod modular;
 mod reflex;
+mod rules;
 mod servo;
 mod signal;
 mod wave;
+mod wave_rule;
 
 pub use central::{CentralNetwork, sense_count};
 pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
 pub use decisions::{
-    DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, SITUATION_BITS, TABLE_STATES,
+    DECISION_DISCOUNT, DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, SITUATION_BITS,
+    TABLE_STATES,
 };
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
 pub use layer::Layer;
 pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
 pub use reflex::{REFLEX_INPUTS, ReflexGait};
+pub use rules::RuleGenes;
 pub use servo::ServoGenes;
 pub use signal::{JointSignals, TorqueSignals};
 pub use wave::{Harmonic, JointWaves, Wave, Waves};
+pub use wave_rule::{JointGroup, RULE_SENSES, RuleCondition, WaveRule};
 
 use serde::{Deserialize, Serialize};
 
@@ -90,6 +95,8 @@ registry! {
     Ctrnn(CtrnnGenes),
     /// Learned decisions among a few postures.
     Decisions(DecisionGenes),
+    /// Rules that choose among waves.
+    Rules(RuleGenes),
 }
 
 named_by_info!(ControllerKind);
@@ -100,6 +107,12 @@ impl ControllerKind {
     pub fn uses(self, setting: &str) -> bool {
         let names = |kind: Self| kind.info().settings.contains(&setting);
         names(self) || !Self::ALL.into_iter().any(names)
+    }
+
+    /// The settings below `genome` that matter to other kinds alone, by their paths there.
+    pub fn unused_settings(self) -> Vec<&'static str> {
+        let all = Self::ALL.into_iter().flat_map(|kind| kind.info().settings);
+        all.copied().filter(|setting| !self.uses(setting)).collect()
     }
 
     /// Whether it senses contacts, attitude and the stairs ahead, beside its joints.

@@ -18,6 +18,9 @@ use crate::learn::q_table::QRule;
 /// Decisions per second.
 pub const DECISIONS_PER_S: u32 = 4;
 
+/// What a reward counts one decision later, relative to one now, to a table: a horizon of five seconds.
+pub const DECISION_DISCOUNT: f32 = 0.95;
+
 /// The postures among which a decision chooses. The first keeps the posture; a frozen policy takes it in a situation that
 /// it does not know.
 pub const POSTURES: [&str; 12] = [

@@ -1,0 +1,158 @@
+//! Waves chosen by rules.
+
+use super::perception::Perception;
+use super::sense::{GAP_SCALE_M, SPEED_SCALE_M_S};
+use super::servo::JointServos;
+use super::{Controller, Observation, Senses, WaveUses};
+use crate::genome::controllers::{JointGroup, RuleGenes, WaveRule};
+use crate::world::JointTorque;
+
+/// Decisions per second.
+const DECISIONS_PER_S: u64 = 4;
+/// Time in which the targets pass from one wave to the next, in s: less than the time between decisions.
+const BLEND_S: f64 = 0.2;
+/// The middle limb has moved ahead if it went further than this since the last decision, in m.
+const MOVED_M: f32 = 0.1;
+/// The halves of the joints, each of which has a wave.
+const HALVES: [JointGroup; 2] = [JointGroup::Front, JointGroup::Rear];
+
+/// Follows the waves that rules choose, a few times per second and for each half of the joints.
+///
+/// All waves run from the start on, so that a wave that is chosen again has the phase that it would have had.
+#[derive(Debug, Clone)]
+pub struct RuleFollower {
+    genes: RuleGenes,
+    servo: JointServos,
+    /// Wave of the front and of the rear half since the last decision.
+    chosen: [usize; 2],
+    /// The same before it.
+    before: [usize; 2],
+    /// Way of the middle limb since the last decision, by its speed as it is sensed, in m.
+    way_m: f32,
+    uses: WaveUses,
+}
+
+impl RuleFollower {
+    /// The follower before the first step.
+    pub fn new(genes: RuleGenes) -> Self {
+        Self {
+            servo: JointServos::new(genes.stiffness_nm_per_rad, genes.servo_damping_nms_per_rad),
+            chosen: [0; 2],
+            before: [0; 2],
+            way_m: 0.0,
+            uses: WaveUses::new(genes.library.len()),
+            genes,
+        }
+    }
+
+    /// Chooses the waves of both halves.
+    fn decide(&mut self, observation: &Observation, front_joints: usize) {
+        let bits = bits(&observation.perception, self.way_m);
+        self.way_m = 0.0;
+        self.before = self.chosen;
+        self.chosen = HALVES.map(|half| chosen_wave(&self.genes.rules, bits, half));
+        // The first waves follow no others.
+        if observation.step == 0 {
+            self.before = self.chosen;
+        }
+        let joints = self.genes.library.first().map_or(0, |waves| waves.joints.len());
+        for (wave, joints) in self.chosen.into_iter().zip([front_joints, joints - front_joints]) {
+            if joints > 0 {
+                self.uses.count(wave);
+            }
+        }
+    }
+
+    /// The target of a joint while the waves of its half pass into one another, of which `share` is done.
+    fn target_rad(&self, joint: usize, half: usize, share: f64, periods: &[f64]) -> [f32; 2] {
+        let of = |wave: usize| {
+            let joint = &self.genes.library[wave].joints[joint];
+            [joint.bend.at(periods[wave]), joint.twist.at(periods[wave])]
+        };
+        let (before, chosen) = (self.before[half], self.chosen[half]);
+        let target_rad = of(chosen);
+        if before == chosen || share >= 1.0 {
+            return target_rad;
+        }
+        let [old_bend, old_twist] = of(before);
+        let [bend, twist] = target_rad;
+        let share = share as f32;
+        [old_bend + (bend - old_bend) * share, old_twist + (twist - old_twist) * share]
+    }
+}
+
+/// Index of the wave for a half of the joints: that of the strongest rule that holds, of the lowest of equals, and the
+/// first wave if no rule holds.
+fn chosen_wave(rules: &[WaveRule], bits: u16, half: JointGroup) -> usize {
+    let mut strongest: Option<&WaveRule> = None;
+    for rule in rules.iter().filter(|rule| rule.holds(bits, half)) {
+        if strongest.is_none_or(|other| rule.strength > other.strength) {
+            strongest = Some(rule);
+        }
+    }
+    strongest.map_or(0, |rule| (rule.wave as usize).saturating_sub(1))
+}
+
+/// What the conditions of rules look at, in the order of [`crate::genome::controllers::RULE_SENSES`].
+fn bits(senses: &Perception, way_m: f32) -> u16 {
+    let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
+    let (head, middle) = (limb(0), limb(senses.limbs.len() / 2));
+    let tail = limb(senses.limbs.len().saturating_sub(1));
+    let bits = [
+        head.gap < 1.0 / GAP_SCALE_M,
+        head.gap < 0.25 / GAP_SCALE_M,
+        head.step_up > 0.05,
+        head.step_up > 0.6,
+        head.pitch > 0.3,
+        head.blocked > 0.5,
+        middle.touch > 0.5,
+        tail.touch > 0.5,
+        middle.gap < 1.0 / GAP_SCALE_M,
+        way_m > MOVED_M,
+    ];
+    bits.into_iter().rev().fold(0, |all, bit| all << 1 | u16::from(bit))
+}
+
+impl Controller for RuleFollower {
+    fn needs(&self) -> Senses {
+        Senses::ALL
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let joints = self.genes.library.first().map_or(0, |waves| waves.joints.len());
+        let front_joints = joints.div_ceil(2);
+        // Decisions are due at whole numbers of their period, whatever the step rate.
+        let steps_per_s = u64::from(observation.steps_per_s);
+        let time = u64::from(observation.step) * DECISIONS_PER_S;
+        if time % steps_per_s < DECISIONS_PER_S {
+            self.decide(observation, front_joints);
+        }
+        let since_s = (time % steps_per_s) as f64 / (steps_per_s * DECISIONS_PER_S) as f64;
+        let share = since_s / BLEND_S;
+        let periods: Vec<f64> = self
+            .genes
+            .library
+            .iter()
+            .map(|waves| observation.periods(waves.frequency_hz))
+            .collect();
+        let targets: Vec<[f32; 2]> = (0..joints)
+            .map(|joint| {
+                self.target_rad(joint, usize::from(joint >= front_joints), share, &periods)
+            })
+            .collect();
+        self.servo.pull(observation, targets.into_iter(), torques);
+        let speed_m_s = observation.perception.snake.speed_ahead * SPEED_SCALE_M_S;
+        self.way_m += speed_m_s / observation.steps_per_s as f32;
+    }
+
+    fn wave_uses(&self) -> Option<WaveUses> {
+        Some(self.uses)
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests;
