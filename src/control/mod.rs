@@ -7,6 +7,7 @@ mod controller;
 mod ctrnn;
 mod decisions;
 mod gait;
+mod grown;
 mod network;
 mod observation;
 mod perception;
@@ -42,6 +43,7 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Central(genes) => Box::new(network::CentralController::new(genes.clone())),
         ControllerGenes::Rules(genes) => Box::new(rules::RuleFollower::new(genes.clone())),
         ControllerGenes::Ctrnn(genes) => Box::new(ctrnn::CtrnnController::new(genes.clone())),
+        ControllerGenes::Grown(genes) => Box::new(grown::GrownController::new(genes.clone())),
         ControllerGenes::Decisions(genes) => {
             Box::new(decisions::DecisionController::new(genes.clone()))
         }

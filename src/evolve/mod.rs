@@ -18,9 +18,9 @@ pub use plan::{
 };
 pub use settings::{
     CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings, HalvingSettings,
-    LARGEST_POPULATION, MapElitesSettings, Mutation, NoveltySettings, ParentSelection,
-    QLearningSettings, RestartKind, Settings, StrategyInfo, StrategyKind, XcsRunSettings,
-    ZcsRunSettings, fields, with_field, with_fields,
+    LARGEST_POPULATION, MapElitesSettings, Mutation, NeatSettings, NoveltySettings,
+    ParentSelection, QLearningSettings, RestartKind, Settings, StrategyInfo, StrategyKind,
+    XcsRunSettings, ZcsRunSettings, fields, with_field, with_fields,
 };
 pub use strategies::{begin, resume};
 pub use strategy::{Strategy, StrategyState, ranking};

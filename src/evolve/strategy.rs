@@ -11,6 +11,7 @@ use super::plan::RunPlan;
 use crate::check::Invalid;
 use crate::genome::Genome;
 use crate::learn::Episode;
+use crate::learn::neat::SpeciesSummary;
 use crate::score::Evaluation;
 
 /// A way to search, one generation at a time.
@@ -75,6 +76,11 @@ pub trait Strategy: Send {
     /// those that [`Self::parent_pool`] returned before and that belong to the last generation, so a strategy with older
     /// parents keeps ids in its state. Ids that do not fit the state are ignored, and stay unknown.
     fn restore_parents(&mut self, _pool: &[IndividualId]) {}
+
+    /// The species of the last generation, if it has species.
+    fn species(&self) -> Option<&[SpeciesSummary]> {
+        None
+    }
 
     /// The archive of elites, if it keeps one.
     fn archive(&self) -> Option<&Archive> {

@@ -25,11 +25,13 @@ pub enum ControllerKind {
     Decisions,
     /// Rules that choose among waves.
     Rules,
+    /// A network that grew.
+    Grown,
 }
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Signal,
         Self::Wave,
         Self::Gait,
@@ -39,5 +41,6 @@ impl ControllerKind {
         Self::Ctrnn,
         Self::Decisions,
         Self::Rules,
+        Self::Grown,
     ];
 }

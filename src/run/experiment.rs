@@ -126,7 +126,10 @@ impl Experiment {
     /// Number of individuals in the next generation.
     pub fn population(&self) -> u32 {
         match self.next_plan() {
-            Cow::Owned(plan) if !plan.settings.evolution.strategy.info().is_budget_driven => {
+            Cow::Owned(plan)
+                if !plan.settings.evolution.strategy.info().is_budget_driven
+                    && !plan.settings.evolution.strategy.info().has_fixed_population =>
+            {
                 plan.settings.evolution.population
             }
             _ => u32::try_from(self.strategy.population()).unwrap_or(u32::MAX),

@@ -6,6 +6,7 @@ mod ga;
 mod halving;
 mod learning;
 mod map_elites;
+mod neat;
 mod novelty;
 mod partners;
 mod size;
@@ -17,6 +18,7 @@ pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
 pub use halving::HalvingSettings;
 pub use learning::{ExplorationSettings, QLearningSettings, XcsRunSettings, ZcsRunSettings};
 pub use map_elites::MapElitesSettings;
+pub use neat::NeatSettings;
 pub use novelty::NoveltySettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE, LARGEST_STATE_GENES};
 pub use strategy_kind::StrategyInfo;
@@ -75,6 +77,9 @@ setting_group! {
         /// ZCS.
         #[serde(default, skip_serializing_if = "is_default")]
         zcs: ZcsRunSettings = ZcsRunSettings::default();
+        /// NEAT.
+        #[serde(default, skip_serializing_if = "is_default")]
+        neat: NeatSettings = NeatSettings::default();
         /// Exploration of all learners.
         #[serde(default, skip_serializing_if = "is_default")]
         exploration: ExplorationSettings = ExplorationSettings::default();
@@ -146,6 +151,18 @@ strategy_kinds! {
         color: [0x80, 0x80, 0x80],
         ..StrategyInfo::PLAIN
     };
+    /// NEAT, the evolution of networks that grow.
+    Neat = StrategyInfo {
+        name: "neat",
+        title: "NEAT",
+        words: "Grows networks from nothing but links; species protect what is new.",
+        color: [0x11, 0x77, 0x77],
+        settings: &["neat"],
+        has_fixed_population: true,
+        only_controller: Some(ControllerKind::Grown),
+        check_size: NeatSettings::check_size,
+        ..StrategyInfo::PLAIN
+    };
     /// Tabular Q-learning, of one table that all episodes share.
     QLearning = StrategyInfo {
         name: "q_learning",
@@ -197,12 +214,13 @@ impl SettingGroup for EvolutionSettings {
             q_learning,
             xcs,
             zcs,
+            neat,
             exploration,
         } = self;
         walk.section(Self::RUN);
         let sizes = whole("Population", 1..=LARGEST_POPULATION)
             .hint("Number of snakes in a generation. More find better solutions, but take longer");
-        let is_learned = strategy.info().is_budget_driven;
+        let is_learned = strategy.info().is_budget_driven || strategy.info().has_fixed_population;
         settings! { walk,
             population: if is_learned { sizes.fixed(cma_es::LEARNED) } else { sizes };
             generations: whole("Generations", 1..=10_000)
@@ -215,7 +233,7 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 9] = [
+        let groups: [(&str, &mut dyn SettingGroup); 10] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
@@ -224,6 +242,7 @@ impl SettingGroup for EvolutionSettings {
             ("q_learning", q_learning),
             ("xcs", xcs),
             ("zcs", zcs),
+            ("neat", neat),
             ("exploration", exploration),
         ];
         for (name, group) in groups {

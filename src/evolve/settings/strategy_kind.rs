@@ -22,6 +22,8 @@ pub struct StrategyInfo {
     /// Whether it chooses the size of each generation itself. The population is then the size of the first, and
     /// the run ends when the evaluations are spent that population and generations allow.
     pub is_budget_driven: bool,
+    /// Whether its population stays the same during a run.
+    pub has_fixed_population: bool,
     /// The only kind of controller that it improves, which no other strategy of genes does; none for all others.
     pub only_controller: Option<ControllerKind>,
     /// Whether it keeps an archive of elites over two descriptors.
@@ -41,6 +43,7 @@ impl StrategyInfo {
         color: [0; 3],
         settings: &[],
         is_budget_driven: false,
+        has_fixed_population: false,
         only_controller: None,
         has_archive: false,
         compared_generations: None,

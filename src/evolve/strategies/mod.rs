@@ -9,6 +9,7 @@ mod ga;
 mod halving;
 mod learning;
 mod map_elites;
+mod neat;
 mod novelty;
 mod random;
 mod search;
@@ -30,6 +31,7 @@ fn constructors(kind: StrategyKind) -> Constructors {
         StrategyKind::QLearning | StrategyKind::Xcs | StrategyKind::Zcs => {
             Constructors::of::<learning::Learning>()
         }
+        StrategyKind::Neat => Constructors::of::<neat::Neat>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }
 }

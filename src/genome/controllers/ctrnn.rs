@@ -57,8 +57,8 @@ pub struct CtrnnNeuron {
     pub inputs: [f32; CTRNN_INPUTS.len()],
 }
 
-/// The range of the logarithms of time constants: 0.05 s to 2 s.
-const LOG_TIME_CONSTANTS: [f32; 2] = [-1.301_03, 0.301_03];
+/// The range of the logarithms of time constants: 0.05 s to 2 s, rounded.
+const LOG_TIME_CONSTANTS: [f32; 2] = [-1.3, 0.3];
 
 impl CtrnnNeuron {
     const ZEROED: Self = Self {

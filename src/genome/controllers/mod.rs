@@ -8,6 +8,7 @@ mod ctrnn;
 mod decisions;
 mod encoding;
 mod gait;
+mod grown;
 mod layer;
 mod modular;
 mod reflex;
@@ -25,6 +26,7 @@ pub use decisions::{
 };
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
+pub use grown::{GROWN_INPUTS, GrownGenes};
 pub use layer::Layer;
 pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
 pub use reflex::{REFLEX_INPUTS, ReflexGait};
@@ -97,6 +99,8 @@ registry! {
     Decisions(DecisionGenes),
     /// Rules that choose among waves.
     Rules(RuleGenes),
+    /// A network that grew.
+    Grown(GrownGenes),
 }
 
 named_by_info!(ControllerKind);

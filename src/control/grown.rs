@@ -1,0 +1,74 @@
+//! A grown network at work.
+
+use super::network::{beat, servos};
+use super::servo::JointServos;
+use super::{Controller, Observation, Senses};
+use crate::genome::controllers::{GROWN_INPUTS, GrownGenes};
+use crate::learn::neat::NetworkPlay;
+use crate::world::JointTorque;
+
+/// Lets a grown network act. All nodes respond to the activities of the last step, so that cycles need no order.
+#[derive(Debug, Clone)]
+pub struct GrownController {
+    genes: GrownGenes,
+    servo: JointServos,
+    network: NetworkPlay,
+    inputs: Vec<f64>,
+}
+
+impl GrownController {
+    /// The controller before the first step: all activities are 0.
+    pub fn new(genes: GrownGenes) -> Self {
+        Self {
+            servo: servos(&genes.servo),
+            network: NetworkPlay::new(&genes.network),
+            inputs: Vec::new(),
+            genes,
+        }
+    }
+
+    fn sense(&mut self, observation: &Observation) {
+        let senses = &observation.perception;
+        let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
+        let limbs = senses.limbs.len();
+        let (head, middle, tail) = (limb(0), limb(limbs / 2), limb(limbs.saturating_sub(1)));
+        let [sine, cosine] = beat(observation.periods(self.genes.frequency_hz), 0.0);
+        let of_snake: [f32; GROWN_INPUTS.len()] = [
+            head.gap,
+            head.step_up,
+            head.pitch,
+            head.blocked,
+            middle.gap,
+            middle.step_up,
+            middle.pitch,
+            tail.pitch,
+            senses.snake.speed_ahead,
+            sine,
+            cosine,
+            1.0,
+        ];
+        self.inputs.clear();
+        self.inputs.extend(senses.joints.iter().map(|joint| f64::from(joint.bend)));
+        self.inputs.extend(senses.limbs.iter().map(|limb| f64::from(limb.touch)));
+        self.inputs.extend(of_snake.map(f64::from));
+    }
+}
+
+impl Controller for GrownController {
+    fn needs(&self) -> Senses {
+        Senses::ALL
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        self.sense(observation);
+        let range_rad = self.genes.servo.bend_range_rad;
+        let outputs = self.network.tick(&self.inputs);
+        // An output of 0 to 1 is a bend to either side.
+        let targets = outputs.iter().map(|output| [(2.0 * output - 1.0) as f32 * range_rad, 0.0]);
+        self.servo.pull(observation, targets, torques);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}

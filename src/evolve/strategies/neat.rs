@@ -1,0 +1,118 @@
+//! NEAT: networks that grow, in species that protect what is new.
+
+use super::search::Search;
+use crate::check::{Invalid, within};
+use crate::evolve::parents::Parents;
+use crate::evolve::plan::RunPlan;
+use crate::evolve::strategy::{Strategy, StrategyState};
+use crate::genome::controllers::GrownGenes;
+use crate::genome::{ControllerGenes, Genome};
+use crate::learn::neat::{NeatPopulation, NetworkGenome, SpeciesSummary};
+use crate::score::Evaluation;
+
+/// NEAT. The genes of body and servo evolve as the parameters of a network's genome.
+#[derive(Debug, Clone)]
+pub struct Neat {
+    search: Search,
+    seed: u64,
+    /// None only if a first generation could not be made, which the checks of settings and founders rule out.
+    population: Option<NeatPopulation>,
+}
+
+impl Neat {
+    /// The first generation.
+    ///
+    /// # Errors
+    /// A number is out of range; the settings' own ranges allow none.
+    fn first(plan: &RunPlan, search: &Search) -> Result<NeatPopulation, Invalid> {
+        let rules = plan.settings.evolution.neat.rules();
+        let (size, seed) = (search.population, plan.seed);
+        if let Some(founder) = &plan.founder
+            && let ControllerGenes::Grown(genes) = &founder.genome().controller
+        {
+            let point = search.founder().unwrap_or_default();
+            let parameters = point.iter().map(|x| search.clamped(*x)).collect();
+            let network = NetworkGenome { parameters, ..genes.network.clone() };
+            return NeatPopulation::descended(rules, &network, size, seed);
+        }
+        let [inputs, outputs] = GrownGenes::ends(plan.settings.trial.agent.joints());
+        let parameters = u16::try_from(search.dimension).unwrap_or(u16::MAX);
+        NeatPopulation::first(rules, inputs, outputs, parameters, size, seed)
+    }
+
+    /// The networks of the next generation.
+    fn networks(&self) -> &[NetworkGenome] {
+        self.population.as_ref().map_or(&[], NeatPopulation::genomes)
+    }
+
+    /// The genome of a network.
+    fn genome(&self, network: &NetworkGenome) -> Genome {
+        let point: Vec<f64> = network.parameters.iter().map(|x| f64::from(*x)).collect();
+        let mut genome = self.search.genome(&point);
+        if let ControllerGenes::Grown(genes) = &mut genome.controller {
+            genes.network = NetworkGenome { parameters: Vec::new(), ..network.clone() };
+        }
+        genome
+    }
+}
+
+impl Strategy for Neat {
+    fn begin(plan: &RunPlan) -> Self {
+        let search = Search::new(plan, 0);
+        let population = Self::first(plan, &search).ok();
+        Self { search, seed: plan.seed, population }
+    }
+
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
+        let population: NeatPopulation = state.read()?;
+        population.check().map_err(|error| error.inside("state"))?;
+        let search = Search::new(plan, finished);
+        let size = search.population;
+        within("state.genomes", population.genomes().len(), size..=size)?;
+        let [inputs, outputs] = GrownGenes::ends(plan.settings.trial.agent.joints());
+        for network in population.genomes() {
+            within("state.genomes.inputs", network.inputs, inputs..=inputs)?;
+            within("state.genomes.outputs", network.outputs, outputs..=outputs)?;
+            let parameters = network.parameters.len();
+            let expected = search.dimension;
+            within("state.genomes.parameters", parameters, expected..=expected)?;
+        }
+        Ok(Self { search, seed: plan.seed, population: Some(population) })
+    }
+
+    fn ask(&self) -> Vec<Genome> {
+        let genomes = self.networks().iter().map(|network| self.genome(network)).collect();
+        self.search.with_founder_first(genomes)
+    }
+
+    fn population(&self) -> usize {
+        self.networks().len()
+    }
+
+    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+        // What is not a number counts as the worst.
+        let fitness = |evaluation: &Evaluation| match evaluation.disqualified {
+            Some(_) => f64::NAN,
+            None => f64::from(evaluation.fitness),
+        };
+        let fitness: Vec<f64> = evaluations.iter().map(fitness).collect();
+        self.search.generation += 1;
+        let (seed, generation) = (self.seed, self.search.generation);
+        self.population = self.population.as_ref().map(|of| of.next(&fitness, seed, generation));
+    }
+
+    fn species(&self) -> Option<&[SpeciesSummary]> {
+        self.population.as_ref().map(NeatPopulation::species)
+    }
+
+    fn state(&self) -> StrategyState {
+        StrategyState::of(&self.population)
+    }
+
+    /// Nothing of it may change during a run.
+    fn apply_settings(&mut self, _: &RunPlan) {}
+
+    fn parents(&self) -> Vec<Parents> {
+        vec![Parents::None; self.population()]
+    }
+}

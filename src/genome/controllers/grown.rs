@@ -1,0 +1,138 @@
+//! A network that grew: its nodes and links are not given, but added one by one.
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::servo::ServoGenes;
+use crate::check::{Invalid, within};
+use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
+use crate::genome::space::GenomeSpace;
+use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
+use crate::learn::neat::{NeatRules, NetworkGenome};
+
+/// The inputs of a grown network that a snake has once, after the bend of each joint and the touch of each limb. The last
+/// is the bias.
+pub const GROWN_INPUTS: [&str; 12] = [
+    "head gap",
+    "head step up",
+    "head pitch",
+    "head blocked",
+    "middle gap",
+    "middle step up",
+    "middle pitch",
+    "tail pitch",
+    "speed ahead",
+    "beat, sine",
+    "beat, cosine",
+    "bias",
+];
+
+/// A network for the whole snake, with the nodes and links that it has grown. Its outputs are the bend targets of the
+/// joints from the head; twists are held straight.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GrownGenes {
+    /// Number of joints.
+    pub joints: u32,
+    /// The servos that follow the targets.
+    pub servo: ServoGenes,
+    /// Frequency of the beat, in Hz.
+    pub frequency_hz: f32,
+    /// The network. Its inputs are the bends of the joints, the touches of the limbs, and [`GROWN_INPUTS`].
+    pub network: NetworkGenome,
+}
+
+impl GrownGenes {
+    /// Number of inputs and outputs of the network of a snake with this many joints.
+    pub fn ends(joints: usize) -> [u16; 2] {
+        let inputs = joints + joints + 1 + GROWN_INPUTS.len();
+        [inputs, joints].map(|count| u16::try_from(count).unwrap_or(u16::MAX))
+    }
+
+    /// The name of an input of a snake with this many joints.
+    pub fn input_name(index: usize, joints: usize) -> String {
+        if index < joints {
+            return format!("joint {} bend", index + 1);
+        }
+        let index = index - joints;
+        if index <= joints {
+            return format!("limb {} touch", index + 1);
+        }
+        GROWN_INPUTS.get(index - joints - 1).copied().unwrap_or("").to_owned()
+    }
+}
+
+impl ControllerEncoding for GrownGenes {
+    fn info() -> &'static ControllerInfo {
+        &ControllerInfo {
+            name: "grown",
+            title: "Grown",
+            words: "A network for the whole snake, to which evolution adds nodes and links.",
+            senses_surroundings: true,
+            settings: &[
+                "wave.frequency_min_hz",
+                "wave.frequency_max_hz",
+                "wave.angle_range_rad",
+                "wave.stiffness_min_nm_per_rad",
+                "wave.stiffness_max_nm_per_rad",
+                "wave.servo_damping_nms_per_rad",
+            ],
+        }
+    }
+
+    fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
+        let [inputs, outputs] = Self::ends(shape.joints);
+        Self {
+            joints: shape.joints as u32,
+            servo: ServoGenes { twist_range_rad: 0.0, ..ServoGenes::zeroed(space) },
+            frequency_hz: 1.0,
+            network: NetworkGenome { inputs, outputs, parameters: Vec::new(), links: Vec::new() },
+        }
+    }
+
+    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        self.servo.genes_without_twist(space, visit);
+        let range = GeneRange::Between(space.wave.frequency_min_hz, space.wave.frequency_max_hz);
+        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
+        visit(Gene { field, name, unit: "Hz", range }, &mut self.frequency_hz);
+    }
+
+    fn joints(&self) -> usize {
+        self.joints as usize
+    }
+
+    fn frequency_hz(&self) -> f32 {
+        self.frequency_hz
+    }
+
+    fn check(&self) -> Result<(), Invalid> {
+        let inside = |error: Invalid| error.inside("grown");
+        self.servo.check().map_err(inside)?;
+        within("servo.twist_range_rad", self.servo.twist_range_rad, 0.0..=0.0).map_err(inside)?;
+        within("frequency_hz", self.frequency_hz, FREQUENCY_RANGE_HZ).map_err(inside)?;
+        let [inputs, outputs] = Self::ends(self.joints as usize);
+        within("network.inputs", self.network.inputs, inputs..=inputs).map_err(inside)?;
+        within("network.outputs", self.network.outputs, outputs..=outputs).map_err(inside)?;
+        within("network.parameters", self.network.parameters.len(), 0..=0).map_err(inside)?;
+        self.network.check(&NeatRules::default()).map_err(|error| inside(error.inside("network")))
+    }
+
+    fn widen(&self, space: &mut GenomeSpace) {
+        let twist_range_rad = space.wave.twist_range_rad;
+        self.servo.widen(space);
+        space.wave.twist_range_rad = twist_range_rad;
+        let (wave, frequency_hz) = (&mut space.wave, self.frequency_hz);
+        wave.frequency_min_hz = wave.frequency_min_hz.min(frequency_hz);
+        wave.frequency_max_hz = wave.frequency_max_hz.max(frequency_hz);
+    }
+
+    fn hash_learned(&self, hash: &mut Xxh3Default) {
+        for link in &self.network.links {
+            for number in [link.from, link.to, u32::from(link.enabled), link.innovation] {
+                hash.update(&number.to_le_bytes());
+            }
+            hash.update(&link.weight.to_bits().to_le_bytes());
+        }
+    }
+}
