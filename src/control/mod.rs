@@ -6,6 +6,7 @@
 mod controller;
 mod ctrnn;
 mod gait;
+mod limb_neurons;
 mod network;
 mod observation;
 mod perception;
@@ -33,6 +34,9 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Modular(genes) => Box::new(network::ModularController::new(genes.clone())),
         ControllerGenes::Central(genes) => Box::new(network::CentralController::new(genes.clone())),
         ControllerGenes::Ctrnn(genes) => Box::new(ctrnn::CtrnnController::new(genes.clone())),
+        ControllerGenes::LimbNeurons(genes) => {
+            Box::new(limb_neurons::LimbNeuronController::new(genes.clone()))
+        }
     }
 }
 

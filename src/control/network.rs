@@ -17,7 +17,7 @@ pub(super) fn place(joint: usize, joints: usize) -> f32 {
 }
 
 /// Sine and cosine of a beat after this many periods, delayed by an angle.
-fn beat(periods: f64, delay_rad: f32) -> [f32; 2] {
+pub(super) fn beat(periods: f64, delay_rad: f32) -> [f32; 2] {
     let (sine, cosine) = libm::sincos(std::f64::consts::TAU * periods - f64::from(delay_rad));
     [sine as f32, cosine as f32]
 }

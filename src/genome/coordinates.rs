@@ -66,6 +66,27 @@ impl GenomeSpace {
         point
     }
 
+    /// Lets the kind of controller have the last word on a mutation from the point `before` to `point`: see
+    /// `ControllerEncoding::after_mutation`. Coordinates of genes that it leaves alone stay as they are.
+    pub fn after_mutation(
+        &self,
+        before: &[f64],
+        point: &mut [f64],
+        shape: GenomeShape,
+        rng: &mut ChaCha8Rng,
+    ) {
+        let before = self.genome_at(before, shape);
+        let mut genome = self.genome_at(point, shape);
+        let moved = self.point_of(&genome);
+        genome.controller.encoding_mut().after_mutation(&before.controller, self, rng);
+        let last = self.point_of(&genome);
+        for ((coordinate, moved), last) in point.iter_mut().zip(moved).zip(last) {
+            if last != moved {
+                *coordinate = last;
+            }
+        }
+    }
+
     /// Draws a genome at random: signals by the report's random walk, other genes anywhere in their ranges.
     pub fn random_genome(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
         let Genome { mut body, mut controller } = self.zeroed(shape);

@@ -21,11 +21,13 @@ pub enum ControllerKind {
     Central,
     /// A continuous-time recurrent neural network.
     Ctrnn,
+    /// Neurons in the limbs.
+    LimbNeurons,
 }
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Signal,
         Self::Wave,
         Self::Gait,
@@ -33,5 +35,6 @@ impl ControllerKind {
         Self::Modular,
         Self::Central,
         Self::Ctrnn,
+        Self::LimbNeurons,
     ];
 }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::schema::{number, setting_group, whole};
+use crate::schema::{number, setting_group, switch, whole};
 
 setting_group! {
     /// Ranges of the genes of reflexes and networks.
@@ -46,7 +46,21 @@ setting_group! {
             number("CTRNN weight range", WEIGHT_RANGES).advanced()
                 .hint("Weights and biases of a continuous-time network stay between minus and plus this value")
                 .slider(1.0, 30.0);
+
+        /// Whether all limbs have the same neurons, of a controller with neurons in the limbs.
+        #[serde(default = "yes", skip_serializing_if = "is_yes")]
+        limb_neurons_shared: bool = true,
+            switch("Same neurons in all limbs")
+                .hint("Limb neurons are the same in every limb. Otherwise each limb evolves its own, which multiplies the genes");
     }
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(value: &bool) -> bool {
+    *value
 }
 
 /// The range of every range of weights.

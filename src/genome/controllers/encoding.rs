@@ -2,6 +2,7 @@
 
 use rand_chacha::ChaCha8Rng;
 
+use super::ControllerGenes;
 use crate::check::Invalid;
 use crate::genome::body::BodyGenes;
 use crate::genome::gene::{Feature, Gene, GeneVisitor, GenomeShape};
@@ -94,6 +95,16 @@ pub trait ControllerEncoding {
         };
         body.genes(space, &mut shift);
         self.genes(space, &mut shift);
+    }
+
+    /// Has the last word on a mutation by which a strategy has moved all genes, `before` it those of `before`: for kinds whose
+    /// choices mutate by rules of their own.
+    fn after_mutation(
+        &mut self,
+        _before: &ControllerGenes,
+        _space: &GenomeSpace,
+        _rng: &mut ChaCha8Rng,
+    ) {
     }
 
     /// A few features that stand for all genes, where these are too many to compare.

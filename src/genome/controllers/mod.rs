@@ -8,7 +8,9 @@ mod ctrnn;
 mod encoding;
 mod gait;
 mod layer;
+mod limb_neurons;
 mod modular;
+mod neuron;
 mod reflex;
 mod servo;
 mod signal;
@@ -19,7 +21,11 @@ pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
 pub use layer::Layer;
+pub use limb_neurons::{LIMB_NEURONS, LimbNeurons};
 pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
+pub use neuron::{
+    LimbNeuron, NEURON_INPUTS, NEURON_SOURCES, NeuronInput, NeuronKind, NeuronSource,
+};
 pub use reflex::{REFLEX_INPUTS, ReflexGait};
 pub use servo::ServoGenes;
 pub use signal::{JointSignals, TorqueSignals};
@@ -84,6 +90,8 @@ registry! {
     Central(CentralNetwork),
     /// A continuous-time recurrent neural network.
     Ctrnn(CtrnnGenes),
+    /// Neurons in the limbs.
+    LimbNeurons(LimbNeurons),
 }
 
 named_by_info!(ControllerKind);
@@ -136,7 +144,7 @@ mod tests {
     fn names_in_files_are_those_of_the_registry() {
         for kind in ControllerKind::ALL {
             assert_eq!(ron::to_string(&kind).expect("written"), kind.name());
-            assert_eq!(kind.title().to_lowercase(), kind.name());
+            assert_eq!(kind.title().to_lowercase().replace(' ', "_"), kind.name());
         }
     }
 

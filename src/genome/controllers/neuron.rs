@@ -1,0 +1,355 @@
+//! A neuron of a limb: what it reads, and what it makes of it.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+use std::fmt::Arguments;
+
+use crate::check::{Invalid, within};
+use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
+use crate::genome::network_space::WEIGHT_RANGE;
+
+/// Inputs of a neuron.
+pub const NEURON_INPUTS: usize = 3;
+
+/// Chance with which a mutation draws a choice anew: the kind of a neuron, or what an input reads.
+const CHOICE_CHANCE: f64 = 0.1;
+
+/// A neuron: a function of the weighted sum of a few values, and of a bias.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimbNeuron {
+    /// What it makes of its sum.
+    pub kind: NeuronKind,
+    /// Added to its sum.
+    pub bias: f32,
+    /// What it reads.
+    pub inputs: [NeuronInput; NEURON_INPUTS],
+}
+
+/// An input of a neuron.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NeuronInput {
+    /// The value that it reads.
+    pub source: NeuronSource,
+    /// The factor of that value in the sum.
+    pub weight: f32,
+}
+
+/// What a neuron makes of its sum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NeuronKind {
+    /// Nothing: its output is 0.
+    Off,
+    /// The hyperbolic tangent of the sum.
+    Tanh,
+    /// 1 for a sum of at least 0, otherwise 0: the neuron of McCulloch and Pitts, whose threshold is minus the bias.
+    Step,
+    /// 1 / (1 + exp(-sum)).
+    Sigmoid,
+}
+
+impl NeuronKind {
+    /// All kinds. A gene has the place in this list as its value.
+    pub const ALL: [Self; 4] = [Self::Off, Self::Tanh, Self::Step, Self::Sigmoid];
+
+    fn response(self, sum: f32) -> f32 {
+        match self {
+            Self::Off => 0.0,
+            Self::Tanh => libm::tanhf(sum),
+            Self::Step => f32::from(u8::from(sum >= 0.0)),
+            Self::Sigmoid => 1.0 / (1.0 + libm::expf(-sum)),
+        }
+    }
+}
+
+/// A value that a neuron can read. Those of neurons are from the last step, those of senses and of the beat from this one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "the names of neurons and senses say it")]
+pub enum NeuronSource {
+    Own1,
+    Own2,
+    Own3,
+    Own4,
+    Front1,
+    Front2,
+    Front3,
+    Front4,
+    Rear1,
+    Rear2,
+    Rear3,
+    Rear4,
+    Bend,
+    BendRate,
+    Touch,
+    Load,
+    Blocked,
+    Pitch,
+    Gap,
+    StepUp,
+    BeatSine,
+    BeatCosine,
+}
+
+/// Number of values that a neuron can read.
+pub const NEURON_SOURCES: usize = NeuronSource::ALL.len();
+
+impl NeuronSource {
+    /// All sources, in the order of a limb's values: the neurons of the limb itself, of the limb in front and of the limb
+    /// behind, the limb's senses, the beat. A gene has the place in this list as its value.
+    pub const ALL: [Self; 22] = [
+        Self::Own1,
+        Self::Own2,
+        Self::Own3,
+        Self::Own4,
+        Self::Front1,
+        Self::Front2,
+        Self::Front3,
+        Self::Front4,
+        Self::Rear1,
+        Self::Rear2,
+        Self::Rear3,
+        Self::Rear4,
+        Self::Bend,
+        Self::BendRate,
+        Self::Touch,
+        Self::Load,
+        Self::Blocked,
+        Self::Pitch,
+        Self::Gap,
+        Self::StepUp,
+        Self::BeatSine,
+        Self::BeatCosine,
+    ];
+}
+
+const KIND_CODES: [f32; NeuronKind::ALL.len()] = codes();
+const SOURCE_CODES: [f32; NEURON_SOURCES] = codes();
+
+/// The values of a gene that chooses from a list of this length.
+const fn codes<const N: usize>() -> [f32; N] {
+    let mut codes = [0.0; N];
+    let mut index = 0;
+    while index < N {
+        codes[index] = index as f32;
+        index += 1;
+    }
+    codes
+}
+
+/// Visits a choice as a gene, whose value is the place of the choice in the list of all.
+fn visit_choice<T: Copy + PartialEq>(
+    gene: Gene<'_>,
+    all: &[T],
+    choice: &mut T,
+    visit: GeneVisitor<'_>,
+) {
+    let mut value = all.iter().position(|known| known == choice).unwrap_or(0) as f32;
+    visit(gene, &mut value);
+    if let Some(chosen) = all.get(value as usize) {
+        *choice = *chosen;
+    }
+}
+
+/// One of a list, all equally likely.
+fn drawn<T: Copy>(all: &[T], rng: &mut ChaCha8Rng) -> T {
+    all[rng.random_range(0..all.len())]
+}
+
+/// A choice after a mutation: drawn anew by chance, otherwise as it was.
+fn mutated<T: Copy>(before: T, all: &[T], rng: &mut ChaCha8Rng) -> T {
+    if rng.random_range(0.0..1.0) < CHOICE_CHANCE { drawn(all, rng) } else { before }
+}
+
+impl LimbNeuron {
+    /// A neuron that is off.
+    pub(super) const ZEROED: Self = Self {
+        kind: NeuronKind::Off,
+        bias: 0.0,
+        inputs: [NeuronInput { source: NeuronSource::Own1, weight: 0.0 }; NEURON_INPUTS],
+    };
+
+    /// Its output when the values of all sources are these. The sum is in the order of the inputs, the bias last.
+    pub fn respond(&self, values: &[f32; NEURON_SOURCES]) -> f32 {
+        let mut sum = 0.0;
+        for input in &self.inputs {
+            sum += values[input.source as usize] * input.weight;
+        }
+        self.kind.response(sum + self.bias)
+    }
+
+    /// Visits its genes; `field` and `name` are its own, weights and bias are in ±`most`.
+    pub(super) fn genes(
+        &mut self,
+        field: Arguments<'_>,
+        name: Arguments<'_>,
+        most: f32,
+        visit: GeneVisitor<'_>,
+    ) {
+        let gene = Gene {
+            field: format_args!("{field}.kind"),
+            name: format_args!("{name}, kind"),
+            unit: "",
+            range: GeneRange::OneOf(&KIND_CODES),
+        };
+        visit_choice(gene, &NeuronKind::ALL, &mut self.kind, visit);
+        let weights = GeneRange::Between(-most, most);
+        let gene = Gene {
+            field: format_args!("{field}.bias"),
+            name: format_args!("{name}, bias"),
+            unit: "",
+            range: weights,
+        };
+        visit(gene, &mut self.bias);
+        for (index, input) in self.inputs.iter_mut().enumerate() {
+            let number = index + 1;
+            let gene = Gene {
+                field: format_args!("{field}.inputs[{index}].source"),
+                name: format_args!("{name}, source {number}"),
+                unit: "",
+                range: GeneRange::OneOf(&SOURCE_CODES),
+            };
+            visit_choice(gene, &NeuronSource::ALL, &mut input.source, visit);
+            let gene = Gene {
+                field: format_args!("{field}.inputs[{index}].weight"),
+                name: format_args!("{name}, weight {number}"),
+                unit: "",
+                range: weights,
+            };
+            visit(gene, &mut input.weight);
+        }
+    }
+
+    /// Mutates the choices of a neuron that was `before`, and draws the inputs of a neuron that has been switched on anew,
+    /// with weights in ±`most`: while it was off, nothing selected them.
+    pub(super) fn mutate_choices(&mut self, before: &Self, most: f32, rng: &mut ChaCha8Rng) {
+        self.kind = mutated(before.kind, &NeuronKind::ALL, rng);
+        let was_off = before.kind == NeuronKind::Off;
+        let is_new = was_off && self.kind != NeuronKind::Off;
+        for (input, before) in self.inputs.iter_mut().zip(&before.inputs) {
+            if is_new {
+                input.source = drawn(&NeuronSource::ALL, rng);
+                input.weight = GeneRange::Between(-most, most).random(rng);
+            } else {
+                input.source = mutated(before.source, &NeuronSource::ALL, rng);
+            }
+        }
+    }
+
+    /// Checks every value; `field` names the neuron. What a neuron is and reads is one of a list in any file.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub(super) fn check(&self, field: &str) -> Result<(), Invalid> {
+        within(&format!("{field}.bias"), self.bias, WEIGHT_RANGE)?;
+        for (index, input) in self.inputs.iter().enumerate() {
+            within(&format!("{field}.inputs[{index}].weight"), input.weight, WEIGHT_RANGE)?;
+        }
+        Ok(())
+    }
+
+    /// Its weights and its bias.
+    pub(super) fn weights(&self) -> impl Iterator<Item = f32> + '_ {
+        self.inputs.iter().map(|input| input.weight).chain([self.bias])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::NeuronSource::{Blocked, Own1, Own2, Own3, Touch};
+    use super::*;
+
+    fn neuron(kind: NeuronKind, bias: f32, inputs: [(NeuronSource, f32); 3]) -> LimbNeuron {
+        LimbNeuron {
+            kind,
+            bias,
+            inputs: inputs.map(|(source, weight)| NeuronInput { source, weight }),
+        }
+    }
+
+    fn values(known: &[(NeuronSource, f32)]) -> [f32; NEURON_SOURCES] {
+        let mut values = [0.0; NEURON_SOURCES];
+        known.iter().for_each(|&(source, value)| values[source as usize] = value);
+        values
+    }
+
+    #[test]
+    fn sources_are_in_the_order_of_their_values() {
+        for (index, source) in NeuronSource::ALL.into_iter().enumerate() {
+            assert_eq!(source as usize, index, "{source:?}");
+        }
+        assert_eq!(KIND_CODES, [0.0, 1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn step_neurons_compute_and_or_and_not() {
+        let step = |bias, inputs| neuron(NeuronKind::Step, bias, inputs);
+        // Sums of exactly 0 count: the threshold itself fires.
+        let and = step(-2.0, [(Touch, 1.0), (Blocked, 1.0), (Own1, 0.0)]);
+        let or = step(-1.0, [(Touch, 1.0), (Blocked, 1.0), (Own1, 0.0)]);
+        let not = step(0.0, [(Touch, -1.0), (Blocked, 0.0), (Own1, 0.0)]);
+        for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let values = values(&[(Touch, a as f32), (Blocked, b as f32)]);
+            let expected = [a & b, a | b, 1 - a].map(|bit| bit as f32);
+            assert_eq!([and, or, not].map(|of| of.respond(&values)), expected, "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn the_kinds_respond_with_their_functions() {
+        let response = |kind| {
+            neuron(kind, 0.5, [(Touch, 2.0), (Touch, -1.0), (Own1, 9.0)])
+                .respond(&values(&[(Touch, 0.25)]))
+        };
+        assert_eq!(response(NeuronKind::Off), 0.0);
+        assert_eq!(response(NeuronKind::Tanh), libm::tanhf(0.75));
+        assert_eq!(response(NeuronKind::Step), 1.0);
+        assert_eq!(response(NeuronKind::Sigmoid), 1.0 / (1.0 + libm::expf(-0.75)));
+    }
+
+    #[test]
+    fn a_ring_of_three_neurons_oscillates() {
+        // Each excites itself and is inhibited by the one before it.
+        let ring = [(Own1, Own3), (Own2, Own1), (Own3, Own2)].map(|(own, before)| {
+            neuron(NeuronKind::Tanh, 0.0, [(own, 2.0), (before, -2.0), (Touch, 0.0)])
+        });
+        let mut state = values(&[(Own1, 0.1)]);
+        let mut signs = Vec::new();
+        for _ in 0..400 {
+            let next = ring.map(|neuron| neuron.respond(&state));
+            state[..3].copy_from_slice(&next);
+            signs.push(next[0] > 0.0);
+        }
+        let late = &signs[200..];
+        let changes = late.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        assert!(changes >= 10, "{changes} changes of sign in 200 steps");
+        assert!(state[..3].iter().any(|value| value.abs() > 0.5), "{:?}", &state[..3]);
+    }
+
+    #[test]
+    fn a_choice_mutates_by_chance_and_a_neuron_switched_on_has_new_inputs() {
+        let before = neuron(NeuronKind::Off, 0.25, [(Touch, 1.0), (Blocked, 2.0), (Own1, 3.0)]);
+        let mut rng = crate::rng::stream(1, 1, 0, crate::rng::Purpose::Mutation);
+        let (mut on, mut moved, mut trials) = (0, 0, 0);
+        for _ in 0..4000 {
+            let mut after = LimbNeuron { kind: NeuronKind::Tanh, ..before };
+            after.mutate_choices(&before, 4.0, &mut rng);
+            if after.kind == NeuronKind::Off {
+                let sources = after.inputs.iter().zip(&before.inputs);
+                moved += sources.filter(|(a, b)| a.source != b.source).count();
+                trials += 3;
+                assert!(after.weights().eq(before.weights()), "weights have mutated before");
+            } else {
+                on += 1;
+                assert!(after.inputs.iter().all(|input| input.weight.abs() <= 4.0));
+                assert!(!after.weights().eq(before.weights()));
+            }
+        }
+        let (on, moved) = (f64::from(on) / 4000.0, moved as f64 / f64::from(trials));
+        let [on_expected, moved_expected] = [3.0 / 4.0, 21.0 / 22.0].map(|x| x * CHOICE_CHANCE);
+        assert!((on - on_expected).abs() < 0.015 && (moved - moved_expected).abs() < 0.015);
+    }
+}
