@@ -117,7 +117,7 @@ mod tests {
         genes
     }
 
-    fn standing() -> Observation {
+    pub(super) fn standing() -> Observation {
         let mut observation = Observation { steps_per_s: 60, ..Observation::default() };
         observation.joints = vec![Default::default(); 4];
         observation.perception.joints = vec![JointSenses::default(); 4];

@@ -66,23 +66,27 @@ impl GenomeSpace {
         point
     }
 
-    /// Lets the kind of controller have the last word on a mutation from the point `before` to `point`: see
-    /// `ControllerEncoding::after_mutation`. Coordinates of genes that it leaves alone stay as they are.
+    /// Lets the kind of controller have the last word on a mutation from one point to another: see
+    /// `ControllerEncoding::after_mutation`. Genes that it leaves alone keep their coordinates to the last bit, and so do those
+    /// that it returns to where they started.
     pub fn after_mutation(
         &self,
-        before: &[f64],
+        start: &[f64],
         point: &mut [f64],
         shape: GenomeShape,
         rng: &mut ChaCha8Rng,
     ) {
-        let before = self.genome_at(before, shape);
+        let before = self.genome_at(start, shape);
         let mut genome = self.genome_at(point, shape);
         let moved = self.point_of(&genome);
         genome.controller.encoding_mut().after_mutation(&before.controller, self, rng);
         let last = self.point_of(&genome);
-        for ((coordinate, moved), last) in point.iter_mut().zip(moved).zip(last) {
-            if last != moved {
-                *coordinate = last;
+        let coordinates = point.iter_mut().zip(start).zip(self.point_of(&before));
+        for (((coordinate, start), before), (moved, last)) in
+            coordinates.zip(moved.iter().zip(last))
+        {
+            if last != *moved {
+                *coordinate = if last == before { *start } else { last };
             }
         }
     }
@@ -171,6 +175,32 @@ mod tests {
                 let off = (a - b).abs();
                 let off = off.min(1.0 - off);
                 assert!(off <= 0.0501, "{kind}: {a} and {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_limb_neurons_have_the_last_word_on_a_mutation() {
+        for kind in ControllerKind::ALL {
+            let space = space(kind);
+            let mut rng = stream(1, 1, 0, Purpose::Mutation);
+            let (mut kept, mut returned) = (0, 0);
+            let dimension = space.dimension(SHAPE);
+            for individual in 0..50 {
+                let mut birth = stream(1, 1, individual, Purpose::Birth);
+                let start = space.point_of(&space.random_genome(SHAPE, &mut birth));
+                let moved: Vec<f64> = start.iter().map(|x| x + 0.3).collect();
+                let mut point = moved.clone();
+                space.after_mutation(&start, &mut point, SHAPE, &mut rng);
+                kept += point.iter().zip(&moved).filter(|(a, b)| a == b).count();
+                returned += point.iter().zip(&start).filter(|(a, b)| a == b).count();
+            }
+            if kind == ControllerKind::LimbNeurons {
+                // Six genes belong to body, servo and beat; some neurons are new.
+                let share = returned as f64 / (50 * (dimension - 6)) as f64;
+                assert!((0.8..0.95).contains(&share) && kept >= 50 * 6, "{share}, {kept}");
+            } else {
+                assert_eq!(kept, 50 * dimension, "{kind}");
             }
         }
     }

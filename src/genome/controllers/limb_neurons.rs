@@ -145,7 +145,7 @@ impl ControllerEncoding for LimbNeurons {
         network.weight_range = weights.map(f32::abs).fold(network.weight_range, f32::max);
     }
 
-    /// Kinds and sources mutate by chance instead of by steps, which would rewire most of a network in every child.
+    /// A neuron's genes mutate by chance, independently of its neighbours' genes.
     fn after_mutation(
         &mut self,
         before: &ControllerGenes,
@@ -155,7 +155,7 @@ impl ControllerEncoding for LimbNeurons {
         let ControllerGenes::LimbNeurons(before) = before else { return };
         let most = space.network.weight_range;
         for (neuron, before) in self.limbs.iter_mut().flatten().zip(before.neurons()) {
-            neuron.mutate_choices(before, most, rng);
+            neuron.mutate(before, most, rng);
         }
     }
 }
@@ -238,7 +238,7 @@ mod tests {
             (|genes| genes.limbs.clear(), "limb_neurons.limbs is 0; allowed: 1 or 5"),
             (
                 |genes| genes.frequency_hz = -1.0,
-                "limb_neurons.frequency_hz is -1; allowed: 0.01 to 60",
+                "limb_neurons.frequency_hz is -1; allowed: 0.01 to 20",
             ),
             (|genes| genes.lag_rad = 99.0, "limb_neurons.lag_rad is 99; allowed: -10 to 10"),
         ] {

@@ -12,8 +12,9 @@ use crate::genome::network_space::WEIGHT_RANGE;
 /// Inputs of a neuron.
 pub const NEURON_INPUTS: usize = 3;
 
-/// Chance with which a mutation draws a choice anew: the kind of a neuron, or what an input reads.
-const CHOICE_CHANCE: f64 = 0.1;
+/// Chance with which a mutation changes a gene of a neuron. Steps in all of them at once would rewire most of a network in
+/// every child.
+const MUTATION_CHANCE: f64 = 0.1;
 
 /// A neuron: a function of the weighted sum of a few values, and of a bias.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -159,9 +160,14 @@ fn drawn<T: Copy>(all: &[T], rng: &mut ChaCha8Rng) -> T {
     all[rng.random_range(0..all.len())]
 }
 
-/// A choice after a mutation: drawn anew by chance, otherwise as it was.
+/// Whether a gene mutates.
+fn mutates(rng: &mut ChaCha8Rng) -> bool {
+    rng.random_range(0.0..1.0) < MUTATION_CHANCE
+}
+
+/// A choice after a mutation.
 fn mutated<T: Copy>(before: T, all: &[T], rng: &mut ChaCha8Rng) -> T {
-    if rng.random_range(0.0..1.0) < CHOICE_CHANCE { drawn(all, rng) } else { before }
+    if mutates(rng) { drawn(all, rng) } else { before }
 }
 
 impl LimbNeuron {
@@ -223,18 +229,25 @@ impl LimbNeuron {
         }
     }
 
-    /// Mutates the choices of a neuron that was `before`, and draws the inputs of a neuron that has been switched on anew,
-    /// with weights in ±`most`: while it was off, nothing selected them.
-    pub(super) fn mutate_choices(&mut self, before: &Self, most: f32, rng: &mut ChaCha8Rng) {
+    /// Ends the mutation of a neuron that was `before`, in which all its numbers have taken a step: each gene keeps its
+    /// mutation by chance, a choice is then one of all, and the others return to what they were. The inputs of a neuron that
+    /// has been switched on are drawn anew, with weights in ±`most`: while it was off, nothing selected them.
+    pub(super) fn mutate(&mut self, before: &Self, most: f32, rng: &mut ChaCha8Rng) {
         self.kind = mutated(before.kind, &NeuronKind::ALL, rng);
+        if !mutates(rng) {
+            self.bias = before.bias;
+        }
         let was_off = before.kind == NeuronKind::Off;
         let is_new = was_off && self.kind != NeuronKind::Off;
         for (input, before) in self.inputs.iter_mut().zip(&before.inputs) {
             if is_new {
                 input.source = drawn(&NeuronSource::ALL, rng);
                 input.weight = GeneRange::Between(-most, most).random(rng);
-            } else {
-                input.source = mutated(before.source, &NeuronSource::ALL, rng);
+                continue;
+            }
+            input.source = mutated(before.source, &NeuronSource::ALL, rng);
+            if !mutates(rng) {
+                input.weight = before.weight;
             }
         }
     }
@@ -261,6 +274,7 @@ impl LimbNeuron {
 mod tests {
     use super::NeuronSource::{Blocked, Own1, Own2, Own3, Touch};
     use super::*;
+    use crate::rng::{Purpose, stream};
 
     fn neuron(kind: NeuronKind, bias: f32, inputs: [(NeuronSource, f32); 3]) -> LimbNeuron {
         LimbNeuron {
@@ -330,26 +344,35 @@ mod tests {
     }
 
     #[test]
-    fn a_choice_mutates_by_chance_and_a_neuron_switched_on_has_new_inputs() {
+    fn genes_mutate_by_chance_and_a_neuron_switched_on_has_new_inputs() {
         let before = neuron(NeuronKind::Off, 0.25, [(Touch, 1.0), (Blocked, 2.0), (Own1, 3.0)]);
-        let mut rng = crate::rng::stream(1, 1, 0, crate::rng::Purpose::Mutation);
-        let (mut on, mut moved, mut trials) = (0, 0, 0);
+        // As after a step in all numbers.
+        let mut stepped = LimbNeuron { bias: 0.5, ..before };
+        stepped.inputs.iter_mut().for_each(|input| input.weight += 0.5);
+        let mut rng = stream(1, 1, 0, Purpose::Mutation);
+        let (mut on, mut off, mut sources, mut weights) = (0.0, 0.0, 0.0, 0.0);
         for _ in 0..4000 {
-            let mut after = LimbNeuron { kind: NeuronKind::Tanh, ..before };
-            after.mutate_choices(&before, 4.0, &mut rng);
+            let mut after = stepped;
+            after.mutate(&before, 4.0, &mut rng);
+            let pairs = after.inputs.iter().zip(&before.inputs);
             if after.kind == NeuronKind::Off {
-                let sources = after.inputs.iter().zip(&before.inputs);
-                moved += sources.filter(|(a, b)| a.source != b.source).count();
-                trials += 3;
-                assert!(after.weights().eq(before.weights()), "weights have mutated before");
+                off += 1.0;
+                for (input, before) in pairs {
+                    sources += f64::from(u8::from(input.source != before.source));
+                    weights += f64::from(u8::from(input.weight != before.weight));
+                }
             } else {
-                on += 1;
+                on += 1.0;
                 assert!(after.inputs.iter().all(|input| input.weight.abs() <= 4.0));
-                assert!(!after.weights().eq(before.weights()));
+                assert!(pairs.clone().all(|(input, before)| input.weight != before.weight));
             }
         }
-        let (on, moved) = (f64::from(on) / 4000.0, moved as f64 / f64::from(trials));
-        let [on_expected, moved_expected] = [3.0 / 4.0, 21.0 / 22.0].map(|x| x * CHOICE_CHANCE);
-        assert!((on - on_expected).abs() < 0.015 && (moved - moved_expected).abs() < 0.015);
+        for (found, expected) in [
+            (on / 4000.0, 3.0 / 4.0 * MUTATION_CHANCE),
+            (sources / (3.0 * off), 21.0 / 22.0 * MUTATION_CHANCE),
+            (weights / (3.0 * off), MUTATION_CHANCE),
+        ] {
+            assert!((found - expected).abs() < 0.015, "{found}, not {expected}");
+        }
     }
 }
