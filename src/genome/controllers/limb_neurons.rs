@@ -1,8 +1,13 @@
 //! Neurons in the limbs, wired among themselves, to those of the neighbouring limbs, to senses and to a beat.
 //!
-//! After Miconi and Channon, *A virtual creatures model for studies in artificial evolution*, CEC 2005, whose abstract tells
-//! that standard McCulloch-Pitts neurons replaced the diverse functions of Sims' creatures. Their creatures evolve bodies, too;
-//! the layout for a body that stays is this program's own.
+//! After Miconi and Channon, *A virtual creatures model for studies in artificial evolution*, CEC 2005, pp. 565-572, whose
+//! abstract says that standard McCulloch-Pitts neurons replace the more complex set of neurons of Sims' creatures. Their
+//! creatures evolve bodies, too; the layout for a body that stays, with its numbers, is this program's own.
+//!
+//! What a neuron is and reads are choices, and every strategy searches them as coordinates: a step of CMA-ES or MAP-Elites
+//! across the border between two choices changes the wiring, although neighbours in the list have nothing in common. The
+//! report's strategy keeps the choices of the first generation. Only mutations of the genetic algorithm, and of novelty
+//! search, which is one, have rules for them.
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
