@@ -76,10 +76,12 @@ impl GenomeSpace {
         shape: GenomeShape,
         rng: &mut ChaCha8Rng,
     ) {
-        let before = self.genome_at(start, shape);
+        let mut before = self.genome_at(start, shape);
         let mut genome = self.genome_at(point, shape);
         let moved = self.point_of(&genome);
-        genome.controller.encoding_mut().after_mutation(&before.controller, self, rng);
+        let mut values = Vec::new();
+        before.controller.encoding_mut().genes(self, &mut |_, value| values.push(*value));
+        genome.controller.encoding_mut().after_mutation(&values, self, rng);
         let last = self.point_of(&genome);
         let coordinates = point.iter_mut().zip(start).zip(self.point_of(&before));
         for (((coordinate, start), before), (moved, last)) in

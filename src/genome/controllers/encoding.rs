@@ -2,7 +2,6 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::ControllerGenes;
 use crate::check::Invalid;
 use crate::genome::body::BodyGenes;
 use crate::genome::gene::{Feature, Gene, GeneVisitor, GenomeShape};
@@ -97,15 +96,9 @@ pub trait ControllerEncoding {
         self.genes(space, &mut shift);
     }
 
-    /// Has the last word on a mutation by which a strategy has moved all genes, `before` it those of `before`: for kinds whose
-    /// choices mutate by rules of their own.
-    fn after_mutation(
-        &mut self,
-        _before: &ControllerGenes,
-        _space: &GenomeSpace,
-        _rng: &mut ChaCha8Rng,
-    ) {
-    }
+    /// Has the last word on a mutation by which a strategy has moved all genes, for kinds whose genes mutate by rules of
+    /// their own. `before` has the values of the genes before it, in the order of [`Self::genes`].
+    fn after_mutation(&mut self, _before: &[f32], _space: &GenomeSpace, _rng: &mut ChaCha8Rng) {}
 
     /// A few features that stand for all genes, where these are too many to compare.
     fn summary(&self, _space: &GenomeSpace) -> Option<Vec<Feature>> {

@@ -12,7 +12,6 @@
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::ControllerGenes;
 use super::encoding::{ControllerEncoding, ControllerInfo};
 use super::neuron::LimbNeuron;
 use super::servo::ServoGenes;
@@ -151,15 +150,11 @@ impl ControllerEncoding for LimbNeurons {
     }
 
     /// A neuron's genes mutate by chance, independently of its neighbours' genes.
-    fn after_mutation(
-        &mut self,
-        before: &ControllerGenes,
-        space: &GenomeSpace,
-        rng: &mut ChaCha8Rng,
-    ) {
-        let ControllerGenes::LimbNeurons(before) = before else { return };
+    fn after_mutation(&mut self, before: &[f32], space: &GenomeSpace, rng: &mut ChaCha8Rng) {
+        let (mut parent, mut values) = (self.clone(), before.iter());
+        parent.genes(space, &mut |_, value| *value = values.next().copied().unwrap_or(*value));
         let most = space.network.weight_range;
-        for (neuron, before) in self.limbs.iter_mut().flatten().zip(before.neurons()) {
+        for (neuron, before) in self.limbs.iter_mut().flatten().zip(parent.neurons()) {
             neuron.mutate(before, most, rng);
         }
     }
@@ -169,7 +164,7 @@ impl ControllerEncoding for LimbNeurons {
 mod tests {
     use super::*;
     use crate::genome::controllers::{NeuronKind, NeuronSource};
-    use crate::genome::{ControllerKind, Genome};
+    use crate::genome::{ControllerGenes, ControllerKind, Genome};
     use crate::rng::{Purpose, stream};
 
     const SHAPE: GenomeShape = GenomeShape { joints: 4, duration_s: 2.0 };

@@ -11,6 +11,7 @@ mod layer;
 mod limb_neurons;
 mod modular;
 mod neuron;
+mod neuron_choices;
 mod reflex;
 mod servo;
 mod signal;
@@ -23,9 +24,8 @@ pub use gait::Gait;
 pub use layer::Layer;
 pub use limb_neurons::{LIMB_NEURONS, LimbNeurons};
 pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
-pub use neuron::{
-    LimbNeuron, NEURON_INPUTS, NEURON_SOURCES, NeuronInput, NeuronKind, NeuronSource,
-};
+pub use neuron::{LimbNeuron, NEURON_INPUTS, NeuronInput};
+pub use neuron_choices::{NEURON_SOURCES, NeuronKind, NeuronSource};
 pub use reflex::{REFLEX_INPUTS, ReflexGait};
 pub use servo::ServoGenes;
 pub use signal::{JointSignals, TorqueSignals};
