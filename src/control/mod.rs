@@ -8,6 +8,7 @@ mod ctrnn;
 mod decisions;
 mod gait;
 mod grown;
+mod limb_neurons;
 mod network;
 mod observation;
 mod perception;
@@ -44,6 +45,9 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Rules(genes) => Box::new(rules::RuleFollower::new(genes.clone())),
         ControllerGenes::Ctrnn(genes) => Box::new(ctrnn::CtrnnController::new(genes.clone())),
         ControllerGenes::Grown(genes) => Box::new(grown::GrownController::new(genes.clone())),
+        ControllerGenes::LimbNeurons(genes) => {
+            Box::new(limb_neurons::LimbNeuronController::new(genes.clone()))
+        }
         ControllerGenes::Decisions(genes) => {
             Box::new(decisions::DecisionController::new(genes.clone()))
         }

@@ -66,6 +66,33 @@ impl GenomeSpace {
         point
     }
 
+    /// Lets the kind of controller have the last word on a mutation from one point to another: see
+    /// `ControllerEncoding::after_mutation`. Genes that it leaves alone keep their coordinates to the last bit, and so do those
+    /// that it returns to where they started.
+    pub fn after_mutation(
+        &self,
+        start: &[f64],
+        point: &mut [f64],
+        shape: GenomeShape,
+        rng: &mut ChaCha8Rng,
+    ) {
+        let mut before = self.genome_at(start, shape);
+        let mut genome = self.genome_at(point, shape);
+        let moved = self.point_of(&genome);
+        let mut values = Vec::new();
+        before.controller.encoding_mut().genes(self, &mut |_, value| values.push(*value));
+        genome.controller.encoding_mut().after_mutation(&values, self, rng);
+        let last = self.point_of(&genome);
+        let coordinates = point.iter_mut().zip(start).zip(self.point_of(&before));
+        for (((coordinate, start), before), (moved, last)) in
+            coordinates.zip(moved.iter().zip(last))
+        {
+            if last != *moved {
+                *coordinate = if last == before { *start } else { last };
+            }
+        }
+    }
+
     /// Draws a genome at random: signals by the report's random walk, other genes anywhere in their ranges.
     pub fn random_genome(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
         let Genome { mut body, mut controller } = self.zeroed(shape);
@@ -150,6 +177,32 @@ mod tests {
                 let off = (a - b).abs();
                 let off = off.min(1.0 - off);
                 assert!(off <= 0.0501, "{kind}: {a} and {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_limb_neurons_have_the_last_word_on_a_mutation() {
+        for kind in ControllerKind::ALL {
+            let space = space(kind);
+            let mut rng = stream(1, 1, 0, Purpose::Mutation);
+            let (mut kept, mut returned) = (0, 0);
+            let dimension = space.dimension(SHAPE);
+            for individual in 0..50 {
+                let mut birth = stream(1, 1, individual, Purpose::Birth);
+                let start = space.point_of(&space.random_genome(SHAPE, &mut birth));
+                let moved: Vec<f64> = start.iter().map(|x| x + 0.3).collect();
+                let mut point = moved.clone();
+                space.after_mutation(&start, &mut point, SHAPE, &mut rng);
+                kept += point.iter().zip(&moved).filter(|(a, b)| a == b).count();
+                returned += point.iter().zip(&start).filter(|(a, b)| a == b).count();
+            }
+            if kind == ControllerKind::LimbNeurons {
+                // Six genes belong to body, servo and beat; some neurons are new.
+                let share = returned as f64 / (50 * (dimension - 6)) as f64;
+                assert!((0.8..0.95).contains(&share) && kept >= 50 * 6, "{share}, {kept}");
+            } else {
+                assert_eq!(kept, 50 * dimension, "{kind}");
             }
         }
     }

@@ -27,11 +27,13 @@ pub enum ControllerKind {
     Rules,
     /// A network that grew.
     Grown,
+    /// Neurons in the limbs.
+    LimbNeurons,
 }
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Signal,
         Self::Wave,
         Self::Gait,
@@ -42,5 +44,6 @@ impl ControllerKind {
         Self::Decisions,
         Self::Rules,
         Self::Grown,
+        Self::LimbNeurons,
     ];
 }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::schema::{number, setting_group, whole};
+use crate::schema::{number, setting_group, switch, whole};
 
 setting_group! {
     /// Ranges of the genes of reflexes, networks and rules.
@@ -48,40 +48,22 @@ setting_group! {
                 .slider(1.0, 30.0);
 
         /// Waves among which rules choose.
-        #[serde(default = "usual_waves", skip_serializing_if = "are_usual_waves")]
-        library_waves: u32 = USUAL_WAVES,
+        library_waves: u32 = 4,
             whole("Waves to choose from", 1..=MOST_LIBRARY_WAVES as u32)
                 .hint("Number of waves among which rules choose. Each has a frequency of its own")
                 .slider(1.0, 8.0);
 
         /// Rules that choose among waves.
-        #[serde(default = "usual_rules", skip_serializing_if = "are_usual_rules")]
-        wave_rules: u32 = USUAL_RULES,
+        wave_rules: u32 = 12,
             whole("Rules", 1..=MOST_WAVE_RULES as u32)
                 .hint("Number of rules that choose a wave by what the snake senses")
                 .slider(1.0, 32.0);
+
+        /// Whether all limbs have the same neurons, of a controller with neurons in the limbs.
+        limb_neurons_shared: bool = true,
+            switch("Same neurons in all limbs")
+                .hint("Limb neurons are the same in every limb. Otherwise each limb evolves its own, which multiplies the genes");
     }
-}
-
-/// The number of waves in files that do not state one.
-const USUAL_WAVES: u32 = 4;
-/// The number of rules in files that do not state one.
-const USUAL_RULES: u32 = 12;
-
-fn usual_waves() -> u32 {
-    USUAL_WAVES
-}
-
-fn are_usual_waves(waves: &u32) -> bool {
-    *waves == USUAL_WAVES
-}
-
-fn usual_rules() -> u32 {
-    USUAL_RULES
-}
-
-fn are_usual_rules(rules: &u32) -> bool {
-    *rules == USUAL_RULES
 }
 
 /// The range of every range of weights.

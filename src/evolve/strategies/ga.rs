@@ -206,6 +206,7 @@ impl Ga {
         child.step = step.clamp(*STEPS.start(), *STEPS.end());
         // A uniform distribution in ±√3 has variance 1.
         let half = 3.0_f64.sqrt();
+        let before = child.point.clone();
         for gene in &mut child.point {
             let deviate = match self.settings.mutation {
                 Mutation::Gaussian => normal(rng),
@@ -213,6 +214,7 @@ impl Ga {
             };
             *gene += child.step * deviate;
         }
+        self.search.after_mutation(&before, &mut child.point, rng);
     }
 }
 

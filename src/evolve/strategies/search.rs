@@ -111,6 +111,11 @@ impl Search {
         self.space.wrapped(point, self.shape)
     }
 
+    /// Ends a mutation from one point to another by the rules of the kind of controller.
+    pub fn after_mutation(&self, before: &[f64], point: &mut [f64], rng: &mut ChaCha8Rng) {
+        self.space.after_mutation(before, point, self.shape, rng);
+    }
+
     /// A random genome.
     pub fn random_genome(&self, individual: usize) -> Genome {
         self.space.random_genome(self.shape, &mut self.stream(individual, Purpose::Birth))

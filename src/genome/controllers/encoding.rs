@@ -99,6 +99,9 @@ pub trait ControllerEncoding {
 
     /// Adds the bits of what was learned, beside the genes, to a genome's hash.
     fn hash_learned(&self, _hash: &mut Xxh3Default) {}
+    /// Has the last word on a mutation by which a strategy has moved all genes, for kinds whose genes mutate by rules of
+    /// their own. `before` has the values of the genes before it, in the order of [`Self::genes`].
+    fn after_mutation(&mut self, _before: &[f32], _space: &GenomeSpace, _rng: &mut ChaCha8Rng) {}
 
     /// A few features that stand for all genes, where these are too many to compare.
     fn summary(&self, _space: &GenomeSpace) -> Option<Vec<Feature>> {

@@ -10,7 +10,10 @@ mod encoding;
 mod gait;
 mod grown;
 mod layer;
+mod limb_neurons;
 mod modular;
+mod neuron;
+mod neuron_choices;
 mod reflex;
 mod rules;
 mod servo;
@@ -28,7 +31,10 @@ pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
 pub use grown::{GROWN_INPUTS, GrownGenes};
 pub use layer::Layer;
+pub use limb_neurons::{LIMB_NEURONS, LimbNeurons};
 pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
+pub use neuron::{LimbNeuron, NEURON_INPUTS, NeuronInput};
+pub use neuron_choices::{NEURON_SOURCES, NeuronKind, NeuronSource};
 pub use reflex::{REFLEX_INPUTS, ReflexGait};
 pub use rules::RuleGenes;
 pub use servo::ServoGenes;
@@ -101,6 +107,8 @@ registry! {
     Rules(RuleGenes),
     /// A network that grew.
     Grown(GrownGenes),
+    /// Neurons in the limbs.
+    LimbNeurons(LimbNeurons),
 }
 
 named_by_info!(ControllerKind);
@@ -159,7 +167,7 @@ mod tests {
     fn names_in_files_are_those_of_the_registry() {
         for kind in ControllerKind::ALL {
             assert_eq!(ron::to_string(&kind).expect("written"), kind.name());
-            assert_eq!(kind.title().to_lowercase(), kind.name());
+            assert_eq!(kind.title().to_lowercase().replace(' ', "_"), kind.name());
         }
     }
 

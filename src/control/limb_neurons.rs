@@ -1,0 +1,207 @@
+//! Neurons of limbs at work.
+
+#[cfg(test)]
+mod xor;
+
+use super::network::{beat, servos};
+use super::servo::JointServos;
+use super::{Controller, Observation, Senses};
+use crate::genome::controllers::{
+    LIMB_NEURONS, LimbNeuron, LimbNeurons, NEURON_SOURCES, ServoGenes,
+};
+use crate::world::JointTorque;
+
+/// Lets the neurons of all limbs respond, step after step.
+#[derive(Debug, Clone)]
+pub struct LimbNeuronController {
+    genes: LimbNeurons,
+    servo: JointServos,
+    /// Outputs of the neurons of each limb, head first.
+    outputs: Vec<[f32; LIMB_NEURONS]>,
+    /// Working memory: those of the step that begins.
+    next: Vec<[f32; LIMB_NEURONS]>,
+}
+
+impl LimbNeuronController {
+    /// The controller before the first step: all outputs are 0.
+    pub fn new(genes: LimbNeurons) -> Self {
+        let outputs = vec![[0.0; LIMB_NEURONS]; genes.limb_count()];
+        Self { servo: servos(&genes.servo), next: outputs.clone(), outputs, genes }
+    }
+
+    /// The values of all sources of a limb, in the order of `NeuronSource::ALL`. Those of a limb or a joint that is not there
+    /// are 0.
+    fn values(
+        &self,
+        limb: usize,
+        observation: &Observation,
+        periods: f64,
+    ) -> [f32; NEURON_SOURCES] {
+        let outputs = |index: Option<usize>| {
+            index.and_then(|index| self.outputs.get(index)).copied().unwrap_or_default()
+        };
+        let [own, front, rear] = [Some(limb), limb.checked_sub(1), Some(limb + 1)].map(outputs);
+        let senses = &observation.perception;
+        let joint = senses.joints.get(limb).copied().unwrap_or_default();
+        let of_limb = senses.limbs.get(limb).copied().unwrap_or_default();
+        let sensed = [
+            joint.bend,
+            joint.bend_rate,
+            of_limb.touch,
+            of_limb.load,
+            of_limb.blocked,
+            of_limb.pitch,
+            of_limb.gap,
+            of_limb.step_up,
+        ];
+        let beat = beat(periods, limb as f32 * self.genes.lag_rad);
+        let all = own.into_iter().chain(front).chain(rear).chain(sensed).chain(beat);
+        let mut values = [0.0; NEURON_SOURCES];
+        values.iter_mut().zip(all).for_each(|(value, known)| *value = known);
+        values
+    }
+}
+
+/// The outputs of a limb's neurons when the values of their sources are these.
+fn respond(
+    neurons: &[LimbNeuron; LIMB_NEURONS],
+    values: &[f32; NEURON_SOURCES],
+) -> [f32; LIMB_NEURONS] {
+    neurons.map(|neuron| neuron.respond(values))
+}
+
+impl Controller for LimbNeuronController {
+    fn needs(&self) -> Senses {
+        Senses::ALL
+    }
+
+    fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
+        let periods = observation.periods(self.genes.frequency_hz);
+        for limb in 0..self.outputs.len() {
+            let values = self.values(limb, observation, periods);
+            if let Some(neurons) = self.genes.of_limb(limb) {
+                self.next[limb] = respond(neurons, &values);
+            }
+        }
+        std::mem::swap(&mut self.outputs, &mut self.next);
+        let ServoGenes { bend_range_rad, twist_range_rad, .. } = self.genes.servo;
+        let targets = self
+            .outputs
+            .iter()
+            .take(self.genes.joints as usize)
+            .map(|[bend, twist, ..]| [bend * bend_range_rad, twist * twist_range_rad]);
+        self.servo.pull(observation, targets, torques);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::perception::{JointSenses, LimbSenses};
+    use crate::genome::controllers::{NeuronInput, NeuronKind, NeuronSource};
+    use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
+    use crate::rng::{Purpose, stream};
+    use crate::score::Trial;
+
+    fn random(is_shared: bool) -> LimbNeurons {
+        let controller = ControllerKind::LimbNeurons;
+        let mut space = GenomeSpace { controller, ..GenomeSpace::default() };
+        space.network.limb_neurons_shared = is_shared;
+        let mut rng = stream(1, 1, 0, Purpose::Birth);
+        let genome = space.random_genome(Trial::default().genome_shape(), &mut rng);
+        let ControllerGenes::LimbNeurons(genes) = genome.controller else { panic!("neurons") };
+        genes
+    }
+
+    pub(super) fn standing() -> Observation {
+        let mut observation = Observation { steps_per_s: 60, ..Observation::default() };
+        observation.joints = vec![Default::default(); 4];
+        observation.perception.joints = vec![JointSenses::default(); 4];
+        observation.perception.limbs = vec![LimbSenses::default(); 5];
+        observation
+    }
+
+    /// A neuron of tanh that reads one value.
+    fn relay(source: NeuronSource) -> LimbNeuron {
+        let unused = NeuronInput { source: NeuronSource::Own1, weight: 0.0 };
+        let inputs = [NeuronInput { source, weight: 1.0 }, unused, unused];
+        LimbNeuron { kind: NeuronKind::Tanh, bias: 0.0, inputs }
+    }
+
+    /// The outputs after each of four steps while only the head touches, or only the tail.
+    fn outputs_after_touch(limb: usize, neurons: [LimbNeuron; 4]) -> Vec<Vec<[f32; 4]>> {
+        let mut genes = random(true);
+        genes.limbs = vec![neurons];
+        let mut observation = standing();
+        observation.perception.limbs[limb].touch = 1.0;
+        let mut controller = LimbNeuronController::new(genes);
+        let mut torques = [JointTorque::default(); 4];
+        let step = |_| {
+            controller.act(&observation, &mut torques);
+            controller.outputs.clone()
+        };
+        (0..4).map(step).collect()
+    }
+
+    #[test]
+    fn a_touch_travels_one_limb_a_step_and_absent_neighbours_are_silent() {
+        use NeuronSource::{Front1, Front3, Rear2, Rear4, Touch};
+        // The first neuron hands backwards, the second forwards; the others listen to both.
+        let mut back = relay(Front1);
+        back.inputs[1] = NeuronInput { source: Touch, weight: 1.0 };
+        let mut ahead = relay(Rear2);
+        ahead.inputs[1] = NeuronInput { source: Touch, weight: 1.0 };
+        let neurons = [back, ahead, relay(Front3), relay(Rear4)];
+        for (limb, channel) in [(0, 0), (4, 1)] {
+            for (step, outputs) in outputs_after_touch(limb, neurons).into_iter().enumerate() {
+                for (index, output) in outputs.iter().enumerate() {
+                    let distance = index.abs_diff(limb);
+                    assert_eq!(output[channel] != 0.0, distance <= step, "limb {index} at {step}");
+                    // Nothing but a neighbour could make these speak.
+                    assert_eq!(output[2..], [0.0; 2]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_neighbours_of_the_ends_are_zero_even_if_every_other_neuron_fires() {
+        let mut genes = random(true);
+        genes.limbs[0].iter_mut().for_each(|neuron| {
+            *neuron = LimbNeuron { kind: NeuronKind::Step, bias: 1.0, ..relay(NeuronSource::Own1) };
+        });
+        let mut controller = LimbNeuronController::new(genes);
+        assert_eq!(controller.values(2, &standing(), 0.0)[..12], [0.0; 12], "at the start");
+        controller.act(&standing(), &mut [JointTorque::default(); 4]);
+        for (limb, expected) in [(0, [1.0, 0.0, 1.0]), (2, [1.0; 3]), (4, [1.0, 1.0, 0.0])] {
+            let values = controller.values(limb, &standing(), 0.0);
+            for (part, expected) in values[..12].chunks_exact(4).zip(expected) {
+                assert_eq!(part, [expected; 4], "limb {limb}");
+            }
+        }
+    }
+
+    #[test]
+    fn equal_sets_for_each_limb_act_as_one_set_for_all() {
+        let shared = random(true);
+        let mut own = shared.clone();
+        own.limbs = vec![shared.limbs[0]; 5];
+        let trial = Trial::default();
+        let torques = |genes: LimbNeurons| {
+            let mut controller = LimbNeuronController::new(genes);
+            let mut observation = standing();
+            let mut torques = [JointTorque::default(); 4];
+            for step in 0..trial.physics.steps_per_s {
+                observation.step = step;
+                observation.perception.limbs[step as usize % 5].touch = 1.0;
+                controller.act(&observation, &mut torques);
+            }
+            torques.map(|torque| [torque.bend_nm.to_bits(), torque.twist_nm.to_bits()])
+        };
+        assert_eq!(torques(shared), torques(own));
+    }
+}
