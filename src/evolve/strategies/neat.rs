@@ -106,7 +106,10 @@ impl Strategy for Neat {
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::of(&self.population)
+        match &self.population {
+            Some(population) => StrategyState::of(population),
+            None => StrategyState::of(&()),
+        }
     }
 
     /// Nothing of it may change during a run.
