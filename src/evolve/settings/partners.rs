@@ -25,6 +25,30 @@ impl StrategyKind {
 }
 
 impl Settings {
+    /// The change of strategy or controller that a change of the other calls for, as field and text: without it they would
+    /// not go together. None if they do, or if the field is another one.
+    pub fn partner_change(&self, field: &str, text: &str) -> Option<(&'static str, &'static str)> {
+        match field {
+            "evolution.strategy" => {
+                let strategy = StrategyKind::named(field, text).ok()?;
+                let fits = |kind: &ControllerKind| strategy.improves(*kind);
+                let usual = Some(ControllerKind::Gait).filter(fits);
+                let partner = || usual.or_else(|| strategy.controllers().next());
+                let partner = (!fits(&self.genome.controller)).then(partner).flatten()?;
+                Some(("genome.controller", partner.name()))
+            }
+            "genome.controller" => {
+                let controller = ControllerKind::named(field, text).ok()?;
+                let fits = |kind: &StrategyKind| kind.improves(controller);
+                let usual = Some(StrategyKind::CmaEs).filter(fits);
+                let partner = || usual.or_else(|| StrategyKind::ALL.into_iter().find(fits));
+                let partner = (!fits(&self.evolution.strategy)).then(partner).flatten()?;
+                Some(("evolution.strategy", partner.name()))
+            }
+            _ => None,
+        }
+    }
+
     /// Checks that the strategy can improve the controller.
     pub(super) fn check_partners(&self) -> Result<(), Invalid> {
         let (strategy, controller) = (self.evolution.strategy, self.genome.controller);
@@ -51,6 +75,26 @@ mod tests {
         for strategy in StrategyKind::ALL {
             assert!(strategy.controllers().count() > 0, "{strategy}");
         }
+    }
+
+    #[test]
+    fn a_choice_brings_its_partner() {
+        let mut settings = Settings::default();
+        settings.genome.controller = ControllerKind::Gait;
+        settings.evolution.strategy = StrategyKind::Ga;
+        let partner = |settings: &Settings, field, text| settings.partner_change(field, text);
+        let (strategy, controller) = ("evolution.strategy", "genome.controller");
+        assert_eq!(partner(&settings, strategy, "xcs"), Some((controller, "decisions")));
+        assert_eq!(partner(&settings, strategy, "neat"), Some((controller, "grown")));
+        assert_eq!(partner(&settings, strategy, "novelty"), None);
+        assert_eq!(partner(&settings, controller, "decisions"), Some((strategy, "q_learning")));
+        assert_eq!(partner(&settings, controller, "reflex"), None);
+        assert_eq!(partner(&settings, "trial.duration_s", "3"), None);
+        settings.genome.controller = ControllerKind::Decisions;
+        settings.evolution.strategy = StrategyKind::Zcs;
+        assert_eq!(partner(&settings, strategy, "ga"), Some((controller, "gait")));
+        assert_eq!(partner(&settings, strategy, "xcs"), None);
+        assert_eq!(partner(&settings, controller, "gait"), Some((strategy, "cma_es")));
     }
 
     #[test]

@@ -166,6 +166,63 @@ const CASES: &[Case] = &[
         "controller=gait; repeats.trials=3; counts=worst; repeats.off.friction=0.5; repeats.off.rise=0.3; \
          repeats.off.density=0.3; repeats.off.start_m=1; repeats.off.turn_deg=20",
     ),
+    (
+        "gaits with reflexes on stairs of their generation",
+        [3, 8, 4],
+        "controller=reflex; strategy=cma_es; repeats.trials=3; repeats.list=generation; start_y_m=-3; \
+         reflex_weight_range=2; reflex_reach_rad=0.5; reflex_phase_rad_per_s=3",
+    ),
+    (
+        "gaits with reflexes, blind and numb",
+        [3, 6, 2],
+        "controller=reflex; senses.sight=false; senses.touch=false; start_y_m=-3",
+    ),
+    (
+        "modular networks without balance",
+        [3, 12, 3],
+        "controller=modular; strategy=ga; network.hidden=3; network.weight_range=2; senses.balance=false; \
+         start_y_m=-3",
+    ),
+    ("central networks", [3, 8, 3], "controller=central; strategy=cma_es; start_y_m=-3"),
+    (
+        "continuous-time networks",
+        [3, 8, 3],
+        "controller=ctrnn; strategy=cma_es; ctrnn_weight_range=8; start_y_m=-3",
+    ),
+    (
+        "waves by rules, with waves taken over",
+        [3, 12, 4],
+        "controller=rules; strategy=ga; wave_takeover=0.5; library_waves=3; wave_rules=6; start_y_m=-3",
+    ),
+    (
+        "limb neurons, each limb its own",
+        [3, 12, 4],
+        "controller=limb_neurons; strategy=ga; limb_neurons_shared=false; start_y_m=-3",
+    ),
+    (
+        "networks that grow",
+        [3, 20, 4],
+        "controller=grown; strategy=neat; neat.add_node=0.3; neat.add_link=0.3; neat.weight_step=1; \
+         species_threshold=1; neat.species=4; neat.stagnation=3; start_y_m=-3",
+    ),
+    (
+        "Q-learning",
+        [3, 8, 5],
+        "controller=decisions; strategy=q_learning; rate_power=0.7; rate_floor=0.1; exploration.first=0.8; \
+         exploration.decay=0.9; exploration.least=0.2; start_y_m=-3",
+    ),
+    (
+        "XCS",
+        [3, 8, 5],
+        "controller=decisions; strategy=xcs; xcs.rules=300; xcs.wildcard_share=0.6; xcs.discount=0.8; \
+         xcs.learning_rate=0.1; ga_interval=5; error_threshold=20; start_y_m=-3",
+    ),
+    (
+        "ZCS",
+        [3, 8, 5],
+        "controller=decisions; strategy=zcs; zcs.rules=300; zcs.wildcard_share=0.6; zcs.discount=0.8; \
+         zcs.learning_rate=0.1; ga_rate=0.5; start_y_m=-3",
+    ),
 ];
 
 /// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.

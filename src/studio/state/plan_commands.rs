@@ -5,10 +5,27 @@ use super::library::{Library, founder_of};
 use super::lineup::champion_of;
 use super::sweep::changes_of;
 use super::what_if::{ChangedStage, WorldChange, dropped, kept, kept_lane, what_if};
+use crate::evolve::StrategyKind;
+use crate::genome::ControllerKind;
+use crate::schema::Choices;
 use crate::studio::commands::PlanCommand;
 use crate::studio::stage::Show;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::ui::notifications::Notices;
+
+/// What a choice of strategy or controller changed beside itself, in words.
+fn partner_in_words((field, name): (&str, &str)) -> String {
+    match field {
+        "genome.controller" => match ControllerKind::named(field, name) {
+            Ok(kind) => format!("The controller is now {}, to suit the strategy.", kind.title()),
+            Err(_) => String::new(),
+        },
+        _ => match StrategyKind::named(field, name) {
+            Ok(kind) => format!("The strategy is now {}, to suit the controller.", kind.title()),
+            Err(_) => String::new(),
+        },
+    }
+}
 
 /// Executes a command; returns what the stage shows then, if that changes.
 ///
@@ -26,8 +43,13 @@ pub(crate) fn apply_to_plan(
         PlanCommand::SetSeed(seed) => run.set_seed(*seed)?,
         PlanCommand::SetPopulation(population) => run.set_population(*population)?,
         PlanCommand::SetField { field, text } => {
-            let change = WorldChange::Fields(vec![(field, text)]);
-            return what_if(run, stage, &change);
+            let mut fields = vec![(field.as_str(), text.as_str())];
+            // A strategy and a controller that do not go together would be refused.
+            if let Some(partner) = run.next_settings().partner_change(field, text) {
+                notices.info(partner_in_words(partner));
+                fields.push(partner);
+            }
+            return what_if(run, stage, &WorldChange::Fields(fields));
         }
         PlanCommand::SetFields(changes) => {
             let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
