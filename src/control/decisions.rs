@@ -9,7 +9,7 @@ use super::network::servos;
 use super::postures::bend;
 use super::rewards::RewardMeter;
 use super::servo::JointServos;
-use super::situation::{Situation, way_m};
+use super::situation::{SensedSituation, way_m};
 use super::{Controller, Observation, Senses};
 use crate::genome::controllers::{DECISIONS_PER_S, DecisionGenes, POSTURES, Policy};
 use crate::learn::Episode;
@@ -32,7 +32,7 @@ pub struct DecisionController {
     /// Number of the decision that holds; none before the first step.
     decision: Option<u64>,
     /// The situation in which it was taken.
-    at: Option<Place>,
+    at: Option<DecisionPoint>,
     action: usize,
     /// The last posture other than holding one.
     posture: usize,
@@ -49,7 +49,7 @@ pub struct DecisionController {
 
 /// A situation as tables and rules distinguish it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Place {
+struct DecisionPoint {
     state: u32,
     bits: u32,
 }
@@ -98,14 +98,14 @@ impl DecisionController {
     }
 
     /// The situation that the senses show now.
-    fn place(&self, observation: &Observation) -> Place {
+    fn place(&self, observation: &Observation) -> DecisionPoint {
         let senses = &observation.perception;
-        let situation = Situation::of(senses, self.posture, self.moved_m);
-        Place { state: situation.table_state() as u32, bits: situation.bits(senses) }
+        let situation = SensedSituation::of(senses, self.posture, self.moved_m);
+        DecisionPoint { state: situation.table_state() as u32, bits: situation.bits(senses) }
     }
 
     /// The posture that the policy takes, or the explorer's.
-    fn choice(&mut self, place: &Place) -> usize {
+    fn choice(&mut self, place: &DecisionPoint) -> usize {
         let explorer = self.genes.explorer.as_ref().zip(self.rng.as_mut());
         let frozen = match &self.genes.policy {
             Policy::Table(table) => {
@@ -132,7 +132,7 @@ impl DecisionController {
     }
 
     /// Adds the experience of the decision that held until now. `next` is where it led; nothing follows an end.
-    fn close(&mut self, next: Option<Place>) {
+    fn close(&mut self, next: Option<DecisionPoint>) {
         let Some(at) = self.at.filter(|_| self.end.is_none()) else { return };
         let is_end = next.is_none();
         match &mut self.genes.policy {

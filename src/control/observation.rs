@@ -1,7 +1,7 @@
 //! The state of the world as a controller perceives it.
 
 use super::{ActiveSenses, Perception};
-use crate::world::{Climb, JointState, PhysicsSettings, Simulation};
+use crate::world::{ClimbProgress, JointState, PhysicsSettings, Simulation};
 
 /// The senses that a controller needs. Others are not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -36,7 +36,7 @@ pub struct Observation {
     /// All senses, scaled for controllers; empty unless the controller needs the surroundings.
     pub perception: Perception,
     /// Progress up the stairs; zero unless the controller needs it.
-    pub climb: Climb,
+    pub climb: ClimbProgress,
 }
 
 impl Observation {

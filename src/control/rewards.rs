@@ -4,7 +4,7 @@
 
 use crate::genome::controllers::DECISION_DISCOUNT;
 use crate::learn::q_table::shaped;
-use crate::world::Climb;
+use crate::world::ClimbProgress;
 
 /// Cost of each decision, so that a shorter way is worth more.
 const DECISION: f32 = -0.02;
@@ -25,7 +25,7 @@ const RULE_REWARD: f32 = 1000.0;
 #[derive(Debug, Clone, Default)]
 pub struct RewardMeter {
     start_m: Option<f32>,
-    now: Climb,
+    now: ClimbProgress,
     /// The furthest way so far, in treads from the start, and that at the beginning of the decision.
     furthest: [f32; 2],
     /// Potential at the beginning of the decision.
@@ -35,7 +35,7 @@ pub struct RewardMeter {
 
 impl RewardMeter {
     /// Takes in the progress before a step.
-    pub fn observe(&mut self, climb: &Climb) {
+    pub fn observe(&mut self, climb: &ClimbProgress) {
         self.now = *climb;
         self.start_m = self.start_m.or(Some(climb.way_m));
         self.furthest[0] = self.furthest[0].max(self.treads());
@@ -98,8 +98,8 @@ impl RewardMeter {
 mod tests {
     use super::*;
 
-    fn at(steps: u32, way_m: f32) -> Climb {
-        Climb { steps, way_m, tread_m: 2.0, is_on_landing: steps == 10 }
+    fn at(steps: u32, way_m: f32) -> ClimbProgress {
+        ClimbProgress { steps, way_m, tread_m: 2.0, is_on_landing: steps == 10 }
     }
 
     fn near(found: f32, expected: f32) {

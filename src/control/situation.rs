@@ -3,7 +3,7 @@
 use super::Perception;
 use super::perception::LimbSenses;
 use super::postures::bend;
-use super::sense::{GAP_SCALE_M, SPEED_SCALE_M_S};
+use super::sense::{ANGLE_SCALE_RAD, GAP_SCALE_M, SPEED_SCALE_M_S};
 use crate::genome::controllers::SITUATION_BITS;
 
 /// The edges between near and far gaps of the head, in metres.
@@ -14,12 +14,14 @@ const STEP_EDGES_M: [f32; 2] = [0.05, 0.6];
 const PITCH_EDGES: [f32; 2] = [-0.3, 0.3];
 /// The way since the last decision from which on the snake has moved, in metres.
 const MOVED_M: f32 = 0.1;
+/// The bend from which on a joint is folded, in radians.
+const FOLDED_RAD: f32 = 0.9;
 /// The gap below which the middle limb is near a riser, in metres.
 const MIDDLE_GAP_M: f32 = 1.0;
 
 /// A situation in which a decision is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Situation {
+pub struct SensedSituation {
     /// The last posture that was taken, other than holding one: an index of the postures.
     pub posture: usize,
     /// Gap of the head: 0 near, 1 within reach, 2 far.
@@ -32,6 +34,8 @@ pub struct Situation {
     pub has_moved: bool,
     /// Whether the middle limb is near a riser.
     pub middle_near: bool,
+    /// Whether the joint before the middle limb is folded, and the one behind it.
+    pub folded: [bool; 2],
 }
 
 /// The half-open bin of a value: `edges[i-1] <= value < edges[i]`.
@@ -39,11 +43,12 @@ fn bin(value: f32, edges: [f32; 2]) -> usize {
     edges.iter().filter(|edge| value >= **edge).count()
 }
 
-impl Situation {
+impl SensedSituation {
     /// The situation that the senses show, after a way in metres since the last decision.
     pub fn of(senses: &Perception, posture: usize, moved_m: f32) -> Self {
         let head = senses.limbs.first().copied().unwrap_or_default();
-        let middle = senses.limbs.get(senses.limbs.len() / 2).copied().unwrap_or_default();
+        let middle_limb = senses.limbs.len() / 2;
+        let middle = senses.limbs.get(middle_limb).copied().unwrap_or_default();
         Self {
             posture,
             gap: bin(head.gap * GAP_SCALE_M, GAP_EDGES_M),
@@ -51,6 +56,10 @@ impl Situation {
             pitch: bin(head.pitch, PITCH_EDGES),
             has_moved: moved_m > MOVED_M,
             middle_near: middle.gap * GAP_SCALE_M < MIDDLE_GAP_M,
+            folded: [middle_limb.wrapping_sub(1), middle_limb].map(|joint| {
+                let joint = senses.joints.get(joint).copied().unwrap_or_default();
+                (joint.bend * ANGLE_SCALE_RAD).abs() >= FOLDED_RAD
+            }),
         }
     }
 
@@ -63,6 +72,8 @@ impl Situation {
             (self.pitch, 3),
             (usize::from(self.has_moved), 2),
             (usize::from(self.middle_near), 2),
+            (usize::from(self.folded[0]), 2),
+            (usize::from(self.folded[1]), 2),
         ] {
             state = state * radix + digit;
         }
@@ -122,6 +133,12 @@ impl Situation {
         if self.middle_near {
             parts.push("middle at a riser");
         }
+        match self.folded {
+            [true, true] => parts.push("folded in front and behind"),
+            [true, false] => parts.push("folded in front"),
+            [false, true] => parts.push("folded behind"),
+            [false, false] => {}
+        }
         parts.join(", ")
     }
 }
@@ -142,14 +159,15 @@ mod tests {
         let mut states = BTreeSet::new();
         for posture in 1..POSTURES.len() {
             for number in 0..27 {
-                for flags in 0..4 {
-                    let situation = Situation {
+                for flags in 0..16 {
+                    let situation = SensedSituation {
                         posture,
                         gap: number % 3,
                         step: number / 3 % 3,
                         pitch: number / 9,
                         has_moved: flags & 1 == 1,
                         middle_near: flags & 2 == 2,
+                        folded: [flags & 4 == 4, flags & 8 == 8],
                     };
                     states.insert(situation.table_state());
                 }
@@ -163,10 +181,10 @@ mod tests {
     fn bins_are_half_open() {
         let mut senses = Perception::default();
         senses.limbs = vec![LimbSenses { gap: 0.125, ..LimbSenses::default() }; 5];
-        assert_eq!(Situation::of(&senses, 1, 0.0).gap, 1, "0.25 m belongs to the upper bin");
+        assert_eq!(SensedSituation::of(&senses, 1, 0.0).gap, 1, "0.25 m belongs to the upper bin");
         senses.limbs[0].gap = 0.124;
         senses.limbs[0].pitch = -0.31;
-        let situation = Situation::of(&senses, 1, 0.2);
+        let situation = SensedSituation::of(&senses, 1, 0.2);
         assert_eq!((situation.gap, situation.pitch, situation.has_moved), (0, 0, true));
         assert!(situation.words().starts_with("riser at the head, "), "{}", situation.words());
     }

@@ -6,7 +6,7 @@ use rapier3d::prelude::*;
 
 mod balance;
 mod build;
-pub(super) mod climb;
+mod climb;
 mod continued;
 mod damping;
 mod health_check;

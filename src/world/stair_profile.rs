@@ -2,7 +2,7 @@
 //!
 //! Every question is answered in constant time from the shape of the stairs, without a ray through the engine.
 
-use super::{Climb, Stairs};
+use super::Stairs;
 
 /// The profile of a staircase.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +22,19 @@ pub struct NextStep {
     pub gap_m: f32,
     /// Height of its tread over the ground, in metres.
     pub top_z_m: f32,
+}
+
+/// The progress of the middle limb up the stairs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ClimbProgress {
+    /// Steps under it.
+    pub steps: u32,
+    /// Its y, in metres; without a step under it at most that of the first riser.
+    pub way_m: f32,
+    /// Depth of a step, in metres.
+    pub tread_m: f32,
+    /// Whether all steps are under it.
+    pub is_on_landing: bool,
 }
 
 impl StairProfile {
@@ -56,11 +69,11 @@ impl StairProfile {
 
     /// The progress up the stairs of a limb whose centre is at a place, in metres: see
     /// [`Stairs::steps_under`](super::Stairs::steps_under).
-    pub fn climb(&self, [x_m, y_m, z_m]: [f32; 3]) -> Climb {
+    pub fn climb(&self, [x_m, y_m, z_m]: [f32; 3]) -> ClimbProgress {
         let passed = if self.is_in_line(x_m, y_m) { self.risers_passed(y_m) } else { 0 };
         let is_over = self.heights_m.get(passed).is_some_and(|height_m| z_m >= *height_m);
         let steps = if is_over { passed } else { 0 };
-        Climb {
+        ClimbProgress {
             steps: steps as u32,
             way_m: if steps > 0 { y_m } else { y_m.min(self.first_riser_y_m) },
             tread_m: self.tread_m,

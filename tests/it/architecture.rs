@@ -39,8 +39,14 @@ fn all_files() -> Vec<(String, String)> {
 /// All source files without tests.
 fn files() -> Vec<(String, String)> {
     let texts = all_files();
+    let exists = |path: &str| texts.iter().any(|(of, _)| of == path);
+    // A module is a file, or a folder.
+    let found = |path: String| {
+        let folder = path.replace(".rs", "/mod.rs");
+        if exists(&folder) { folder } else { path }
+    };
     let of_tests: Vec<String> =
-        texts.iter().flat_map(|(path, text)| test_files(path, text)).collect();
+        texts.iter().flat_map(|(path, text)| test_files(path, text)).map(found).collect();
     for path in &of_tests {
         assert!(
             texts.iter().any(|(of, _)| of == path),
@@ -49,7 +55,8 @@ fn files() -> Vec<(String, String)> {
     }
     // The submodules of a test module are tests, too.
     let is_of_tests = |path: &String| {
-        let is_below = |of: &String| path.starts_with(&of.replace(".rs", "/"));
+        let is_below =
+            |of: &String| path.starts_with(&of.replace("/mod.rs", "/").replace(".rs", "/"));
         of_tests.iter().any(|of| path == of || is_below(of))
     };
     texts

@@ -1,7 +1,5 @@
 //! Settings of the learners.
 
-use super::EvolutionSettings;
-use super::size::GenomeSize;
 use crate::check::{Invalid, within};
 use crate::genome::controllers::{DECISION_DISCOUNT, DECISIONS_PER_S};
 use crate::learn::classifiers::{XcsSettings, ZcsSettings};
@@ -68,11 +66,8 @@ impl QLearningSettings {
 }
 
 /// Checks that the experience of a generation of learners fits into memory.
-pub(super) fn check_learners(
-    evolution: &EvolutionSettings,
-    _: &GenomeSize<'_>,
-) -> Result<(), Invalid> {
-    within("evolution.population", evolution.population, 2..=MOST_LEARNERS)
+pub(super) fn check_learners(population: u32) -> Result<(), Invalid> {
+    within("evolution.population", population, 2..=MOST_LEARNERS)
 }
 
 setting_group! {

@@ -160,7 +160,7 @@ strategy_kinds! {
         settings: &["neat"],
         has_fixed_population: true,
         only_controller: Some(ControllerKind::Grown),
-        check_size: NeatSettings::check_size,
+        check_size: |evolution, _| NeatSettings::check_size(evolution.population),
         ..StrategyInfo::PLAIN
     };
     /// Tabular Q-learning, of one table that all episodes share.
@@ -171,7 +171,7 @@ strategy_kinds! {
         color: [0x56, 0xb4, 0xe9],
         settings: &["q_learning", "exploration"],
         only_controller: Some(ControllerKind::Decisions),
-        check_size: check_learners,
+        check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
     /// XCS, of one population of rules that all episodes share.
@@ -182,7 +182,7 @@ strategy_kinds! {
         color: [0x8c, 0x56, 0x4b],
         settings: &["xcs", "exploration"],
         only_controller: Some(ControllerKind::Decisions),
-        check_size: check_learners,
+        check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
     /// ZCS, of one population of rules that all episodes share.
@@ -193,7 +193,7 @@ strategy_kinds! {
         color: [0x9a, 0x9b, 0x1a],
         settings: &["zcs", "exploration"],
         only_controller: Some(ControllerKind::Decisions),
-        check_size: check_learners,
+        check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
 }

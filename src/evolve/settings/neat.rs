@@ -1,8 +1,6 @@
 //! Settings of NEAT.
 
-use super::EvolutionSettings;
 use super::cma_es::LEARNED;
-use super::size::GenomeSize;
 use crate::check::{Invalid, within};
 use crate::learn::neat::{LARGEST_NEAT_POPULATION, NeatRules};
 use crate::schema::{number, setting_group, whole};
@@ -72,11 +70,7 @@ impl NeatSettings {
     }
 
     /// Checks that a generation fits into memory.
-    pub(super) fn check_size(
-        evolution: &EvolutionSettings,
-        _: &GenomeSize<'_>,
-    ) -> Result<(), Invalid> {
-        let most = LARGEST_NEAT_POPULATION as u32;
-        within("evolution.population", evolution.population, 2..=most)
+    pub(super) fn check_size(population: u32) -> Result<(), Invalid> {
+        within("evolution.population", population, 2..=LARGEST_NEAT_POPULATION as u32)
     }
 }

@@ -25,7 +25,7 @@ pub use central::{CentralNetwork, sense_count};
 pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
 pub use decisions::{
     DECISION_DISCOUNT, DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, SITUATION_BITS,
-    TABLE_STATES,
+    TABLE_QUESTIONS, TABLE_STATES,
 };
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;

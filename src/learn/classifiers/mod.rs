@@ -11,6 +11,7 @@
 mod chance;
 mod condition;
 mod experience;
+mod limits;
 mod mask_table;
 #[cfg(test)]
 mod replay_tests;
@@ -35,6 +36,7 @@ mod zcs_textbook;
 
 pub use condition::Condition;
 pub use experience::{ActionChoice, EpisodeEnd, RecordedDecision, ReplayReport};
+pub use limits::{MOST_ACTIONS, MOST_REWARD, MOST_RULES};
 pub use xcs::Xcs;
 pub use xcs_episode::XcsEpisode;
 pub use xcs_rules::XcsRule;
@@ -43,10 +45,3 @@ pub use xcs_settings::XcsSettings;
 pub use zcs::{SavedZcs, Zcs};
 pub use zcs_episode::ZcsEpisode;
 pub use zcs_rules::{ZcsRule, ZcsSettings};
-
-/// Maximum number of actions of a classifier system.
-pub const MOST_ACTIONS: usize = 256;
-/// Maximum number of rules of a classifier system.
-pub const MOST_RULES: u32 = 100_000;
-/// Maximum size of the reward of one decision, in units of reward.
-pub const MOST_REWARD: f32 = 1.0e6;

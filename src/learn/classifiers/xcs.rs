@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::chance::first_largest;
 use super::condition::LENGTHS;
 use super::experience::{ActionChoice, EpisodeEnd, RecordedDecision, ReplayReport};
+use super::limits::{MOST_ACTIONS, MOST_REWARD};
 use super::mask_table::MaskTable;
 use super::xcs_episode::XcsEpisode;
 use super::xcs_rules::{XcsRule, check_rules};
 use super::xcs_saved::SavedXcs;
 use super::xcs_settings::XcsSettings;
-use super::{MOST_ACTIONS, MOST_REWARD};
 use crate::check::{Invalid, within};
 
 /// An XCS over situations of a fixed number of bits and a fixed number of actions.

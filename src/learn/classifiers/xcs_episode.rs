@@ -6,10 +6,10 @@
 use rand::Rng;
 use rand::RngExt;
 
-use super::MOST_REWARD;
 use super::chance::random_largest;
 use super::condition::all_bits;
 use super::experience::{ActionChoice, EpisodeEnd, ReplayReport};
+use super::limits::MOST_REWARD;
 use super::xcs::Xcs;
 
 /// An episode in progress. If it is dropped instead of finished, nothing is learned from its last action.

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::MOST_RULES;
 use super::condition::Condition;
+use super::limits::MOST_RULES;
 use crate::check::{Invalid, within};
 
 /// Largest prediction and error in size, in units of reward: the largest reward, again at every decision for ever,

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{MOST_REWARD, MOST_RULES};
+use super::limits::{MOST_REWARD, MOST_RULES};
 use crate::check::{Invalid, within};
 
 /// The parameters of [`Xcs`](super::Xcs). The Greek letters are those of Butz and Wilson (2001).

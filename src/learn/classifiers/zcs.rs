@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 use super::chance::first_largest;
 use super::condition::{Condition, LENGTHS};
 use super::experience::{ActionChoice, EpisodeEnd, RecordedDecision, ReplayReport};
+use super::limits::{MOST_ACTIONS, MOST_REWARD};
 use super::mask_table::MaskTable;
 use super::zcs_episode::ZcsEpisode;
 use super::zcs_rules::{ZcsRule, ZcsSettings};
-use super::{MOST_ACTIONS, MOST_REWARD};
 use crate::check::{Invalid, within};
 
 /// A ZCS over situations of a fixed number of bits and a fixed number of actions.

@@ -6,10 +6,10 @@
 use rand::Rng;
 use rand::RngExt;
 
-use super::MOST_REWARD;
 use super::chance::{happens, random_largest, roulette};
 use super::condition::{Condition, all_bits};
 use super::experience::{ActionChoice, EpisodeEnd, ReplayReport};
+use super::limits::MOST_REWARD;
 use super::mask_table::forget;
 use super::zcs::Zcs;
 use super::zcs_rules::{MOST_STRENGTH, ZcsRule};

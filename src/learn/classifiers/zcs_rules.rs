@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::condition::Condition;
-use super::{MOST_REWARD, MOST_RULES};
+use super::limits::{MOST_REWARD, MOST_RULES};
 use crate::check::{Invalid, within};
 
 /// Largest strength of a rule, in units of reward. A small action set that is paid by a large one can exceed the

@@ -10,7 +10,7 @@ use super::mutation::{mutated, symmetric};
 use super::offspring::comparable;
 use super::reproduction::Ranking;
 use super::rules::NeatRules;
-use super::species::{Progress, SpeciesRecord, SpeciesSummary, assigned};
+use super::species::{FitnessProgress, SpeciesRecord, SpeciesSummary, assigned};
 use crate::check::{Invalid, within};
 use crate::rng::{Purpose, stream};
 
@@ -26,7 +26,7 @@ pub struct NeatPopulation {
     pub(super) next_species: u32,
     /// The threshold of the distance, which differs from that of the rules if it is adjusted.
     pub(super) threshold: f64,
-    pub(super) progress: Progress,
+    pub(super) progress: FitnessProgress,
     /// The species of this generation in ascending order of id; each has members.
     pub(super) records: Vec<SpeciesRecord>,
     /// The species of the last generation, with its fitness.
@@ -185,7 +185,7 @@ impl NeatPopulation {
             innovations,
             next_species,
             threshold: rules.species_threshold,
-            progress: Progress::default(),
+            progress: FitnessProgress::default(),
             records: (1..next_species).map(new_species).collect(),
             evaluated: vec![],
             memberships,
@@ -219,7 +219,7 @@ impl NeatPopulation {
 }
 
 fn new_species(id: u32) -> SpeciesRecord {
-    SpeciesRecord { id, progress: Progress::default() }
+    SpeciesRecord { id, progress: FitnessProgress::default() }
 }
 
 fn first_genome(

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::genome::NetworkGenome;
 use super::population::{LARGEST_NEAT_POPULATION, NeatPopulation};
-use super::species::{Progress, SpeciesSummary};
+use super::species::{FitnessProgress, SpeciesSummary};
 use crate::check::{Invalid, within};
 
 impl NeatPopulation {
@@ -73,7 +73,7 @@ impl NeatPopulation {
     }
 }
 
-fn check_progress(progress: &Progress) -> Result<(), Invalid> {
+fn check_progress(progress: &FitnessProgress) -> Result<(), Invalid> {
     within("best", progress.best.unwrap_or(0.0), f64::MIN..=f64::MAX)
 }
 

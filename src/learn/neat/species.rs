@@ -13,13 +13,13 @@ pub struct SpeciesRecord {
     /// Number of the species; ascending in the order of appearance.
     pub id: u32,
     /// How its best fitness went on.
-    pub progress: Progress,
+    pub progress: FitnessProgress,
 }
 
 /// The course of the best fitness of a species or a population.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Progress {
+pub struct FitnessProgress {
     /// Number of generations that were evaluated.
     pub age: u32,
     /// The best fitness ever of a member.
@@ -44,7 +44,7 @@ pub struct SpeciesSummary {
     pub age: u32,
 }
 
-impl Progress {
+impl FitnessProgress {
     /// The progress after one more generation, in which the best member had this fitness.
     pub fn after(&self, best: f64) -> Self {
         let is_better = self.best.is_none_or(|record| best > record);
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn generations_without_progress_are_counted() {
-        let mut record = Progress::default();
+        let mut record = FitnessProgress::default();
         let expected = [(1.0, 0), (1.0, 1), (0.5, 2), (1.5, 0)];
         for (age, (best, unimproved)) in (1..).zip(expected) {
             record = record.after(best);

@@ -7,8 +7,6 @@
 pub const SOLVED_ACTIONS: usize = 100_000;
 /// Number of starts of [`generalisation`].
 pub const GENERALISATION_STARTS: usize = 625;
-/// Number of starts from which a controller should balance to count as general.
-pub const GENERAL_ENOUGH: usize = 200;
 
 const GRAVITY_M_S2: f64 = 9.8;
 const CART_KG: f64 = 1.0;

@@ -38,9 +38,13 @@ pub const POSTURES: [&str; 12] = [
     "tail down",
 ];
 
-/// Number of situations that a table distinguishes: eleven last postures, three gaps, heights and pitches of the head,
-/// whether the snake has moved, and whether the middle limb is near a riser.
-pub const TABLE_STATES: usize = (POSTURES.len() - 1) * 3 * 3 * 3 * 2 * 2;
+/// Number of situations that a table distinguishes: eleven last postures, three gaps, heights and pitches of the head, and
+/// four questions: see [`TABLE_QUESTIONS`].
+pub const TABLE_STATES: usize = (POSTURES.len() - 1) * 3 * 3 * 3 * (1 << TABLE_QUESTIONS.len());
+
+/// What a table asks of a situation beside its bins.
+pub const TABLE_QUESTIONS: [&str; 4] =
+    ["moving", "middle at a riser", "folded in front", "folded behind"];
 
 /// The bits by which rules distinguish situations, in their order.
 pub const SITUATION_BITS: [&str; 24] = [
