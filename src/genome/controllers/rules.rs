@@ -223,7 +223,7 @@ mod tests {
             }
         }
         let gaits = GenomeSpace { controller: ControllerKind::Gait, ..space };
-        assert_eq!(gaits.library_coordinates(SHAPE), []);
+        assert!(gaits.library_coordinates(SHAPE).is_empty());
     }
 
     #[test]
