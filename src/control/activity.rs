@@ -177,7 +177,6 @@ impl ActiveRule {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::with_fields;
     use crate::genome::controllers::{POSTURES, Policy};
     use crate::genome::{ControllerGenes, ControllerKind, Genome};
     use crate::learn::classifiers::{Xcs, XcsSettings, Zcs, ZcsSettings};
@@ -188,9 +187,8 @@ mod tests {
 
     /// A random genome of a kind, after a change, and its rollout after so many steps.
     fn played(kind: ControllerKind, steps: u32, change: impl Fn(&mut Genome)) -> Rollout {
-        let settings = load_preset("climb").expect("shipped").settings;
-        let fields = [("genome.controller", kind.name())];
-        let settings = with_fields(&settings, fields).expect("allowed");
+        let mut settings = load_preset("climb").expect("shipped").settings;
+        settings.genome.controller = kind;
         let mut rng = stream(1, 1, 3, Purpose::Birth);
         let shape = settings.trial.genome_shape();
         let mut genome = settings.genome.random_genome(shape, &mut rng);

@@ -255,8 +255,8 @@ fn focused<'l>(lanes: &[&'l Lane], on_stage: &OnStage) -> Option<&'l Lane> {
 
 /// Draws the panels for the dock area.
 struct Viewer<'v, 'w, 's> {
-    /// Panels whose tabs have small names.
-    small_tabs: Vec<PanelKind>,
+    /// Panels whose tabs have small names, and the sizes of these.
+    small_tabs: Vec<(PanelKind, f32)>,
     panels: &'v mut Panels,
     data: &'v PanelData<'w, 's>,
     lanes: &'v [&'v Lane],
@@ -350,7 +350,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
     }
 
     fn title(&mut self, kind: &mut PanelKind) -> egui::WidgetText {
-        tab_name(*kind, self.small_tabs.contains(kind))
+        tab_name(*kind, &self.small_tabs)
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, kind: &mut PanelKind) {

@@ -1,7 +1,7 @@
 //! The panel with snakes of several controllers.
 
 use super::*;
-use crate::evolve::{Settings, with_fields};
+use crate::evolve::with_fields;
 use crate::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
 use crate::genome::{ControllerGenes, Genome};
 use crate::learn::classifiers::{Zcs, ZcsSettings};
@@ -16,9 +16,8 @@ use std::sync::Arc;
 /// A lane of a random snake with a controller, at 0.5 s, in a world with other settings.
 fn lane_of(kind: ControllerKind, fields: &[(&str, &str)], change: fn(&mut Genome)) -> Lane {
     let settings = load_preset("climb").expect("shipped").settings;
-    let controller = [("genome.controller", kind.name())];
-    let settings: Settings =
-        with_fields(&settings, controller.into_iter().chain(fields.iter().copied())).expect("fits");
+    let mut settings = with_fields(&settings, fields.iter().copied()).expect("allowed");
+    settings.genome.controller = kind;
     let mut rng = stream(1, 1, 3, Purpose::Birth);
     let mut genome = settings.genome.random_genome(settings.trial.genome_shape(), &mut rng);
     change(&mut genome);
@@ -92,7 +91,7 @@ fn senses_that_do_not_work_are_marked_as_frozen() {
     let panel = panel(&lane, 0);
     let frozen: Vec<String> = panel
         .query_all_by_label_contains("frozen")
-        .filter_map(|node| node.accesskit_node().label())
+        .filter_map(|node| node.accesskit_node().value())
         .collect();
     let starts = |name: &str| frozen.iter().any(|label| label.starts_with(name));
     assert!(starts("Gap") && starts("Step up") && starts("Clearance"), "{frozen:?}");
