@@ -11,6 +11,8 @@ use crate::studio::ui::theme;
 
 /// Height of the list of rules, in points.
 const LIST_HEIGHT: f32 = theme::GAP * 36.0;
+/// Width of the names of postures, in points.
+const POSTURE_NAMES: f32 = theme::GAP * 20.5;
 /// Height of a rule in the list, in points.
 const RULE_HEIGHT: f32 = theme::GAP * 5.0;
 
@@ -41,6 +43,7 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
         let is_chosen = index == decision.chosen;
         let row = ValueBar {
             name: posture.name,
+            names_width: POSTURE_NAMES,
             text: posture.worth.map_or_else(|| "-".to_owned(), worth_in_words),
             value: posture.worth.unwrap_or(0.0),
             range: [least, most],

@@ -18,7 +18,7 @@ const MOST_HEIGHT: f32 = theme::GAP * 48.0;
 /// Minimum height of the graph, in points.
 const LEAST_HEIGHT: f32 = theme::GAP * 16.0;
 /// Widths of the names beside inputs and outputs, in points.
-const INPUT_NAMES: f32 = theme::GAP * 13.5;
+const INPUT_NAMES: f32 = theme::GAP * 15.5;
 const OUTPUT_NAMES: f32 = theme::GAP * 9.5;
 /// Largest radius of a node, in points.
 const RADIUS: f32 = theme::GAP * 0.75;

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 
 use super::SensesView;
-use super::value_bar::ValueBar;
+use super::value_bar::{SENSE_NAMES, ValueBar};
 use crate::control::{ActiveSenses, Perception, SenseKind};
 use crate::score::Rollout;
 use crate::studio::ui::decimals::decimals;
@@ -115,6 +115,7 @@ impl ReadSenses<'_> {
         };
         let row = ValueBar {
             name: &name,
+            names_width: SENSE_NAMES,
             text,
             value,
             range,

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::value_bar::ValueBar;
+use super::value_bar::{SENSE_NAMES, ValueBar};
 use crate::control::ReflexActivity;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::explain;
@@ -18,6 +18,7 @@ pub(super) fn reflex_view(ui: &mut egui::Ui, reflex: &ReflexActivity) {
         let color = if push.push < 0.0 { palette.torque_minus } else { palette.torque_plus };
         let row = ValueBar {
             name: push.name,
+            names_width: SENSE_NAMES,
             text: decimals(push.push, 2),
             value: push.push,
             range: [-most, most],
@@ -31,6 +32,7 @@ pub(super) fn reflex_view(ui: &mut egui::Ui, reflex: &ReflexActivity) {
     }
     let row = ValueBar {
         name: "Target moved",
+        names_width: SENSE_NAMES,
         text: format!("{}°", decimals(moved_deg, 1)),
         value: moved_deg,
         range: [-reach_deg, reach_deg],

@@ -8,6 +8,8 @@ use crate::studio::ui::theme;
 /// A row of the panel.
 pub(super) struct ValueBar<'b> {
     pub name: &'b str,
+    /// Width of the names of the list, in points.
+    pub names_width: f32,
     /// The number with its unit.
     pub text: String,
     /// The value on the bar, and the ends of the bar.
@@ -25,9 +27,10 @@ pub(super) struct ValueBar<'b> {
 
 /// Height of a row, in points.
 pub(super) const ROW_HEIGHT: f32 = theme::GAP * 2.25;
-/// Widths of the names, the numbers and the notes, in points.
-const NAMES: f32 = theme::GAP * 14.0;
-const NUMBERS: f32 = theme::GAP * 8.5;
+/// Width of the names of senses, in points.
+pub(super) const SENSE_NAMES: f32 = theme::GAP * 12.5;
+/// Widths of the numbers and the notes, in points.
+const NUMBERS: f32 = theme::GAP * 9.5;
 const NOTES: f32 = theme::GAP * 9.5;
 /// Height of a bar, in points.
 const BAR: f32 = theme::GAP * 0.75;
@@ -56,7 +59,7 @@ impl ValueBar<'_> {
         let left = numbers_end + theme::GAP;
         painter.text(at(left), egui::Align2::LEFT_CENTER, self.note, small, weak);
         let bar = egui::Rect::from_min_max(
-            egui::pos2(rect.left() + NAMES, middle - BAR / 2.0),
+            egui::pos2(rect.left() + self.names_width, middle - BAR / 2.0),
             egui::pos2(numbers_end - NUMBERS - theme::GAP / 2.0, middle + BAR / 2.0),
         );
         if bar.width() > 1.0 {
