@@ -1,6 +1,6 @@
 //! The interface of a controller.
 
-use super::{Observation, Senses, WaveUses};
+use super::{Activity, Observation, Senses, WaveUses};
 use crate::learn::Episode;
 use crate::world::JointTorque;
 
@@ -20,6 +20,12 @@ pub trait Controller: Send + Sync {
 
     /// How often it chose each wave of its library; none if it has none.
     fn wave_uses(&self) -> Option<WaveUses> {
+        None
+    }
+
+    /// What it is doing, for a person to see: as it acted last, in the joint of this number where each has a network of its
+    /// own. None before the first step, and for a controller that has nothing to show.
+    fn activity(&self, _observation: &Observation, _joint: usize) -> Option<Activity> {
         None
     }
 

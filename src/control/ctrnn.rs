@@ -2,7 +2,7 @@
 
 use super::network::{place, servos};
 use super::servo::JointServos;
-use super::{Controller, Observation, Senses};
+use super::{Activity, Controller, NetworkActivity, NodeColumn, Observation, Senses};
 use crate::genome::controllers::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, ServoGenes};
 use crate::world::JointTorque;
 
@@ -101,6 +101,29 @@ impl Controller for CtrnnController {
             [(2.0 * bend - 1.0) * bend_range_rad, (2.0 * twist - 1.0) * twist_range_rad]
         });
         self.servo.pull(observation, targets, torques);
+    }
+
+    /// The first neurons of the neighbours among the inputs are those that it reads next.
+    fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {
+        observation.perception.joints.get(joint)?;
+        let inputs = self.inputs(joint, observation);
+        let mut shown = NetworkActivity { joint: Some(joint), ..NetworkActivity::default() };
+        for (name, value) in CTRNN_INPUTS.iter().zip(inputs) {
+            shown.add(NodeColumn::Input, *name, value);
+        }
+        let names = ["neuron 1: bend target", "neuron 2: twist target", "neuron 3"];
+        for (name, value) in names.into_iter().zip(*self.outputs.get(joint)?) {
+            shown.add_sigmoid(NodeColumn::Output, name, value);
+        }
+        for (index, neuron) in self.genes.neurons.iter().enumerate() {
+            for (from, weight) in neuron.inputs.iter().enumerate() {
+                shown.link(from, inputs.len() + index, *weight);
+            }
+            for (from, weight) in neuron.own.iter().enumerate() {
+                shown.link(inputs.len() + from, inputs.len() + index, *weight);
+            }
+        }
+        Some(Activity::Network(shown))
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {

@@ -10,10 +10,12 @@ use super::postures::bend;
 use super::rewards::RewardMeter;
 use super::servo::JointServos;
 use super::situation::{SensedSituation, way_m};
-use super::{Controller, Observation, Senses};
+use super::{
+    ActiveRule, Activity, Controller, DecisionActivity, Observation, PostureWorth, Senses,
+};
 use crate::genome::controllers::{DECISIONS_PER_S, DecisionGenes, POSTURES, Policy};
 use crate::learn::Episode;
-use crate::learn::classifiers::{EpisodeEnd, RecordedDecision};
+use crate::learn::classifiers::{Condition, EpisodeEnd, RecordedDecision, XcsRule};
 use crate::learn::q_table::{Next, Transition};
 use crate::rng::{Purpose, stream};
 use crate::world::JointTorque;
@@ -50,6 +52,7 @@ pub struct DecisionController {
 /// A situation as tables and rules distinguish it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct DecisionPoint {
+    situation: SensedSituation,
     state: u32,
     bits: u32,
 }
@@ -101,7 +104,8 @@ impl DecisionController {
     fn place(&self, observation: &Observation) -> DecisionPoint {
         let senses = &observation.perception;
         let situation = SensedSituation::of(senses, self.posture, self.moved_m);
-        DecisionPoint { state: situation.table_state() as u32, bits: situation.bits(senses) }
+        let (state, bits) = (situation.table_state() as u32, situation.bits(senses));
+        DecisionPoint { situation, state, bits }
     }
 
     /// The posture that the policy takes, or the explorer's.
@@ -128,6 +132,55 @@ impl DecisionController {
             (_, Some(frozen)) => frozen,
             // Without a rule the snake keeps its posture: covering would change the champion.
             (None, None) => 0,
+        }
+    }
+
+    /// What the policy knows about the postures in a place.
+    fn worths(&self, place: &DecisionPoint, rules: &[ActiveRule]) -> Vec<PostureWorth> {
+        let (worths, visits): (Vec<Option<f32>>, &[u16]) = match &self.genes.policy {
+            Policy::Table(table) => {
+                let state = place.state as usize;
+                (table.values(state).iter().copied().map(Some).collect(), table.visits(state))
+            }
+            Policy::Xcs(rules) => (rules.prediction_array(place.bits), &[]),
+            Policy::Zcs(rules) => (rules.strength_array(place.bits), &[]),
+        };
+        let postures = POSTURES.iter().zip(worths).enumerate();
+        let worth = |(index, (name, worth)): (usize, (&&'static str, Option<f32>))| PostureWorth {
+            name,
+            worth,
+            count: match visits.get(index) {
+                Some(visits) => u32::from(*visits),
+                None => {
+                    let advises = |rule: &&ActiveRule| rule.matches && rule.posture == index;
+                    rules.iter().filter(advises).count() as u32
+                }
+            },
+        };
+        postures.map(worth).collect()
+    }
+
+    /// The rules of the policy, and which of them match and decide in a place.
+    fn rules(&self, place: &DecisionPoint) -> Vec<ActiveRule> {
+        let rule = |condition: Condition, action: u16, worth: f32| {
+            let (posture, matches) = (usize::from(action), condition.matches(place.bits));
+            let decides = matches && posture == self.action;
+            let (fitness, experience) = (None, None);
+            ActiveRule { condition, posture, worth, fitness, experience, matches, decides }
+        };
+        match &self.genes.policy {
+            Policy::Table(_) => Vec::new(),
+            Policy::Xcs(rules) => {
+                let of = |of: &XcsRule| ActiveRule {
+                    fitness: Some(of.fitness),
+                    experience: Some(of.experience),
+                    ..rule(of.condition, of.action, of.prediction)
+                };
+                rules.rules().iter().map(of).collect()
+            }
+            Policy::Zcs(rules) => {
+                rules.rules().iter().map(|of| rule(of.condition, of.action, of.strength)).collect()
+            }
         }
     }
 
@@ -201,6 +254,17 @@ impl Controller for DecisionController {
                 Episode::Rules(std::mem::take(&mut self.decisions), end)
             }
         })
+    }
+
+    fn activity(&self, _observation: &Observation, _joint: usize) -> Option<Activity> {
+        let place = self.at?;
+        let rules = self.rules(&place);
+        Some(Activity::Decision(DecisionActivity {
+            situation: place.situation.words(),
+            postures: self.worths(&place, &rules),
+            chosen: self.action,
+            rules,
+        }))
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {

@@ -2,7 +2,7 @@
 
 use super::network::{beat, servos};
 use super::servo::JointServos;
-use super::{Controller, Observation, Senses};
+use super::{Activity, Controller, NetworkActivity, NodeColumn, Observation, Senses};
 use crate::genome::controllers::{GROWN_INPUTS, GrownGenes};
 use crate::learn::neat::NetworkPlay;
 use crate::world::JointTorque;
@@ -66,6 +66,39 @@ impl Controller for GrownController {
         // An output of 0 to 1 is a bend to either side.
         let targets = outputs.iter().map(|output| [(2.0 * output - 1.0) as f32 * range_rad, 0.0]);
         self.servo.pull(observation, targets, torques);
+    }
+
+    fn activity(&self, _observation: &Observation, _joint: usize) -> Option<Activity> {
+        if self.inputs.is_empty() {
+            return None;
+        }
+        let genome = &self.genes.network;
+        let (inputs, joints) = (usize::from(genome.inputs), self.genes.joints as usize);
+        let mut shown = NetworkActivity::default();
+        let mut ids = Vec::new();
+        for (index, (id, value)) in self.network.activations().enumerate() {
+            let value = value as f32;
+            ids.push(id);
+            match index.checked_sub(inputs) {
+                None => shown.add(NodeColumn::Input, GrownGenes::input_name(index, joints), value),
+                Some(output) if output < joints => {
+                    let name = format!("joint {} bend target", output + 1);
+                    shown.add_sigmoid(NodeColumn::Output, name, value);
+                }
+                Some(hidden) => {
+                    let name = format!("hidden {}", hidden - joints + 1);
+                    shown.add_sigmoid(NodeColumn::Hidden, name, value);
+                }
+            }
+        }
+        for link in genome.links.iter().filter(|link| link.enabled) {
+            // Ids ascend.
+            let ends = [link.from, link.to].map(|id| ids.binary_search(&id).ok());
+            if let [Some(from), Some(to)] = ends {
+                shown.link(from, to, link.weight);
+            }
+        }
+        Some(Activity::Network(shown))
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {

@@ -3,6 +3,7 @@
 //! A new kind of controller is a file here, a line in `controller_of`, and its genes, which are registered in
 //! `genome/controllers`.
 
+mod activity;
 mod controller;
 mod ctrnn;
 mod decisions;
@@ -23,6 +24,10 @@ mod situation;
 mod wave;
 mod wave_uses;
 
+pub use activity::{
+    ActiveRule, Activity, DecisionActivity, NetworkActivity, NetworkLink, NetworkNode, NodeColumn,
+    PostureWorth, ReflexActivity, ReflexPush,
+};
 pub use controller::Controller;
 pub use observation::{Observation, Senses};
 pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
@@ -105,6 +110,16 @@ impl ControlLoop {
             self.observation.update(step, world, self.controller.needs(), &self.active);
         }
         self.controller.finish(&self.observation, is_disqualified)
+    }
+
+    /// What the controller does at a joint, the first of which is 0: see [`Controller::activity`].
+    pub fn activity(&self, joint: usize) -> Option<Activity> {
+        self.controller.activity(&self.observation, joint)
+    }
+
+    /// The senses that work now.
+    pub fn active_senses(&self) -> ActiveSenses {
+        self.active
     }
 
     /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.

@@ -2,8 +2,10 @@
 
 use super::perception::Perception;
 use super::servo::JointServos;
-use super::{Controller, Observation, Senses};
-use crate::genome::controllers::{CentralNetwork, MODULE_INPUTS, ModularNetwork, ServoGenes};
+use super::{Activity, Controller, NetworkActivity, NodeColumn, Observation, Senses};
+use crate::genome::controllers::{
+    CentralNetwork, MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork, ServoGenes,
+};
 use crate::world::JointTorque;
 
 /// The servos of a network's genes.
@@ -115,6 +117,28 @@ impl Controller for ModularController {
         self.servo.pull(observation, targets, torques);
     }
 
+    /// The messages among the inputs are those that it reads next.
+    fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {
+        let senses = &observation.perception;
+        senses.joints.get(joint)?;
+        let inputs = self.inputs(joint, senses, observation.periods(self.genes.frequency_hz));
+        let (neurons, outputs) = (self.genes.hidden.neurons(), self.genes.outputs.neurons());
+        let mut shown = NetworkActivity { joint: Some(joint), ..NetworkActivity::default() };
+        for (name, value) in MODULE_INPUTS.iter().zip(inputs) {
+            shown.add(NodeColumn::Input, *name, value);
+        }
+        for (index, value) in self.hidden.iter().skip(joint * neurons).take(neurons).enumerate() {
+            shown.add(NodeColumn::Hidden, format!("hidden {}", index + 1), *value);
+        }
+        let values = self.outputs.iter().skip(joint * outputs).take(outputs);
+        for (name, value) in MODULE_OUTPUTS.iter().zip(values) {
+            shown.add(NodeColumn::Output, *name, *value);
+        }
+        shown.link_layer(&self.genes.hidden, 0, inputs.len());
+        shown.link_layer(&self.genes.outputs, inputs.len(), inputs.len() + neurons);
+        Some(Activity::Network(shown))
+    }
+
     fn boxed_clone(&self) -> Box<dyn Controller> {
         Box::new(self.clone())
     }
@@ -162,6 +186,35 @@ impl Controller for CentralController {
             [self.outputs[joint] * bend_range_rad, twist * twist_range_rad]
         });
         self.servo.pull(observation, targets, torques);
+    }
+
+    fn activity(&self, _observation: &Observation, _joint: usize) -> Option<Activity> {
+        if self.inputs.is_empty() {
+            return None;
+        }
+        let joints = self.genes.joints as usize;
+        let senses = Perception::count(joints);
+        let mut shown = NetworkActivity::default();
+        for (index, value) in self.inputs.iter().enumerate() {
+            let name = match index.checked_sub(senses) {
+                None => Perception::name(index, joints),
+                Some(0) => "beat, sine".to_owned(),
+                Some(_) => "beat, cosine".to_owned(),
+            };
+            shown.add(NodeColumn::Input, name, *value);
+        }
+        for (index, value) in self.hidden.iter().enumerate() {
+            shown.add(NodeColumn::Hidden, format!("hidden {}", index + 1), *value);
+        }
+        for (index, value) in self.outputs.iter().enumerate() {
+            let axis = if index < joints { "bend" } else { "twist" };
+            let name = format!("joint {} {axis} target", index % joints + 1);
+            shown.add(NodeColumn::Output, name, *value);
+        }
+        let hidden = self.inputs.len();
+        shown.link_layer(&self.genes.hidden, 0, hidden);
+        shown.link_layer(&self.genes.outputs, hidden, hidden + self.hidden.len());
+        Some(Activity::Network(shown))
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {

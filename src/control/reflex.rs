@@ -2,7 +2,7 @@
 
 use super::perception::{JointSenses, LimbSenses};
 use super::servo::JointServos;
-use super::{Controller, Observation, Senses};
+use super::{Activity, Controller, Observation, ReflexActivity, ReflexPush, Senses};
 use crate::genome::controllers::{REFLEX_INPUTS, ReflexGait, Wave};
 use crate::world::JointTorque;
 
@@ -82,6 +82,24 @@ impl Controller for ReflexFollower {
             *shift_rad -= (drawn + f64::from(blocked * front.blocked)) * step_s;
         }
         self.servo.pull(observation, targets.into_iter(), torques);
+    }
+
+    fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {
+        let senses = &observation.perception;
+        let own = senses.joints.get(joint)?;
+        let around = around(senses.limbs.get(joint)?, senses.limbs.get(joint + 1)?);
+        let (own, weights) = ([own.bend, own.bend_rate], &self.genes.bend_weights);
+        let inputs = own.into_iter().chain(around).chain([1.0]);
+        let pushes = REFLEX_INPUTS.iter().zip(inputs).zip(weights);
+        Some(Activity::Reflex(ReflexActivity {
+            joint,
+            pushes: pushes
+                .map(|((name, value), weight)| ReflexPush { name, value, push: value * weight })
+                .collect(),
+            moved_rad: self.reach_rad(weights, own, around),
+            reach_rad: self.genes.reach_rad,
+            shift_rad: self.shifts_rad.get(joint).map_or(0.0, |shift_rad| *shift_rad as f32),
+        }))
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {

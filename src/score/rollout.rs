@@ -13,7 +13,7 @@ use super::behaviour::{BehaviourMoment, BehaviourObserver};
 use super::fitness::FinalState;
 use super::trial::steps_in;
 use super::{Behaviour, Perturbation, Trial};
-use crate::control::{ControlLoop, Perception};
+use crate::control::{ActiveSenses, Activity, ControlLoop, Perception};
 use crate::genome::Genome;
 use crate::learn::Episode;
 use crate::world::{
@@ -291,6 +291,17 @@ impl Rollout {
     /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.
     pub fn perception(&self) -> &Perception {
         self.control.perception()
+    }
+
+    /// The senses that work now.
+    pub fn active_senses(&self) -> ActiveSenses {
+        self.control.active_senses()
+    }
+
+    /// What the controller does at a joint, the first of which is 0; none before the first step, and for a controller that
+    /// has nothing to show.
+    pub fn activity(&self, joint: usize) -> Option<Activity> {
+        self.control.activity(joint)
     }
 
     /// The world, for reading.

@@ -266,6 +266,9 @@ pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::Panels, "Lessons", &["Ctrl 6"], |_| {
         Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Lessons)))
     }),
+    action(Menu::Panels, "Senses", &["Ctrl 7"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Senses)))
+    }),
     action(Menu::Panels, "Close panel", &["Ctrl W"], |_| {
         Some(Command::Window(WindowCommand::ClosePanel))
     }),

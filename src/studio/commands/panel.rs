@@ -19,12 +19,21 @@ pub(crate) enum PanelKind {
     Library,
     /// Lessons that reproduce findings of the report.
     Lessons,
+    /// Senses and controller of the snake on the stage.
+    Senses,
 }
 
 impl PanelKind {
     /// All panels except the stage, in the order of the menu.
-    pub const ALL: [Self; 6] =
-        [Self::Run, Self::World, Self::Charts, Self::Champions, Self::Library, Self::Lessons];
+    pub const ALL: [Self; 7] = [
+        Self::Run,
+        Self::World,
+        Self::Charts,
+        Self::Champions,
+        Self::Library,
+        Self::Lessons,
+        Self::Senses,
+    ];
 
     /// Label of the tab.
     pub fn name(self) -> &'static str {
@@ -36,6 +45,7 @@ impl PanelKind {
             Self::Champions => "Champions",
             Self::Library => "Library",
             Self::Lessons => "Lessons",
+            Self::Senses => "Senses",
         }
     }
 
@@ -49,6 +59,7 @@ impl PanelKind {
             Self::Champions => "Replay the best of every generation (Ctrl 4)",
             Self::Library => "All saved champions and runs: replay, race, export (Ctrl 5)",
             Self::Lessons => "Five two-minute experiments (Ctrl 6)",
+            Self::Senses => "What the snake senses, and its controller at work (Ctrl 7)",
         }
     }
 }

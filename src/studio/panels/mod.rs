@@ -12,6 +12,7 @@ mod library;
 mod on_stage;
 mod player;
 mod run;
+mod senses;
 mod settings;
 mod shown;
 mod tab_names;
@@ -55,6 +56,7 @@ use player::cards::{CardSituation, around_stage, lesson_card};
 use player::presented_caption::{PresentedCaption, caption_band};
 use player::timeline::{TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
+use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
 use tab_names::{small_tabs, tab_name};
 use world::WorldPanel;
@@ -72,6 +74,7 @@ struct Panels {
     champions: ChampionsPanel,
     saves: LibraryPanel,
     world: WorldPanel,
+    senses: SensesPanel,
     timeline: TimelinePanel,
     palette: CommandPalette,
     tour: Tour,
@@ -92,6 +95,7 @@ impl FromWorld for Panels {
             champions: ChampionsPanel::default(),
             saves: LibraryPanel::default(),
             world: WorldPanel::default(),
+            senses: SensesPanel::default(),
             timeline: TimelinePanel::default(),
             palette: CommandPalette::default(),
             tour: Tour::default(),
@@ -251,8 +255,8 @@ fn focused<'l>(lanes: &[&'l Lane], on_stage: &OnStage) -> Option<&'l Lane> {
 
 /// Draws the panels for the dock area.
 struct Viewer<'v, 'w, 's> {
-    /// Panels whose tabs have small names.
-    small_tabs: Vec<PanelKind>,
+    /// Panels whose tabs have small names, and the sizes of these.
+    small_tabs: Vec<(PanelKind, f32)>,
     panels: &'v mut Panels,
     data: &'v PanelData<'w, 's>,
     lanes: &'v [&'v Lane],
@@ -325,6 +329,11 @@ impl Viewer<'_, '_, '_> {
                 panels.champions.ui(ui, &opening.0, reports, &shown, leaders, follows, commands);
             }
             PanelKind::Lessons => lessons(ui, self.data.lessons.view(), commands),
+            PanelKind::Senses => {
+                let focused = focused(self.lanes, &self.data.on_stage);
+                let view = SensesView::of(self.lanes, focused, &self.data.on_stage);
+                panels.senses.ui(ui, view.as_ref(), commands);
+            }
             PanelKind::Library => {
                 let history = &self.data.on_stage.history;
                 panels.saves.ui(ui, &self.data.saves, history, commands);
@@ -341,7 +350,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
     }
 
     fn title(&mut self, kind: &mut PanelKind) -> egui::WidgetText {
-        tab_name(*kind, self.small_tabs.contains(kind))
+        tab_name(*kind, &self.small_tabs)
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, kind: &mut PanelKind) {

@@ -13,13 +13,26 @@ const AROUND: f32 = 16.0;
 /// Width of the button that folds the panels of a tab bar, in points, as the dock draws it.
 const FOLD_BUTTON: f32 = 24.0;
 
-/// The panels whose tabs have small names, because their bar is too narrow for those of the usual size.
-pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<PanelKind> {
+/// Sizes of small names, in points: the largest for which the bar has room, or else the last.
+const SMALL_SIZES: [f32; 2] = [theme::SMALL_SIZE, 10.0];
+
+/// The panels whose tabs have small names, because their bar is too narrow for those of the usual size, and the sizes.
+pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<(PanelKind, f32)> {
     let style = context.global_style();
     let font = egui::TextStyle::Button.resolve(&style);
     let is_crowded =
         |(width, kinds): &(f32, Vec<PanelKind>)| bar_width(context, kinds, &font) > *width;
-    layout.tab_bars().into_iter().filter(is_crowded).flat_map(|(_, kinds)| kinds).collect()
+    let size = |width: f32, kinds: &[PanelKind]| {
+        let fits =
+            |size: &f32| bar_width(context, kinds, &egui::FontId::proportional(*size)) <= width;
+        SMALL_SIZES.into_iter().find(fits).unwrap_or(SMALL_SIZES[1])
+    };
+    let crowded = layout.tab_bars().into_iter().filter(is_crowded);
+    let sized = crowded.flat_map(|(width, kinds)| {
+        let size = size(width, &kinds);
+        kinds.into_iter().map(move |kind| (kind, size))
+    });
+    sized.collect()
 }
 
 /// Width of a tab bar with these panels, in points: the button that folds it, and the tabs.
@@ -35,11 +48,10 @@ fn bar_width(context: &egui::Context, kinds: &[PanelKind], font: &egui::FontId) 
 }
 
 /// The name of a panel on its tab.
-pub(super) fn tab_name(kind: PanelKind, is_small: bool) -> egui::WidgetText {
-    if is_small {
-        egui::RichText::new(kind.name()).size(theme::SMALL_SIZE).into()
-    } else {
-        kind.name().into()
+pub(super) fn tab_name(kind: PanelKind, small: &[(PanelKind, f32)]) -> egui::WidgetText {
+    match small.iter().find(|(of, _)| *of == kind) {
+        Some((_, size)) => egui::RichText::new(kind.name()).size(*size).into(),
+        None => kind.name().into(),
     }
 }
 
@@ -53,7 +65,7 @@ mod tests {
         let context = egui::Context::default();
         context.begin_pass(egui::RawInput::default());
         theme::apply(&context);
-        let small = egui::FontId::proportional(theme::SMALL_SIZE);
+        let small = egui::FontId::proportional(SMALL_SIZES[1]);
         let width = bar_width(&context, &PanelKind::ALL, &small);
         assert!(width <= LEAST_PANEL, "{width}");
     }

@@ -13,7 +13,7 @@ use super::readings::Readings;
 use super::replay::Replay;
 use super::staged_champion::StagedChampion;
 use crate::run::{Lookahead, caught};
-use crate::score::{Evaluation, KeyframeHistory, Trial};
+use crate::score::{Evaluation, KeyframeHistory, Rollout, Trial};
 use crate::world::{BodyPlan, Disqualification, Pose, Pull, Simulation, Vector};
 
 /// A lane, with the rollout that is scored.
@@ -262,6 +262,11 @@ impl Lane {
     /// The simulated world after the last step; a recording has none.
     pub fn simulation(&self) -> Option<&Simulation> {
         self.replay.simulation()
+    }
+
+    /// The rollout after the last step; a recording has none.
+    pub fn rollout(&self) -> Option<&Rollout> {
+        self.replay.rollout()
     }
 
     /// The replay of this lane.

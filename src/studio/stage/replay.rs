@@ -166,11 +166,16 @@ impl Replay {
         Some(frame as u32 * recorded.recording.every_steps())
     }
 
-    /// The simulated world; `None` for a recording.
-    pub fn simulation(&self) -> Option<&Simulation> {
+    /// The rollout; `None` for a recording.
+    pub fn rollout(&self) -> Option<&Rollout> {
         match self {
-            Self::Simulated(rollout) => Some(rollout.simulation()),
+            Self::Simulated(rollout) => Some(rollout),
             Self::Recorded(_) => None,
         }
+    }
+
+    /// The simulated world; `None` for a recording.
+    pub fn simulation(&self) -> Option<&Simulation> {
+        self.rollout().map(Rollout::simulation)
     }
 }

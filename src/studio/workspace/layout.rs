@@ -76,8 +76,8 @@ impl Layout {
         let mut left = PanelKind::ALL.to_vec();
         let mut stage = NodeIndex::root();
         if is_wide {
-            left.retain(|kind| ![PanelKind::Charts, PanelKind::Library].contains(kind));
-            let right = vec![PanelKind::Charts, PanelKind::Library];
+            let right = vec![PanelKind::Charts, PanelKind::Library, PanelKind::Senses];
+            left.retain(|kind| !right.contains(kind));
             [stage, _] = surface.split_right(stage, (1.0 - RIGHT / width).clamp(0.1, 0.9), right);
         }
         let room = if is_wide { width - RIGHT } else { width };
@@ -199,7 +199,9 @@ impl Layout {
     /// The place for a restored panel: beside a related panel, or else beside any.
     fn home_of(&self, kind: PanelKind) -> Option<TabPath> {
         let usual: &[PanelKind] = match kind {
-            PanelKind::Charts | PanelKind::Library => &[PanelKind::Charts, PanelKind::Library],
+            PanelKind::Charts | PanelKind::Library | PanelKind::Senses => {
+                &[PanelKind::Charts, PanelKind::Library, PanelKind::Senses]
+            }
             _ => &[PanelKind::Run, PanelKind::World, PanelKind::Lessons],
         };
         let found = |kinds: &[PanelKind]| kinds.iter().find_map(|kind| self.state.find_tab(kind));

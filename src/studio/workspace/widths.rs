@@ -11,7 +11,7 @@ use crate::studio::commands::panel::PanelKind;
 
 /// Minimum width of a panel, in points: its contents, its margins and its scroll bar. The panels' tests check that their
 /// contents fit.
-pub const LEAST_PANEL: f32 = 348.0;
+pub const LEAST_PANEL: f32 = 356.0;
 /// Minimum fraction of the window for the stage, beside panels that are wider than they need to be.
 const STAGE_SHARE: f32 = 0.4;
 /// Width of the stage, in points, from which the buttons of the player fit below it.

@@ -1,0 +1,280 @@
+//! What a controller is doing at a moment, for a person to see. It never acts on anything.
+
+use crate::genome::controllers::{Layer, SITUATION_BITS};
+use crate::learn::classifiers::Condition;
+
+/// A controller at work.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Activity {
+    /// A network of neurons.
+    Network(NetworkActivity),
+    /// A decision among postures.
+    Decision(DecisionActivity),
+    /// The reflexes of a joint.
+    Reflex(ReflexActivity),
+}
+
+/// The neurons of a network, and the links between them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NetworkActivity {
+    /// The joint that has this network, if each has one of its own; the first is 0.
+    pub joint: Option<usize>,
+    /// Its neurons and inputs.
+    pub nodes: Vec<NetworkNode>,
+    /// Its links; those of weight 0 are left out.
+    pub links: Vec<NetworkLink>,
+}
+
+/// An input or a neuron.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NetworkNode {
+    /// Its name, in lower case.
+    pub name: String,
+    /// Its place.
+    pub column: NodeColumn,
+    /// Its activity.
+    pub value: f32,
+    /// The same from -1 to 1, where 0 is the middle of its range.
+    pub level: f32,
+}
+
+/// The place of a node in a network.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NodeColumn {
+    /// An input.
+    Input,
+    /// Between inputs and outputs.
+    Hidden,
+    /// An output.
+    Output,
+}
+
+/// A link from one node to another, by their places in the list.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NetworkLink {
+    /// Where it begins.
+    pub from: usize,
+    /// Where it ends.
+    pub to: usize,
+    /// Factor of the signal.
+    pub weight: f32,
+}
+
+/// A decision, and what it was taken by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecisionActivity {
+    /// The situation in words.
+    pub situation: String,
+    /// What each posture is worth in it.
+    pub postures: Vec<PostureWorth>,
+    /// The posture that was chosen, by its place in the list.
+    pub chosen: usize,
+    /// The rules, in order of birth; none for a table.
+    pub rules: Vec<ActiveRule>,
+}
+
+/// What a posture is worth in a situation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PostureWorth {
+    /// Its name.
+    pub name: &'static str,
+    /// Its value in a table, the payoff that rules predict, or their strength; none if no rule is about it.
+    pub worth: Option<f32>,
+    /// How often a table has tried it there, or how many rules advise it.
+    pub count: u32,
+}
+
+/// A rule of a population.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActiveRule {
+    /// The situations that it is about.
+    pub condition: Condition,
+    /// The posture that it is about, by its number.
+    pub posture: usize,
+    /// The payoff that it predicts, or its strength.
+    pub worth: f32,
+    /// Its accuracy relative to others, 0 to 1; none for rules that are kept for their strength.
+    pub fitness: Option<f32>,
+    /// How often it has learned, for rules that count that.
+    pub experience: Option<u32>,
+    /// Whether it matches the situation.
+    pub matches: bool,
+    /// Whether it matches and is about the posture that was chosen.
+    pub decides: bool,
+}
+
+/// How the senses move the bend target of a joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReflexActivity {
+    /// The joint; the first is 0.
+    pub joint: usize,
+    /// What each sense adds to the sum.
+    pub pushes: Vec<ReflexPush>,
+    /// Angle by which they move the target together, in radians.
+    pub moved_rad: f32,
+    /// The largest angle by which they can, in radians.
+    pub reach_rad: f32,
+    /// Shift of the phase of the joint's wave since the start, in radians.
+    pub shift_rad: f32,
+}
+
+/// What a sense adds to a reflex.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReflexPush {
+    /// The sense.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f32,
+    /// The value times its weight.
+    pub push: f32,
+}
+
+impl NetworkActivity {
+    /// Adds a node, whose activity is also its level.
+    pub(super) fn add(&mut self, column: NodeColumn, name: impl Into<String>, value: f32) {
+        let level = value.clamp(-1.0, 1.0);
+        self.nodes.push(NetworkNode { name: name.into(), column, value, level });
+    }
+
+    /// Adds a neuron whose activity is from 0 to 1.
+    pub(super) fn add_sigmoid(&mut self, column: NodeColumn, name: impl Into<String>, value: f32) {
+        let level = (2.0 * value - 1.0).clamp(-1.0, 1.0);
+        self.nodes.push(NetworkNode { name: name.into(), column, value, level });
+    }
+
+    /// Adds a link, unless its weight is 0.
+    pub(super) fn link(&mut self, from: usize, to: usize, weight: f32) {
+        if weight != 0.0 {
+            self.links.push(NetworkLink { from, to, weight });
+        }
+    }
+
+    /// Adds the links of a layer, from its first input to its first neuron on.
+    pub(super) fn link_layer(&mut self, layer: &Layer, from: usize, to: usize) {
+        for (neuron, row) in layer.rows.iter().enumerate() {
+            for (input, weight) in row.iter().take(layer.inputs()).enumerate() {
+                self.link(from + input, to + neuron, *weight);
+            }
+        }
+    }
+}
+
+impl ActiveRule {
+    /// Its condition in words: "riser at the head, not moving".
+    pub fn words(&self) -> String {
+        let (care, value) = (self.condition.care(), self.condition.value());
+        let parts = SITUATION_BITS.iter().enumerate().filter(|(bit, _)| care >> bit & 1 == 1);
+        let words: Vec<String> = parts
+            .map(|(bit, name)| match value >> bit & 1 {
+                1 => (*name).to_owned(),
+                _ => format!("not {name}"),
+            })
+            .collect();
+        if words.is_empty() { "always".to_owned() } else { words.join(", ") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::controllers::{POSTURES, Policy};
+    use crate::genome::{ControllerGenes, ControllerKind, Genome};
+    use crate::learn::classifiers::{Xcs, XcsSettings, Zcs, ZcsSettings};
+    use crate::rng::{Purpose, stream};
+    use crate::save::load_preset;
+    use crate::score::Rollout;
+    use std::sync::Arc;
+
+    /// A random genome of a kind, after a change, and its rollout after so many steps.
+    fn played(kind: ControllerKind, steps: u32, change: impl Fn(&mut Genome)) -> Rollout {
+        let mut settings = load_preset("climb").expect("shipped").settings;
+        settings.genome.controller = kind;
+        let mut rng = stream(1, 1, 3, Purpose::Birth);
+        let shape = settings.trial.genome_shape();
+        let mut genome = settings.genome.random_genome(shape, &mut rng);
+        change(&mut genome);
+        let mut rollout = Rollout::new(&genome, &settings.trial);
+        (0..steps).for_each(|_| assert!(rollout.advance()));
+        rollout
+    }
+
+    #[test]
+    fn the_networks_show_their_neurons_once_there_was_a_step() {
+        for (kind, inputs, joint) in [
+            (ControllerKind::Modular, 18, Some(2)),
+            (ControllerKind::Central, 62, None),
+            (ControllerKind::Ctrnn, 13, Some(2)),
+            (ControllerKind::Grown, 21, None),
+        ] {
+            assert_eq!(played(kind, 0, |_| ()).activity(2), None, "{kind}");
+            let rollout = played(kind, 20, |_| ());
+            let Some(Activity::Network(network)) = rollout.activity(2) else { panic!("{kind}") };
+            let of = |column| network.nodes.iter().filter(|node| node.column == column).count();
+            assert_eq!((of(NodeColumn::Input), network.joint), (inputs, joint), "{kind}");
+            assert!(network.nodes.iter().all(|node| !node.name.is_empty()), "{kind}");
+            assert!(network.nodes.iter().any(|node| node.level != 0.0), "{kind}");
+            let ends = network.links.iter().flat_map(|link| [link.from, link.to]);
+            assert!(ends.max().is_none_or(|last| last < network.nodes.len()), "{kind}");
+            let is_named = |word: &str| network.nodes.iter().any(|node| node.name.contains(word));
+            assert!(is_named("step up"), "{kind}");
+        }
+    }
+
+    #[test]
+    fn the_pushes_of_a_reflex_add_up_to_the_angle_by_which_it_moves_the_target() {
+        let rollout = played(ControllerKind::Reflex, 20, |_| ());
+        let Some(Activity::Reflex(reflex)) = rollout.activity(1) else { panic!("a reflex") };
+        let sum: f32 = reflex.pushes.iter().map(|push| push.push).sum();
+        assert!((reflex.moved_rad - reflex.reach_rad * libm::tanhf(sum)).abs() < 1e-5);
+        assert!(reflex.pushes.iter().any(|push| push.push != 0.0));
+    }
+
+    #[test]
+    fn decisions_show_the_worth_of_all_postures_and_the_rules_that_match() {
+        let mut rng = stream(1, 1, 1, Purpose::Learn);
+        let zcs = Zcs::new(ZcsSettings::default(), SITUATION_BITS.len(), POSTURES.len(), &mut rng);
+        let xcs = Xcs::new(XcsSettings::default(), SITUATION_BITS.len(), POSTURES.len());
+        let policies = [
+            Policy::default(),
+            Policy::Zcs(Arc::new(zcs.expect("allowed"))),
+            Policy::Xcs(Arc::new(xcs.expect("allowed"))),
+        ];
+        for (policy, rules) in policies.into_iter().zip([0, 400, 0]) {
+            let rollout = played(ControllerKind::Decisions, 20, |genome| {
+                if let ControllerGenes::Decisions(genes) = &mut genome.controller {
+                    genes.policy = policy.clone();
+                }
+            });
+            let Some(Activity::Decision(decision)) = rollout.activity(0) else { panic!("one") };
+            assert_eq!((decision.postures.len(), decision.rules.len()), (12, rules));
+            assert!(decision.situation.contains("head"), "{}", decision.situation);
+            let advised: u32 = decision.postures.iter().map(|posture| posture.count).sum();
+            let matching = decision.rules.iter().filter(|rule| rule.matches).count();
+            assert_eq!(advised as usize, matching);
+            let chosen = |rule: &&ActiveRule| rule.decides;
+            assert!(
+                decision
+                    .rules
+                    .iter()
+                    .filter(chosen)
+                    .all(|rule| { rule.matches && rule.posture == decision.chosen })
+            );
+        }
+    }
+
+    #[test]
+    fn a_condition_is_spelled_in_words() {
+        let rule = |care: u32, value: u32| ActiveRule {
+            condition: Condition::new(care, value, SITUATION_BITS.len()).expect("allowed"),
+            posture: 1,
+            worth: 0.0,
+            fitness: None,
+            experience: None,
+            matches: false,
+            decides: false,
+        };
+        assert_eq!(rule(0b1, 0b1).words(), "riser at the head");
+        assert_eq!(rule(1 | 1 << 13, 1).words(), "riser at the head, not moving");
+        assert_eq!(rule(0, 0).words(), "always");
+    }
+}

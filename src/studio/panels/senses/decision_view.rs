@@ -1,0 +1,137 @@
+//! A decision: the situation in words, what each posture is worth in it, and the rules that say so.
+
+use bevy_egui::egui;
+
+use super::value_bar::ValueBar;
+use crate::control::{ActiveRule, DecisionActivity};
+use crate::studio::ui::check_box::check_box;
+use crate::studio::ui::decimals::decimals;
+use crate::studio::ui::text_rows::{explain, title};
+use crate::studio::ui::theme;
+
+/// Height of the list of rules, in points.
+const LIST_HEIGHT: f32 = theme::GAP * 36.0;
+/// Width of the names of postures, in points.
+const POSTURE_NAMES: f32 = theme::GAP * 20.5;
+/// Height of a rule in the list, in points.
+const RULE_HEIGHT: f32 = theme::GAP * 5.0;
+
+/// Draws a decision.
+pub(super) fn decision_view(
+    ui: &mut egui::Ui,
+    decision: &DecisionActivity,
+    shows_all_rules: &mut bool,
+) {
+    ui.label(egui::RichText::new(format!("Situation: {}", decision.situation)).strong());
+    postures(ui, decision);
+    if !decision.rules.is_empty() {
+        rules(ui, decision, shows_all_rules);
+    }
+}
+
+fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
+    let palette = theme::of(ui);
+    let has_rules = !decision.rules.is_empty();
+    let worths = || decision.postures.iter().filter_map(|posture| posture.worth);
+    let (least, most) = (worths().fold(0.0, f32::min), worths().fold(0.0, f32::max));
+    if decision.postures.iter().all(|posture| posture.count == 0) {
+        explain(ui, "It knows nothing about this situation yet, and holds its posture.");
+    }
+    for (index, posture) in decision.postures.iter().enumerate() {
+        let (one, many) = if has_rules { ("rule", "rules") } else { ("visit", "visits") };
+        let note = format!("{} {}", posture.count, if posture.count == 1 { one } else { many });
+        let is_chosen = index == decision.chosen;
+        let row = ValueBar {
+            name: posture.name,
+            names_width: POSTURE_NAMES,
+            text: posture.worth.map_or_else(|| "-".to_owned(), worth_in_words),
+            value: posture.worth.unwrap_or(0.0),
+            range: [least, most],
+            note: &note,
+            color: if is_chosen { palette.accent } else { palette.second },
+            is_frozen: posture.worth.is_none() || posture.count == 0,
+            is_chosen,
+            hint: match is_chosen {
+                true => "The posture that it has chosen".to_owned(),
+                false => "What it has learned this posture to be worth here".to_owned(),
+            },
+        };
+        row.ui(ui);
+    }
+}
+
+/// A worth with as many decimals as its size leaves room for.
+fn worth_in_words(worth: f32) -> String {
+    match worth.abs() {
+        size if size >= 1.0e6 => format!("{worth:.1e}"),
+        size if size >= 100.0 => decimals(worth, 0),
+        _ => decimals(worth, 2),
+    }
+}
+
+fn rules(ui: &mut egui::Ui, decision: &DecisionActivity, shows_all: &mut bool) {
+    let matching = decision.rules.iter().filter(|rule| rule.matches).count();
+    title(ui, &format!("Rules: {matching} of {} match", decision.rules.len()));
+    check_box(ui, shows_all, "Also rules that do not match")
+        .on_hover_text("List all rules; those that match are lit");
+    let listed = decision.rules.iter().filter(|rule| *shows_all || rule.matches);
+    let mut listed: Vec<&ActiveRule> = listed.collect();
+    // The rules that count most come first.
+    let use_of = |rule: &ActiveRule| rule.fitness.unwrap_or(rule.worth);
+    listed.sort_by(|a, b| use_of(b).total_cmp(&use_of(a)));
+    let area = egui::ScrollArea::vertical().max_height(LIST_HEIGHT).auto_shrink([false, true]);
+    area.id_salt("rules").show_rows(ui, RULE_HEIGHT, listed.len(), |ui, seen| {
+        for rule in listed.iter().take(seen.end).skip(seen.start) {
+            entry(ui, rule, decision);
+        }
+    });
+}
+
+/// Draws a rule: its condition above, its posture and numbers below.
+fn entry(ui: &mut egui::Ui, rule: &ActiveRule, decision: &DecisionActivity) {
+    let palette = theme::of(ui);
+    let size = egui::vec2(ui.available_width(), RULE_HEIGHT);
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+    let fill = match (rule.matches, rule.decides) {
+        (_, true) => palette.accent_soft,
+        (true, false) => palette.field_hovered,
+        (false, false) => palette.field,
+    };
+    ui.painter().rect_filled(rect, theme::GAP / 2.0, fill);
+    let inside = rect.shrink2(egui::vec2(theme::GAP * 0.75, theme::GAP / 4.0));
+    let (words, numbers) = (rule.words(), rule_numbers(rule));
+    let posture = decision.postures.get(rule.posture).map_or("", |posture| posture.name);
+    let strong = if rule.matches { palette.text } else { palette.text_weak };
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let cut = |text: String, color: egui::Color32| {
+        let mut job = egui::text::LayoutJob::simple_singleline(text, font.clone(), color);
+        job.wrap = egui::text::TextWrapping::truncate_at_width(inside.width());
+        ui.fonts_mut(|fonts| fonts.layout_job(job))
+    };
+    let below = format!("{posture}: {numbers}");
+    for (text, color, top) in [
+        (format!("If {words}"), strong, inside.top()),
+        (below.clone(), palette.text_weak, inside.center().y),
+    ] {
+        let text = cut(text, color);
+        ui.painter().galley(egui::pos2(inside.left(), top), text, color);
+    }
+    let state = match (rule.matches, rule.decides) {
+        (_, true) => "It matches, and its posture was chosen",
+        (true, false) => "It matches",
+        (false, false) => "It does not match this situation",
+    };
+    let said = format!("If {words}: {below}. {state}");
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
+    response.on_hover_text(&said);
+}
+
+fn rule_numbers(rule: &ActiveRule) -> String {
+    let worth = worth_in_words(rule.worth);
+    match (rule.fitness, rule.experience) {
+        (Some(fitness), Some(experience)) => {
+            format!("predicts {worth}, accuracy {}, used {experience} times", decimals(fitness, 3))
+        }
+        _ => format!("strength {worth}"),
+    }
+}

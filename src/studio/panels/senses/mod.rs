@@ -1,0 +1,198 @@
+//! What the snake on the stage senses, and how its controller turns that into motion.
+//!
+//! The panel shows the shown moment of one lane. Its switches take senses away through the same command as the settings of
+//! the World panel, so a copy without them walks beside the snake.
+
+mod decision_view;
+mod network_graph;
+mod readouts;
+mod reflex_view;
+mod value_bar;
+
+use bevy_egui::egui;
+
+use super::on_stage::OnStage;
+use crate::control::{ActiveSenses, Activity, SenseOrgan};
+use crate::genome::ControllerKind;
+use crate::studio::commands::{Command, PlanCommand, StageCommand};
+use crate::studio::stage::StageMode;
+use crate::studio::stage::lane::Lane;
+use crate::studio::ui::check_box::check_box;
+use crate::studio::ui::lane_dot::lane_dot;
+use crate::studio::ui::text_rows::{explain, title};
+use crate::studio::ui::theme;
+
+use readouts::readouts;
+
+/// The panel with its choices.
+#[derive(Debug, Default)]
+pub(super) struct SensesPanel {
+    /// Whether the list of rules contains those that do not match, too.
+    shows_all_rules: bool,
+}
+
+/// The snake that the panel is about.
+pub(super) struct SensesView<'l> {
+    lane: &'l Lane,
+    /// The selected limb, or the head.
+    limb: usize,
+    /// Whether a limb is selected.
+    is_selected: bool,
+    /// The lanes among which one can choose; none for a snake alone.
+    others: Vec<&'l Lane>,
+    /// The senses that the switches show: those of the copy in a what-if.
+    switched: ActiveSenses,
+}
+
+impl<'l> SensesView<'l> {
+    /// The selected lane, or the first one.
+    pub fn of(lanes: &[&'l Lane], focused: Option<&'l Lane>, on_stage: &OnStage) -> Option<Self> {
+        let lane = focused?;
+        let switched = match *on_stage.mode {
+            StageMode::WhatIf { current, .. } => lanes.get(current).copied().unwrap_or(lane),
+            _ => lane,
+        };
+        let selection = &on_stage.selection;
+        let limb = selection.limb.filter(|_| selection.lane == lane.number());
+        let racers: Vec<&Lane> = lanes.iter().copied().filter(|lane| !lane.is_ghost()).collect();
+        Some(Self {
+            lane,
+            limb: limb.unwrap_or(0).min(lane.body().limbs.len().saturating_sub(1)),
+            is_selected: limb.is_some(),
+            others: if racers.len() > 1 { racers } else { Vec::new() },
+            switched: switched.trial().agent.senses,
+        })
+    }
+
+    /// The joint in front of the limb, or the first one.
+    fn joint(&self) -> usize {
+        self.limb.saturating_sub(1)
+    }
+
+    fn kind(&self) -> ControllerKind {
+        self.lane.staged().champion().genome.controller.kind()
+    }
+}
+
+impl SensesPanel {
+    /// Draws the panel and collects the user's commands.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        view: Option<&SensesView>,
+        commands: &mut Vec<Command>,
+    ) {
+        title(ui, "Senses");
+        let Some(view) = view else {
+            explain(ui, "What the snake on the stage senses will appear here.");
+            return;
+        };
+        lane_choice(ui, view, commands);
+        if !view.kind().senses_surroundings() {
+            explain(ui, unsensing(view.kind()));
+            let hint = "Controllers that sense touch, balance and the stairs ahead are Reflex, Modular, Central, CTRNN, \
+                        Decisions, Rules and Grown: choose one in the Run panel.";
+            explain(ui, hint);
+            return;
+        }
+        let Some(rollout) = view.lane.rollout() else {
+            explain(ui, "A recording contains poses, but no senses.");
+            return;
+        };
+        switches(ui, view, commands);
+        if rollout.perception().limbs.is_empty() {
+            explain(
+                ui,
+                "The senses begin with the first step: play, or press the right arrow key.",
+            );
+            return;
+        }
+        readouts(ui, view, rollout);
+        self.controller(ui, view, rollout.activity(view.joint()).as_ref());
+    }
+
+    /// Draws the controller at work.
+    fn controller(&mut self, ui: &mut egui::Ui, view: &SensesView, activity: Option<&Activity>) {
+        let kind = view.kind();
+        title(ui, &format!("Controller: {}", kind.title()));
+        explain(ui, kind.words());
+        match activity {
+            Some(Activity::Network(network)) => network_graph::network_graph(ui, network),
+            Some(Activity::Decision(decision)) => {
+                decision_view::decision_view(ui, decision, &mut self.shows_all_rules);
+            }
+            Some(Activity::Reflex(reflex)) => reflex_view::reflex_view(ui, reflex),
+            None => {}
+        }
+    }
+}
+
+/// What a snake feels whose controller does not sense its surroundings.
+fn unsensing(kind: ControllerKind) -> &'static str {
+    match kind {
+        ControllerKind::Signal | ControllerKind::Wave => {
+            "This snake feels nothing: its torques are in its genes, whatever happens to it."
+        }
+        _ => {
+            "This snake feels only its joints: they follow the angles in its genes, whatever happens \
+             around it."
+        }
+    }
+}
+
+/// Draws the lanes among which one can choose.
+fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
+    if view.others.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        for lane in &view.others {
+            lane_dot(ui, lane.number(), theme::LANE_DOT);
+            let is_shown = lane.number() == view.lane.number();
+            let name = egui::Button::selectable(is_shown, lane.staged().label()).truncate();
+            let hint = "Show the senses of this snake";
+            if ui.add(name).on_hover_text(hint).clicked() && !is_shown {
+                commands.push(Command::Stage(StageCommand::Focus(lane.number())));
+            }
+        }
+    });
+}
+
+/// Draws the switches that take senses away from a copy.
+fn switches(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
+    let organs = [
+        (
+            "Sight",
+            "sight",
+            SenseOrgan::Sight,
+            "the gap to the next riser, its height, the clearance",
+        ),
+        ("Touch", "touch", SenseOrgan::Touch, "touch, load, and resistance ahead"),
+        ("Balance", "balance", SenseOrgan::Balance, "pitch, roll, yaw, speed, distance aside"),
+    ];
+    ui.horizontal(|ui| {
+        for (name, field, organ, senses) in organs {
+            let mut works = view.switched.has(organ);
+            let hint = format!(
+                "Off: {senses} keep their last values in a copy of the snake, which walks beside it from this \
+                 moment on. The next run gets the same setting; Ctrl Z undoes it"
+            );
+            if check_box(ui, &mut works, name).on_hover_text(hint).changed() {
+                let field = format!("trial.agent.senses.{field}");
+                let text = works.to_string();
+                commands.push(Command::Plan(PlanCommand::SetField { field, text }));
+            }
+        }
+    });
+    let all = ActiveSenses::default();
+    explain(
+        ui,
+        match view.switched == all {
+            true => "Switch one off: a copy without it walks beside this snake.",
+            false => "Senses that are off keep their last values, marked as frozen.",
+        },
+    );
+}
+
+#[cfg(test)]
+mod tests;

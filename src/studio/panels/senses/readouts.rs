@@ -1,0 +1,172 @@
+//! Read-outs of the senses, in units that a person can measure.
+
+use bevy_egui::egui;
+use bevy_egui::egui::Color32;
+
+use super::SensesView;
+use super::value_bar::{SENSE_NAMES, ValueBar};
+use crate::control::{ActiveSenses, Perception, SenseKind};
+use crate::score::Rollout;
+use crate::studio::ui::decimals::decimals;
+use crate::studio::ui::text_rows::title;
+use crate::studio::ui::theme;
+
+/// The senses of the snake as a whole.
+const OF_SNAKE: [SenseKind; 4] =
+    [SenseKind::Yaw, SenseKind::SpeedAhead, SenseKind::SpeedUp, SenseKind::Aside];
+/// The senses of a limb, by organ.
+const OF_LIMB: [SenseKind; 8] = [
+    SenseKind::Gap,
+    SenseKind::StepUp,
+    SenseKind::Clearance,
+    SenseKind::Touch,
+    SenseKind::Load,
+    SenseKind::Blocked,
+    SenseKind::Pitch,
+    SenseKind::Roll,
+];
+
+/// Draws the senses of the snake, of a limb, and of all joints.
+pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) {
+    let palette = theme::of(ui);
+    let senses = rollout.perception();
+    let limbs = senses.limbs.len();
+    let read = ReadSenses {
+        senses,
+        active: rollout.active_senses(),
+        limb_weight_n: rollout.simulation().weight_n() / limbs.max(1) as f32,
+    };
+    ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
+    let part = match view.limb {
+        0 => ", the head",
+        last if last + 1 == limbs => ", the tail",
+        _ => "",
+    };
+    title(ui, &format!("Limb {} of {limbs}{part}", view.limb + 1));
+    let limb_color = match view.limb % 2 {
+        0 => theme::flat(palette.red_limb),
+        _ => theme::flat(palette.blue_limb),
+    };
+    OF_LIMB.into_iter().for_each(|kind| read.row(ui, kind, view.limb, limb_color));
+    if !view.is_selected {
+        let text = egui::RichText::new("Click a limb on the stage to read its senses.").small();
+        ui.label(text.color(palette.text_weak));
+    }
+    title(ui, "Whole snake");
+    OF_SNAKE.into_iter().for_each(|kind| read.row(ui, kind, 0, palette.accent));
+    title(ui, "Joints");
+    for joint in 0..senses.joints.len() {
+        read.row(ui, SenseKind::Bend, joint, palette.bend);
+    }
+}
+
+/// The senses of a snake at a moment.
+struct ReadSenses<'s> {
+    senses: &'s Perception,
+    active: ActiveSenses,
+    /// Weight of a limb on average, in N.
+    limb_weight_n: f32,
+}
+
+impl ReadSenses<'_> {
+    /// Draws a sense of a part; the first is 0.
+    fn row(&self, ui: &mut egui::Ui, kind: SenseKind, part: usize, color: Color32) {
+        let info = kind.info();
+        let sensed = self.senses.value(kind, part);
+        let value = info.scale.map_or(sensed, |scale| sensed * scale);
+        let [least, most] = info.range.map(|end| info.scale.map_or(end, |scale| end * scale));
+        let (text, note, value, range) = match kind {
+            SenseKind::Touch => {
+                let text = if value > 0.5 { "yes" } else { "no" };
+                (text.to_owned(), String::new(), value, [least, most])
+            }
+            SenseKind::Load | SenseKind::Blocked => {
+                let force_n = self.limb_weight_n * value / (1.0 - value.min(0.999));
+                let note = format!("½ at {:.0} N", self.limb_weight_n);
+                (format!("{} N", decimals(force_n, 0)), note, value, [least, most])
+            }
+            SenseKind::Pitch | SenseKind::Roll | SenseKind::Yaw => {
+                let angle_deg = libm::asinf(value.clamp(-1.0, 1.0)).to_degrees();
+                in_degrees(angle_deg, 90.0)
+            }
+            SenseKind::Bend | SenseKind::Twist => in_degrees(value.to_degrees(), most.to_degrees()),
+            SenseKind::Gap => {
+                let least_gap = if sensed >= 1.0 { "≥ " } else { "" };
+                let text = format!("{least_gap}{} m", decimals(value, 2));
+                (text, format!("0 to {most:.0} m"), value, [least, most])
+            }
+            SenseKind::Aside => {
+                let note = format!("±{most:.0} half widths");
+                (decimals(value, 2), note, value, [least, most])
+            }
+            _ => {
+                let text = format!("{} {}", decimals(value, 2), info.unit);
+                let note = match least < 0.0 {
+                    true => format!("±{most:.0} {}", info.unit),
+                    false => format!("0 to {most:.0} {}", info.unit),
+                };
+                (text, note, value, [least, most])
+            }
+        };
+        let is_frozen = !self.active.has(info.organ);
+        let name = match kind {
+            SenseKind::Bend => format!("Joint {} bend", part + 1),
+            _ => capitalized(info.name),
+        };
+        let row = ValueBar {
+            name: &name,
+            names_width: SENSE_NAMES,
+            text,
+            value,
+            range,
+            note: if is_frozen { "frozen" } else { &note },
+            color,
+            is_frozen,
+            is_chosen: false,
+            hint: format!("{}. The controller receives {}", hint(kind), decimals(sensed, 2)),
+        };
+        row.ui(ui);
+    }
+}
+
+/// An angle within a range on both sides of 0, with its text.
+fn in_degrees(angle_deg: f32, most_deg: f32) -> (String, String, f32, [f32; 2]) {
+    let text = format!("{}°", decimals(angle_deg, 0));
+    (text, format!("±{most_deg:.0}°"), angle_deg, [-most_deg, most_deg])
+}
+
+fn capitalized(name: &str) -> String {
+    let mut letters = name.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// What a sense is.
+fn hint(kind: SenseKind) -> &'static str {
+    match kind {
+        SenseKind::Bend => "Angle of the joint's bend",
+        SenseKind::Twist => "Angle of the joint's twist",
+        SenseKind::BendRate => "Rate of the joint's bend",
+        SenseKind::TwistRate => "Rate of the joint's twist",
+        SenseKind::Touch => "Whether the limb touches ground or stairs",
+        SenseKind::Load => "Force of the contacts upwards; the bar is half full at a limb's weight",
+        SenseKind::Blocked => {
+            "Force of the contacts against the direction in which the limb points; the bar is half full at a \
+             limb's weight"
+        }
+        SenseKind::Pitch => "Slope of the limb: positive with its front end up",
+        SenseKind::Roll => "Turn of the limb about its length",
+        SenseKind::Gap => {
+            "Way from the limb's front face to the next riser; full without a riser ahead"
+        }
+        SenseKind::StepUp => {
+            "Height of the next tread over the limb's lowest corner; 0 without a riser ahead"
+        }
+        SenseKind::Clearance => "Height of the limb's lowest corner over the surface below it",
+        SenseKind::Yaw => "Direction of the head: 0 straight towards the stairs",
+        SenseKind::SpeedAhead => "Speed of the middle limb towards the stairs",
+        SenseKind::SpeedUp => "Speed of the middle limb upwards",
+        SenseKind::Aside => {
+            "Distance of the middle limb from the middle of the stairs: 1 at their edge"
+        }
+    }
+}

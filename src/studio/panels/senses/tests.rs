@@ -1,0 +1,161 @@
+//! The panel with snakes of several controllers.
+
+use super::*;
+use crate::evolve::with_fields;
+use crate::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
+use crate::genome::{ControllerGenes, Genome};
+use crate::learn::classifiers::{Zcs, ZcsSettings};
+use crate::rng::{Purpose, stream};
+use crate::save::{LoadedChampion, load_preset, shipped_champion};
+use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::stage::staged_champion::StagedChampion;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::sync::Arc;
+
+/// A lane of a random snake with a controller, at 0.5 s, in a world with other settings.
+fn lane_of(kind: ControllerKind, fields: &[(&str, &str)], change: fn(&mut Genome)) -> Lane {
+    let settings = load_preset("climb").expect("shipped").settings;
+    let mut settings = with_fields(&settings, fields.iter().copied()).expect("allowed");
+    settings.genome.controller = kind;
+    let mut rng = stream(1, 1, 3, Purpose::Birth);
+    let mut genome = settings.genome.random_genome(settings.trial.genome_shape(), &mut rng);
+    change(&mut genome);
+    let LoadedChampion { mut champion, .. } = shipped_champion().expect("well formed");
+    (champion.genome, champion.trial) = (genome, settings.trial);
+    let loaded = LoadedChampion { champion, ..shipped_champion().expect("well formed") };
+    let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "a snake"), 0);
+    lane.show(0.5, None, 3000).expect("healthy");
+    lane
+}
+
+/// The panel for a limb of a lane.
+fn panel(lane: &Lane, limb: usize) -> Harness<'_, Vec<Command>> {
+    let mut panel = SensesPanel::default();
+    let mut harness = Harness::builder().with_size(egui::vec2(320.0, 1600.0)).build_ui_state(
+        move |ui, commands| {
+            theme::apply(ui.ctx());
+            let view = SensesView {
+                lane,
+                limb,
+                is_selected: limb > 0,
+                others: Vec::new(),
+                switched: lane.trial().agent.senses,
+            };
+            panel.ui(ui, Some(&view), commands);
+        },
+        Vec::new(),
+    );
+    harness.run();
+    harness
+}
+
+fn shows(panel: &Harness<'_, Vec<Command>>, label: &str) -> bool {
+    panel.query_all_by_label_contains(label).next().is_some()
+}
+
+#[test]
+fn the_readouts_of_the_chosen_limb_have_units_and_fit() {
+    let lane = lane_of(ControllerKind::Modular, &[], |_| ());
+    let panel_of = |limb| panel(&lane, limb);
+    let head = panel_of(0);
+    let senses = lane.rollout().expect("simulated").perception();
+    let gap_m = senses.limbs[0].gap * 2.0;
+    assert!(shows(&head, "Limb 1 of 5, the head"));
+    let gap = if gap_m < 2.0 { format!("Gap: {gap_m:.2} m") } else { "Gap: ≥ 2.00 m".to_owned() };
+    assert!(shows(&head, &gap), "{gap}");
+    for label in ["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a limb"] {
+        assert!(shows(&head, label), "{label}");
+    }
+    assert!(!shows(&head, "frozen"));
+    assert_nothing_is_wider_than(&head, 320.0);
+    assert!(shows(&panel_of(4), "Limb 5 of 5, the tail"));
+}
+
+#[test]
+fn a_click_on_a_switch_tries_the_snake_without_that_sense() {
+    let lane = lane_of(ControllerKind::Modular, &[], |_| ());
+    for (name, field) in [("Sight", "sight"), ("Touch", "touch"), ("Balance", "balance")] {
+        let mut panel = panel(&lane, 0);
+        panel.get_by_role_and_label(egui::accesskit::Role::CheckBox, name).click();
+        panel.run();
+        let field = format!("trial.agent.senses.{field}");
+        let text = "false".to_owned();
+        assert_eq!(*panel.state(), [Command::Plan(PlanCommand::SetField { field, text })]);
+    }
+}
+
+#[test]
+fn senses_that_do_not_work_are_marked_as_frozen() {
+    let lane = lane_of(ControllerKind::Central, &[("trial.agent.senses.sight", "false")], |_| ());
+    let panel = panel(&lane, 0);
+    let frozen: Vec<String> = panel
+        .query_all_by_label_contains("frozen")
+        .filter_map(|node| node.accesskit_node().value())
+        .collect();
+    let starts = |name: &str| frozen.iter().any(|label| label.starts_with(name));
+    assert!(starts("Gap") && starts("Step up") && starts("Clearance"), "{frozen:?}");
+    assert!(!starts("Touch") && !starts("Pitch"), "{frozen:?}");
+}
+
+#[test]
+fn a_snake_that_follows_only_its_genes_says_so() {
+    for (kind, text) in
+        [(ControllerKind::Gait, "feels only its joints"), (ControllerKind::Wave, "feels nothing")]
+    {
+        let lane = lane_of(kind, &[], |_| ());
+        let panel = panel(&lane, 0);
+        assert!(shows(&panel, text), "{kind}");
+        assert!(!shows(&panel, "Sight"), "{kind}");
+    }
+}
+
+#[test]
+fn every_network_is_drawn_with_its_nodes() {
+    for (kind, node) in [
+        (ControllerKind::Modular, "front step up "),
+        (ControllerKind::Central, "limb 1 gap "),
+        (ControllerKind::Ctrnn, "neuron 1: bend target "),
+        (ControllerKind::Grown, "head step up "),
+    ] {
+        let lane = lane_of(kind, &[], |_| ());
+        let panel = panel(&lane, 2);
+        assert!(shows(&panel, node), "{kind}");
+        assert!(shows(&panel, &format!("Controller: {}", kind.title())));
+        assert_nothing_is_wider_than(&panel, 320.0);
+    }
+}
+
+#[test]
+fn reflexes_are_listed_by_sense() {
+    let lane = lane_of(ControllerKind::Reflex, &[], |_| ());
+    let panel = panel(&lane, 2);
+    for label in ["Joint 2: what each sense adds", "front touch: ", "Target moved: "] {
+        assert!(shows(&panel, label), "{label}");
+    }
+}
+
+#[test]
+fn decisions_show_situation_postures_and_rules() {
+    let lane = lane_of(ControllerKind::Decisions, &[], |_| ());
+    let table = panel(&lane, 0);
+    for label in ["Situation: ", "fold in front: 0.00 0 visits", "hold: 0.00 0 visits, chosen"] {
+        assert!(shows(&table, label), "{label}");
+    }
+    assert!(!shows(&table, "Rules: "));
+    let lane = lane_of(ControllerKind::Decisions, &[], |genome| {
+        let ControllerGenes::Decisions(genes) = &mut genome.controller else { panic!("decisions") };
+        let mut rng = stream(1, 1, 1, Purpose::Learn);
+        let settings = ZcsSettings { wildcard_share: 0.9, ..ZcsSettings::default() };
+        let rules = Zcs::new(settings, SITUATION_BITS.len(), POSTURES.len(), &mut rng);
+        genes.policy = Policy::Zcs(Arc::new(rules.expect("allowed")));
+    });
+    let mut rules = panel(&lane, 0);
+    assert!(shows(&rules, "of 400 match"));
+    assert!(shows(&rules, "strength 20.00. It matches"));
+    assert!(!shows(&rules, "does not match"));
+    rules.get_by_label("Also rules that do not match").click();
+    rules.run();
+    assert!(shows(&rules, "does not match this situation"));
+    assert_nothing_is_wider_than(&rules, 320.0);
+}

@@ -1,0 +1,90 @@
+//! A row with a name, a bar over a range, and a number.
+
+use bevy_egui::egui;
+use bevy_egui::egui::Color32;
+
+use crate::studio::ui::theme;
+
+/// A row of the panel.
+pub(super) struct ValueBar<'b> {
+    pub name: &'b str,
+    /// Width of the names of the list, in points.
+    pub names_width: f32,
+    /// The number with its unit.
+    pub text: String,
+    /// The value on the bar, and the ends of the bar.
+    pub value: f32,
+    pub range: [f32; 2],
+    /// A short note at the right end: the range in words, or that the value is frozen.
+    pub note: &'b str,
+    pub color: Color32,
+    /// Whether it no longer changes, and is drawn grey.
+    pub is_frozen: bool,
+    /// Whether it is the chosen one of several.
+    pub is_chosen: bool,
+    pub hint: String,
+}
+
+/// Height of a row, in points.
+pub(super) const ROW_HEIGHT: f32 = theme::GAP * 2.25;
+/// Width of the names of senses, in points.
+pub(super) const SENSE_NAMES: f32 = theme::GAP * 12.5;
+/// Widths of the numbers and the notes, in points.
+const NUMBERS: f32 = theme::GAP * 9.5;
+const NOTES: f32 = theme::GAP * 9.5;
+/// Height of a bar, in points.
+const BAR: f32 = theme::GAP * 0.75;
+
+impl ValueBar<'_> {
+    /// Draws the row over the whole width.
+    pub fn ui(&self, ui: &mut egui::Ui) {
+        let palette = theme::of(ui);
+        let size = egui::vec2(ui.available_width(), ROW_HEIGHT);
+        let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        let color = if self.is_frozen { palette.text_weak } else { self.color };
+        let text = if self.is_frozen { palette.text_weak } else { palette.text };
+        if self.is_chosen {
+            painter.rect_filled(rect, theme::GAP / 4.0, palette.accent_soft);
+        }
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let number = egui::TextStyle::Monospace.resolve(ui.style());
+        let small = egui::FontId::proportional(theme::SMALL_SIZE);
+        let weak = if self.is_chosen { palette.text } else { palette.text_weak };
+        let middle = rect.center().y;
+        let at = |x: f32| egui::pos2(x, middle);
+        painter.text(at(rect.left() + 2.0), egui::Align2::LEFT_CENTER, self.name, font, weak);
+        let numbers_end = rect.right() - NOTES;
+        painter.text(at(numbers_end), egui::Align2::RIGHT_CENTER, &self.text, number, text);
+        let left = numbers_end + theme::GAP;
+        painter.text(at(left), egui::Align2::LEFT_CENTER, self.note, small, weak);
+        let bar = egui::Rect::from_min_max(
+            egui::pos2(rect.left() + self.names_width, middle - BAR / 2.0),
+            egui::pos2(numbers_end - NUMBERS - theme::GAP / 2.0, middle + BAR / 2.0),
+        );
+        if bar.width() > 1.0 {
+            painter.rect_filled(bar, BAR / 2.0, palette.field_hovered);
+            let zero = bar.left() + bar.width() * self.share(0.0);
+            let end = bar.left() + bar.width() * self.share(self.value);
+            let filled = egui::Rect::from_x_y_ranges(zero.min(end)..=zero.max(end), bar.y_range());
+            painter.rect_filled(filled, BAR / 2.0, color);
+            if self.range[0] < 0.0 {
+                let tick = egui::Rangef::new(bar.top() - 2.0, bar.bottom() + 2.0);
+                painter.vline(zero, tick, egui::Stroke::new(1.0, palette.text_weak));
+            }
+        }
+        let said = format!("{}: {} {}", self.name, self.text, self.note);
+        let said = if self.is_chosen { format!("{said}, chosen") } else { said };
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
+        if !self.hint.is_empty() {
+            response.on_hover_text(&self.hint);
+        }
+    }
+
+    /// The place of a value on the bar, from 0 to 1.
+    fn share(&self, value: f32) -> f32 {
+        let [least, most] = self.range;
+        let width = most - least;
+        if width > 0.0 { ((value - least) / width).clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
