@@ -167,6 +167,8 @@ impl ActiveRule {
         let words: Vec<String> = parts
             .map(|(bit, name)| match value >> bit & 1 {
                 1 => (*name).to_owned(),
+                // "no riser at the head", but "not moving".
+                _ if name.starts_with("riser") || name.starts_with("step") => format!("no {name}"),
                 _ => format!("not {name}"),
             })
             .collect();
@@ -275,6 +277,7 @@ mod tests {
         };
         assert_eq!(rule(0b1, 0b1).words(), "riser at the head");
         assert_eq!(rule(1 | 1 << 13, 1).words(), "riser at the head, not moving");
+        assert_eq!(rule(0b1000, 0).words(), "no step ahead");
         assert_eq!(rule(0, 0).words(), "always");
     }
 }

@@ -111,7 +111,11 @@ fn entry(ui: &mut egui::Ui, rule: &ActiveRule, decision: &DecisionActivity) {
     let below = format!("{posture}: {numbers}");
     for (text, color, top) in [
         (format!("If {words}"), strong, inside.top()),
-        (below.clone(), palette.text_weak, inside.center().y),
+        (
+            below.clone(),
+            if rule.decides { palette.text } else { palette.text_weak },
+            inside.center().y,
+        ),
     ] {
         let text = cut(text, color);
         ui.painter().galley(egui::pos2(inside.left(), top), text, color);
