@@ -156,7 +156,7 @@ strategy_kinds! {
         name: "neat",
         title: "NEAT",
         words: "Grows networks from nothing but links; species protect what is new.",
-        color: [0x11, 0x77, 0x77],
+        color: [0x6a, 0x3d, 0x9a],
         settings: &["neat"],
         has_fixed_population: true,
         only_controller: Some(ControllerKind::Grown),
