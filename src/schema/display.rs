@@ -102,6 +102,8 @@ impl Setting {
     /// A value within a sentence: with its unit, where panels show another than files do.
     pub fn value_in_words(&self, value: &SettingValue) -> String {
         let unit = match value {
+            SettingValue::Switch(true) => return "on".to_owned(),
+            SettingValue::Switch(false) => return "off".to_owned(),
             SettingValue::None => "",
             _ => self.display.map_or("", |display| display.unit),
         };

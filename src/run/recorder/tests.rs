@@ -1,5 +1,7 @@
 //! A saved run continues bit for bit, whenever it was stopped.
 
+mod families;
+
 use super::*;
 use crate::evolve::{Founder, Settings, StrategyKind};
 use crate::genome::ControllerKind;
