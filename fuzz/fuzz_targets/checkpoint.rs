@@ -14,6 +14,9 @@ static PLANS: LazyLock<Vec<(RunPlan, String)>> = LazyLock::new(|| StrategyKind::
 fn plan(strategy: StrategyKind) -> (RunPlan, String) {
     let mut settings = Settings::default();
     settings.evolution.strategy = strategy;
+    if let Some(controller) = strategy.controllers().next() {
+        settings.genome.controller = controller;
+    }
     settings.evolution.population = 3;
     settings.trial.duration_s = 0.1;
     let plan = RunPlan::new("x", 1, settings);

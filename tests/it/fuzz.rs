@@ -172,11 +172,17 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
         (StrategyKind::MapElites, ControllerKind::Gait, "map-elites"),
         (StrategyKind::Novelty, ControllerKind::Gait, "novelty"),
         (StrategyKind::Random, ControllerKind::Gait, "random"),
+        (StrategyKind::Neat, ControllerKind::Grown, "neat"),
+        (StrategyKind::QLearning, ControllerKind::Decisions, "q-learning"),
+        (StrategyKind::Xcs, ControllerKind::Decisions, "xcs"),
+        (StrategyKind::Zcs, ControllerKind::Decisions, "zcs"),
     ] {
         let (mut plan, _) = plan();
         plan.settings.evolution.strategy = strategy;
         plan.settings.genome.controller = controller;
         plan.settings.evolution.population = 4;
+        plan.settings.evolution.xcs.rules = 20;
+        plan.settings.evolution.zcs.rules = 20;
         let fingerprint = fingerprint(&plan);
         let read = |path: &Path, text: &str| {
             parse_checkpoint(path, &text.replace("PLAN", &fingerprint), &plan).map(|read| {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::evolve::Settings;
 use crate::run::{LocalPool, WorkersError};
-use crate::score::{Trial, evaluate};
+use crate::score::{PerturbationList, Trial, evaluate};
 
 fn small(seed: u64) -> Experiment {
     let mut settings = Settings::default();
@@ -172,4 +172,27 @@ fn the_champion_scores_the_same_when_evaluated_again() {
     let champion = report.champion.expect("one is healthy");
     assert_eq!(evaluate(&champion.genome, &champion.trial), champion.evaluation);
     assert_eq!(experiment.best(), Some(&champion));
+}
+
+#[test]
+fn individuals_of_varied_generations_score_the_same_again_in_their_own_trials() {
+    let mut settings = Settings::default();
+    settings.evolution.population = 6;
+    settings.evolution.generations = 2;
+    settings.trial.duration_s = 1.0;
+    settings.trial.repeats.trials = 3;
+    settings.trial.repeats.list = PerturbationList::Generation;
+    let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
+    let evaluator = LocalPool::new(1).expect("threads");
+    let mut numbers = Vec::new();
+    while !experiment.is_over() {
+        let report = experiment.run_generation(&evaluator, &RunControl::default());
+        let champion = report.expect("not cancelled").champion.expect("one is healthy");
+        for individual in experiment.leaders().iter().chain([&champion]) {
+            let again = evaluate(&individual.genome, &individual.trial);
+            assert_eq!(again, individual.evaluation);
+        }
+        numbers.push(champion.trial.repeats.list_number);
+    }
+    assert!(numbers[0] != numbers[1] && !numbers.contains(&0), "{numbers:?}");
 }

@@ -90,9 +90,7 @@ impl SensesPanel {
         lane_choice(ui, view, commands);
         if !view.kind().senses_surroundings() {
             explain(ui, unsensing(view.kind()));
-            let hint = "Controllers that sense touch, balance and the stairs ahead are Reflex, Modular, Central, CTRNN, \
-                        Decisions, Rules and Grown: choose one in the Run panel.";
-            explain(ui, hint);
+            explain(ui, &sensing_controllers());
             return;
         }
         let Some(rollout) = view.lane.rollout() else {
@@ -125,6 +123,16 @@ impl SensesPanel {
             None => {}
         }
     }
+}
+
+/// The controllers that sense their surroundings, in a sentence.
+fn sensing_controllers() -> String {
+    let sensing = ControllerKind::ALL.into_iter().filter(|kind| kind.senses_surroundings());
+    let titles: Vec<&str> = sensing.map(ControllerKind::title).collect();
+    format!(
+        "Controllers that sense touch, balance and the stairs ahead: {}. Choose one in the Run panel.",
+        titles.join(", ")
+    )
 }
 
 /// What a snake feels whose controller does not sense its surroundings.

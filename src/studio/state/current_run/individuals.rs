@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::CurrentRun;
-use crate::evolve::{Champion, IndividualId, Origin, Parents, Settings};
+use crate::evolve::{Champion, IndividualId, Origin, Parents};
 use crate::genome::Genome;
 use crate::run::{Ancestor, caught};
-use crate::score::{Evaluation, evaluate};
+use crate::score::{Evaluation, Trial, evaluate};
 
 /// Individuals with descendants, by place.
 pub(super) type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;
@@ -17,7 +17,7 @@ impl CurrentRun {
     /// An unknown evaluation is computed again.
     pub fn individual(&self, place: IndividualId) -> Option<Champion> {
         let genome = self.genome_of(place)?;
-        let trial = self.settings().trial.clone();
+        let trial = self.trial_in(place.generation);
         let evaluation = match self.evaluation_of(place) {
             Some(evaluation) => evaluation,
             None => caught(|| evaluate(&genome, &trial)).ok()?,
@@ -33,7 +33,7 @@ impl CurrentRun {
             members.find(|is| (is.generation, is.individual) == (generation, individual))?;
         Some(Champion {
             genome: member.genome.clone(),
-            trial: self.settings().trial.clone(),
+            trial: self.trial_in(generation),
             evaluation: member.evaluation,
             chosen_by: None,
             origin: self.origin(generation, individual),
@@ -43,11 +43,16 @@ impl CurrentRun {
     /// The elite of an archive cell. The archive keeps point and fitness; the evaluation is computed again.
     pub fn elite(&self, cell: u32) -> Option<Champion> {
         let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
-        let Settings { trial, genome: space, .. } = self.settings();
-        let genome = space.genome_at(&elite.point, trial.genome_shape());
-        let evaluation = caught(|| evaluate(&genome, trial)).ok()?;
+        let trial = self.trial_in(elite.generation);
+        let genome = self.settings().genome.genome_at(&elite.point, trial.genome_shape());
+        let evaluation = caught(|| evaluate(&genome, &trial)).ok()?;
         let origin = self.origin(elite.generation, elite.individual);
-        Some(Champion { genome, trial: trial.clone(), evaluation, chosen_by: None, origin })
+        Some(Champion { genome, trial, evaluation, chosen_by: None, origin })
+    }
+
+    /// The trial in which the individuals of a generation were evaluated.
+    pub(super) fn trial_in(&self, generation: u32) -> Trial {
+        self.plan_now.trial_in(generation)
     }
 
     pub(super) fn origin(&self, generation: u32, individual: u32) -> Origin {

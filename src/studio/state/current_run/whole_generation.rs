@@ -39,7 +39,7 @@ impl CurrentRun {
         }
         let champion = |member: &GenerationMember| Champion {
             genome: (*member.genome).clone(),
-            trial: self.settings().trial.clone(),
+            trial: self.trial_in(number),
             evaluation: member.evaluation,
             chosen_by: None,
             origin: self.origin(number, member.individual),
