@@ -1,4 +1,4 @@
-//! What a controller is doing at a moment, for a person to see. It never acts on anything.
+//! The state of a controller at a moment, for display. Nothing acts on it.
 
 use crate::genome::controllers::{Layer, SITUATION_BITS};
 use crate::learn::classifiers::Condition;
@@ -65,7 +65,7 @@ pub struct NetworkLink {
 pub struct DecisionActivity {
     /// The situation in words.
     pub situation: String,
-    /// What each posture is worth in it.
+    /// The worth of each posture in it.
     pub postures: Vec<PostureWorth>,
     /// The posture that was chosen, by its place in the list.
     pub chosen: usize,
@@ -73,7 +73,7 @@ pub struct DecisionActivity {
     pub rules: Vec<ActiveRule>,
 }
 
-/// What a posture is worth in a situation.
+/// The worth of a posture in a situation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PostureWorth {
     /// Its name.
@@ -108,7 +108,7 @@ pub struct ActiveRule {
 pub struct ReflexActivity {
     /// The joint; the first is 0.
     pub joint: usize,
-    /// What each sense adds to the sum.
+    /// The contribution of each sense to the sum.
     pub pushes: Vec<ReflexPush>,
     /// Angle by which they move the target together, in radians.
     pub moved_rad: f32,
@@ -118,7 +118,7 @@ pub struct ReflexActivity {
     pub shift_rad: f32,
 }
 
-/// What a sense adds to a reflex.
+/// The contribution of a sense to a reflex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReflexPush {
     /// The sense.

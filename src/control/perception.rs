@@ -6,6 +6,7 @@
 use super::sense::{
     ANGLE_SCALE_RAD, ActiveSenses, GAP_SCALE_M, RATE_SCALE_RAD_S, SPEED_SCALE_M_S, SenseKind,
 };
+use crate::genome::controllers::sense_count;
 use crate::world::{JointState, LimbReading, PhysicsSettings, Simulation};
 
 /// Everything that a snake senses at a moment.
@@ -162,7 +163,7 @@ impl Perception {
 
     /// Number of values that a snake with this many joints senses.
     pub const fn count(joints: usize) -> usize {
-        4 * joints + 8 * (joints + 1) + 4
+        sense_count(joints)
     }
 
     /// All values in a fixed order: joint after joint, limb after limb, then those of the snake.

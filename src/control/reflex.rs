@@ -22,21 +22,21 @@ impl ReflexFollower {
             JointServos::new(genes.gait.stiffness_nm_per_rad, genes.gait.servo_damping_nms_per_rad);
         Self { servo, shifts_rad: vec![0.0; genes.gait.waves.joints.len()], genes }
     }
+}
 
-    /// Angle by which a reflex moves a target, in radians.
-    fn reach_rad(
-        &self,
-        weights: &[f32; REFLEX_INPUTS.len()],
-        own: [f32; 2],
-        around: [f32; 6],
-    ) -> f32 {
-        let inputs = own.into_iter().chain(around).chain([1.0]);
-        let mut sum = 0.0;
-        for (input, weight) in inputs.zip(weights) {
-            sum += input * weight;
-        }
-        self.genes.reach_rad * libm::tanhf(sum)
+/// Angle by which a reflex moves a target, in radians.
+fn reach_rad(
+    reach_rad: f32,
+    weights: &[f32; REFLEX_INPUTS.len()],
+    own: [f32; 2],
+    around: [f32; 6],
+) -> f32 {
+    let inputs = own.into_iter().chain(around).chain([1.0]);
+    let mut sum = 0.0;
+    for (input, weight) in inputs.zip(weights) {
+        sum += input * weight;
     }
+    reach_rad * libm::tanhf(sum)
 }
 
 /// The senses of the limbs before and behind a joint that a reflex uses.
@@ -56,22 +56,22 @@ impl Controller for ReflexFollower {
     }
 
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
-        let waves = &self.genes.gait.waves;
+        let ReflexGait { gait, reach_rad: reach, bend_weights, twist_weights, .. } = &self.genes;
+        let waves = &gait.waves;
         let periods = observation.periods(waves.frequency_hz);
         let senses = &observation.perception;
         let pairs = || senses.limbs.iter().zip(senses.limbs.iter().skip(1));
         let joints = waves.joints.iter().zip(&senses.joints).zip(pairs()).zip(&self.shifts_rad);
-        let targets: Vec<[f32; 2]> = joints
-            .map(|(((joint, own), (front, rear)), shift_rad)| {
-                let JointSenses { bend, twist, bend_rate, twist_rate } = *own;
-                // Without a shift this is the very number that a gait has.
-                let shifted = periods + shift_rad / std::f64::consts::TAU;
-                let around = around(front, rear);
-                let bend = self.reach_rad(&self.genes.bend_weights, [bend, bend_rate], around);
-                let twist = self.reach_rad(&self.genes.twist_weights, [twist, twist_rate], around);
-                [joint.bend.at(shifted) + bend, joint.twist.at(shifted) + twist]
-            })
-            .collect();
+        let targets = joints.map(|(((joint, own), (front, rear)), shift_rad)| {
+            let JointSenses { bend, twist, bend_rate, twist_rate } = *own;
+            // Without a shift this is the very number that a gait has.
+            let shifted = periods + shift_rad / std::f64::consts::TAU;
+            let around = around(front, rear);
+            let bend = reach_rad(*reach, bend_weights, [bend, bend_rate], around);
+            let twist = reach_rad(*reach, twist_weights, [twist, twist_rate], around);
+            [joint.bend.at(shifted) + bend, joint.twist.at(shifted) + twist]
+        });
+        self.servo.pull(observation, targets, torques);
         let step_s = 1.0 / f64::from(observation.steps_per_s);
         let [load, blocked] = [self.genes.load_phase_rad_per_s, self.genes.blocked_phase_rad_per_s];
         for ((joint, (front, rear)), shift_rad) in
@@ -81,7 +81,6 @@ impl Controller for ReflexFollower {
             let drawn = f64::from(load * rear.load) * libm::cos(phase_rad);
             *shift_rad -= (drawn + f64::from(blocked * front.blocked)) * step_s;
         }
-        self.servo.pull(observation, targets.into_iter(), torques);
     }
 
     fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {
@@ -96,7 +95,7 @@ impl Controller for ReflexFollower {
             pushes: pushes
                 .map(|((name, value), weight)| ReflexPush { name, value, push: value * weight })
                 .collect(),
-            moved_rad: self.reach_rad(weights, own, around),
+            moved_rad: reach_rad(self.genes.reach_rad, weights, own, around),
             reach_rad: self.genes.reach_rad,
             shift_rad: self.shifts_rad.get(joint).map_or(0.0, |shift_rad| *shift_rad as f32),
         }))

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use super::gene::{Gene, GeneRange, GeneVisitor};
 use crate::check::{Invalid, within};
 use crate::schema::{number, setting_group, whole};
 
@@ -80,6 +81,27 @@ setting_group! {
         within("frequency_max_hz", self.frequency_max_hz, frequencies)?;
         let stiffnesses = self.stiffness_min_nm_per_rad..=*STIFFNESS_RANGE_NM_PER_RAD.end();
         within("stiffness_max_nm_per_rad", self.stiffness_max_nm_per_rad, stiffnesses)
+    }
+}
+
+impl WaveSpace {
+    /// Widens the range of frequencies so that it contains one, in Hz.
+    pub(super) fn widen_frequency(&mut self, frequency_hz: f32) {
+        self.frequency_min_hz = self.frequency_min_hz.min(frequency_hz);
+        self.frequency_max_hz = self.frequency_max_hz.max(frequency_hz);
+    }
+
+    /// Widens the range of the servo's stiffness so that it contains one, in N·m/rad.
+    pub(super) fn widen_stiffness(&mut self, stiffness_nm_per_rad: f32) {
+        self.stiffness_min_nm_per_rad = self.stiffness_min_nm_per_rad.min(stiffness_nm_per_rad);
+        self.stiffness_max_nm_per_rad = self.stiffness_max_nm_per_rad.max(stiffness_nm_per_rad);
+    }
+
+    /// Visits the gene of a frequency.
+    pub(super) fn frequency_gene(&self, frequency_hz: &mut f32, visit: GeneVisitor<'_>) {
+        let range = GeneRange::Between(self.frequency_min_hz, self.frequency_max_hz);
+        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
+        visit(Gene { field, name, unit: "Hz", range }, frequency_hz);
     }
 }
 

@@ -31,7 +31,7 @@ impl Neat {
             && let ControllerGenes::Grown(genes) = &founder.genome().controller
         {
             let point = search.founder().unwrap_or_default();
-            let parameters = point.iter().map(|x| search.clamped(*x)).collect();
+            let parameters = point.iter().map(|x| (*x as f32).clamp(0.0, 1.0)).collect();
             let network = NetworkGenome { parameters, ..genes.network.clone() };
             return NeatPopulation::descended(rules, &network, size, seed);
         }

@@ -126,11 +126,6 @@ impl Search {
         self.space.point_of(&self.random_genome(individual))
     }
 
-    /// A coordinate within the unit cube, as a number of a network's genome.
-    pub fn clamped(&self, coordinate: f64) -> f32 {
-        (coordinate as f32).clamp(0.0, 1.0)
-    }
-
     /// Checks a point from a file.
     pub fn check(&self, point: &[f64]) -> Result<(), Invalid> {
         within("coordinates", point.len(), self.dimension..=self.dimension)?;

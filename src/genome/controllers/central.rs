@@ -6,7 +6,7 @@ use super::encoding::{ControllerEncoding, ControllerInfo};
 use super::layer::Layer;
 use super::servo::ServoGenes;
 use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
+use crate::genome::gene::{GeneVisitor, GenomeShape};
 use crate::genome::network_space::MOST_HIDDEN;
 use crate::genome::space::GenomeSpace;
 use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
@@ -72,9 +72,7 @@ impl ControllerEncoding for CentralNetwork {
 
     fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
         self.servo.genes(space, visit);
-        let range = GeneRange::Between(space.wave.frequency_min_hz, space.wave.frequency_max_hz);
-        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
-        visit(Gene { field, name, unit: "Hz", range }, &mut self.frequency_hz);
+        space.wave.frequency_gene(&mut self.frequency_hz, visit);
         let most = space.network.weight_range;
         let sense = |index: usize| format!("input {}", index + 1);
         self.hidden.genes(["hidden", "hidden"], most, sense, visit);
@@ -109,9 +107,7 @@ impl ControllerEncoding for CentralNetwork {
 
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen(space);
-        let (wave, frequency_hz) = (&mut space.wave, self.frequency_hz);
-        wave.frequency_min_hz = wave.frequency_min_hz.min(frequency_hz);
-        wave.frequency_max_hz = wave.frequency_max_hz.max(frequency_hz);
+        space.wave.widen_frequency(self.frequency_hz);
         let network = &mut space.network;
         network.hidden = self.hidden.neurons() as u32;
         network.weight_range =

@@ -86,9 +86,8 @@ impl ControllerEncoding for Gait {
         let ranges = [space.wave.angle_range_rad, space.wave.twist_range_rad];
         let [bend_rad, twist_rad] = self.waves.widen_from(ranges, space);
         (space.wave.angle_range_rad, space.wave.twist_range_rad) = (bend_rad, twist_rad);
-        let (wave, stiffness) = (&mut space.wave, self.stiffness_nm_per_rad);
-        wave.stiffness_min_nm_per_rad = wave.stiffness_min_nm_per_rad.min(stiffness);
-        wave.stiffness_max_nm_per_rad = wave.stiffness_max_nm_per_rad.max(stiffness);
+        let wave = &mut space.wave;
+        wave.widen_stiffness(self.stiffness_nm_per_rad);
         wave.servo_damping_nms_per_rad = self.servo_damping_nms_per_rad;
     }
 

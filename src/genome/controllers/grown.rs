@@ -6,7 +6,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::encoding::{ControllerEncoding, ControllerInfo};
 use super::servo::ServoGenes;
 use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
+use crate::genome::gene::{GeneVisitor, GenomeShape};
 use crate::genome::space::GenomeSpace;
 use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
 use crate::learn::neat::{NeatRules, NetworkGenome};
@@ -93,9 +93,7 @@ impl ControllerEncoding for GrownGenes {
 
     fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
         self.servo.genes_without_twist(space, visit);
-        let range = GeneRange::Between(space.wave.frequency_min_hz, space.wave.frequency_max_hz);
-        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
-        visit(Gene { field, name, unit: "Hz", range }, &mut self.frequency_hz);
+        space.wave.frequency_gene(&mut self.frequency_hz, visit);
     }
 
     fn joints(&self) -> usize {
@@ -119,12 +117,8 @@ impl ControllerEncoding for GrownGenes {
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
-        let twist_range_rad = space.wave.twist_range_rad;
-        self.servo.widen(space);
-        space.wave.twist_range_rad = twist_range_rad;
-        let (wave, frequency_hz) = (&mut space.wave, self.frequency_hz);
-        wave.frequency_min_hz = wave.frequency_min_hz.min(frequency_hz);
-        wave.frequency_max_hz = wave.frequency_max_hz.max(frequency_hz);
+        self.servo.widen_without_twist(space);
+        space.wave.widen_frequency(self.frequency_hz);
     }
 
     fn hash_learned(&self, hash: &mut Xxh3Default) {

@@ -93,9 +93,7 @@ impl ControllerEncoding for LimbNeurons {
 
     fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
         self.servo.genes(space, visit);
-        let range = GeneRange::Between(space.wave.frequency_min_hz, space.wave.frequency_max_hz);
-        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
-        visit(Gene { field, name, unit: "Hz", range }, &mut self.frequency_hz);
+        space.wave.frequency_gene(&mut self.frequency_hz, visit);
         let (field, name) = (format_args!("lag_rad"), format_args!("lag per limb"));
         visit(Gene { field, name, unit: "rad", range: GeneRange::Turn }, &mut self.lag_rad);
         let most = space.network.weight_range;
@@ -140,9 +138,7 @@ impl ControllerEncoding for LimbNeurons {
 
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen(space);
-        let (wave, frequency_hz) = (&mut space.wave, self.frequency_hz);
-        wave.frequency_min_hz = wave.frequency_min_hz.min(frequency_hz);
-        wave.frequency_max_hz = wave.frequency_max_hz.max(frequency_hz);
+        space.wave.widen_frequency(self.frequency_hz);
         let network = &mut space.network;
         network.limb_neurons_shared = self.limbs.len() == 1;
         let weights = self.neurons().flat_map(LimbNeuron::weights);

@@ -89,9 +89,7 @@ impl ControllerEncoding for ModularNetwork {
 
     fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
         self.servo.genes(space, visit);
-        let range = GeneRange::Between(space.wave.frequency_min_hz, space.wave.frequency_max_hz);
-        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
-        visit(Gene { field, name, unit: "Hz", range }, &mut self.frequency_hz);
+        space.wave.frequency_gene(&mut self.frequency_hz, visit);
         let (field, name) = (format_args!("lag_rad"), format_args!("lag per joint"));
         visit(Gene { field, name, unit: "rad", range: GeneRange::Turn }, &mut self.lag_rad);
         let most = space.network.weight_range;
@@ -128,9 +126,7 @@ impl ControllerEncoding for ModularNetwork {
 
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen(space);
-        let (wave, frequency_hz) = (&mut space.wave, self.frequency_hz);
-        wave.frequency_min_hz = wave.frequency_min_hz.min(frequency_hz);
-        wave.frequency_max_hz = wave.frequency_max_hz.max(frequency_hz);
+        space.wave.widen_frequency(self.frequency_hz);
         let network = &mut space.network;
         network.hidden = self.hidden.neurons() as u32;
         network.weight_range =

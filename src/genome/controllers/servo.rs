@@ -83,15 +83,23 @@ impl ServoGenes {
 
     /// Widens a space so that it contains these genes.
     pub fn widen(&self, space: &mut GenomeSpace) {
-        let (wave, stiffness) = (&mut space.wave, self.stiffness_nm_per_rad);
-        wave.stiffness_min_nm_per_rad = wave.stiffness_min_nm_per_rad.min(stiffness);
-        wave.stiffness_max_nm_per_rad = wave.stiffness_max_nm_per_rad.max(stiffness);
+        let wave = &mut space.wave;
+        wave.widen_stiffness(self.stiffness_nm_per_rad);
         wave.servo_damping_nms_per_rad = self.damping_nms_per_rad;
         wave.angle_range_rad = self.bend_range_rad;
         // Without a limit above 0 a space has no twists, whatever its range.
         if self.twists() || twists(space) {
             space.wave.twist_range_rad = self.twist_range_rad;
         }
+    }
+}
+
+impl ServoGenes {
+    /// Widens a space so that it contains these genes of a controller that holds all twists straight.
+    pub fn widen_without_twist(&self, space: &mut GenomeSpace) {
+        let twist_range_rad = space.wave.twist_range_rad;
+        self.widen(space);
+        space.wave.twist_range_rad = twist_range_rad;
     }
 }
 

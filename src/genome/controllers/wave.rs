@@ -121,9 +121,7 @@ impl Waves {
         space: &GenomeSpace,
         visit: GeneVisitor<'_>,
     ) {
-        let range = GeneRange::Between(space.wave.frequency_min_hz, space.wave.frequency_max_hz);
-        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
-        visit(Gene { field, name, unit: "Hz", range }, &mut self.frequency_hz);
+        space.wave.frequency_gene(&mut self.frequency_hz, visit);
         // A joint that cannot turn needs no search.
         let turns = |limits: &[f32]| limits.iter().any(|limit| *limit > 0.0);
         let bend = if turns(&space.bend_limits_rad) { bend } else { 0.0 };
@@ -159,8 +157,7 @@ impl Waves {
     /// and amplitudes that these waves need about the bend and the twist axes, at least `bend` and `twist`.
     pub(super) fn widen_from(&self, [bend, twist]: [f32; 2], space: &mut GenomeSpace) -> [f32; 2] {
         let wave = &mut space.wave;
-        wave.frequency_min_hz = wave.frequency_min_hz.min(self.frequency_hz);
-        wave.frequency_max_hz = wave.frequency_max_hz.max(self.frequency_hz);
+        wave.widen_frequency(self.frequency_hz);
         let harmonics = self.all().map(|wave| wave.harmonics.len() as u32).max();
         wave.harmonics = harmonics.unwrap_or(wave.harmonics);
         let needed = |range: f32, axis: fn(&JointWaves) -> &Wave| {

@@ -66,44 +66,6 @@ fn a_run_stopped_after_any_generation_continues_bit_for_bit() {
     }
 }
 
-#[test]
-fn a_run_of_rules_stopped_within_a_generation_takes_over_the_same_waves() {
-    let mut plan = plan();
-    plan.settings.evolution.strategy = StrategyKind::Ga;
-    plan.settings.evolution.ga.wave_takeover = 1.0;
-    plan.settings.genome.controller = ControllerKind::Rules;
-    plan.settings.trial.duration_s = 1.0;
-    plan.settings.trial.start_y_m = -2.0;
-    assert_continues_after_any_stop(&plan);
-    let expected = uninterrupted(&plan);
-    let source = |saves: &Path| {
-        RunSource::in_saves(&SavesFolder::find(Some(saves)), plan.clone(), ExistingRun::Keep)
-    };
-    for known in [1, 4, 8] {
-        let saves = tempfile::tempdir().expect("a folder");
-        let mut run = source(saves.path()).open("a test").expect("opened");
-        evolve(&mut run, 2);
-        // The uses of waves in the third generation come from the evaluations that were written before the stop.
-        let (evaluator, control) = (LocalPool::new(1).expect("threads"), RunControl::default());
-        let recorder = &run.recorder;
-        let note = |generation, individual, evaluation: &Evaluation| {
-            if individual < known {
-                recorder.record_evaluation(generation, individual, evaluation);
-            }
-        };
-        let report = run.experiment.run_generation_recording(&evaluator, &control, note);
-        report.expect("not cancelled");
-        drop(run);
-        let mut again = source(saves.path()).open("a test").expect("opened");
-        assert_eq!(again.reports.len(), 2);
-        evolve(&mut again, 6);
-        assert_eq!(again.experiment.run_hash(), expected.run_hash(), "{known} known");
-        assert_eq!(again.experiment.knowledge(), expected.knowledge());
-    }
-    plan.settings.evolution.ga.wave_takeover = 0.0;
-    assert_ne!(uninterrupted(&plan).run_hash(), expected.run_hash());
-}
-
 fn assert_continues_after_any_stop(plan: &RunPlan) {
     let expected = uninterrupted(plan);
     let source = |saves: &Path| {

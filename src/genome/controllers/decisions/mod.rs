@@ -160,9 +160,7 @@ impl ControllerEncoding for DecisionGenes {
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
-        let twist_range_rad = space.wave.twist_range_rad;
-        self.servo.widen(space);
-        space.wave.twist_range_rad = twist_range_rad;
+        self.servo.widen_without_twist(space);
     }
 
     fn hash_learned(&self, hash: &mut Xxh3Default) {

@@ -1,0 +1,77 @@
+//! Settings that go together, and which of them have an effect.
+
+use super::*;
+
+#[test]
+fn every_strategy_has_a_row_of_its_own_and_is_stored_by_its_name() {
+    for (index, kind) in StrategyKind::ALL.into_iter().enumerate() {
+        assert_eq!(ron::to_string(&kind).expect("written"), kind.name());
+        assert!(!kind.title().is_empty() && kind.words().ends_with('.'), "{kind}");
+        for other in &StrategyKind::ALL[..index] {
+            assert_ne!(other.info().color, kind.info().color, "{other}, {kind}");
+            assert_ne!(other.title(), kind.title());
+        }
+    }
+}
+
+#[test]
+fn senses_are_settings_of_controllers_that_have_them() {
+    for (controller, expected) in [("gait", false), ("reflex", true)] {
+        let settings = with_field(&Settings::default(), "genome.controller", controller);
+        let listed = schema::list(&settings.expect("allowed"));
+        let sight = listed.iter().find(|field| field.path == "trial.agent.senses.sight");
+        assert_eq!(sight.expect("a setting").is_used, expected, "{controller}");
+        let limbs = listed.iter().find(|field| field.path == "trial.agent.limbs");
+        assert!(limbs.expect("a setting").is_used);
+    }
+}
+
+#[test]
+fn settings_without_effect_on_the_chosen_strategy_and_controller_are_marked() {
+    use crate::genome::ControllerKind::{Ctrnn, Gait, Rules};
+    use StrategyKind::{CmaEs, Ga, Novelty};
+    let is_used = |strategy, controller, path: &str| {
+        let mut settings = Settings::default();
+        (settings.evolution.strategy, settings.genome.controller) = (strategy, controller);
+        let listed = schema::list(&settings);
+        listed.into_iter().find(|listed| listed.path == path).expect(path).is_used
+    };
+    let takeover = "evolution.ga.wave_takeover";
+    assert!(is_used(Ga, Rules, takeover));
+    for (strategy, controller) in [(Ga, Gait), (Novelty, Rules), (CmaEs, Rules)] {
+        assert!(!is_used(strategy, controller, takeover), "{strategy}, {controller}");
+    }
+    assert!(is_used(Novelty, Rules, "evolution.ga.elites"));
+    for (path, users) in [
+        ("genome.network.library_waves", [false, false, true]),
+        ("genome.network.ctrnn_weight_range", [false, true, false]),
+        ("genome.wave.harmonics", [true, false, true]),
+        ("genome.wave.angle_range_rad", [true, true, true]),
+        ("genome.points_per_s", [false; 3]),
+        ("genome.density_min_kg_m3", [true; 3]),
+    ] {
+        assert_eq!([Gait, Ctrnn, Rules].map(|kind| is_used(Ga, kind, path)), users, "{path}");
+    }
+}
+
+#[test]
+fn the_defaults_are_allowed() {
+    assert_eq!(Settings::default().check(), Ok(()));
+}
+
+#[test]
+fn a_generation_that_would_not_fit_into_memory_is_refused() {
+    let mut settings = Settings::default();
+    settings.trial.duration_s = 600.0;
+    settings.genome.points_per_s = 100.0;
+    settings.evolution.population = 10_000;
+    let error = settings.check().unwrap_err().to_string();
+    assert!(error.starts_with("evolution.population is 10000; allowed: 1 to 52"), "{error}");
+    settings.evolution.population = 50;
+    settings.evolution.halving.parents = 50;
+    let error = settings.check().unwrap_err().to_string();
+    assert!(error.starts_with("evolution.halving.parents is 50; allowed: 1 to 4"), "{error}");
+    settings.genome.points_per_s = 1000.0;
+    let error = settings.check().unwrap_err().to_string();
+    assert!(error.starts_with("genome.points_per_s is 1000 (4800000 torque points"), "{error}");
+}
