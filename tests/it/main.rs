@@ -12,6 +12,7 @@ mod fuzz;
 mod headless;
 mod hostile;
 mod keep;
+mod learned_files;
 mod program;
 mod same_bits;
 mod soak;

@@ -1,0 +1,169 @@
+//! Hostile champions of every family of controllers that learns or senses: each is refused in one line that names the
+//! field, its value and the allowed range.
+
+use std::fs;
+use std::path::Path;
+
+use snakes_and_stairs::save::parse_champion;
+
+/// The champion of the corpus that has this name.
+fn champion(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/champion");
+    fs::read_to_string(folder.join(name)).expect("a file of the corpus")
+}
+
+/// The text with the first number, word or string after a mark replaced.
+fn with_value(text: &str, mark: &str, value: &str) -> String {
+    let start = text.find(mark).unwrap_or_else(|| panic!("{mark} is missing")) + mark.len();
+    let length = text[start..].find([',', ')', ']', '\n']).expect("an end");
+    format!("{}{value}{}", &text[..start], &text[start + length..])
+}
+
+/// Checks that a champion is refused, with these parts in the one line that says why.
+fn assert_refused(file: &str, text: &str, parts: &[&str]) {
+    let error = match parse_champion(Path::new("x.ron"), text) {
+        Ok(_) => panic!("{file} is accepted, which should name {parts:?}"),
+        Err(error) => error.to_string(),
+    };
+    assert!(parts.iter().all(|part| error.contains(part)), "{file}: {parts:?} in: {error}");
+    assert!(!error.contains('\n') && error.len() < 1000, "{file}: {error}");
+}
+
+/// Checks that a champion with another first value after a mark in its controller is refused.
+fn assert_refuses(file: &str, mark: &str, value: &str, parts: &[&str]) {
+    assert_refuses_behind("        controller: ", file, mark, value, parts);
+}
+
+/// The same, of the first mark behind a place of the file.
+fn assert_refuses_behind(place: &str, file: &str, mark: &str, value: &str, parts: &[&str]) {
+    let text = champion(file);
+    let (before, behind) = text.split_at(text.find(place).expect("the place"));
+    assert_refused(file, &format!("{before}{}", with_value(behind, mark, value)), parts);
+}
+
+#[test]
+fn hostile_tables_are_refused_with_field_value_and_range() {
+    for (mark, value, parts) in [
+        ("states: ", "9", ["rows[0].state is ", "allowed: 0 to 8"]),
+        ("states: ", "4294967295", ["states is 4294967295", "allowed"]),
+        ("states: ", "0", ["states is 0", "allowed"]),
+        ("actions: ", "11", ["numbers", "11"]),
+        ("actions: ", "1000000000", ["actions is 1000000000", "allowed"]),
+        ("rows: [(", "1000000", ["state is 1000000", "allowed: 0 to "]),
+        ("rows: [(", "-1", ["out of bounds", "line"]),
+    ] {
+        assert_refuses("q-learning", mark, value, &parts);
+    }
+    let table = champion("q-learning");
+    let start = table.find("rows: [(").expect("rows") + "rows: [(".len();
+    let comma = start + table[start..].find(',').expect("a state");
+    let values = comma + ", [".len();
+    let with_first = |value: &str| {
+        let end = values + table[values..].find(',').expect("a value");
+        format!("{}{value}{}", &table[..values], &table[end..])
+    };
+    for (value, part) in [
+        ("NaN", "values is NaN"),
+        ("inf", "values is inf"),
+        ("1.0e30", "values is 1000000000000000000000000000000"),
+    ] {
+        assert_refused("q-learning", &with_first(value), &[part, "allowed", "rows[0]"]);
+    }
+    let longer = format!("{}0.5, {}", &table[..values], &table[values..]);
+    assert_refused("q-learning", &longer, &["rows[0].values is 13 numbers; allowed: 12"]);
+    let row = &table[start - 1..start + table[start..].find(")").expect("an end") + 1];
+    let twice = table.replacen("rows: [", &format!("rows: [{row}, "), 1);
+    assert_refused("q-learning", &twice, &["rows[1].state is ", "states in rising order"]);
+}
+
+#[test]
+fn hostile_rules_are_refused_with_field_value_and_range() {
+    for file in ["xcs", "zcs"] {
+        for (mark, value, parts) in [
+            ("condition: ", "\"0101\"", ["rules[0].condition is 0101", "allowed"]),
+            ("condition: ", "\"\"", ["condition", "allowed"]),
+            ("condition: ", "\"012\"", ["condition", "allowed"]),
+            ("action: ", "12", ["rules[0].action is 12", "allowed: 0 to 11"]),
+            ("action: ", "-1", ["out of bounds", "line"]),
+            ("actions: ", "3", ["action", "allowed"]),
+            ("situation_bits: ", "33", ["situation_bits is 33", "allowed: 1 to 32"]),
+            ("situation_bits: ", "5", ["condition is", "allowed"]),
+            ("population: ", "1000000000", ["population is 1000000000", "allowed"]),
+            ("population: ", "0", ["population is 0", "allowed"]),
+            ("learning_rate: ", "NaN", ["learning_rate is NaN", "allowed"]),
+            ("discount: ", "1.0", ["discount is 1;", "allowed: 0 to 0.999"]),
+        ] {
+            assert_refuses(file, mark, value, &parts);
+        }
+        let text = champion(file);
+        let at = text.find("rules: [(").expect("rules") + "rules: [".len();
+        let rule = &text[at..at + text[at..].find(')').expect("an end") + 1];
+        let many = format!("{rule},").repeat(60_000);
+        let text = format!("{}{many}{}", &text[..at], &text[at..]);
+        assert_refused(file, &text, &["rules", "allowed"]);
+    }
+    for (mark, value, part) in [
+        ("prediction: ", "NaN", "rules[0].prediction is NaN"),
+        ("error: ", "-1.0", "rules[0].error is -1"),
+        ("fitness: ", "2.0", "fitness is 2"),
+        ("numerosity: ", "0", "rules[0].numerosity is 0"),
+        ("numerosity: ", "1000000000", "rules[0].numerosity is 1000000000"),
+        ("numerosity: ", "100", "sum of numerosities is"),
+        ("action_set_size: ", "0.0", "rules[0].action_set_size is 0"),
+        ("time_stamp: ", "18446744073709551615", "rules[0].time_stamp is 18446744073709551615"),
+        ("time: ", "18446744073709551615", "time is 18446744073709551615"),
+    ] {
+        let place = if mark == "time: " { "situation_bits: " } else { "rules: [" };
+        assert_refuses_behind(place, "xcs", mark, value, &[part, "allowed"]);
+    }
+    for value in ["NaN", "-1.0", "1.0e30"] {
+        let parts = ["rules[0].strength is", "allowed"];
+        assert_refuses_behind("rules: [", "zcs", "strength: ", value, &parts);
+    }
+    for (mark, value, part) in [
+        ("strength: ", "1.5", "strength is 1.5"),
+        ("wave: ", "0", "wave is 0"),
+        ("wave: ", "99", "wave is 99"),
+        ("frequency_hz: ", "NaN", "frequency_hz is NaN"),
+        ("amplitude: ", "1.0e9", "amplitude is 1000000000"),
+    ] {
+        assert_refuses("rules", mark, value, &[part, "allowed"]);
+    }
+}
+
+#[test]
+fn hostile_networks_are_refused_with_field_value_and_range() {
+    let cases: [(&str, &str, &str, &str); 21] = [
+        ("central", "hidden: [[", "NaN", "hidden"),
+        ("central", "hidden: [[", "1.0e9", "1000000000"),
+        ("central", "outputs: [[", "-inf", "outputs"),
+        ("central", "joints: ", "1000000000", "joints is 1000000000"),
+        ("central", "joints: ", "3", "allowed"),
+        ("modular", "hidden: [[", "NaN", "hidden"),
+        ("modular", "frequency_hz: ", "-1.0", "frequency_hz is -1"),
+        ("modular", "lag_rad: ", "inf", "lag_rad is inf"),
+        ("ctrnn", "log_time_constant: ", "-9.0", "log_time_constant is -9"),
+        ("ctrnn", "log_time_constant: ", "NaN", "log_time_constant is NaN"),
+        ("ctrnn", "bias: ", "1.0e9", "bias is 1000000000"),
+        ("limb-neurons", "weight: ", "NaN", "weight is NaN"),
+        ("limb-neurons", "bias: ", "1.0e9", "bias is 1000000000"),
+        ("limb-neurons", "source: ", "own9", "own9"),
+        ("neat", "inputs: ", "0", "inputs is 0"),
+        ("neat", "outputs: ", "1000", "outputs is 1000"),
+        ("neat", "links: [(", "4294967295", "links"),
+        ("reflex", "reach_rad: ", "-1.0", "reach_rad is -1"),
+        ("reflex", "load_phase_rad_per_s: ", "NaN", "load_phase_rad_per_s is NaN"),
+        ("reflex", "blocked_phase_rad_per_s: ", "1.0e9", "blocked_phase_rad_per_s is"),
+        ("reflex", "stiffness_nm_per_rad: ", "-5.0", "stiffness_nm_per_rad is -5"),
+    ];
+    for (file, mark, value, part) in cases {
+        assert_refuses(file, mark, value, &[part]);
+    }
+    let text = champion("neat");
+    let at = text.find("links: [").expect("links") + "links: [".len();
+    let many = "(0, 21, 1.0, 1, 0), ".repeat(400_000);
+    let hostile = format!("{}{many}{}", &text[..at], &text[at..]);
+    assert_refused("neat", &hostile, &["allowed"]);
+    let missing_row = champion("modular").replacen("hidden: [[", "hidden: [[0.5], [", 1);
+    assert_refused("modular", &missing_row, &["hidden[0].weights is 1", "allowed: "]);
+}
