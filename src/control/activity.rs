@@ -1,7 +1,7 @@
 //! The state of a controller at a moment, for display. Nothing acts on it.
 
-use crate::genome::controllers::{Layer, SITUATION_BITS};
-use crate::learn::classifiers::Condition;
+use super::DecisionActivity;
+use crate::genome::controllers::Layer;
 
 /// A controller at work.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,49 +60,6 @@ pub struct NetworkLink {
     pub weight: f32,
 }
 
-/// A decision, and what it was taken by.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DecisionActivity {
-    /// The situation in words.
-    pub situation: String,
-    /// The worth of each posture in it.
-    pub postures: Vec<PostureWorth>,
-    /// The posture that was chosen, by its place in the list.
-    pub chosen: usize,
-    /// The rules, in order of birth; none for a table.
-    pub rules: Vec<ActiveRule>,
-}
-
-/// The worth of a posture in a situation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PostureWorth {
-    /// Its name.
-    pub name: &'static str,
-    /// Its value in a table, the payoff that rules predict, or their strength; none if no rule is about it.
-    pub worth: Option<f32>,
-    /// How often a table has tried it there, or how many rules advise it.
-    pub count: u32,
-}
-
-/// A rule of a population.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ActiveRule {
-    /// The situations that it is about.
-    pub condition: Condition,
-    /// The posture that it is about, by its number.
-    pub posture: usize,
-    /// The payoff that it predicts, or its strength.
-    pub worth: f32,
-    /// Its accuracy relative to others, 0 to 1; none for rules that are kept for their strength.
-    pub fitness: Option<f32>,
-    /// How often it has learned, for rules that count that.
-    pub experience: Option<u32>,
-    /// Whether it matches the situation.
-    pub matches: bool,
-    /// Whether it matches and is about the posture that was chosen.
-    pub decides: bool,
-}
-
 /// How the senses move the bend target of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReflexActivity {
@@ -159,36 +116,16 @@ impl NetworkActivity {
     }
 }
 
-impl ActiveRule {
-    /// Its condition in words: "riser at the head, not moving".
-    pub fn words(&self) -> String {
-        let (care, value) = (self.condition.care(), self.condition.value());
-        let parts = SITUATION_BITS.iter().enumerate().filter(|(bit, _)| care >> bit & 1 == 1);
-        let words: Vec<String> = parts
-            .map(|(bit, name)| match value >> bit & 1 {
-                1 => (*name).to_owned(),
-                // "no riser at the head", but "not moving".
-                _ if name.starts_with("riser") || name.starts_with("step") => format!("no {name}"),
-                _ => format!("not {name}"),
-            })
-            .collect();
-        if words.is_empty() { "always".to_owned() } else { words.join(", ") }
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::genome::controllers::{POSTURES, Policy};
-    use crate::genome::{ControllerGenes, ControllerKind, Genome};
-    use crate::learn::classifiers::{Xcs, XcsSettings, Zcs, ZcsSettings};
+    use crate::genome::{ControllerKind, Genome};
     use crate::rng::{Purpose, stream};
     use crate::save::load_preset;
     use crate::score::Rollout;
-    use std::sync::Arc;
 
     /// A random genome of a kind, after a change, and its rollout after so many steps.
-    fn played(kind: ControllerKind, steps: u32, change: impl Fn(&mut Genome)) -> Rollout {
+    pub fn played(kind: ControllerKind, steps: u32, change: impl Fn(&mut Genome)) -> Rollout {
         let mut settings = load_preset("climb").expect("shipped").settings;
         settings.genome.controller = kind;
         let mut rng = stream(1, 1, 3, Purpose::Birth);
@@ -229,55 +166,5 @@ mod tests {
         let sum: f32 = reflex.pushes.iter().map(|push| push.push).sum();
         assert!((reflex.moved_rad - reflex.reach_rad * libm::tanhf(sum)).abs() < 1e-5);
         assert!(reflex.pushes.iter().any(|push| push.push != 0.0));
-    }
-
-    #[test]
-    fn decisions_show_the_worth_of_all_postures_and_the_rules_that_match() {
-        let mut rng = stream(1, 1, 1, Purpose::Learn);
-        let zcs = Zcs::new(ZcsSettings::default(), SITUATION_BITS.len(), POSTURES.len(), &mut rng);
-        let xcs = Xcs::new(XcsSettings::default(), SITUATION_BITS.len(), POSTURES.len());
-        let policies = [
-            Policy::default(),
-            Policy::Zcs(Arc::new(zcs.expect("allowed"))),
-            Policy::Xcs(Arc::new(xcs.expect("allowed"))),
-        ];
-        for (policy, rules) in policies.into_iter().zip([0, 400, 0]) {
-            let rollout = played(ControllerKind::Decisions, 20, |genome| {
-                if let ControllerGenes::Decisions(genes) = &mut genome.controller {
-                    genes.policy = policy.clone();
-                }
-            });
-            let Some(Activity::Decision(decision)) = rollout.activity(0) else { panic!("one") };
-            assert_eq!((decision.postures.len(), decision.rules.len()), (12, rules));
-            assert!(decision.situation.contains("head"), "{}", decision.situation);
-            let advised: u32 = decision.postures.iter().map(|posture| posture.count).sum();
-            let matching = decision.rules.iter().filter(|rule| rule.matches).count();
-            assert_eq!(advised as usize, matching);
-            let chosen = |rule: &&ActiveRule| rule.decides;
-            assert!(
-                decision
-                    .rules
-                    .iter()
-                    .filter(chosen)
-                    .all(|rule| { rule.matches && rule.posture == decision.chosen })
-            );
-        }
-    }
-
-    #[test]
-    fn a_condition_is_spelled_in_words() {
-        let rule = |care: u32, value: u32| ActiveRule {
-            condition: Condition::new(care, value, SITUATION_BITS.len()).expect("allowed"),
-            posture: 1,
-            worth: 0.0,
-            fitness: None,
-            experience: None,
-            matches: false,
-            decides: false,
-        };
-        assert_eq!(rule(0b1, 0b1).words(), "riser at the head");
-        assert_eq!(rule(1 | 1 << 13, 1).words(), "riser at the head, not moving");
-        assert_eq!(rule(0b1000, 0).words(), "no step ahead");
-        assert_eq!(rule(0, 0).words(), "always");
     }
 }

@@ -2,22 +2,24 @@
 
 use std::sync::Arc;
 
-use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::decision_clock::{DecisionClock, explored};
 use super::network::servos;
 use super::postures::bend;
 use super::rewards::RewardMeter;
 use super::servo::JointServos;
 use super::situation::{SensedSituation, way_m};
 use super::{
-    ActiveRule, Activity, Controller, DecisionActivity, Observation, PostureWorth, Senses,
+    ActiveRule, Activity, Controller, DecisionActivity, Observation, PostureWorth, RulePlace,
+    Senses,
 };
-use crate::genome::controllers::{DECISIONS_PER_S, DecisionGenes, POSTURES, Policy};
+use crate::genome::controllers::{
+    DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, SITUATION_BITS,
+};
 use crate::learn::Episode;
-use crate::learn::classifiers::{Condition, EpisodeEnd, RecordedDecision, XcsRule};
+use crate::learn::classifiers::{EpisodeEnd, RecordedDecision};
 use crate::learn::q_table::{Next, Transition};
-use crate::rng::{Purpose, stream};
 use crate::world::JointTorque;
 
 /// Ticks of 1/60 s that a decision lasts: the unit of the learner's discount, whatever the step rate.
@@ -31,8 +33,7 @@ pub struct DecisionController {
     genes: DecisionGenes,
     servo: JointServos,
     rng: Option<ChaCha8Rng>,
-    /// Number of the decision that holds; none before the first step.
-    decision: Option<u64>,
+    clock: DecisionClock,
     /// The situation in which it was taken.
     at: Option<DecisionPoint>,
     action: usize,
@@ -60,13 +61,10 @@ struct DecisionPoint {
 impl DecisionController {
     /// The controller before the first step.
     pub fn new(genes: DecisionGenes) -> Self {
-        let rng = genes.explorer.as_ref().map(|explorer| {
-            stream(explorer.seed, explorer.generation, explorer.individual, Purpose::Explore)
-        });
         Self {
             servo: servos(&genes.servo),
-            rng,
-            decision: None,
+            rng: genes.explorer.as_ref().map(Explorer::rng),
+            clock: DecisionClock::default(),
             at: None,
             action: 0,
             posture: FIRST_POSTURE,
@@ -122,17 +120,8 @@ impl DecisionController {
             Policy::Xcs(rules) => rules.frozen_action(place.bits),
             Policy::Zcs(rules) => rules.frozen_action(place.bits),
         };
-        // An explorer draws both numbers in each decision, so that its stream does not depend on what it knows.
-        let random = explorer.map(|(explorer, rng)| {
-            let is_random = rng.random::<f32>() < explorer.epsilon;
-            (is_random, rng.random_range(0..POSTURES.len() as u32) as usize)
-        });
-        match (random, frozen) {
-            (Some((true, random)), _) | (Some((false, random)), None) => random,
-            (_, Some(frozen)) => frozen,
-            // Without a rule the snake keeps its posture: covering would change the champion.
-            (None, None) => 0,
-        }
+        // Without a rule the snake keeps its posture: covering would change the champion.
+        explored(explorer, POSTURES.len(), frozen).unwrap_or(0)
     }
 
     /// What the policy knows about the postures in a place.
@@ -145,42 +134,20 @@ impl DecisionController {
             Policy::Xcs(rules) => (rules.prediction_array(place.bits), &[]),
             Policy::Zcs(rules) => (rules.strength_array(place.bits), &[]),
         };
-        let postures = POSTURES.iter().zip(worths).enumerate();
-        let worth = |(index, (name, worth)): (usize, (&&'static str, Option<f32>))| PostureWorth {
-            name,
-            worth,
-            count: match visits.get(index) {
-                Some(visits) => u32::from(*visits),
-                None => {
-                    let advises = |rule: &&ActiveRule| rule.matches && rule.posture == index;
-                    rules.iter().filter(advises).count() as u32
-                }
-            },
-        };
-        postures.map(worth).collect()
+        let mut of_rules = ActiveRule::worths(&POSTURES, worths, rules);
+        for (worth, visits) in of_rules.iter_mut().zip(visits) {
+            worth.count = u32::from(*visits);
+        }
+        of_rules
     }
 
     /// The rules of the policy, and which of them match and decide in a place.
     fn rules(&self, place: &DecisionPoint) -> Vec<ActiveRule> {
-        let rule = |condition: Condition, action: u16, worth: f32| {
-            let (posture, matches) = (usize::from(action), condition.matches(place.bits));
-            let decides = matches && posture == self.action;
-            let (fitness, experience) = (None, None);
-            ActiveRule { condition, posture, worth, fitness, experience, matches, decides }
-        };
+        let at = RulePlace { bits: place.bits, names: &SITUATION_BITS, chosen: Some(self.action) };
         match &self.genes.policy {
             Policy::Table(_) => Vec::new(),
-            Policy::Xcs(rules) => {
-                let of = |of: &XcsRule| ActiveRule {
-                    fitness: Some(of.fitness),
-                    experience: Some(of.experience),
-                    ..rule(of.condition, of.action, of.prediction)
-                };
-                rules.rules().iter().map(of).collect()
-            }
-            Policy::Zcs(rules) => {
-                rules.rules().iter().map(|of| rule(of.condition, of.action, of.strength)).collect()
-            }
+            Policy::Xcs(rules) => at.rules_of_xcs(rules),
+            Policy::Zcs(rules) => at.rules_of_zcs(rules),
         }
     }
 
@@ -223,15 +190,11 @@ impl Controller for DecisionController {
         if self.rewards.has_landed() {
             self.close(None);
         }
-        let rate = u64::from(observation.steps_per_s);
-        let quarters = u64::from(observation.step) * u64::from(DECISIONS_PER_S);
-        if self.decision != Some(quarters / rate) {
-            self.decision = Some(quarters / rate);
+        if self.clock.is_due(observation) {
             self.decide(observation);
         }
         self.moved_m += way_m(&observation.perception, observation.steps_per_s);
-        // The bends move on a straight line, and arrive with the next decision.
-        let share = (quarters % rate + u64::from(DECISIONS_PER_S)).min(rate) as f32 / rate as f32;
+        let share = DecisionClock::share(observation);
         let targets = self.bends_rad.iter().map(|[from, to]| [from + (to - from) * share, 0.0]);
         self.servo.pull(observation, targets, torques);
     }
@@ -260,6 +223,7 @@ impl Controller for DecisionController {
         let place = self.at?;
         let rules = self.rules(&place);
         Some(Activity::Decision(DecisionActivity {
+            joint: None,
             situation: place.situation.words(),
             postures: self.worths(&place, &rules),
             chosen: self.action,

@@ -6,9 +6,12 @@
 mod activity;
 mod controller;
 mod ctrnn;
+mod decision_activity;
+mod decision_clock;
 mod decisions;
 mod gait;
 mod grown;
+mod joint_decisions;
 mod limb_neurons;
 mod network;
 mod observation;
@@ -24,11 +27,13 @@ mod situation;
 mod wave;
 mod wave_uses;
 
+use decision_activity::RulePlace;
+
 pub use activity::{
-    ActiveRule, Activity, DecisionActivity, NetworkActivity, NetworkLink, NetworkNode, NodeColumn,
-    PostureWorth, ReflexActivity, ReflexPush,
+    Activity, NetworkActivity, NetworkLink, NetworkNode, NodeColumn, ReflexActivity, ReflexPush,
 };
 pub use controller::Controller;
+pub use decision_activity::{ActiveRule, DecisionActivity, PostureWorth};
 pub use observation::{Observation, Senses};
 pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
 pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
@@ -55,6 +60,9 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         }
         ControllerGenes::Decisions(genes) => {
             Box::new(decisions::DecisionController::new(genes.clone()))
+        }
+        ControllerGenes::JointDecisions(genes) => {
+            Box::new(joint_decisions::JointDecisionController::new(genes.clone()))
         }
     }
 }

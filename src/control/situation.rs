@@ -13,7 +13,7 @@ const STEP_EDGES_M: [f32; 2] = [0.05, 0.6];
 /// The edges between a lowered, a level and a raised head, as sines of its pitch.
 const PITCH_EDGES: [f32; 2] = [-0.3, 0.3];
 /// The way since the last decision from which on the snake has moved, in metres.
-const MOVED_M: f32 = 0.1;
+pub(super) const MOVED_M: f32 = 0.1;
 /// The bend from which on a joint is folded, in radians.
 const FOLDED_RAD: f32 = 0.9;
 /// The gap below which the middle limb is near a riser, in metres.

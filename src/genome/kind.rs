@@ -23,6 +23,8 @@ pub enum ControllerKind {
     Ctrnn,
     /// Learned decisions among a few postures.
     Decisions,
+    /// Learned decisions of each joint about its bend.
+    JointDecisions,
     /// Rules that choose among waves.
     Rules,
     /// A network that grew.
@@ -33,7 +35,7 @@ pub enum ControllerKind {
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Signal,
         Self::Wave,
         Self::Gait,
@@ -42,6 +44,7 @@ impl ControllerKind {
         Self::Central,
         Self::Ctrnn,
         Self::Decisions,
+        Self::JointDecisions,
         Self::Rules,
         Self::Grown,
         Self::LimbNeurons,

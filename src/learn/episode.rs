@@ -10,4 +10,6 @@ pub enum Episode {
     Table(Vec<Transition>),
     /// Of a system of rules: its decisions, and how the episode ended.
     Rules(Vec<RecordedDecision>, EpisodeEnd),
+    /// The same of a system of rules at each joint, from the head.
+    Joints(Vec<(Vec<RecordedDecision>, EpisodeEnd)>),
 }

@@ -126,7 +126,7 @@ mod tests {
                 if strategy == StrategyKind::Neat || strategy == StrategyKind::QLearning {
                     assert!(asked[0] == genome, "{what}");
                 }
-                if strategy.info().only_controller.is_some() {
+                if !strategy.info().only_controllers.is_empty() {
                     // All learners have the founder's body; networks that grow have other bodies as well.
                     let is_neat = strategy == StrategyKind::Neat;
                     let is_same = |other: &Genome| is_neat || other.body == genome.body;

@@ -1,7 +1,7 @@
 //! Settings of the learners.
 
 use crate::check::{Invalid, within};
-use crate::genome::controllers::{DECISION_DISCOUNT, DECISIONS_PER_S};
+use crate::genome::controllers::{DECISION_DISCOUNT, DECISIONS_PER_S, JOINT_BENDS};
 use crate::learn::classifiers::{XcsSettings, ZcsSettings};
 use crate::learn::q_table::{ExplorationLadder, QRule};
 use crate::schema::{number, setting_group, whole};
@@ -125,6 +125,13 @@ impl XcsRunSettings {
             error_threshold,
             ..XcsSettings::default()
         }
+    }
+
+    /// The parameters of each of several systems that share the rules.
+    pub fn of_each(&self, systems: usize) -> XcsSettings {
+        let parameters = self.parameters();
+        let share = parameters.population / (systems as u32).max(1);
+        XcsSettings { population: share.max(JOINT_BENDS.len() as u32), ..parameters }
     }
 }
 

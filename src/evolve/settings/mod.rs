@@ -159,7 +159,7 @@ strategy_kinds! {
         color: [0xe0, 0x00, 0xe0],
         settings: &["neat"],
         has_fixed_population: true,
-        only_controller: Some(ControllerKind::Grown),
+        only_controllers: &[ControllerKind::Grown],
         check_size: |evolution, _| NeatSettings::check_size(evolution.population),
         ..StrategyInfo::PLAIN
     };
@@ -170,7 +170,7 @@ strategy_kinds! {
         words: "Learns by trial and error what each posture is worth in each situation.",
         color: [0x20, 0x80, 0x00],
         settings: &["q_learning", "exploration"],
-        only_controller: Some(ControllerKind::Decisions),
+        only_controllers: &[ControllerKind::Decisions],
         check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
@@ -181,7 +181,7 @@ strategy_kinds! {
         words: "Learns rules that predict accurately what a posture is worth, and breeds from them.",
         color: [0x60, 0x20, 0xe0],
         settings: &["xcs", "exploration"],
-        only_controller: Some(ControllerKind::Decisions),
+        only_controllers: &[ControllerKind::Decisions, ControllerKind::JointDecisions],
         check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
@@ -192,7 +192,7 @@ strategy_kinds! {
         words: "Learns rules that grow stronger with what they earn, and breeds from the strong.",
         color: [0x80, 0xe0, 0x40],
         settings: &["zcs", "exploration"],
-        only_controller: Some(ControllerKind::Decisions),
+        only_controllers: &[ControllerKind::Decisions],
         check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };

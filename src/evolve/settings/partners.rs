@@ -1,7 +1,7 @@
 //! Which strategies go with which controllers.
 //!
 //! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure
-//! needs genomes that grow: each of these goes with one kind of controller, and that kind with nothing else.
+//! needs genomes that grow: each of these goes with certain kinds of controllers, and these kinds with nothing else.
 
 use super::{Settings, StrategyKind};
 use crate::check::Invalid;
@@ -11,11 +11,9 @@ use crate::schema::Choices;
 impl StrategyKind {
     /// Whether the strategy can improve controllers of this kind.
     pub fn improves(self, controller: ControllerKind) -> bool {
-        let is_partner = |kind: Self| kind.info().only_controller == Some(controller);
-        match self.info().only_controller {
-            Some(only) => only == controller,
-            None => !Self::ALL.into_iter().any(is_partner),
-        }
+        let is_partner = |kind: Self| kind.info().only_controllers.contains(&controller);
+        is_partner(self)
+            || self.info().only_controllers.is_empty() && !Self::ALL.into_iter().any(is_partner)
     }
 
     /// The kinds of controllers that the strategy can improve.

@@ -24,8 +24,8 @@ pub struct StrategyInfo {
     pub is_budget_driven: bool,
     /// Whether its population stays the same during a run.
     pub has_fixed_population: bool,
-    /// The only kind of controller that it improves, which no other strategy of genes does; none for all others.
-    pub only_controller: Option<ControllerKind>,
+    /// The only kinds of controllers that it improves, which no strategy of genes does; empty for all others.
+    pub only_controllers: &'static [ControllerKind],
     /// Whether it keeps an archive of elites over two descriptors.
     pub has_archive: bool,
     /// Number of generations in a comparison, where more would not continue the search; none for any number.
@@ -44,7 +44,7 @@ impl StrategyInfo {
         settings: &[],
         is_budget_driven: false,
         has_fixed_population: false,
-        only_controller: None,
+        only_controllers: &[],
         has_archive: false,
         compared_generations: None,
         check_size: |evolution, size| {

@@ -4,35 +4,33 @@
 //! become a champion, because the luck of an explorer is no skill. The others explore, the first of them boldly and the
 //! last carefully. Then the learner takes in the experience of all, in the order of their indices.
 
-use std::sync::Arc;
-
+use super::learned::Learned;
 use super::search::Search;
 use crate::check::Invalid;
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::RunPlan;
-use crate::evolve::settings::{EvolutionSettings, StrategyKind};
+use crate::evolve::settings::EvolutionSettings;
 use crate::evolve::strategy::{Strategy, StrategyState};
-use crate::genome::controllers::{Explorer, POSTURES, Policy, SITUATION_BITS};
-use crate::genome::{ControllerGenes, Genome};
+use crate::genome::Genome;
+use crate::genome::controllers::Explorer;
 use crate::learn::Episode;
-use crate::learn::classifiers::{Xcs, Zcs};
 use crate::learn::q_table::epsilon;
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
 
 /// A learner that all episodes share.
 #[derive(Debug, Clone)]
-pub struct Learning {
+pub struct Learning<L> {
     search: Search,
     seed: u64,
     evolution: EvolutionSettings,
     /// The snake of all episodes, without a policy of its own: the founder, or the one in the middle of all ranges.
     first: Genome,
-    policy: Policy,
+    learned: L,
 }
 
-impl Learning {
-    fn with_policy(plan: &RunPlan, finished: u32, policy: Policy) -> Self {
+impl<L: Learned> Learning<L> {
+    fn with(plan: &RunPlan, finished: u32, learned: L) -> Self {
         let search = Search::new(plan, finished);
         let middle = || search.genome(&vec![0.5; search.dimension]);
         Self {
@@ -40,36 +38,7 @@ impl Learning {
             search,
             seed: plan.seed,
             evolution: plan.settings.evolution.clone(),
-            policy,
-        }
-    }
-
-    /// What a run knows at its beginning.
-    ///
-    /// # Errors
-    /// A parameter of a classifier system is out of range; the settings' own ranges allow none.
-    fn first_policy(plan: &RunPlan) -> Result<Policy, Invalid> {
-        let evolution = &plan.settings.evolution;
-        let (bits, actions) = (SITUATION_BITS.len(), POSTURES.len());
-        Ok(match evolution.strategy {
-            StrategyKind::Xcs => {
-                Policy::Xcs(Arc::new(Xcs::new(evolution.xcs.parameters(), bits, actions)?))
-            }
-            StrategyKind::Zcs => {
-                let mut rng = stream(plan.seed, 0, 0, Purpose::Learn);
-                let parameters = evolution.zcs.parameters();
-                Policy::Zcs(Arc::new(Zcs::new(parameters, bits, actions, &mut rng)?))
-            }
-            _ => Policy::default(),
-        })
-    }
-
-    /// Whether a policy is what the run's strategy learns.
-    fn is_of(policy: &Policy, strategy: StrategyKind) -> bool {
-        match policy {
-            Policy::Table(_) => strategy == StrategyKind::QLearning,
-            Policy::Xcs(_) => strategy == StrategyKind::Xcs,
-            Policy::Zcs(_) => strategy == StrategyKind::Zcs,
+            learned,
         }
     }
 
@@ -88,38 +57,25 @@ impl Learning {
     }
 }
 
-impl Strategy for Learning {
+impl<L: Learned> Strategy for Learning<L> {
     fn begin(plan: &RunPlan) -> Self {
-        let founder = plan.founder.as_ref().map(|founder| &founder.genome().controller);
-        let strategy = plan.settings.evolution.strategy;
-        let policy = match founder {
-            Some(ControllerGenes::Decisions(genes)) if Self::is_of(&genes.policy, strategy) => {
-                genes.policy.clone()
-            }
-            // A founder that learned otherwise lends its body.
-            _ => Self::first_policy(plan).unwrap_or_default(),
-        };
-        Self::with_policy(plan, 0, policy)
+        let of_founder = |genome: &Genome| L::of(&genome.controller);
+        let founded = plan.founder.as_ref().and_then(|founder| of_founder(founder.genome()));
+        // A founder that learned otherwise lends its body.
+        let fitting = founded.filter(|learned| learned.check_fits(plan).is_ok());
+        Self::with(plan, 0, fitting.unwrap_or_else(|| L::first(plan)))
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
-        let policy: Policy = state.read()?;
-        policy.check().map_err(|error| error.inside("state"))?;
-        let strategy = plan.settings.evolution.strategy;
-        if !Self::is_of(&policy, strategy) {
-            let allowed = format!("that of {strategy}");
-            return Err(Invalid::new("state.policy", "that of another strategy", allowed));
-        }
-        Ok(Self::with_policy(plan, finished, policy))
+        let learned: L = state.read()?;
+        learned.check_fits(plan).map_err(|error| error.inside("state"))?;
+        Ok(Self::with(plan, finished, learned))
     }
 
     fn ask(&self) -> Vec<Genome> {
         let individual = |individual| {
             let mut genome = self.first.clone();
-            if let ControllerGenes::Decisions(genes) = &mut genome.controller {
-                genes.policy = self.policy.clone();
-                genes.explorer = self.explorer(individual);
-            }
+            self.learned.give(&mut genome.controller, self.explorer(individual));
             genome
         };
         (0..self.search.population).map(individual).collect()
@@ -138,33 +94,9 @@ impl Strategy for Learning {
     }
 
     fn learn(&mut self, episodes: Vec<Option<Episode>>) {
-        let (mut transitions, mut decisions) = (Vec::new(), Vec::new());
-        for episode in episodes.into_iter().flatten() {
-            match episode {
-                Episode::Table(of_one) => transitions.push(of_one),
-                Episode::Rules(of_one, end) => decisions.push((of_one, end)),
-            }
-        }
         let mut rng = stream(self.seed, self.search.generation, 0, Purpose::Learn);
-        // Experience that does not fit, which no controller of the program makes, teaches nothing.
-        match &mut self.policy {
-            Policy::Table(table) => {
-                let rule = self.evolution.q_learning.rule();
-                Arc::make_mut(table).replay(&transitions, &rule);
-            }
-            Policy::Xcs(rules) => {
-                let rules = Arc::make_mut(rules);
-                for (decisions, end) in &decisions {
-                    let _ = rules.learn(decisions, *end, &mut rng);
-                }
-            }
-            Policy::Zcs(rules) => {
-                let rules = Arc::make_mut(rules);
-                for (decisions, end) in &decisions {
-                    let _ = rules.learn(decisions, *end, &mut rng);
-                }
-            }
-        }
+        let episodes: Vec<Episode> = episodes.into_iter().flatten().collect();
+        self.learned.learn(episodes, &self.evolution, &mut rng);
     }
 
     fn tell(&mut self, _: &[Genome], _: &[Evaluation]) {
@@ -172,22 +104,13 @@ impl Strategy for Learning {
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::of(&self.policy)
+        StrategyState::of(&self.learned)
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
         self.search.apply_settings(plan);
         self.evolution = plan.settings.evolution.clone();
-        // The settings' own ranges allow no parameter that is refused here.
-        match &mut self.policy {
-            Policy::Table(_) => {}
-            Policy::Xcs(rules) => {
-                let _ = Arc::make_mut(rules).set_settings(self.evolution.xcs.parameters());
-            }
-            Policy::Zcs(rules) => {
-                let _ = Arc::make_mut(rules).set_settings(self.evolution.zcs.parameters());
-            }
-        }
+        self.learned.apply(&self.evolution);
     }
 
     fn parents(&self) -> Vec<Parents> {

@@ -7,6 +7,7 @@ mod cma;
 mod cma_es;
 mod ga;
 mod halving;
+mod learned;
 mod learning;
 mod map_elites;
 mod neat;
@@ -16,20 +17,27 @@ mod search;
 mod wave_takeover;
 
 use super::plan::RunPlan;
-use super::settings::StrategyKind;
+use super::settings::{Settings, StrategyKind};
 use super::strategy::{Strategy, StrategyState};
 use crate::check::Invalid;
+use crate::genome::ControllerKind;
+use crate::genome::controllers::Policy;
+use learned::JointSystems;
+use learning::Learning;
 
-/// The constructors of each strategy.
-fn constructors(kind: StrategyKind) -> Constructors {
-    match kind {
+/// The constructors of the strategy of these settings.
+fn constructors(settings: &Settings) -> Constructors {
+    match settings.evolution.strategy {
         StrategyKind::Halving => Constructors::of::<halving::Halving>(),
         StrategyKind::Ga => Constructors::of::<ga::Ga>(),
         StrategyKind::CmaEs => Constructors::of::<cma_es::CmaEs>(),
         StrategyKind::MapElites => Constructors::of::<map_elites::MapElites>(),
         StrategyKind::Novelty => Constructors::of::<novelty::Novelty>(),
+        StrategyKind::Xcs if settings.genome.controller == ControllerKind::JointDecisions => {
+            Constructors::of::<Learning<JointSystems>>()
+        }
         StrategyKind::QLearning | StrategyKind::Xcs | StrategyKind::Zcs => {
-            Constructors::of::<learning::Learning>()
+            Constructors::of::<Learning<Policy>>()
         }
         StrategyKind::Neat => Constructors::of::<neat::Neat>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
@@ -55,7 +63,7 @@ impl Constructors {
 
 /// The strategy of a run at its beginning.
 pub fn begin(plan: &RunPlan) -> Box<dyn Strategy> {
-    (constructors(plan.settings.evolution.strategy).begin)(plan)
+    (constructors(&plan.settings).begin)(plan)
 }
 
 /// The strategy of a run after its first `finished` generations.
@@ -63,5 +71,5 @@ pub fn begin(plan: &RunPlan) -> Box<dyn Strategy> {
 /// # Errors
 /// The state does not fit the plan: another strategy has written it, or a value is not allowed.
 pub fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Resumed {
-    (constructors(plan.settings.evolution.strategy).resume)(plan, finished, state)
+    (constructors(&plan.settings).resume)(plan, finished, state)
 }

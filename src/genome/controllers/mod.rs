@@ -9,6 +9,7 @@ mod decisions;
 mod encoding;
 mod gait;
 mod grown;
+mod joint_decisions;
 mod layer;
 mod limb_neurons;
 mod modular;
@@ -30,6 +31,7 @@ pub use decisions::{
 pub use encoding::{ControllerInfo, JointCommands};
 pub use gait::Gait;
 pub use grown::{GROWN_INPUTS, GrownGenes};
+pub use joint_decisions::{JOINT_BENDS, JOINT_BITS, JointDecisionGenes};
 pub use layer::Layer;
 pub use limb_neurons::{LIMB_NEURONS, LimbNeurons};
 pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
@@ -103,6 +105,8 @@ registry! {
     Ctrnn(CtrnnGenes),
     /// Learned decisions among a few postures.
     Decisions(DecisionGenes),
+    /// Learned decisions of each joint about its bend.
+    JointDecisions(JointDecisionGenes),
     /// Rules that choose among waves.
     Rules(RuleGenes),
     /// A network that grew.

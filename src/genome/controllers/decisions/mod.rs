@@ -4,7 +4,9 @@
 mod policy;
 
 pub use policy::Policy;
+pub(super) use policy::{hash_xcs, shared};
 
+use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
@@ -14,6 +16,7 @@ use crate::check::{Invalid, within};
 use crate::genome::gene::{GeneVisitor, GenomeShape};
 use crate::genome::space::GenomeSpace;
 use crate::learn::q_table::QRule;
+use crate::rng::{Purpose, stream};
 
 /// Decisions per second.
 pub const DECISIONS_PER_S: u32 = 4;
@@ -107,9 +110,23 @@ pub struct Explorer {
 }
 
 impl Explorer {
-    fn check(&self) -> Result<(), Invalid> {
+    /// The stream of its random numbers.
+    pub fn rng(&self) -> ChaCha8Rng {
+        stream(self.seed, self.generation, self.individual, Purpose::Explore)
+    }
+
+    pub(super) fn check(&self) -> Result<(), Invalid> {
         within("explorer.epsilon", self.epsilon, 0.0..=1.0)?;
         self.rule.check().map_err(|error| error.inside("explorer.rule"))
+    }
+
+    /// Adds the bits that tell it from others to a hash.
+    pub(super) fn hash(&self, hash: &mut Xxh3Default) {
+        let Self { epsilon, seed, generation, individual, rule: _ } = self;
+        hash.update(&epsilon.to_bits().to_le_bytes());
+        hash.update(&seed.to_le_bytes());
+        hash.update(&generation.to_le_bytes());
+        hash.update(&individual.to_le_bytes());
     }
 }
 
@@ -166,11 +183,7 @@ impl ControllerEncoding for DecisionGenes {
     fn hash_learned(&self, hash: &mut Xxh3Default) {
         self.policy.hash(hash);
         if let Some(explorer) = &self.explorer {
-            let Explorer { epsilon, seed, generation, individual, rule: _ } = explorer;
-            hash.update(&epsilon.to_bits().to_le_bytes());
-            hash.update(&seed.to_le_bytes());
-            hash.update(&generation.to_le_bytes());
-            hash.update(&individual.to_le_bytes());
+            explorer.hash(hash);
         }
     }
 }

@@ -61,15 +61,7 @@ impl Policy {
                     }
                 }
             }
-            Self::Xcs(rules) => {
-                for rule in rules.rules() {
-                    hash_rule(&rule.condition, rule.action, hash);
-                    for number in [rule.prediction, rule.error, rule.fitness] {
-                        hash.update(&number.to_bits().to_le_bytes());
-                    }
-                    hash.update(&rule.numerosity.to_le_bytes());
-                }
-            }
+            Self::Xcs(rules) => hash_xcs(rules, hash),
             Self::Zcs(rules) => {
                 for rule in rules.rules() {
                     hash_rule(&rule.condition, rule.action, hash);
@@ -80,6 +72,17 @@ impl Policy {
     }
 }
 
+/// Adds the bits of all rules of an XCS to a hash.
+pub fn hash_xcs(rules: &Xcs, hash: &mut Xxh3Default) {
+    for rule in rules.rules() {
+        hash_rule(&rule.condition, rule.action, hash);
+        for number in [rule.prediction, rule.error, rule.fitness] {
+            hash.update(&number.to_bits().to_le_bytes());
+        }
+        hash.update(&rule.numerosity.to_le_bytes());
+    }
+}
+
 fn hash_rule(condition: &Condition, action: u16, hash: &mut Xxh3Default) {
     hash.update(&condition.care().to_le_bytes());
     hash.update(&condition.value().to_le_bytes());
@@ -87,7 +90,7 @@ fn hash_rule(condition: &Condition, action: u16, hash: &mut Xxh3Default) {
 }
 
 /// Writes shared data as if it were not shared.
-mod shared {
+pub mod shared {
     use std::sync::Arc;
 
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

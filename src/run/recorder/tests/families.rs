@@ -8,7 +8,7 @@ use super::*;
 use crate::rng::{Purpose, stream};
 
 /// A controller of each family that senses or learns, with a strategy that improves it.
-const FAMILIES: [(ControllerKind, StrategyKind); 11] = [
+const FAMILIES: [(ControllerKind, StrategyKind); 12] = [
     (ControllerKind::Reflex, StrategyKind::CmaEs),
     (ControllerKind::Modular, StrategyKind::CmaEs),
     (ControllerKind::Central, StrategyKind::Ga),
@@ -18,6 +18,7 @@ const FAMILIES: [(ControllerKind, StrategyKind); 11] = [
     (ControllerKind::Grown, StrategyKind::Neat),
     (ControllerKind::Decisions, StrategyKind::QLearning),
     (ControllerKind::Decisions, StrategyKind::Xcs),
+    (ControllerKind::JointDecisions, StrategyKind::Xcs),
     (ControllerKind::Decisions, StrategyKind::Zcs),
     (ControllerKind::Gait, StrategyKind::CmaEs),
 ];

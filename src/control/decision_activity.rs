@@ -1,0 +1,212 @@
+//! The state of decisions at a moment, for display: the worth of each choice, and the rules that say so.
+
+use crate::learn::classifiers::{Condition, Xcs, Zcs};
+
+/// A decision, and what it was taken by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecisionActivity {
+    /// The joint that decides, if each decides for itself; the first is 0.
+    pub joint: Option<usize>,
+    /// The situation in words.
+    pub situation: String,
+    /// The worth in it of each posture, or of each bend of the joint.
+    pub postures: Vec<PostureWorth>,
+    /// The posture that was chosen, by its place in the list.
+    pub chosen: usize,
+    /// The rules, in order of birth; none for a table.
+    pub rules: Vec<ActiveRule>,
+}
+
+/// The worth of a posture in a situation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PostureWorth {
+    /// Its name.
+    pub name: &'static str,
+    /// Its value in a table, the payoff that rules predict, or their strength; none if no rule is about it.
+    pub worth: Option<f32>,
+    /// How often a table has tried it there, or how many rules advise it.
+    pub count: u32,
+}
+
+/// A rule of a population.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActiveRule {
+    /// The situations that it is about.
+    pub condition: Condition,
+    /// The names of the bits of situations.
+    pub names: &'static [&'static str],
+    /// The posture that it is about, by its number.
+    pub posture: usize,
+    /// The payoff that it predicts, or its strength.
+    pub worth: f32,
+    /// Its accuracy relative to others, 0 to 1; none for rules that are kept for their strength.
+    pub fitness: Option<f32>,
+    /// How often it has learned, for rules that count that.
+    pub experience: Option<u32>,
+    /// Whether it matches the situation.
+    pub matches: bool,
+    /// Whether it matches and is about the posture that was chosen.
+    pub decides: bool,
+}
+
+/// Where rules are looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RulePlace {
+    /// The bits of the situation.
+    pub bits: u32,
+    /// Their names.
+    pub names: &'static [&'static str],
+    /// The action that was taken, if one was.
+    pub chosen: Option<usize>,
+}
+
+impl RulePlace {
+    /// The rules of an XCS, in order of birth.
+    pub fn rules_of_xcs(&self, system: &Xcs) -> Vec<ActiveRule> {
+        let rules = system.rules().iter().map(|rule| ActiveRule {
+            fitness: Some(rule.fitness),
+            experience: Some(rule.experience),
+            ..self.rule(rule.condition, rule.action, rule.prediction)
+        });
+        rules.collect()
+    }
+
+    /// The rules of a ZCS, in order of birth.
+    pub fn rules_of_zcs(&self, system: &Zcs) -> Vec<ActiveRule> {
+        let rules = system.rules().iter();
+        rules.map(|rule| self.rule(rule.condition, rule.action, rule.strength)).collect()
+    }
+
+    fn rule(&self, condition: Condition, action: u16, worth: f32) -> ActiveRule {
+        let (posture, matches) = (usize::from(action), condition.matches(self.bits));
+        ActiveRule {
+            condition,
+            names: self.names,
+            posture,
+            worth,
+            fitness: None,
+            experience: None,
+            matches,
+            decides: matches && Some(posture) == self.chosen,
+        }
+    }
+}
+
+impl ActiveRule {
+    /// The worth of each action by its name, and how many of the rules advise it.
+    pub(super) fn worths(
+        names: &[&'static str],
+        worths: Vec<Option<f32>>,
+        rules: &[Self],
+    ) -> Vec<PostureWorth> {
+        let advising = |index: usize| {
+            rules.iter().filter(|rule| rule.matches && rule.posture == index).count() as u32
+        };
+        let each = names.iter().zip(worths).enumerate();
+        each.map(|(index, (name, worth))| PostureWorth { name, worth, count: advising(index) })
+            .collect()
+    }
+
+    /// Its condition in words: "riser at the head, not moving".
+    pub fn words(&self) -> String {
+        let (care, value) = (self.condition.care(), self.condition.value());
+        let parts = self.names.iter().enumerate().filter(|(bit, _)| care >> bit & 1 == 1);
+        let words: Vec<String> = parts
+            .map(|(bit, name)| match value >> bit & 1 {
+                1 => (*name).to_owned(),
+                // "no riser at the head", but "not moving".
+                _ if name.starts_with("riser") || name.starts_with("step") => format!("no {name}"),
+                _ => format!("not {name}"),
+            })
+            .collect();
+        if words.is_empty() { "always".to_owned() } else { words.join(", ") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::control::Activity;
+    use crate::control::activity::tests::played;
+    use crate::genome::controllers::{
+        JOINT_BENDS, JOINT_BITS, JointDecisionGenes, POSTURES, Policy, SITUATION_BITS,
+    };
+    use crate::genome::{ControllerGenes, ControllerKind};
+    use crate::learn::classifiers::{EpisodeEnd, RecordedDecision, XcsSettings, ZcsSettings};
+    use crate::rng::{Purpose, stream};
+    use std::sync::Arc;
+
+    #[test]
+    fn decisions_show_the_worth_of_all_postures_and_the_rules_that_match() {
+        let mut rng = stream(1, 1, 1, Purpose::Learn);
+        let zcs = Zcs::new(ZcsSettings::default(), SITUATION_BITS.len(), POSTURES.len(), &mut rng);
+        let xcs = Xcs::new(XcsSettings::default(), SITUATION_BITS.len(), POSTURES.len());
+        let policies = [
+            Policy::default(),
+            Policy::Zcs(Arc::new(zcs.expect("allowed"))),
+            Policy::Xcs(Arc::new(xcs.expect("allowed"))),
+        ];
+        for (policy, rules) in policies.into_iter().zip([0, 400, 0]) {
+            let rollout = played(ControllerKind::Decisions, 20, |genome| {
+                if let ControllerGenes::Decisions(genes) = &mut genome.controller {
+                    genes.policy = policy.clone();
+                }
+            });
+            let Some(Activity::Decision(decision)) = rollout.activity(0) else { panic!("one") };
+            assert_eq!((decision.postures.len(), decision.rules.len()), (12, rules));
+            assert!(decision.situation.contains("head"), "{}", decision.situation);
+            let advised: u32 = decision.postures.iter().map(|posture| posture.count).sum();
+            let matching = decision.rules.iter().filter(|rule| rule.matches).count();
+            assert_eq!(advised as usize, matching);
+            let chosen = |rule: &&ActiveRule| rule.decides;
+            assert!(
+                decision
+                    .rules
+                    .iter()
+                    .filter(chosen)
+                    .all(|rule| { rule.matches && rule.posture == decision.chosen })
+            );
+        }
+    }
+
+    #[test]
+    fn joint_decisions_show_the_worth_of_the_bends_of_a_joint() {
+        let rollout = played(ControllerKind::JointDecisions, 20, |genome| {
+            let ControllerGenes::JointDecisions(genes) = &mut genome.controller else { return };
+            let settings = XcsSettings { wildcard_share: 1.0, ..XcsSettings::default() };
+            let mut systems = JointDecisionGenes::empty_systems(&settings, 4).expect("allowed");
+            let lesson = [RecordedDecision { bits: 0, action: 2, reward: 500.0 }];
+            let mut rng = stream(1, 1, 1, Purpose::Learn);
+            systems[3].learn(&lesson, EpisodeEnd::Terminal, &mut rng).expect("it fits");
+            genes.systems = Arc::new(systems);
+        });
+        let decision = |joint| match rollout.activity(joint) {
+            Some(Activity::Decision(decision)) => decision,
+            other => panic!("{other:?}"),
+        };
+        let (first, last) = (decision(0), decision(3));
+        assert_eq!((first.joint, first.rules.len(), first.chosen), (Some(0), 0, 0));
+        assert_eq!(last.postures.iter().map(|bend| bend.name).collect::<Vec<_>>(), JOINT_BENDS);
+        assert_eq!((last.rules.len(), JOINT_BENDS[last.chosen]), (3, "bend down"));
+        assert!(last.rules.iter().all(|rule| rule.matches && rule.names == JOINT_BITS));
+        assert_eq!(last.rules.iter().filter(|rule| rule.decides).count(), 1);
+    }
+
+    #[test]
+    fn a_condition_is_spelled_in_words() {
+        let rule = |care: u32, value: u32| ActiveRule {
+            condition: Condition::new(care, value, SITUATION_BITS.len()).expect("allowed"),
+            names: &SITUATION_BITS,
+            posture: 1,
+            worth: 0.0,
+            fitness: None,
+            experience: None,
+            matches: false,
+            decides: false,
+        };
+        assert_eq!(rule(0b1, 0b1).words(), "riser at the head");
+        assert_eq!(rule(1 | 1 << 13, 1).words(), "riser at the head, not moving");
+        assert_eq!(rule(0b1000, 0).words(), "no step ahead");
+        assert_eq!(rule(0, 0).words(), "always");
+    }
+}

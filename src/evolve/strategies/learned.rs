@@ -1,0 +1,192 @@
+//! What the episodes of a run learn together: a policy for the whole snake, or rules for each joint.
+
+use std::sync::Arc;
+
+use rand_chacha::ChaCha8Rng;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::check::Invalid;
+use crate::evolve::plan::RunPlan;
+use crate::evolve::settings::{EvolutionSettings, StrategyKind};
+use crate::genome::ControllerGenes;
+use crate::genome::controllers::{Explorer, JointDecisionGenes, POSTURES, Policy, SITUATION_BITS};
+use crate::learn::Episode;
+use crate::learn::classifiers::{Xcs, Zcs};
+use crate::rng::{Purpose, stream};
+
+/// Something that is learned from episodes.
+pub trait Learned: Clone + Send + Sync + Serialize + DeserializeOwned {
+    /// What a run knows at its beginning.
+    fn first(plan: &RunPlan) -> Self;
+
+    /// What a controller has learned, if it is of this kind.
+    fn of(genes: &ControllerGenes) -> Option<Self>;
+
+    /// Checks that it is what the run's strategy learns, about the run's snakes.
+    ///
+    /// # Errors
+    /// What differs.
+    fn check_fits(&self, plan: &RunPlan) -> Result<(), Invalid>;
+
+    /// Gives it to a controller, with a way to explore.
+    fn give(&self, genes: &mut ControllerGenes, explorer: Option<Explorer>);
+
+    /// Learns from episodes in their order. Experience that does not fit, which no controller of the program makes, teaches
+    /// nothing.
+    fn learn(
+        &mut self,
+        episodes: Vec<Episode>,
+        evolution: &EvolutionSettings,
+        rng: &mut ChaCha8Rng,
+    );
+
+    /// Adopts changed settings.
+    fn apply(&mut self, evolution: &EvolutionSettings);
+}
+
+impl Learned for Policy {
+    fn first(plan: &RunPlan) -> Self {
+        let evolution = &plan.settings.evolution;
+        let (bits, actions) = (SITUATION_BITS.len(), POSTURES.len());
+        // The settings' own ranges allow no parameter that is refused here.
+        let policy = match evolution.strategy {
+            StrategyKind::Xcs => Xcs::new(evolution.xcs.parameters(), bits, actions)
+                .map(|rules| Self::Xcs(Arc::new(rules))),
+            StrategyKind::Zcs => {
+                let mut rng = stream(plan.seed, 0, 0, Purpose::Learn);
+                Zcs::new(evolution.zcs.parameters(), bits, actions, &mut rng)
+                    .map(|rules| Self::Zcs(Arc::new(rules)))
+            }
+            _ => Ok(Self::default()),
+        };
+        policy.unwrap_or_default()
+    }
+
+    fn of(genes: &ControllerGenes) -> Option<Self> {
+        match genes {
+            ControllerGenes::Decisions(genes) => Some(genes.policy.clone()),
+            _ => None,
+        }
+    }
+
+    fn check_fits(&self, plan: &RunPlan) -> Result<(), Invalid> {
+        self.check()?;
+        let strategy = plan.settings.evolution.strategy;
+        let is_fitting = match self {
+            Self::Table(_) => strategy == StrategyKind::QLearning,
+            Self::Xcs(_) => strategy == StrategyKind::Xcs,
+            Self::Zcs(_) => strategy == StrategyKind::Zcs,
+        };
+        if is_fitting {
+            return Ok(());
+        }
+        Err(Invalid::new("policy", "that of another strategy", format!("that of {strategy}")))
+    }
+
+    fn give(&self, genes: &mut ControllerGenes, explorer: Option<Explorer>) {
+        if let ControllerGenes::Decisions(genes) = genes {
+            genes.policy = self.clone();
+            genes.explorer = explorer;
+        }
+    }
+
+    fn learn(
+        &mut self,
+        episodes: Vec<Episode>,
+        evolution: &EvolutionSettings,
+        rng: &mut ChaCha8Rng,
+    ) {
+        let (mut transitions, mut decisions) = (Vec::new(), Vec::new());
+        for episode in episodes {
+            match episode {
+                Episode::Table(of_one) => transitions.push(of_one),
+                Episode::Rules(of_one, end) => decisions.push((of_one, end)),
+                Episode::Joints(_) => {}
+            }
+        }
+        match self {
+            Self::Table(table) => {
+                Arc::make_mut(table).replay(&transitions, &evolution.q_learning.rule());
+            }
+            Self::Xcs(rules) => {
+                let rules = Arc::make_mut(rules);
+                for (decisions, end) in &decisions {
+                    let _ = rules.learn(decisions, *end, rng);
+                }
+            }
+            Self::Zcs(rules) => {
+                let rules = Arc::make_mut(rules);
+                for (decisions, end) in &decisions {
+                    let _ = rules.learn(decisions, *end, rng);
+                }
+            }
+        }
+    }
+
+    fn apply(&mut self, evolution: &EvolutionSettings) {
+        // The settings' own ranges allow no parameter that is refused here.
+        match self {
+            Self::Table(_) => {}
+            Self::Xcs(rules) => {
+                let _ = Arc::make_mut(rules).set_settings(evolution.xcs.parameters());
+            }
+            Self::Zcs(rules) => {
+                let _ = Arc::make_mut(rules).set_settings(evolution.zcs.parameters());
+            }
+        }
+    }
+}
+
+/// The rules of each joint.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct JointSystems(Vec<Xcs>);
+
+impl Learned for JointSystems {
+    fn first(plan: &RunPlan) -> Self {
+        let joints = plan.settings.trial.agent.joints();
+        let parameters = plan.settings.evolution.xcs.of_each(joints);
+        // The settings' own ranges allow no parameter that is refused here.
+        Self(JointDecisionGenes::empty_systems(&parameters, joints).unwrap_or_default())
+    }
+
+    fn of(genes: &ControllerGenes) -> Option<Self> {
+        match genes {
+            ControllerGenes::JointDecisions(genes) => Some(Self(genes.systems.as_ref().clone())),
+            _ => None,
+        }
+    }
+
+    fn check_fits(&self, plan: &RunPlan) -> Result<(), Invalid> {
+        JointDecisionGenes::check_systems(&self.0, plan.settings.trial.agent.joints())
+    }
+
+    fn give(&self, genes: &mut ControllerGenes, explorer: Option<Explorer>) {
+        if let ControllerGenes::JointDecisions(genes) = genes {
+            genes.systems = Arc::new(self.0.clone());
+            genes.explorer = explorer;
+        }
+    }
+
+    fn learn(
+        &mut self,
+        episodes: Vec<Episode>,
+        _evolution: &EvolutionSettings,
+        rng: &mut ChaCha8Rng,
+    ) {
+        for episode in episodes {
+            let Episode::Joints(of_joints) = episode else { continue };
+            for (system, (decisions, end)) in self.0.iter_mut().zip(of_joints) {
+                let _ = system.learn(&decisions, end, rng);
+            }
+        }
+    }
+
+    fn apply(&mut self, evolution: &EvolutionSettings) {
+        let parameters = evolution.xcs.of_each(self.0.len());
+        for system in &mut self.0 {
+            let _ = system.set_settings(parameters.clone());
+        }
+    }
+}

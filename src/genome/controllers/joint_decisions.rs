@@ -1,0 +1,159 @@
+//! Decisions of each joint: every joint decides four times a second whether it bends up, bends down or straightens, by
+//! rules of its own about what it senses near itself.
+//!
+//! This is this project's own variant of XCS (Wilson, 1995), not a published method: one system of rules per joint, which
+//! see different situations and share one reward.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::decisions::{DECISIONS_PER_S, Explorer, hash_xcs, shared};
+use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::servo::ServoGenes;
+use crate::check::{Invalid, within};
+use crate::genome::gene::{GeneVisitor, GenomeShape};
+use crate::genome::space::GenomeSpace;
+use crate::learn::classifiers::{Xcs, XcsSettings};
+
+/// The bends among which a joint decides, in their order. A positive bend lifts the middle of the body above the joint's
+/// neighbours.
+pub const JOINT_BENDS: [&str; 3] = ["straight", "bend up", "bend down"];
+
+/// The bits of the situation of a joint, in their order.
+pub const JOINT_BITS: [&str; 12] = [
+    "bent up",
+    "bent down",
+    "joint ahead bent up",
+    "joint ahead bent down",
+    "joint behind bent up",
+    "joint behind bent down",
+    "limb ahead touches",
+    "limb behind touches",
+    "riser within a metre of the limb ahead",
+    "step ahead",
+    "limb ahead raised",
+    "moving",
+];
+
+/// The rules of all joints, and the servos that move them. It does not evolve: it has no genes, but learns from the outcome of
+/// its decisions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointDecisionGenes {
+    /// The servos; the bend range is the angle of a full bend.
+    pub servo: ServoGenes,
+    /// The rules of each joint, from the head.
+    #[serde(with = "shared")]
+    pub systems: Arc<Vec<Xcs>>,
+    /// How it explores; none for play without chance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explorer: Option<Explorer>,
+}
+
+impl JointDecisionGenes {
+    /// Rules of joints that know nothing yet.
+    ///
+    /// # Errors
+    /// A parameter is out of range.
+    pub fn empty_systems(settings: &XcsSettings, joints: usize) -> Result<Vec<Xcs>, Invalid> {
+        (0..joints)
+            .map(|_| Xcs::new(settings.clone(), JOINT_BITS.len(), JOINT_BENDS.len()))
+            .collect()
+    }
+
+    /// Checks that these are the rules of `joints` joints.
+    ///
+    /// # Errors
+    /// The number that differs.
+    pub fn check_systems(systems: &[Xcs], joints: usize) -> Result<(), Invalid> {
+        within("systems", systems.len(), joints..=joints)?;
+        for (joint, system) in systems.iter().enumerate() {
+            let at = |error: Invalid| error.inside(&format!("systems[{joint}]"));
+            let (bits, actions) = (JOINT_BITS.len(), JOINT_BENDS.len());
+            within("situation_bits", system.situation_bits(), bits..=bits).map_err(at)?;
+            within("actions", system.actions(), actions..=actions).map_err(at)?;
+        }
+        Ok(())
+    }
+}
+
+impl ControllerEncoding for JointDecisionGenes {
+    fn info() -> &'static ControllerInfo {
+        &ControllerInfo {
+            name: "joint_decisions",
+            title: "Joint decisions",
+            words: "Each joint chooses its bend four times a second, by rules of its own.",
+            senses_surroundings: true,
+            settings: &[
+                "wave.angle_range_rad",
+                "wave.stiffness_min_nm_per_rad",
+                "wave.stiffness_max_nm_per_rad",
+                "wave.servo_damping_nms_per_rad",
+            ],
+        }
+    }
+
+    fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
+        let systems = Self::empty_systems(&XcsSettings::default(), shape.joints);
+        Self {
+            servo: ServoGenes { twist_range_rad: 0.0, ..ServoGenes::zeroed(space) },
+            // The default parameters are in range.
+            systems: Arc::new(systems.unwrap_or_default()),
+            explorer: None,
+        }
+    }
+
+    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        self.servo.genes_without_twist(space, visit);
+    }
+
+    fn joints(&self) -> usize {
+        self.systems.len()
+    }
+
+    /// Half the rate of decisions: that of a bend that changes with each.
+    fn frequency_hz(&self) -> f32 {
+        DECISIONS_PER_S as f32 / 2.0
+    }
+
+    fn check(&self) -> Result<(), Invalid> {
+        let inside = |error: Invalid| error.inside("joint_decisions");
+        self.servo.check().map_err(inside)?;
+        within("servo.twist_range_rad", self.servo.twist_range_rad, 0.0..=0.0).map_err(inside)?;
+        Self::check_systems(&self.systems, self.systems.len()).map_err(inside)?;
+        self.explorer.as_ref().map_or(Ok(()), Explorer::check).map_err(inside)
+    }
+
+    fn widen(&self, space: &mut GenomeSpace) {
+        self.servo.widen_without_twist(space);
+    }
+
+    fn hash_learned(&self, hash: &mut Xxh3Default) {
+        self.systems.iter().for_each(|system| hash_xcs(system, hash));
+        if let Some(explorer) = &self.explorer {
+            explorer.hash(hash);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn systems_of_other_situations_or_actions_are_refused() {
+        let settings = XcsSettings::default();
+        let mut systems = JointDecisionGenes::empty_systems(&settings, 4).expect("allowed");
+        assert_eq!(JointDecisionGenes::check_systems(&systems, 4), Ok(()));
+        let refusal = |systems: &[Xcs], joints| {
+            JointDecisionGenes::check_systems(systems, joints).expect_err("refused").to_string()
+        };
+        assert_eq!(refusal(&systems, 5), "systems is 4; allowed: 5 to 5");
+        systems[2] = Xcs::new(settings.clone(), 24, JOINT_BENDS.len()).expect("allowed");
+        assert_eq!(refusal(&systems, 4), "systems[2].situation_bits is 24; allowed: 12 to 12");
+        systems[2] = Xcs::new(settings, JOINT_BITS.len(), 5).expect("allowed");
+        assert_eq!(refusal(&systems, 4), "systems[2].actions is 5; allowed: 3 to 3");
+    }
+}
