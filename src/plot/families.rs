@@ -1,0 +1,60 @@
+//! The exam of all families as a chart: a group of bars for each family, a bar for each suite.
+
+use super::{Axis, Chart, Figure, PlotError, Role, Series, Shape};
+use crate::run::Quartiles;
+use crate::run::families::{FamilyResults, Results};
+use crate::save::Picture;
+use crate::schema::Choices;
+use crate::score::ExamSuite;
+
+/// Share of the space of a group that its bars take.
+const GROUP: f64 = 0.8;
+
+/// Plots the landings of each family in each suite of the exam.
+///
+/// # Errors
+/// The plotting library failed.
+pub fn families(results: &Results, suites: &[ExamSuite]) -> Result<Picture, PlotError> {
+    super::figure(&exam_figure(results, suites))
+}
+
+fn exam_figure(results: &Results, suites: &[ExamSuite]) -> Figure {
+    let examined: Vec<&FamilyResults> =
+        results.0.iter().filter(|family| !family.examined.is_empty()).collect();
+    let width = GROUP / suites.len().max(1) as f64;
+    let series = suites.iter().enumerate().map(|(place, suite)| {
+        let left = (width - GROUP) / 2.0 + width * place as f64;
+        let bar = |(group, family): (usize, &&FamilyResults)| {
+            let landings = family.landings(*suite).into_iter().map(|(_, landed)| landed);
+            Some([group as f64 + left, Quartiles::of(landings)?.median])
+        };
+        let bars = examined.iter().enumerate().filter_map(bar).collect();
+        // A gap between neighbours keeps them apart without their colours.
+        let shape = Shape::Bars { width: width * 0.88, bars };
+        Series::new(suite.choice().title, role(*suite), shape)
+    });
+    let mut x = Axis::new("Family", "", -0.6..=examined.len().max(1) as f64 - 0.4);
+    let titles = examined.iter().map(|of| of.family.choice().title.to_owned());
+    x.names = (0..).map(f64::from).zip(titles).collect();
+    let chart = Chart {
+        name: String::new(),
+        x,
+        y: Axis::new("Trials that end on the landing", "%", 0.0..=100.0),
+        series: series.collect(),
+        marks: Vec::new(),
+    };
+    let note = "Mixed stairs: median of the champions of all seeds. Otherwise the best champion of all seeds. A suite without \
+                a bar: no landing, or none of its trials concern the controller.";
+    Figure { note: note.to_owned(), ..Figure::of("Families in the exam", chart) }
+}
+
+fn role(suite: ExamSuite) -> Role {
+    match suite {
+        ExamSuite::Stairs => Role::First,
+        ExamSuite::Surprise => Role::Third,
+        ExamSuite::Shove => Role::Second,
+        ExamSuite::Lesion => Role::Others,
+        ExamSuite::StepRate => Role::Share(0.0),
+        ExamSuite::Trials => Role::Share(0.8),
+    }
+}
