@@ -43,8 +43,8 @@ fn exam_figure(results: &Results, suites: &[ExamSuite]) -> Figure {
         series: series.collect(),
         marks: Vec::new(),
     };
-    let note = "Mixed stairs: median of the champions of all seeds. Otherwise the best champion of all seeds. A suite without \
-                a bar: no landing, or none of its trials concern the controller.";
+    let note = "Mixed stairs: median of the champions of all seeds; otherwise the best champion of all seeds. Without a bar: no \
+                landing, or no senses to freeze.";
     Figure { note: note.to_owned(), ..Figure::of("Families in the exam", chart) }
 }
 
@@ -56,5 +56,44 @@ fn role(suite: ExamSuite) -> Role {
         ExamSuite::Lesion => Role::Others,
         ExamSuite::StepRate => Role::Share(0.0),
         ExamSuite::Trials => Role::Share(0.8),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::families::fixtures::{examined, family, results};
+    use crate::run::families::{DEFAULT_SUITES, Family};
+
+    #[test]
+    fn each_family_has_a_group_with_a_bar_for_each_of_its_suites() {
+        let champion: Vec<(ExamSuite, u32)> =
+            DEFAULT_SUITES.iter().copied().zip([50, 40, 30, 20, 10]).collect();
+        let all: Vec<FamilyResults> = Family::OPTIONS
+            .iter()
+            .map(|of| {
+                let suites = if *of == Family::Gait { &champion[..4] } else { &champion[..] };
+                examined(*of, &[suites, suites])
+            })
+            .collect();
+        let mut all = results(&all.iter().collect::<Vec<_>>());
+        all.0.push(family(Family::Gait, &[3]));
+        let figure = exam_figure(&all, &DEFAULT_SUITES);
+        let chart = &figure.charts[0];
+        assert_eq!(chart.x.names.len(), Family::OPTIONS.len(), "the last was not examined");
+        let bars = |series: &Series| match &series.shape {
+            Shape::Bars { bars, .. } => bars.clone(),
+            _ => panic!("bars"),
+        };
+        let counts: Vec<usize> = chart.series.iter().map(|series| bars(series).len()).collect();
+        assert_eq!(counts, [14, 14, 14, 14, 13], "a gait has no senses to freeze");
+        let heights: Vec<f64> = chart.series.iter().map(|series| bars(series)[0][1]).collect();
+        assert_eq!(heights, [100.0, 80.0, 60.0, 40.0, 20.0]);
+        let picture = families(&all, &DEFAULT_SUITES).expect("drawn");
+        for series in &chart.series {
+            let color = crate::plot::role_color(series.role);
+            let pixels = picture.rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == color);
+            assert!(pixels.count() > 1000, "{}", series.name);
+        }
     }
 }

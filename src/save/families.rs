@@ -31,7 +31,7 @@ pub struct FamilyRuns {
     engine: u32,
     #[serde(default, skip_serializing_if = "is_default")]
     processors: Processors,
-    /// The families, in the order in which their first runs ended.
+    /// The families, in the order of their names.
     pub families: Vec<TrainedFamily>,
 }
 
@@ -124,8 +124,10 @@ impl FamilyRuns {
         let place = self.families.iter().position(same).unwrap_or_else(|| {
             self.families.retain(|trained| trained.protocol.family != protocol.family);
             let protocol = protocol.clone();
-            self.families.push(TrainedFamily { protocol, runs: Vec::new() });
-            self.families.len() - 1
+            let after = |trained: &TrainedFamily| trained.protocol.family < protocol.family;
+            let place = self.families.partition_point(after);
+            self.families.insert(place, TrainedFamily { protocol, runs: Vec::new() });
+            place
         });
         let runs = &mut self.families[place].runs;
         runs.retain(|earlier| earlier.seed != run.seed);

@@ -52,3 +52,41 @@ impl Verdict {
         both.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::families::Family;
+    use crate::run::families::fixtures::{family, results};
+
+    #[test]
+    fn a_demand_is_met_or_not_or_not_measured() {
+        let demand = Demand { measure: Measure::Steps, must: Some(2.0), hard: Some(4.0) };
+        for (steps, words) in [
+            (&[4, 5, 4][..], "must: yes, hard: yes"),
+            (&[2, 3, 3], "must: yes, hard: no"),
+            (&[1, 1, 10], "must: no, hard: no"),
+            (&[], "not measured"),
+        ] {
+            let zcs = family(Family::Zcs, steps);
+            let verdict = demand.verdict(&zcs, &results(&[&zcs]));
+            assert_eq!(verdict.words(), words, "{steps:?}");
+        }
+        let zcs = family(Family::Zcs, &[3]);
+        let hard = Demand { must: None, ..demand }.verdict(&zcs, &results(&[&zcs]));
+        assert_eq!((hard.meets_must, hard.meets_hard), (None, Some(false)));
+        assert_eq!(hard.words(), "hard: no");
+    }
+
+    #[test]
+    fn of_some_measures_less_is_better() {
+        let demand = Demand { measure: Measure::FirstLanding, must: None, hard: Some(250.0) };
+        for (steps, meets) in
+            [(&[10, 10, 10][..], true), (&[0, 10, 10], false), (&[0, 0, 0], false)]
+        {
+            let reflex = family(Family::Reflex, steps);
+            let verdict = demand.verdict(&reflex, &results(&[&reflex]));
+            assert_eq!(verdict.meets_hard, Some(meets), "{steps:?}");
+        }
+    }
+}

@@ -215,3 +215,96 @@ fn above_gait(suite: ExamSuite, family: &FamilyResults, all: &Results) -> Option
     );
     Some(Measured { value: median, text })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::families::Family;
+    use crate::run::families::fixtures::{examined, family, landings, results};
+
+    fn measured(measure: Measure, of: &FamilyResults, others: &[&FamilyResults]) -> Measured {
+        measure.of(of, &results(others)).expect("measured")
+    }
+
+    #[test]
+    fn landings_are_of_champions_or_where_runs_stop_of_any_snake() {
+        let mut rules = family(Family::Rules, &[10, 10, 4, 10]);
+        let found = measured(Measure::Landings, &rules, &[]);
+        assert_eq!((found.value, found.text.as_str()), (7.5, "3 of 4: 75 % [30 95]"));
+        rules.runs[2].first_landing = Some(7);
+        assert_eq!(measured(Measure::Landings, &rules, &[]).value, 7.5, "it is no champion");
+        let stopped = FamilyResults { family: Family::Reflex, ..rules };
+        assert_eq!(measured(Measure::Landings, &stopped, &[]).value, 10.0);
+        assert_eq!(Measure::Landings.of(&family(Family::Rules, &[]), &Results::default()), None);
+    }
+
+    #[test]
+    fn a_run_that_never_lands_counts_as_infinite_and_one_without_champion_as_no_step() {
+        let most = family(Family::Modular, &[10, 10, 3]);
+        let found = measured(Measure::FirstLanding, &most, &[]);
+        assert_eq!((found.value, found.text.as_str()), (200.0, "200 [150 –], n = 3"));
+        let few = family(Family::Modular, &[10, 2, 3]);
+        assert_eq!(measured(Measure::FirstLanding, &few, &[]).value, f64::INFINITY);
+        let mut xcs = family(Family::Xcs, &[4, 6, 5]);
+        xcs.runs[1].champion = None;
+        let found = measured(Measure::Steps, &xcs, &[]);
+        assert_eq!((found.value, found.text.as_str()), (4.0, "4 [2 4.5], n = 3"));
+    }
+
+    #[test]
+    fn a_family_on_mixed_stairs_is_compared_with_the_gait_seed_by_seed() {
+        let suite = ExamSuite::Stairs;
+        let reflex = landings(Family::MixedReflex, suite, &[40, 30, 35, 20]);
+        let gait = landings(Family::MixedGait, suite, &[30, 30, 20]);
+        let found = measured(Measure::AboveGait(suite), &reflex, &[&reflex, &gait]);
+        assert_eq!((found.value, found.text.as_str()), (20.0, "+20 [+10 +25], n = 3: +20 +0 +30"));
+        let found = measured(Measure::SignTest(suite), &reflex, &[&reflex, &gait]);
+        assert_eq!(found.value, 0.5);
+        assert_eq!(found.text, "p = 0.5000: more 2, fewer 0, equal 1");
+        let worse = landings(Family::MixedReflex, suite, &[1; 3]);
+        let found = measured(Measure::SignTest(suite), &worse, &[&gait]);
+        assert_eq!(
+            (found.value, found.text.as_str()),
+            (1.0, "p = 0.2500: more 0, fewer 3, equal 0")
+        );
+        assert_eq!(Measure::AboveGait(suite).of(&reflex, &results(&[&reflex])), None);
+    }
+
+    #[test]
+    fn the_best_champion_on_standard_stairs_is_compared_with_the_best_gait() {
+        let suite = ExamSuite::Stairs;
+        let rules = landings(Family::Rules, suite, &[40]);
+        let mut gait = landings(Family::Gait, suite, &[45]);
+        // Of another seed.
+        gait.examined[0].seed = 8;
+        let mixed = landings(Family::MixedGait, suite, &[1]);
+        let found = measured(Measure::AboveGait(suite), &rules, &[&mixed, &gait]);
+        assert_eq!((found.value, found.text.as_str()), (-10.0, "-10: 80, gait 90"));
+    }
+
+    #[test]
+    fn frozen_senses_cost_the_landings_on_the_same_stairs() {
+        let (stairs, lesion) = (ExamSuite::Stairs, ExamSuite::Lesion);
+        let champions: [&[(ExamSuite, u32)]; 2] = [&[(stairs, 45), (lesion, 20)], &[(stairs, 50)]];
+        let modular = examined(Family::MixedModular, &champions);
+        let found = measured(Measure::LostWithoutSenses, &modular, &[]);
+        assert_eq!((found.value, found.text.as_str()), (50.0, "50, n = 1"));
+        assert_eq!(measured(Measure::Exam(stairs), &modular, &[]).value, 95.0);
+    }
+
+    #[test]
+    fn waves_count_from_a_tenth_on_and_rules_have_medians() {
+        let mut of = family(Family::Rules, &[10, 10, 10]);
+        let shares = [[0.9, 0.1], [0.95, 0.05], [0.5, 0.5]];
+        for (run, (shares, count)) in of.runs.iter_mut().zip(shares.iter().zip([100, 900, 200])) {
+            let champion = run.champion.as_mut().expect("one");
+            champion.wave_shares = shares.to_vec();
+            champion.rules = Some(RuleUse { count, share_of_twenty: 0.75 });
+        }
+        let found = measured(Measure::SeveralWaves, &of, &[]);
+        assert!((found.value - 20.0 / 3.0).abs() < 1e-9 && found.text.starts_with("2 of 3"));
+        assert_eq!(measured(Measure::Rules, &of, &[]).text, "200 [150 550], n = 3");
+        let found = measured(Measure::DecisionsOfTwenty, &of, &[]);
+        assert_eq!(found.text, "75 % [75 75], n = 3");
+    }
+}

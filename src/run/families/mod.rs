@@ -6,6 +6,8 @@
 mod champion;
 mod demand;
 mod family;
+#[cfg(test)]
+pub mod fixtures;
 mod measure;
 mod results;
 mod sign_test;

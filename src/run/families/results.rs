@@ -73,3 +73,20 @@ pub fn seeds_to_examine(family: Family, runs: &[FamilyRun]) -> Vec<u64> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::families::fixtures::family;
+
+    #[test]
+    fn of_standard_stairs_the_best_champion_is_examined_and_of_mixed_ones_every_champion() {
+        let mut runs = family(Family::Xcs, &[3, 9, 10, 10, 9]).runs;
+        assert_eq!(seeds_to_examine(Family::Xcs, &runs), [3], "the first of equals");
+        runs[3].champion.as_mut().expect("one").fitness = 26.0;
+        assert_eq!(seeds_to_examine(Family::Xcs, &runs), [4]);
+        runs[3].champion = None;
+        assert_eq!(seeds_to_examine(Family::MixedGait, &runs), [1, 2, 3, 5]);
+        assert_eq!(seeds_to_examine(Family::Xcs, &[]), [0_u64; 0]);
+    }
+}

@@ -69,7 +69,7 @@ pub fn tables(results: &Results, families: &[Family], suites: &[ExamSuite]) -> S
     let mut text = markdown_table(&overview, 1);
     text += "\nmedian [quartiles] over the seeds; land: champions that end on the landing in their own trial; exam: \
              landings of 100 trials,\nat other step rates the least share of the way; on standard stairs that of the best \
-             champion\n";
+             champion; –: none, or never\n";
     if !demands.is_empty() {
         let head = ["family", "demand", "must", "hard", "measured", "met"].map(str::to_owned);
         let rows: Vec<Vec<String>> = [head].into_iter().chain(demands).map(Vec::from).collect();
@@ -123,4 +123,44 @@ pub fn exam_records(results: &Results) -> Vec<Vec<String>> {
         }
     }
     records
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::families::fixtures::{family, landings, results};
+
+    #[test]
+    fn the_tables_show_what_was_measured_beside_the_demands() {
+        let stairs = ExamSuite::Stairs;
+        let rules = landings(Family::Rules, stairs, &[40]);
+        let gait = landings(Family::Gait, stairs, &[45]);
+        let zcs = family(Family::Zcs, &[2, 2, 3]);
+        let text = tables(
+            &results(&[&gait, &zcs, &rules]),
+            &[Family::Zcs, Family::Rules],
+            &[ExamSuite::StepRate, stairs],
+        );
+        for line in [
+            "| family | runs | land | first landing |   steps | step-rate | stairs |",
+            "| zcs    |    3 |    0 |       – [– –] | 2 [2 2.5] |         – |      – |",
+            "| rules  |    1 |    1 |           100 |      10 |         – |     80 |",
+            "| zcs    | steps climbed                             | ≥ 2       | ≥ 4   | 2 [2 2.5], n = 3       | must: yes, hard: no |",
+            "| rules  | other stairs, landings more than the gait | –         | ≥ +10 | -10: 80, gait 90       | hard: no            |",
+        ] {
+            let cells = |line: &str| -> Vec<String> {
+                line.split('|').map(|cell| cell.trim().to_owned()).collect()
+            };
+            assert!(text.lines().any(|written| cells(written) == cells(line)), "{line}\n{text}");
+        }
+        assert!(!text.contains("| gait"), "{text}");
+    }
+
+    #[test]
+    fn the_records_have_a_line_for_each_champion_and_suite() {
+        let gait = landings(Family::MixedGait, ExamSuite::Shove, &[45, 9]);
+        let records = exam_records(&results(&[&gait]));
+        assert_eq!(records.len(), 3);
+        assert_eq!(records[2], ["mixed-gait", "2", "shove", "50", "9", "0", "4.5", "0.5", ""]);
+    }
 }

@@ -115,3 +115,92 @@ pub fn train(
     let work = |index: usize, single: &dyn Evaluator| planned[index].run(single, control, &spent);
     whole_runs(planned.len(), evaluator, control, work, done)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::LocalPool;
+    use crate::save::load_preset;
+    use crate::score::Evaluation;
+
+    /// Runs of 0.5 s, of which the first generation of the gait has 130 snakes.
+    fn planned(family: Family, seeds: &[u64]) -> Vec<PlannedFamilyRun> {
+        let preset = load_preset(family.info().preset).expect("shipped").settings;
+        let plan = |seed| family.plan(&preset, seed, 160, Some(0.5)).expect("allowed");
+        seeds.iter().map(|seed| PlannedFamilyRun { family, plan: plan(*seed) }).collect()
+    }
+
+    fn trained(planned: &[PlannedFamilyRun], threads: usize) -> (FamilyRuns, u64) {
+        let mut runs = FamilyRuns::new();
+        let spent = std::sync::atomic::AtomicU64::new(0);
+        let count = |count| {
+            spent.fetch_add(count, std::sync::atomic::Ordering::Relaxed);
+        };
+        let done = |done: FinishedRun| {
+            assert_eq!(done.champion.is_some(), done.run.champion.is_some());
+            runs.add(&done.protocol, done.run);
+            Ok(())
+        };
+        let pool = LocalPool::new(threads).expect("threads");
+        train(planned, &pool, &RunControl::default(), count, done).expect("not cancelled");
+        (runs, spent.into_inner())
+    }
+
+    #[test]
+    fn training_has_the_same_result_for_any_number_of_threads_and_continues_with_what_is_missing() {
+        let all = [planned(Family::Xcs, &[1, 2]), planned(Family::Rules, &[1])].concat();
+        let (mut runs, spent) = trained(&all[..1], 1);
+        assert_eq!(spent, all[0].simulations());
+        let is_there = |_, _| true;
+        let left = missing(&all, &runs, is_there);
+        assert_eq!(left, all[1..]);
+        assert_eq!(missing(&all, &runs, |_, _| false), all, "a champion's file is missing");
+        let (others, _) = trained(&left, 3);
+        for family in others.families {
+            family.runs.into_iter().for_each(|run| runs.add(&family.protocol, run));
+        }
+        assert_eq!(missing(&all, &runs, is_there), []);
+        assert_eq!(runs, trained(&all, 2).0);
+        let xcs = all[0].result(&runs).expect("finished").champion.clone().expect("a champion");
+        let rules = xcs.rules.expect("rules");
+        assert!(rules.count > 0 && rules.share_of_twenty > 0.0, "{rules:?}");
+        let waves = all[2].result(&runs).expect("finished").champion.clone().expect("a champion");
+        let sum: f32 = waves.wave_shares.iter().sum();
+        assert!((sum - 1.0).abs() < 1e-5 && waves.rules.is_none(), "{waves:?}");
+    }
+
+    #[test]
+    fn a_run_of_other_settings_is_not_finished() {
+        let all = planned(Family::Rules, &[1]);
+        let (runs, _) = trained(&all, 1);
+        let mut changed = all.clone();
+        changed[0].plan.settings.evolution.ga.step = 0.06;
+        assert_eq!(missing(&changed, &runs, |_, _| true), changed);
+    }
+
+    #[test]
+    fn a_run_that_stops_ends_with_the_generation_that_first_lands() {
+        // The snake lies on the landing, a centimetre high.
+        let mut landed = planned(Family::Reflex, &[1]);
+        let trial = &mut landed[0].plan.settings.trial;
+        trial.stairs.steps = 1;
+        trial.stairs.rise_m = 0.01.into();
+        trial.start_y_m = trial.stairs.first_riser_y_m + 0.5;
+        trial.repeats.champion_trials = 0;
+        let evaluation: Evaluation = {
+            let genome = crate::evolve::begin(&landed[0].plan).ask().remove(0);
+            crate::score::evaluate(&genome, &landed[0].plan.settings.trial)
+        };
+        assert!(evaluation.is_on_landing(&landed[0].plan.settings.trial.stairs));
+        let mut goes_on = landed.clone();
+        goes_on[0].family = Family::Gait;
+        let run = |planned: &[PlannedFamilyRun]| {
+            let (runs, spent) = trained(planned, 1);
+            assert_eq!(spent, planned[0].simulations(), "the rest counts as done");
+            runs.families[0].runs[0].clone()
+        };
+        let (stopped, other) = (run(&landed), run(&goes_on));
+        assert_eq!((stopped.first_landing, other.first_landing), (Some(1), Some(1)));
+        assert!(stopped.evaluations < other.evaluations, "{stopped:?} {other:?}");
+    }
+}
