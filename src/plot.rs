@@ -1,6 +1,7 @@
 //! Plots as pictures: the report's Table 1 beside ours, a torque signal as in the report's Figure 4, and any figure
 //! that is given as data.
 
+mod families;
 mod figure;
 mod labels;
 mod paint;
@@ -22,6 +23,7 @@ use crate::run::table1::{REPORT_MEANS, Table1};
 use crate::save::{CURVE_POINTS, Comparison, Picture};
 use crate::score::Rollout;
 
+pub use families::families;
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 pub use labels::beside_line;
 pub use paint::{BAND_OPACITY, figure, ramp, role_color};

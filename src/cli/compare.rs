@@ -1,9 +1,8 @@
 //! `snakes compare`: several methods under equal budgets, as a table, CSV, RON and a picture.
 
 use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
-
-use indicatif::{ProgressBar, ProgressStyle};
 
 use super::args::{Args, CompareArgs};
 use super::error::{CliError, of_flag};
@@ -14,6 +13,7 @@ use crate::genome::ControllerKind;
 use crate::plot;
 use crate::run::compare::{PlannedRun, run_all};
 use crate::run::headless::{HeadlessError, say};
+use crate::run::progress_bar::bar_of;
 use crate::save::{
     Comparison, MAX_COMPARED_RUNS, load_comparison, run_name, settings_fingerprint,
     store_comparison, store_csv, store_picture,
@@ -21,7 +21,7 @@ use crate::save::{
 use crate::schema::Choices;
 
 /// The kinds that a flag's list names, in their usual order and each once.
-fn kinds<K: Choices + PartialEq>(flag: &str, text: &str) -> Result<Vec<K>, Invalid> {
+pub(super) fn kinds<K: Choices + PartialEq>(flag: &str, text: &str) -> Result<Vec<K>, Invalid> {
     if text == "all" {
         return Ok(K::OPTIONS.to_vec());
     }
@@ -31,6 +31,15 @@ fn kinds<K: Choices + PartialEq>(flag: &str, text: &str) -> Result<Vec<K>, Inval
     };
     let named: Vec<K> = text.split(',').map(named).collect::<Result<_, _>>()?;
     Ok(K::OPTIONS.iter().copied().filter(|kind| named.contains(kind)).collect())
+}
+
+/// So many seeds from the first on.
+pub(super) fn seeds_from(first: u64, count: u64) -> Result<RangeInclusive<u64>, Invalid> {
+    within("--seeds", count, 1..=10_000)?;
+    let last = first.checked_add(count - 1).ok_or_else(|| {
+        Invalid::new("--seed", first, "a first seed that leaves room for the others after it")
+    })?;
+    Ok(first..=last)
 }
 
 /// Refuses changes of settings that a comparison sets itself.
@@ -68,11 +77,8 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     settings.trial.repeats.champion_trials = 0;
     let strategies: Vec<StrategyKind> = kinds("--strategies", &compared.strategies)?;
     let controllers: Vec<ControllerKind> = kinds("--controllers", &compared.controllers)?;
-    within("--seeds", compared.seeds, 1..=10_000)?;
     let first_seed = args.seed()?;
-    let last_seed = first_seed.checked_add(compared.seeds - 1).ok_or_else(|| {
-        Invalid::new("--seed", first_seed, "a first seed that leaves room for the others after it")
-    })?;
+    let seeds = seeds_from(first_seed, compared.seeds)?;
     let mut plans = Vec::new();
     for &strategy in &strategies {
         let fitting = controllers.iter().filter(|kind| strategy.improves(**kind));
@@ -83,7 +89,7 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
             return Err(Invalid::new("--controllers", &compared.controllers, allowed).into());
         }
         for controller in fitting {
-            for seed in first_seed..=last_seed {
+            for seed in seeds.clone() {
                 let planned = PlannedRun { strategy, controller, seed };
                 let plan = planned.plan(&preset, &settings, compared.evaluations);
                 plans.push(plan.map_err(|invalid| match invalid.field.as_str() {
@@ -125,13 +131,7 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
         all,
         compared.evaluations
     ));
-    let bar = ProgressBar::new(u64::from(compared.evaluations) * plans.len() as u64);
-    // The template is a constant; if it were wrong, the default bar would do.
-    if let Ok(style) =
-        ProgressStyle::with_template("{wide_bar} {pos}/{len} evaluations  {eta} left")
-    {
-        bar.set_style(style);
-    }
+    let bar = bar_of(u64::from(compared.evaluations) * plans.len() as u64, "evaluations");
     let control = cancel_on_interrupt();
     let spent = |evaluations: u32| bar.inc(evaluations.into());
     let evaluator = args.evaluator()?;

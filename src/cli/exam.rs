@@ -11,6 +11,7 @@ use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::HeadlessError;
+use crate::run::markdown::markdown_table;
 use crate::run::progress_bar::with_bar;
 use crate::run::{LocalPool, short};
 use crate::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
@@ -24,7 +25,7 @@ pub fn exam(
     suites: &[String],
     writes: bool,
 ) -> Result<(), CliError> {
-    let suites = chosen(suites)?;
+    let suites = chosen(suites, ExamSuite::OPTIONS)?;
     let load = |file: &PathBuf| {
         let loaded = load_champion(file)?;
         if writes {
@@ -67,10 +68,10 @@ pub fn exam(
     print(&table(&suites, &rows))
 }
 
-/// The suites that the user names; all, if none.
-fn chosen(names: &[String]) -> Result<Vec<ExamSuite>, CliError> {
+/// The suites that the user names; the default ones, if none.
+pub(super) fn chosen(names: &[String], default: &[ExamSuite]) -> Result<Vec<ExamSuite>, CliError> {
     if names.is_empty() {
-        return Ok(ExamSuite::OPTIONS.to_vec());
+        return Ok(default.to_vec());
     }
     let named = names.iter().map(|name| ExamSuite::named("--suite", name));
     let mut suites = named.collect::<Result<Vec<_>, _>>()?;
@@ -132,26 +133,7 @@ fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> Stri
         cells
     };
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(champions.iter().map(row)).collect();
-    let width = |column: usize| {
-        rows.iter().filter_map(|row| Some(row.get(column)?.chars().count())).max().unwrap_or(0)
-    };
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().enumerate().map(|(column, cell)| {
-            let width = width(column);
-            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        });
-        format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
-    };
-    let rule: Vec<String> = (0..rows[0].len())
-        .map(|column| {
-            let dashes = "-".repeat(width(column) + 1);
-            if column == 0 { format!(":{dashes}") } else { format!("{dashes}:") }
-        })
-        .collect();
-    let mut text = line(&rows[0]);
-    text += &format!("|{}|\n", rule.join("|"));
-    rows[1..].iter().for_each(|row| text += &line(row));
-    text
+    markdown_table(&rows, 1)
 }
 
 #[cfg(test)]
@@ -190,9 +172,9 @@ mod tests {
 
     #[test]
     fn an_unknown_suite_is_refused_with_the_known_ones() {
-        let error = chosen(&["stars".to_owned()]).expect_err("unknown").to_string();
+        let error = chosen(&["stars".to_owned()], &[]).expect_err("unknown").to_string();
         assert!(error.contains("\"stars\"") && error.contains("step-rate, stairs"), "{error}");
         let twice = ["shove", "trials", "shove"].map(str::to_owned);
-        assert_eq!(chosen(&twice).expect("known"), [ExamSuite::Trials, ExamSuite::Shove]);
+        assert_eq!(chosen(&twice, &[]).expect("known"), [ExamSuite::Trials, ExamSuite::Shove]);
     }
 }

@@ -7,6 +7,7 @@ mod bench;
 mod compare;
 mod error;
 mod exam;
+mod families;
 #[cfg(feature = "studio")]
 mod figures;
 mod lists;
@@ -56,6 +57,7 @@ fn dispatch(args: Args) -> Result<(), CliError> {
         }
         Some(Subcommand::Exam { files, suite, write }) => exam::exam(&args, files, suite, *write),
         Some(Subcommand::Compare(compared)) => compare::compare(&args, compared),
+        Some(Subcommand::Families(wanted)) => families::families(&args, wanted),
         Some(Subcommand::Table1 { seeds, first_seed }) => {
             table1::table1(&args, *first_seed, *seeds)
         }

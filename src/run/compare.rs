@@ -1,13 +1,11 @@
 //! Several methods under equal budgets, with the same seeds.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-
 use super::evaluator::Evaluator;
 use super::experiment::Experiment;
 use super::headless::HeadlessError;
 use super::report::{GenerationReport, Quartiles};
 use super::run_control::{Cancelled, RunControl};
+use super::whole_runs::whole_runs;
 use crate::check::{Invalid, within};
 use crate::evolve::{Descriptor, RunPlan, Settings, StrategyKind};
 use crate::genome::ControllerKind;
@@ -71,39 +69,15 @@ pub fn run_all(
     spent: impl Fn(u32) + Sync,
     done: impl FnMut(ComparedRun) -> Result<(), HeadlessError> + Send,
 ) -> Result<(), HeadlessError> {
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(done);
-    // Whole runs in parallel: no worker waits for the slowest evaluation of a generation.
-    let worker = || -> Result<(), HeadlessError> {
-        let single = evaluator.with_workers(1)?;
-        while let Some(plan) = plans.get(next.fetch_add(1, Ordering::SeqCst)) {
-            let mut experiment = Experiment::new(plan.clone());
-            let run = run_one(&mut experiment, plan, |experiment| {
-                let report = experiment.run_generation(&*single, control)?;
-                spent(report.evaluations);
-                Ok(report)
-            });
-            let run = run.map_err(|Cancelled| HeadlessError::Cancelled { kept: None })?;
-            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-            if let Err(error) = done(run) {
-                // The other runs could not be saved either.
-                control.cancel();
-                return Err(error);
-            }
-        }
-        Ok(())
+    let work = |index: usize, single: &dyn Evaluator| {
+        let plan: &RunPlan = &plans[index];
+        run_one(&mut Experiment::new(plan.clone()), plan, |experiment| {
+            let report = experiment.run_generation(single, control)?;
+            spent(report.evaluations);
+            Ok(report)
+        })
     };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> =
-            (0..evaluator.workers().min(plans.len())).map(|_| scope.spawn(worker)).collect();
-        let results = workers
-            .into_iter()
-            .map(|worker| worker.join().unwrap_or(Err(HeadlessError::Cancelled { kept: None })));
-        // Report the cause rather than the cancellations that followed.
-        let mut errors: Vec<HeadlessError> = results.filter_map(Result::err).collect();
-        errors.sort_by_key(|error| matches!(error, HeadlessError::Cancelled { .. }));
-        errors.into_iter().next().map_or(Ok(()), Err)
-    })
+    whole_runs(plans.len(), evaluator, control, work, done)
 }
 
 fn run_one(

@@ -30,6 +30,16 @@ pub fn run_generation_with_bar(
     with_bar(&bar, control, || experiment.run_generation_recording(evaluator, control, record))
 }
 
+/// A bar for a number of things, such as evaluations.
+pub fn bar_of(count: u64, things: &str) -> ProgressBar {
+    let bar = ProgressBar::new(count).with_message(things.to_owned());
+    // The template is a constant; if it were wrong, the default bar would do.
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
+
 /// Does `work` while a bar shows the number of evaluations that `control` has counted.
 pub fn with_bar<T>(bar: &ProgressBar, control: &RunControl, work: impl FnOnce() -> T) -> T {
     let result = std::thread::scope(|scope| {

@@ -11,6 +11,7 @@ mod change;
 mod checkpoint;
 mod comparison;
 mod engine_2;
+mod families;
 mod file_structs;
 mod files;
 mod folder;
@@ -40,6 +41,10 @@ pub use checkpoint::{SearchState, parse_checkpoint};
 pub use comparison::{
     CURVE_POINTS, ComparedBest, ComparedRun, Comparison, MAX_COMPARED_RUNS, load_comparison,
     store_comparison,
+};
+pub use families::{
+    FamilyChampion, FamilyProtocol, FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, RuleUse, TrainedFamily,
+    load_families, store_families,
 };
 pub use files::SaveError;
 #[cfg(test)]

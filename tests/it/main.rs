@@ -6,6 +6,7 @@ mod bad_input;
 mod champions;
 mod determinism;
 mod docs;
+mod families;
 #[cfg(feature = "studio")]
 mod features;
 mod fuzz;

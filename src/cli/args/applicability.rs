@@ -18,6 +18,7 @@ enum Task {
     Exam,
     Robust,
     Compare,
+    Families,
     Table1,
     Figures,
     Render,
@@ -27,33 +28,61 @@ enum Task {
 }
 
 use Task::{
-    Bench, CheckReplay, Compare, Exam, Figures, Presets, Render, ReplayInWindow, Robust, Run,
-    Settings, SettingsAsMarkdown, Table1, Verify, Window,
+    Bench, CheckReplay, Compare, Exam, Families, Figures, Presets, Render, ReplayInWindow, Robust,
+    Run, Settings, SettingsAsMarkdown, Table1, Verify, Window,
 };
 
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
 const FLAGS: [(&str, &[Task]); 23] = [
     ("no_render", &[Run, CheckReplay]),
-    ("json", &[Run, CheckReplay, Bench, Verify, Exam, Robust, Compare, Table1, Presets, Settings]),
+    (
+        "json",
+        &[
+            Run,
+            CheckReplay,
+            Bench,
+            Verify,
+            Exam,
+            Robust,
+            Compare,
+            Families,
+            Table1,
+            Presets,
+            Settings,
+        ],
+    ),
     (
         "preset",
         &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
     ),
-    ("seed", &[Window, Run, ReplayInWindow, Robust, Compare]),
+    ("seed", &[Window, Run, ReplayInWindow, Robust, Compare, Families]),
     ("population", &[Window, Run, ReplayInWindow, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("generations", &[Window, Run, ReplayInWindow, Table1, Settings, SettingsAsMarkdown]),
     (
         "duration",
-        &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
+        &[
+            Window,
+            Run,
+            ReplayInWindow,
+            Bench,
+            Compare,
+            Families,
+            Table1,
+            Settings,
+            SettingsAsMarkdown,
+        ],
     ),
     ("fitness", &[Window, Run, ReplayInWindow, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("set", &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("resume", &[Window, Run, ReplayInWindow]),
     ("from", &[Window, Run]),
-    ("restart", &[Window, Run, ReplayInWindow, Compare]),
-    ("threads", &[Window, Run, ReplayInWindow, Bench, Verify, Exam, Robust, Compare, Table1]),
+    ("restart", &[Window, Run, ReplayInWindow, Compare, Families]),
+    (
+        "threads",
+        &[Window, Run, ReplayInWindow, Bench, Verify, Exam, Robust, Compare, Families, Table1],
+    ),
     ("evaluator", &[Window, Run, ReplayInWindow, Verify, Compare, Table1]),
-    ("out", &[Window, Run, ReplayInWindow, Compare, Table1, Figures]),
+    ("out", &[Window, Run, ReplayInWindow, Compare, Families, Table1, Figures]),
     ("saves", &[Window, Run, ReplayInWindow]),
     ("comparison", &[Window, ReplayInWindow]),
     ("window_size", &[Window, ReplayInWindow]),
@@ -76,6 +105,7 @@ impl Task {
             Some(Subcommand::Exam { .. }) => Exam,
             Some(Subcommand::Robust { .. }) => Robust,
             Some(Subcommand::Compare(_)) => Compare,
+            Some(Subcommand::Families(_)) => Families,
             Some(Subcommand::Table1 { .. }) => Table1,
             Some(Subcommand::Figures { .. }) => Figures,
             Some(Subcommand::Render(_)) => Render,
@@ -97,6 +127,7 @@ impl Task {
             Exam => "snakes exam",
             Robust => "snakes robust",
             Compare => "snakes compare",
+            Families => "snakes families",
             Table1 => "snakes table1",
             Figures => "snakes figures",
             Render => "snakes render",
@@ -162,7 +193,7 @@ mod tests {
     use std::ffi::OsString;
 
     /// Every task, as words of the command line.
-    const TASKS: [(Task, &str); 15] = [
+    const TASKS: [(Task, &str); 16] = [
         (Window, ""),
         (Run, "--no-render"),
         (ReplayInWindow, "replay a.ron"),
@@ -172,6 +203,7 @@ mod tests {
         (Exam, "exam a.ron"),
         (Robust, "robust a.ron"),
         (Compare, "compare"),
+        (Families, "families"),
         (Table1, "table1"),
         (Figures, "figures run"),
         (Render, "render a.ron"),
@@ -246,6 +278,7 @@ mod tests {
     fn the_help_of_a_task_lists_exactly_the_flags_that_the_task_accepts() {
         for (subcommand, tasks) in [
             ("compare", &[Compare][..]),
+            ("families", &[Families]),
             ("robust", &[Robust]),
             ("bench", &[Bench]),
             ("verify", &[Verify]),

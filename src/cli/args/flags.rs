@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 
 use super::compare::CompareArgs;
+use super::families::FamiliesArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
 use crate::run::evaluators::EVALUATORS;
@@ -26,7 +27,7 @@ pub struct Args {
     /// Name of a preset (see `snakes presets`), or path of your own preset file
     #[arg(long, global = true, value_name = "NAME", help_heading = RUN)]
     pub(super) preset: Option<String>,
-    /// Seed of the run; the same seed gives the same bits [default: 1; in the window, the first seed without a run]
+    /// Seed of the run; the same seed gives the same bits [default: 1, of families 201; in the window, the first seed without a run]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) seed: Option<String>,
     /// Snakes per generation
@@ -149,6 +150,8 @@ pub enum Subcommand {
     },
     /// Compare search strategies and controllers under equal budgets
     Compare(CompareArgs),
+    /// Train every family of controllers over several seeds, examine the champions, and hold the results against demands
+    Families(FamiliesArgs),
     /// Run the report's protocol with several seeds, and print its Table 1 beside the result
     Table1 {
         /// Number of seeds
@@ -181,7 +184,7 @@ fn fitness_help() -> String {
 }
 
 /// Lists every suite of an exam.
-fn suite_help() -> String {
+pub(super) fn suite_help() -> String {
     let choices = ExamSuite::choices().into_iter();
     let rows: Vec<String> =
         choices.map(|choice| format!("{}: {}", choice.name, choice.sentence)).collect();

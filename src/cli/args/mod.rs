@@ -2,6 +2,7 @@
 
 mod applicability;
 mod compare;
+mod families;
 mod flags;
 mod parse;
 mod render;
@@ -10,6 +11,7 @@ mod run;
 mod values;
 
 pub use compare::CompareArgs;
+pub use families::FamiliesArgs;
 pub use flags::{Args, Subcommand};
 pub use parse::{Parsed, parse};
 #[cfg(feature = "studio")]

@@ -102,8 +102,8 @@ impl Args {
         if let Some(text) = &self.generations {
             settings.evolution.generations = number("--generations", text, WHOLE)?;
         }
-        if let Some(text) = &self.duration {
-            settings.trial.duration_s = number("--duration", text, "a number")?;
+        if let Some(duration_s) = self.duration_s()? {
+            settings.trial.duration_s = duration_s;
         }
         if let Some(text) = &self.fitness {
             settings.trial.fitness = Fitness::named("--fitness", text)?;

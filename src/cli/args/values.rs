@@ -36,9 +36,20 @@ pub fn size(flag: &str, text: &str, least: (u32, u32), most: u32) -> Result<(u32
 impl Args {
     /// The seed of the run.
     pub fn seed(&self) -> Result<u64, CliError> {
+        self.seed_or(1)
+    }
+
+    /// The seed that is given, else this one.
+    pub fn seed_or(&self, default: u64) -> Result<u64, CliError> {
         let allowed = "a whole number from 0 to 18446744073709551615";
         let given = self.seed.as_deref();
-        Ok(given.map_or(Ok(1), |text| number("--seed", text, allowed))?)
+        Ok(given.map_or(Ok(default), |text| number("--seed", text, allowed))?)
+    }
+
+    /// The duration of trials in s, if it is given.
+    pub fn duration_s(&self) -> Result<Option<f32>, CliError> {
+        let given = self.duration.as_deref();
+        Ok(given.map(|text| number("--duration", text, "a number")).transpose()?)
     }
 
     /// Number of worker threads without a window.
