@@ -58,6 +58,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "trampoline",
     "thick-air",
     "senses",
+    "mixed-stairs",
     "q-learning",
     "xcs",
     "zcs",

@@ -23,9 +23,11 @@ choices! {
         Zcs = "zcs", "ZCS", "Rules that are kept for their strength.";
         Rules = "rules", "Waves by rules", "Rules that choose among waves, by a genetic algorithm.";
         LimbNeurons = "limb-neurons", "Limb neurons", "Neurons in each limb, by a genetic algorithm.";
+        JointXcs = "xcs-per-joint", "XCS per joint", "Rules of each joint, this project's own variant of XCS.";
         MixedGait = "mixed-gait", "Gait, mixed stairs", "The gait, on four other staircases in each generation.";
         MixedReflex = "mixed-reflex", "Reflex, mixed stairs", "The reflex gait, on four other staircases in each generation.";
         MixedModular = "mixed-modular", "Modular, mixed stairs", "The modular network, on four other staircases in each generation.";
+        MixedLimbNeurons = "mixed-limb-neurons", "Limb neurons, mixed stairs", "Neurons in each limb, on four other staircases in each generation.";
     }
 }
 
@@ -163,6 +165,11 @@ impl Family {
                 ],
                 ..standard
             },
+            Self::JointXcs => FamilyInfo {
+                preset: "xcs",
+                changes: &[("genome.controller", "joint_decisions")],
+                ..standard
+            },
             Self::MixedGait => FamilyInfo { changes: &[("genome.controller", "gait")], ..mixed },
             Self::MixedReflex => FamilyInfo {
                 changes: &[("genome.controller", "reflex")],
@@ -174,6 +181,9 @@ impl Family {
                 demands: FamilyInfo::SENSING,
                 ..mixed
             },
+            Self::MixedLimbNeurons => {
+                FamilyInfo { preset: "mixed-stairs", demands: FamilyInfo::SENSING, ..mixed }
+            }
         }
     }
 
