@@ -1,5 +1,6 @@
 //! The state of a controller at a moment, for display. Nothing acts on it.
 
+use super::{LimbActivity, WaveChoiceActivity};
 use crate::genome::controllers::{Layer, SITUATION_BITS};
 use crate::learn::classifiers::Condition;
 
@@ -12,6 +13,10 @@ pub enum Activity {
     Decision(DecisionActivity),
     /// The reflexes of a joint.
     Reflex(ReflexActivity),
+    /// Waves that rules choose.
+    Waves(WaveChoiceActivity),
+    /// The neurons of all limbs.
+    Limbs(LimbActivity),
 }
 
 /// The neurons of a network, and the links between them.

@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 use egui_plot::{PlotPoint, PlotTransform};
 
-use crate::plot::{Chart, Role, ink_on};
+use crate::plot::{Chart, Role};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 
@@ -22,9 +22,7 @@ pub(super) fn layer_labels(
         let Role::Species(number) = series.role else { continue };
         let Some(([x, y], thickness)) = series.shape.thickest() else { continue };
         let color = palette.role(series.role);
-        let [red, green, blue, _] = color.to_array();
-        let [ink, ..] = ink_on([red, green, blue]);
-        let ink = egui::Color32::from_gray(ink);
+        let ink = Palette::ink_on(color);
         let font = egui::FontId::proportional(theme::SMALL_SIZE);
         let text = painter.layout_no_wrap(number.to_string(), font, ink);
         let at = |y: f64| transform.position_from_point(&PlotPoint::new(x, y));

@@ -27,7 +27,7 @@ pub fn explored_run() -> CurrentRun {
 pub fn species_run() -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.strategy = StrategyKind::Neat;
-    settings.evolution.neat.species_threshold = 1.0;
+    settings.evolution.neat.species_threshold = 0.25;
     settings.genome.controller = ControllerKind::Grown;
     evolved_run(settings)
 }

@@ -137,9 +137,7 @@ fn species_have_colours_that_stay_apart_from_each_other_and_from_the_panel() {
             }
             let next = apart(own, of.role(Role::Species(number + 1)));
             assert!(next > 0.19, "{number} and its neighbour: {next}");
-            let [red, green, blue, _] = own.to_array();
-            let [ink, ..] = plot::ink_on([red, green, blue]);
-            let found = contrast(Color32::from_gray(ink), own);
+            let found = contrast(Palette::ink_on(own), own);
             assert!(found >= READABLE, "{number}: its number has {found:.2}");
         }
         assert_eq!(of.role(Role::Species(17)), of.role(Role::Species(7)));
