@@ -26,7 +26,7 @@ use crate::score::Rollout;
 pub use families::families;
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 pub use labels::beside_line;
-pub use paint::{BAND_OPACITY, figure, ramp, role_color};
+pub use paint::{BAND_OPACITY, figure, ink_on, ramp, role_color};
 pub use ticks::tick_step;
 
 /// A plot could not be drawn.

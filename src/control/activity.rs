@@ -1,6 +1,6 @@
 //! The state of a controller at a moment, for display. Nothing acts on it.
 
-use super::DecisionActivity;
+use super::{DecisionActivity, LimbActivity, WaveChoiceActivity};
 use crate::genome::controllers::Layer;
 
 /// A controller at work.
@@ -12,6 +12,10 @@ pub enum Activity {
     Decision(DecisionActivity),
     /// The reflexes of a joint.
     Reflex(ReflexActivity),
+    /// Waves that rules choose.
+    Waves(WaveChoiceActivity),
+    /// The neurons of all limbs.
+    Limbs(LimbActivity),
 }
 
 /// The neurons of a network, and the links between them.

@@ -1,15 +1,18 @@
 //! Neurons of limbs at work.
 
+mod activity;
 #[cfg(test)]
 mod xor;
 
 use super::network::{beat, servos};
 use super::servo::JointServos;
-use super::{Controller, Observation, Senses};
+use super::{Activity, Controller, Observation, Senses};
 use crate::genome::controllers::{
     LIMB_NEURONS, LimbNeuron, LimbNeurons, NEURON_SOURCES, ServoGenes,
 };
 use crate::world::JointTorque;
+
+pub use activity::{ActiveLimb, LimbActivity};
 
 /// Lets the neurons of all limbs respond, step after step.
 #[derive(Debug, Clone)]
@@ -91,6 +94,11 @@ impl Controller for LimbNeuronController {
             .take(self.genes.joints as usize)
             .map(|[bend, twist, ..]| [bend * bend_range_rad, twist * twist_range_rad]);
         self.servo.pull(observation, targets, torques);
+    }
+
+    /// The outputs of neurons among the values are those that they read next.
+    fn activity(&self, observation: &Observation, _joint: usize) -> Option<Activity> {
+        self.limbs(observation).map(Activity::Limbs)
     }
 
     fn boxed_clone(&self) -> Box<dyn Controller> {

@@ -34,8 +34,10 @@ pub use activity::{
 };
 pub use controller::Controller;
 pub use decision_activity::{ActiveRule, DecisionActivity, PostureWorth};
+pub use limb_neurons::{ActiveLimb, LimbActivity};
 pub use observation::{Observation, Senses};
 pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
+pub use rules::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
 pub use wave_uses::WaveUses;
 

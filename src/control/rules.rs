@@ -1,11 +1,15 @@
 //! Waves chosen by rules.
 
+mod activity;
+
 use super::perception::Perception;
 use super::sense::{GAP_SCALE_M, SPEED_SCALE_M_S};
 use super::servo::JointServos;
-use super::{Controller, Observation, Senses, WaveUses};
+use super::{Activity, Controller, Observation, Senses, WaveUses};
 use crate::genome::controllers::{JointGroup, RuleGenes, WaveRule};
 use crate::world::JointTorque;
+
+pub use activity::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 
 /// Decisions per second.
 const DECISIONS_PER_S: u64 = 4;
@@ -27,6 +31,8 @@ pub struct RuleFollower {
     chosen: [usize; 2],
     /// The same before it.
     before: [usize; 2],
+    /// What the conditions looked at when it decided last; none before the first decision.
+    bits: Option<u16>,
     /// Way of the middle limb since the last decision, by its speed as it is sensed, in m.
     way_m: f32,
     uses: WaveUses,
@@ -39,6 +45,7 @@ impl RuleFollower {
             servo: JointServos::new(genes.stiffness_nm_per_rad, genes.servo_damping_nms_per_rad),
             chosen: [0; 2],
             before: [0; 2],
+            bits: None,
             way_m: 0.0,
             uses: WaveUses::new(genes.library.len()),
             genes,
@@ -49,18 +56,28 @@ impl RuleFollower {
     fn decide(&mut self, observation: &Observation, front_joints: usize) {
         let bits = bits(&observation.perception, self.way_m);
         self.way_m = 0.0;
+        self.bits = Some(bits);
         self.before = self.chosen;
         self.chosen = HALVES.map(|half| chosen_wave(&self.genes.rules, bits, half));
         // The first waves follow no others.
         if observation.step == 0 {
             self.before = self.chosen;
         }
-        let joints = self.genes.library.first().map_or(0, |waves| waves.joints.len());
+        let joints = self.joints();
         for (wave, joints) in self.chosen.into_iter().zip([front_joints, joints - front_joints]) {
             if joints > 0 {
                 self.uses.count(wave);
             }
         }
+    }
+
+    fn joints(&self) -> usize {
+        self.genes.library.first().map_or(0, |waves| waves.joints.len())
+    }
+
+    /// Number of joints in the front half.
+    fn front_joints(&self) -> usize {
+        self.joints().div_ceil(2)
     }
 
     /// The target of a joint while the waves of its half pass into one another, of which `share` is done.
@@ -81,16 +98,21 @@ impl RuleFollower {
     }
 }
 
-/// Index of the wave for a half of the joints: that of the strongest rule that holds, of the lowest of equals, and the
-/// first wave if no rule holds.
-fn chosen_wave(rules: &[WaveRule], bits: u16, half: JointGroup) -> usize {
-    let mut strongest: Option<&WaveRule> = None;
-    for rule in rules.iter().filter(|rule| rule.holds(bits, half)) {
-        if strongest.is_none_or(|other| rule.strength > other.strength) {
-            strongest = Some(rule);
+/// Index of the rule that decides for a half of the joints: the strongest that holds, the lowest of equals.
+fn deciding_rule(rules: &[WaveRule], bits: u16, half: JointGroup) -> Option<usize> {
+    let mut strongest: Option<(usize, &WaveRule)> = None;
+    for (index, rule) in rules.iter().enumerate().filter(|(_, rule)| rule.holds(bits, half)) {
+        if strongest.is_none_or(|(_, other)| rule.strength > other.strength) {
+            strongest = Some((index, rule));
         }
     }
-    strongest.map_or(0, |rule| (rule.wave as usize).saturating_sub(1))
+    strongest.map(|(index, _)| index)
+}
+
+/// Index of the wave for a half of the joints: that of the rule that decides, and the first wave if none does.
+fn chosen_wave(rules: &[WaveRule], bits: u16, half: JointGroup) -> usize {
+    let rule = deciding_rule(rules, bits, half).and_then(|index| rules.get(index));
+    rule.map_or(0, |rule| (rule.wave as usize).saturating_sub(1))
 }
 
 /// What the conditions of rules look at, in the order of [`crate::genome::controllers::RULE_SENSES`].
@@ -119,8 +141,7 @@ impl Controller for RuleFollower {
     }
 
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
-        let joints = self.genes.library.first().map_or(0, |waves| waves.joints.len());
-        let front_joints = joints.div_ceil(2);
+        let (joints, front_joints) = (self.joints(), self.front_joints());
         // Decisions are due at whole numbers of their period, whatever the step rate.
         let steps_per_s = u64::from(observation.steps_per_s);
         let time = u64::from(observation.step) * DECISIONS_PER_S;
@@ -143,6 +164,10 @@ impl Controller for RuleFollower {
         self.servo.pull(observation, targets.into_iter(), torques);
         let speed_m_s = observation.perception.snake.speed_ahead * SPEED_SCALE_M_S;
         self.way_m += speed_m_s / observation.steps_per_s as f32;
+    }
+
+    fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {
+        self.choice(observation, joint).map(Activity::Waves)
     }
 
     fn wave_uses(&self) -> Option<WaveUses> {

@@ -11,7 +11,6 @@ use super::plan::RunPlan;
 use crate::check::Invalid;
 use crate::genome::Genome;
 use crate::learn::Episode;
-use crate::learn::neat::SpeciesSummary;
 use crate::score::Evaluation;
 
 /// A way to search, one generation at a time.
@@ -77,9 +76,10 @@ pub trait Strategy: Send {
     /// parents keeps ids in its state. Ids that do not fit the state are ignored, and stay unknown.
     fn restore_parents(&mut self, _pool: &[IndividualId]) {}
 
-    /// The species of the last generation, if it has species.
-    fn species(&self) -> Option<&[SpeciesSummary]> {
-        None
+    /// The number of the species of each genome that `ask` returns, in the same order; empty for a strategy without
+    /// species. Numbers ascend in the order of appearance.
+    fn species(&self) -> &[u32] {
+        &[]
     }
 
     /// The archive of elites, if it keeps one.

@@ -81,6 +81,8 @@ pub enum Shape {
     Points(Vec<[f64; 2]>),
     /// An area between a lower and an upper value at each x: `[x, lower, upper]`.
     Band(Vec<[f64; 3]>),
+    /// A layer of a stack, in the same form. It covers what is behind it.
+    Layer(Vec<[f64; 3]>),
     /// Bars that begin at zero.
     Bars {
         /// Width of each bar.
@@ -112,6 +114,8 @@ pub enum Role {
     Strategy(StrategyKind),
     /// A value between the least, 0, and the greatest, 1.
     Share(f32),
+    /// A species of networks, by its number.
+    Species(u32),
 }
 
 impl Axis {
@@ -149,11 +153,21 @@ impl Series {
 }
 
 impl Shape {
+    /// The middle of the thickest part of a layer, and how thick that is; none for other shapes.
+    pub fn thickest(&self) -> Option<([f64; 2], f64)> {
+        let Self::Layer(ends) = self else { return None };
+        let thickness = |[_, low, high]: &[f64; 3]| high - low;
+        let most = ends.iter().map(thickness).max_by(f64::total_cmp)?;
+        let widest: Vec<&[f64; 3]> = ends.iter().filter(|end| thickness(end) >= most).collect();
+        let [x, low, high] = *widest[widest.len() / 2];
+        Some(([x, (low + high) / 2.0], most))
+    }
+
     /// The columns of its table, as suffixes to the name of the series.
     fn columns(&self) -> &'static [&'static str] {
         match self {
             Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => &[""],
-            Self::Band(_) => &[", lower end", ", upper end"],
+            Self::Band(_) | Self::Layer(_) => &[", lower end", ", upper end"],
             Self::Cells(_) => &[", x to", ", y from", ", y to", ""],
         }
     }
@@ -162,7 +176,7 @@ impl Shape {
     fn is_empty(&self) -> bool {
         match self {
             Self::Line(points) | Self::Dashed(points) | Self::Points(points) => points.is_empty(),
-            Self::Band(ends) => ends.is_empty(),
+            Self::Band(ends) | Self::Layer(ends) => ends.is_empty(),
             Self::Bars { bars, .. } => bars.is_empty(),
             Self::Cells(cells) => cells.is_empty(),
         }
@@ -175,7 +189,9 @@ impl Shape {
                 points.iter().map(|&[x, y]| (x, vec![y])).collect()
             }
             Self::Bars { bars, .. } => bars.iter().map(|&[x, y]| (x, vec![y])).collect(),
-            Self::Band(ends) => ends.iter().map(|&[x, low, high]| (x, vec![low, high])).collect(),
+            Self::Band(ends) | Self::Layer(ends) => {
+                ends.iter().map(|&[x, low, high]| (x, vec![low, high])).collect()
+            }
             Self::Cells(cells) => cells
                 .iter()
                 .map(|&([left, right, bottom, top], _, value)| {

@@ -48,7 +48,31 @@ pub fn role_color(role: Role) -> [u8; 3] {
         Role::Twist => [0xb3, 0x5c, 0x00],
         Role::Strategy(kind) => kind.info().color,
         Role::Share(share) => ramp(share),
+        Role::Species(number) => SPECIES[number as usize % SPECIES.len()],
     }
+}
+
+/// Colours of species by the last digit of their numbers, in both themes. They stay apart for colour-blind eyes, most of
+/// all those of neighbours.
+const SPECIES: [[u8; 3]; 10] = [
+    [0x80, 0x3a, 0x64],
+    [0x64, 0x80, 0xfe],
+    [0x3a, 0x9c, 0x80],
+    [0x2c, 0x48, 0xb8],
+    [0xf0, 0x9c, 0x1e],
+    [0x64, 0x72, 0xaa],
+    [0x48, 0xc6, 0x9c],
+    [0xaa, 0x3a, 0x10],
+    [0x2c, 0xb8, 0xfe],
+    [0xd4, 0x64, 0x10],
+];
+
+/// Black or white: the colour of a text that is readable on an area of this colour.
+pub fn ink_on([red, green, blue]: [u8; 3]) -> [u8; 3] {
+    // Luminance by WCAG, with squares in place of the exponent; black and white have equal contrast at 0.18.
+    let light = |channel: u8| f32::from(channel) / 255.0 * (f32::from(channel) / 255.0);
+    let luminance = 0.2126 * light(red) + 0.7152 * light(green) + 0.0722 * light(blue);
+    if luminance > 0.2 { [0; 3] } else { [0xff; 3] }
 }
 
 /// Colours from the least to the greatest value: viridis (van der Walt and Smith, 2015). Its brightness rises evenly,
@@ -140,7 +164,9 @@ fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dy
         Shape::Band(_) => {
             area.draw(&Rectangle::new(block, color.mix(BAND_OPACITY.into()).filled()))?
         }
-        Shape::Bars { .. } => area.draw(&Rectangle::new(block, color.filled()))?,
+        Shape::Bars { .. } | Shape::Layer(_) => {
+            area.draw(&Rectangle::new(block, color.filled()))?
+        }
         Shape::Cells(_) => {
             for step in 0..SAMPLE {
                 let color = color_of(Role::Share(step as f32 / (SAMPLE - 1) as f32));
@@ -221,7 +247,7 @@ fn mark_labels(
             Shape::Line(points) | Shape::Dashed(points) | Shape::Points(points) => {
                 points.iter().map(|&[x, y]| pixel(x, y)).collect()
             }
-            Shape::Band(_) | Shape::Bars { .. } | Shape::Cells(_) => Vec::new(),
+            Shape::Band(_) | Shape::Layer(_) | Shape::Bars { .. } | Shape::Cells(_) => Vec::new(),
         })
         .collect();
     let [from, to] = [
@@ -267,11 +293,17 @@ fn paint_series(axes: &mut FigureAxes<'_, '_>, series: &Series) -> Result<(), Bo
             let dots = pairs(points).into_iter();
             axes.draw_series(dots.map(|at| Circle::new(at, radius, style.filled())))?;
         }
-        Shape::Band(ends) => {
+        Shape::Band(ends) | Shape::Layer(ends) => {
             let above = ends.iter().map(|&[x, _, high]| (x, high));
             let below = ends.iter().rev().map(|&[x, low, _]| (x, low));
-            let edge: Vec<(f64, f64)> = above.chain(below).collect();
-            axes.draw_series([Polygon::new(edge, color.mix(BAND_OPACITY.into()).filled())])?;
+            let edge: Vec<(f64, f64)> = above.clone().chain(below).collect();
+            let is_layer = matches!(series.shape, Shape::Layer(_));
+            let opacity = if is_layer { 1.0 } else { BAND_OPACITY.into() };
+            axes.draw_series([Polygon::new(edge, color.mix(opacity).filled())])?;
+            if is_layer {
+                // Keeps layers of similar colours apart.
+                axes.draw_series(LineSeries::new(above, WHITE.stroke_width(1)))?;
+            }
         }
         Shape::Bars { width, bars } => {
             let half = width / 2.0;

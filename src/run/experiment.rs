@@ -250,6 +250,7 @@ impl Experiment {
             generation,
             genomes: &genomes,
             evaluations: &evaluations,
+            species: self.strategy.species(),
         };
         let champion = choose_champion(&evaluated, &ranking, evaluator, control)?;
         let report = evaluated.report(champion, messages, started.elapsed());

@@ -12,7 +12,7 @@ use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::{Champion, RunPlan, SettingChange};
-use crate::save::SaveError;
+use crate::save::{SaveError, SpeciesCount};
 
 /// A headless command failed.
 #[derive(Debug, thiserror::Error)]
@@ -225,7 +225,7 @@ fn table_row(report: &GenerationReport) -> String {
 
 fn report_json(report: &GenerationReport) -> Value {
     let statistics = report.statistics;
-    json!({
+    let mut line = json!({
         "generation": report.generation,
         "mean": statistics.map(|s| s.mean),
         "best": statistics.map(|s| with_short_numbers(&s.best.into())),
@@ -240,7 +240,12 @@ fn report_json(report: &GenerationReport) -> Value {
         "elapsed_s": report.elapsed_s,
         "meaning": report.meaning,
         "hash": format!("{:016x}", report.hash),
-    })
+    });
+    if !report.species.is_empty() {
+        let of = |species: &SpeciesCount| json!({"id": species.id, "size": species.size, "best": species.best.map(short)});
+        line["species"] = report.species.iter().map(of).collect();
+    }
+    line
 }
 
 /// A champion in one line.
@@ -278,6 +283,7 @@ mod tests {
             on_landing: 0,
             first_on_landing: None,
             statistics: Some(statistics),
+            species: Vec::new(),
             meaning: "starting position".to_owned(),
             hash: 0,
             elapsed_s: 0.0,

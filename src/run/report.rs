@@ -1,5 +1,6 @@
 //! Results of a generation in numbers.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -7,7 +8,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::evolve::{Champion, Origin, RunPlan};
 use crate::genome::Genome;
-use crate::save::{GenerationRecord, StatisticsRecord};
+use crate::save::{GenerationRecord, MOST_SPECIES_RECORDED, SpeciesCount, StatisticsRecord};
 use crate::score::{Evaluation, Trial};
 use crate::world::Disqualification;
 
@@ -32,6 +33,9 @@ pub struct GenerationReport {
     pub first_on_landing: Option<u32>,
     /// Fitness statistics over the healthy ones; none if all were disqualified.
     pub statistics: Option<Statistics>,
+    /// Its largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; empty for a strategy
+    /// without species and in logs of earlier versions of the program.
+    pub species: Vec<SpeciesCount>,
     /// Meaning of the mean, in the words of the report's Table 1.
     pub meaning: String,
     /// Hash over the bits of every evaluation, in the order of the individuals.
@@ -62,6 +66,8 @@ pub(super) struct EvaluatedGeneration<'a> {
     /// In the order of the individuals, as the evaluations.
     pub genomes: &'a [Genome],
     pub evaluations: &'a [Evaluation],
+    /// The number of the species of each individual; empty for a strategy without species.
+    pub species: &'a [u32],
 }
 
 impl EvaluatedGeneration<'_> {
@@ -106,6 +112,7 @@ impl EvaluatedGeneration<'_> {
             reasons,
             crashes: crashes.take(MAX_CRASHES).collect(),
             statistics,
+            species: species(self.species, evaluations),
             meaning: meaning(statistics.as_ref(), trial),
             hash: generation_hash(evaluations),
             elapsed_s: elapsed.as_secs_f64(),
@@ -140,6 +147,7 @@ impl GenerationReport {
                 }
             }),
             chosen_by: self.champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
+            species: self.species.clone(),
             hash: format!("{:016x}", self.hash),
             elapsed_s: self.elapsed_s,
         }
@@ -163,6 +171,7 @@ impl GenerationReport {
             on_landing: record.on_landing,
             first_on_landing: record.first_on_landing,
             statistics,
+            species: record.species.clone(),
             meaning: meaning(statistics.as_ref(), trial),
             // Reading the log has checked it.
             hash: record.generation_hash().unwrap_or(0),
@@ -187,6 +196,24 @@ fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
         *counts.entry(reason).or_default() += 1;
     }
     counts
+}
+
+/// The largest species of a generation, from the number of the species of each individual.
+fn species(numbers: &[u32], evaluations: &[Evaluation]) -> Vec<SpeciesCount> {
+    let mut counts: BTreeMap<u32, SpeciesCount> = BTreeMap::new();
+    for (&id, evaluation) in numbers.iter().zip(evaluations) {
+        let count = counts.entry(id).or_insert(SpeciesCount { id, size: 0, best: None });
+        count.size += 1;
+        if evaluation.disqualified.is_none() {
+            let fitness = evaluation.fitness;
+            count.best = Some(count.best.map_or(fitness, |best| best.max(fitness)));
+        }
+    }
+    let mut species: Vec<SpeciesCount> = counts.into_values().collect();
+    species.sort_by_key(|count| (Reverse(count.size), count.id));
+    species.truncate(MOST_SPECIES_RECORDED);
+    species.sort_by_key(|count| count.id);
+    species
 }
 
 /// Statistics over the fitness of the healthy individuals of one generation.
@@ -305,6 +332,28 @@ mod tests {
         ];
         let counts = [(Disqualification::TooFast, 2), (Disqualification::LeftArena, 1)];
         assert_eq!(reasons(&evaluations), BTreeMap::from(counts));
+    }
+
+    #[test]
+    fn species_are_counted_in_order_with_the_best_of_their_healthy_members() {
+        let evaluations = [
+            evaluation(4.0, None),
+            evaluation(180.0, Some(Disqualification::TooFast)),
+            evaluation(-2.0, None),
+            evaluation(5.0, None),
+        ];
+        let counts = [
+            SpeciesCount { id: 2, size: 2, best: Some(5.0) },
+            SpeciesCount { id: 7, size: 1, best: None },
+            SpeciesCount { id: 9, size: 1, best: Some(-2.0) },
+        ];
+        assert_eq!(species(&[2, 7, 9, 2], &evaluations), counts);
+        assert_eq!(species(&[], &evaluations), []);
+        // Of 30 species only the largest are kept; of equal ones the older.
+        let numbers: Vec<u32> = (0..60).map(|index| index % 30).chain([29, 28]).collect();
+        let kept = species(&numbers, &vec![evaluation(1.0, None); numbers.len()]);
+        let ids: Vec<u32> = kept.iter().map(|count| count.id).collect();
+        assert_eq!(ids, (0..22).chain([28, 29]).collect::<Vec<u32>>());
     }
 
     #[test]

@@ -60,6 +60,9 @@ pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
 };
 pub use preset_list::PresetList;
-pub use record::{GenerationRecord, StatisticsRecord, load_log, parse_evaluations, parse_records};
+pub use record::{
+    GenerationRecord, MOST_SPECIES_RECORDED, SpeciesCount, StatisticsRecord, load_log,
+    parse_evaluations, parse_records,
+};
 pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};

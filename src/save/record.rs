@@ -39,6 +39,10 @@ pub struct GenerationRecord {
     /// The champion's fitness over the varied trials on which the run chose it; none if it chose by the trial alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen_by: Option<f64>,
+    /// The largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; empty for a strategy
+    /// without species, and in older logs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub species: Vec<SpeciesCount>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
     pub hash: String,
     /// Wall-clock time since the generation began or the program was started, in seconds.
@@ -63,6 +67,21 @@ pub struct StatisticsRecord {
     pub upper_quartile: Option<f64>,
 }
 
+/// Maximum number of species that the log has of a generation, so that the log of the longest run can be read again.
+pub const MOST_SPECIES_RECORDED: usize = 24;
+
+/// A species in a generation. Files have it as a list: number, size, best fitness.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "(u32, u32, Option<f32>)", from = "(u32, u32, Option<f32>)")]
+pub struct SpeciesCount {
+    /// Number of the species; ascending in the order of appearance.
+    pub id: u32,
+    /// Number of its individuals, at least 1.
+    pub size: u32,
+    /// The best fitness of its healthy individuals; none if all were disqualified.
+    pub best: Option<f32>,
+}
+
 /// An evaluation of the current generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -73,6 +92,18 @@ pub struct EvaluationRecord {
     pub individual: u32,
     pub disqualified: Option<Disqualification>,
     pub recorded: RecordedV5,
+}
+
+impl From<SpeciesCount> for (u32, u32, Option<f32>) {
+    fn from(SpeciesCount { id, size, best }: SpeciesCount) -> Self {
+        (id, size, best)
+    }
+}
+
+impl From<(u32, u32, Option<f32>)> for SpeciesCount {
+    fn from((id, size, best): (u32, u32, Option<f32>)) -> Self {
+        Self { id, size, best }
+    }
 }
 
 impl GenerationRecord {
@@ -143,11 +174,30 @@ pub fn parse_records(
             let mut values = values.into_iter().chain(quartiles.into_iter().flatten());
             values.try_for_each(|value| within("statistics", value, least..=most))?;
         }
+        check_species(record)?;
         hash_of("hash", &record.hash).map(drop)
     };
     let checked = records.iter().zip(1..).try_for_each(check);
     checked.map_err(SaveError::invalid(path))?;
     Ok(records)
+}
+
+/// Checks the species of a generation: each individual belongs to one at most.
+fn check_species(record: &GenerationRecord) -> Result<(), Invalid> {
+    let evaluations = u64::from(record.evaluations);
+    within("number of species", record.species.len(), 0..=MOST_SPECIES_RECORDED)?;
+    let (mut members, mut least_id) = (0, 0);
+    for SpeciesCount { id, size, best } in &record.species {
+        within("species.id", u64::from(*id), least_id..=u64::from(u32::MAX))?;
+        within("species.size", u64::from(*size), 1..=evaluations)?;
+        if let Some(best) = best {
+            within("species.best", *best, FITNESS_RANGE)?;
+        }
+        least_id = u64::from(*id) + 1;
+        members += u64::from(*size);
+        within("sum of species.size", members, 0..=evaluations)?;
+    }
+    Ok(())
 }
 
 /// Reads the evaluations of the current generation in the order in which they were written. Damaged ones are ignored:
@@ -187,4 +237,62 @@ pub fn parse_evaluations(
     };
     let read = records.into_iter().map(read).collect::<Result<_, Invalid>>();
     read.map_err(SaveError::invalid(path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+
+    fn record() -> GenerationRecord {
+        GenerationRecord {
+            generation: 1,
+            evaluations: 5,
+            disqualified: 0,
+            crashed: 0,
+            on_landing: 0,
+            first_on_landing: None,
+            statistics: None,
+            chosen_by: None,
+            species: Vec::new(),
+            hash: "0123456789abcdef".to_owned(),
+            elapsed_s: 1.0,
+        }
+    }
+
+    /// A log of this generation, read again.
+    fn read_again(record: &GenerationRecord) -> Result<Vec<GenerationRecord>, SaveError> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join(LOG_FILE);
+        super::super::log::Log::open(&path, 0).expect("opened").append(record).expect("written");
+        let plan = RunPlan::new("test", 1, Settings::default());
+        parse_records(&path, &read_log_bytes(&path).expect("read"), &plan)
+    }
+
+    #[test]
+    fn a_log_without_species_has_no_word_about_them() {
+        let text = serde_json::to_string(&record()).expect("written");
+        assert!(!text.contains("species"), "{text}");
+        assert_eq!(read_again(&record()).expect("read"), [record()]);
+    }
+
+    #[test]
+    fn species_are_read_again_and_impossible_ones_are_refused() {
+        let of = |id, size, best| SpeciesCount { id, size, best };
+        assert_eq!(serde_json::to_string(&of(3, 4, Some(0.1))).expect("written"), "[3,4,0.1]");
+        let with = |species| read_again(&GenerationRecord { species, ..record() });
+        let good = vec![of(3, 4, Some(0.1)), of(u32::MAX, 1, None)];
+        assert_eq!(with(good.clone()).expect("allowed")[0].species, good);
+        for (species, problem) in [
+            (vec![of(1, 0, None)], "species.size is 0; allowed: 1 to 5"),
+            (vec![of(1, 6, None)], "species.size is 6; allowed: 1 to 5"),
+            (vec![of(1, 3, None), of(2, 3, None)], "sum of species.size is 6; allowed: 0 to 5"),
+            (vec![of(2, 1, None), of(2, 1, None)], "species.id is 2; allowed: 3 to 4294967295"),
+            (vec![of(1, 1, Some(f32::MAX))], "species.best is 34028"),
+            (vec![of(1, 1, None); 25], "number of species is 25; allowed: 0 to 24"),
+        ] {
+            let error = with(species).expect_err("refused").to_string();
+            assert!(error.contains(problem), "{error}");
+        }
+    }
 }

@@ -82,6 +82,41 @@ fn the_strongest_rule_that_holds_decides_and_of_equals_the_lowest() {
 }
 
 #[test]
+fn the_choice_that_is_shown_is_the_one_that_was_made() {
+    use JointGroup::{All, Front, Rear};
+    let mut genes = genes(&genome(0, &Trial::default()));
+    genes.rules = vec![
+        rule("1#########", All, 2, 0.5),
+        rule("##########", Rear, 3, 0.5),
+        rule("1#0#######", Front, 4, 0.7),
+        rule("#######1##", All, 2, 0.9),
+    ];
+    let mut follower = RuleFollower::new(genes.clone());
+    let mut near = moment(60, |senses| senses.limbs[0].gap = 0.2);
+    near.step = 45;
+    assert_eq!(follower.choice(&near, 1), None, "it has not decided");
+    follower.act(&near, &mut [JointTorque::default(); 4]);
+    let shown = follower.choice(&near, 1).expect("decided");
+    assert_eq!(shown.of_joints, [3, 3, 1, 1]);
+    let rules: Vec<_> = shown.rules.iter().map(|rule| (rule.holds, rule.decides)).collect();
+    assert_eq!(rules, [(true, Some(Rear)), (true, None), (true, Some(Front)), (false, None)]);
+    let shares: Vec<f32> = shown.waves.iter().map(|wave| wave.share).collect();
+    assert_eq!(shares, [0.0, 0.5, 0.0, 0.5]);
+    for (shown, waves) in shown.waves.iter().zip(&genes.library) {
+        assert_eq!(shown.targets, waves.joints[1]);
+        let periods = near.periods(waves.frequency_hz);
+        let (now, then) =
+            (shown.targets.bend.at(shown.phase.into()), waves.joints[1].bend.at(periods));
+        assert!((0.0..1.0).contains(&shown.phase) && (now - then).abs() < 1e-4, "{now} {then}");
+    }
+    // What it senses between decisions changes nothing of what it shows.
+    let mut later = moment(60, |_| ());
+    later.step = 46;
+    follower.act(&later, &mut [JointTorque::default(); 4]);
+    assert_eq!(follower.choice(&later, 1).expect("decided").rules, shown.rules);
+}
+
+#[test]
 fn decisions_fall_on_whole_numbers_of_their_period_at_every_step_rate() {
     let trial = Trial::default();
     let mut genes = genes(&genome(0, &trial));

@@ -160,6 +160,7 @@ strategy_kinds! {
         settings: &["neat"],
         has_fixed_population: true,
         only_controllers: &[ControllerKind::Grown],
+        has_species: true,
         check_size: |evolution, _| NeatSettings::check_size(evolution.population),
         ..StrategyInfo::PLAIN
     };

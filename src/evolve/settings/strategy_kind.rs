@@ -28,6 +28,8 @@ pub struct StrategyInfo {
     pub only_controllers: &'static [ControllerKind],
     /// Whether it keeps an archive of elites over two descriptors.
     pub has_archive: bool,
+    /// Whether its individuals belong to species.
+    pub has_species: bool,
     /// Number of generations in a comparison, where more would not continue the search; none for any number.
     pub compared_generations: Option<u32>,
     /// Checks that its generations and its state fit into memory.
@@ -46,6 +48,7 @@ impl StrategyInfo {
         has_fixed_population: false,
         only_controllers: &[],
         has_archive: false,
+        has_species: false,
         compared_generations: None,
         check_size: |evolution, size| {
             size.check_population(evolution.population, LARGEST_GENERATION_GENES)

@@ -7,7 +7,7 @@ use crate::evolve::plan::RunPlan;
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::controllers::GrownGenes;
 use crate::genome::{ControllerGenes, Genome};
-use crate::learn::neat::{NeatPopulation, NetworkGenome, SpeciesSummary};
+use crate::learn::neat::{NeatPopulation, NetworkGenome};
 use crate::score::Evaluation;
 
 /// NEAT. The genes of body and servo evolve as the parameters of a network's genome.
@@ -101,8 +101,8 @@ impl Strategy for Neat {
         self.population = self.population.as_ref().map(|of| of.next(&fitness, seed, generation));
     }
 
-    fn species(&self) -> Option<&[SpeciesSummary]> {
-        self.population.as_ref().map(NeatPopulation::species)
+    fn species(&self) -> &[u32] {
+        self.population.as_ref().map_or(&[], NeatPopulation::memberships)
     }
 
     fn state(&self) -> StrategyState {

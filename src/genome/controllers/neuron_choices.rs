@@ -22,6 +22,16 @@ impl NeuronKind {
     /// All kinds. A gene has the place in this list as its value.
     pub const ALL: [Self; 4] = [Self::Off, Self::Tanh, Self::Step, Self::Sigmoid];
 
+    /// Its name, in lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::Tanh => "tanh",
+            Self::Step => "step",
+            Self::Sigmoid => "sigmoid",
+        }
+    }
+
     pub(super) fn response(self, sum: f32) -> f32 {
         match self {
             Self::Off => 0.0,
@@ -91,6 +101,34 @@ impl NeuronSource {
         Self::BeatSine,
         Self::BeatCosine,
     ];
+
+    /// Its name, in lower case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own1 => "own neuron 1",
+            Self::Own2 => "own neuron 2",
+            Self::Own3 => "own neuron 3",
+            Self::Own4 => "own neuron 4",
+            Self::Front1 => "front neuron 1",
+            Self::Front2 => "front neuron 2",
+            Self::Front3 => "front neuron 3",
+            Self::Front4 => "front neuron 4",
+            Self::Rear1 => "rear neuron 1",
+            Self::Rear2 => "rear neuron 2",
+            Self::Rear3 => "rear neuron 3",
+            Self::Rear4 => "rear neuron 4",
+            Self::Bend => "bend",
+            Self::BendRate => "bend rate",
+            Self::Touch => "touch",
+            Self::Load => "load",
+            Self::Blocked => "blocked",
+            Self::Pitch => "pitch",
+            Self::Gap => "gap",
+            Self::StepUp => "step up",
+            Self::BeatSine => "beat, sine",
+            Self::BeatCosine => "beat, cosine",
+        }
+    }
 }
 
 /// The values of a gene that is a kind.

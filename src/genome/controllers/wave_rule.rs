@@ -19,6 +19,20 @@ pub const RULE_SENSES: [&str; 10] = [
     "moved ahead",
 ];
 
+/// What a condition says that a bit must be 0, in the same order.
+const OPPOSITES: [&str; RULE_SENSES.len()] = [
+    "head gap 1 m or more",
+    "head gap 0.25 m or more",
+    "no step up over 0.05 m",
+    "no step up over 0.6 m",
+    "head not pitched up",
+    "head not blocked",
+    "middle does not touch",
+    "tail does not touch",
+    "middle gap 1 m or more",
+    "not moved ahead",
+];
+
 /// A rule of a controller that chooses waves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -121,6 +135,18 @@ impl RuleCondition {
     /// Whether it holds where the snake senses these bits.
     pub fn holds(self, bits: u16) -> bool {
         (bits ^ self.bits) & self.mask == 0
+    }
+
+    /// The condition in words: "head blocked, tail does not touch".
+    pub fn words(self) -> String {
+        let senses = RULE_SENSES.iter().zip(OPPOSITES).enumerate();
+        let words = senses.filter_map(|(sense, (holds, opposite))| match self.number(sense) {
+            0.0 => None,
+            number if number > 0.0 => Some(*holds),
+            _ => Some(opposite),
+        });
+        let words: Vec<&str> = words.collect();
+        if words.is_empty() { "always".to_owned() } else { words.join(", ") }
     }
 
     /// The value of the gene of a symbol.
@@ -242,5 +268,17 @@ mod tests {
             counts[(condition.number(4) + 1.0) as usize] += 1;
         }
         assert_eq!(counts, [200, 600, 200]);
+    }
+
+    #[test]
+    fn a_condition_is_spelled_in_words() {
+        for (text, words) in [
+            ("##########", "always"),
+            ("1####1####", "head gap under 1 m, head blocked"),
+            ("#######0#0", "tail does not touch, not moved ahead"),
+        ] {
+            let condition = RuleCondition::try_from(text.to_owned()).expect("a condition");
+            assert_eq!(condition.words(), words);
+        }
     }
 }

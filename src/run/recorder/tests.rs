@@ -66,6 +66,37 @@ fn a_run_stopped_after_any_generation_continues_bit_for_bit() {
     }
 }
 
+#[test]
+fn the_species_of_all_generations_are_there_after_a_resume() {
+    let mut plan = plan();
+    plan.settings.evolution.strategy = StrategyKind::Neat;
+    plan.settings.genome.controller = ControllerKind::Grown;
+    plan.settings.evolution.neat.species_threshold = 0.5;
+    let mut expected = Vec::new();
+    let mut experiment = Experiment::new(plan.clone());
+    let evaluator = LocalPool::new(1).expect("threads");
+    while !experiment.is_over() {
+        let report = experiment.run_generation(&evaluator, &RunControl::default());
+        expected.push(report.expect("not cancelled").species);
+    }
+    assert!(expected.iter().all(|of| of.iter().map(|species| species.size).sum::<u32>() == 8));
+    assert!(expected.iter().any(|of| of.len() > 1), "{expected:?}");
+    let saves = tempfile::tempdir().expect("a folder");
+    let mut path = None;
+    for stop in [3, 6] {
+        let folder = SavesFolder::find(Some(saves.path()));
+        let source = RunSource::in_saves(&folder, plan.clone(), ExistingRun::Keep);
+        let mut run = source.open("a test").expect("opened");
+        let read: Vec<_> = run.reports.iter().map(|report| report.species.clone()).collect();
+        assert_eq!(read, expected[..stop - 3]);
+        evolve(&mut run, 3);
+        path = Some(run.recorder.folder().to_owned());
+    }
+    let (_, records) = load_log(&path.expect("a run")).expect("read");
+    let recorded: Vec<_> = records.into_iter().map(|record| record.species).collect();
+    assert_eq!(recorded, expected);
+}
+
 fn assert_continues_after_any_stop(plan: &RunPlan) {
     let expected = uninterrupted(plan);
     let source = |saves: &Path| {

@@ -376,4 +376,4 @@ impl CurrentRun {
 #[cfg(test)]
 mod fixtures;
 #[cfg(test)]
-pub(crate) use fixtures::{compared_run, explored_run, landed_run, prepared_run};
+pub(crate) use fixtures::{compared_run, explored_run, landed_run, prepared_run, species_run};

@@ -14,6 +14,8 @@ pub(super) enum DrawnSeries {
     Points(Vec<PlotPoint>),
     /// Positions of a band with its lower and upper ends.
     Band([Vec<f64>; 3]),
+    /// Positions of a layer with its lower and upper ends, and the points of its upper edge.
+    Layer([Vec<f64>; 3], Vec<PlotPoint>),
     /// Drawn directly from its data, which is small.
     AsItIs,
 }
@@ -24,6 +26,12 @@ pub(super) fn drawn(chart: &Chart) -> Vec<DrawnSeries> {
         Shape::Line(points) | Shape::Dashed(points) => DrawnSeries::Points(line(points)),
         Shape::Points(points) => DrawnSeries::Points(points.iter().map(|&at| at.into()).collect()),
         Shape::Band(ends) => DrawnSeries::Band(band(ends)),
+        // Layers are thinned out together, before they are stacked, so that they fit onto each other.
+        Shape::Layer(ends) => {
+            let of = |index: usize| ends.iter().map(|end| end[index]).collect();
+            let upper = ends.iter().map(|&[x, _, high]| [x, high].into());
+            DrawnSeries::Layer([0, 1, 2].map(of), upper.collect())
+        }
         Shape::Bars { .. } | Shape::Cells(_) => DrawnSeries::AsItIs,
     };
     chart.series.iter().map(|series| of_shape(&series.shape)).collect()

@@ -8,6 +8,7 @@ use egui_plot::{
 };
 
 use super::downsample::DrawnSeries;
+use super::layer_labels::layer_labels;
 use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::plot::{Chart, Role, Series, Shape, beside_line};
@@ -123,6 +124,7 @@ impl ChartPart<'_> {
         });
         let painter = ui.painter_at(response.rect);
         self.mark_labels(&painter, &plot.transform, palette);
+        layer_labels(&painter, &plot.transform, chart, palette);
         for shown in shown {
             let place = shown.champion.place();
             let Some(hit) = hits.iter().find(|hit| place.is_some() && hit.place == place) else {
@@ -184,7 +186,7 @@ fn pixels(drawn: &DrawnSeries, transform: &PlotTransform) -> Vec<[f32; 2]> {
             points.iter().map(|point| transform.position_from_point(point).into()).collect()
         }
         // Labels may cover areas, which stay visible around their plates.
-        DrawnSeries::Band(_) | DrawnSeries::AsItIs => Vec::new(),
+        DrawnSeries::Band(_) | DrawnSeries::Layer(..) | DrawnSeries::AsItIs => Vec::new(),
     }
 }
 
@@ -193,6 +195,7 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
     let color = palette.role(series.role);
     let borrowed = || match drawn {
         DrawnSeries::Points(points) => PlotPoints::from(points.as_slice()),
+        DrawnSeries::Layer(_, upper) => PlotPoints::from(upper.as_slice()),
         DrawnSeries::Band(_) | DrawnSeries::AsItIs => PlotPoints::default(),
     };
     match &series.shape {
@@ -220,6 +223,14 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             let DrawnSeries::Band([along, low, high]) = drawn else { return };
             let band = FilledArea::new(&series.name, along, low, high);
             plot.add(band.fill_color(palette.band(color)).allow_hover(false));
+        }
+        Shape::Layer(_) => {
+            let DrawnSeries::Layer([along, low, high], _) = drawn else { return };
+            let layer = FilledArea::new(&series.name, along, low, high);
+            plot.add(layer.fill_color(color).allow_hover(false));
+            // Keeps layers of similar colours apart.
+            let edge = Line::new(&series.name, borrowed()).color(palette.field);
+            plot.line(edge.width(1.0).allow_hover(false));
         }
         Shape::Bars { width, bars } => {
             let bar = |&[x, height]: &[f64; 2]| Bar::new(x, height).width(width * 0.94).fill(color);

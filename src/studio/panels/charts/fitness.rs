@@ -79,6 +79,13 @@ fn hit(report: &GenerationReport, unit: &'static str) -> Option<ChartHit> {
     ))
 }
 
+/// Range of the axis of generations, of which so many are finished.
+pub(super) fn generations(finished: usize) -> RangeInclusive<f64> {
+    let last = (finished as f64).max(MIN_GENERATIONS);
+    let aside = (last - 1.0) * 0.04;
+    1.0 - aside..=last + aside
+}
+
 /// Axis ranges and marks of the chart.
 #[derive(Debug, Clone, PartialEq)]
 struct ChartBounds {
@@ -112,9 +119,7 @@ impl ChartBounds {
         let margin = ((max - min) * 0.06).max(0.5);
         // A best line that has reached the top of the stairs would else run along the frame.
         let headroom = ((max - min) * HEADROOM).max(1.0);
-        let last = (finished as f64).max(MIN_GENERATIONS);
-        let aside = (last - 1.0) * 0.04;
-        Self { x: 1.0 - aside..=last + aside, y: min - margin..=max + headroom, marks }
+        Self { x: generations(finished), y: min - margin..=max + headroom, marks }
     }
 }
 

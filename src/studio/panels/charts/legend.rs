@@ -29,12 +29,15 @@ pub(super) fn click_hint(ui: &mut egui::Ui, text: &str) {
 
 fn hint(view: &ChartView) -> &'static str {
     let mut hits = view.hits.iter().flatten().peekable();
-    let has_bars = view.figure.charts.iter().flat_map(|chart| &chart.series);
-    let has_bars = has_bars.map(|series| &series.shape).any(|of| matches!(of, Shape::Bars { .. }));
+    let shapes = || view.figure.charts.iter().flat_map(|chart| &chart.series).map(|of| &of.shape);
+    let has_bars = shapes().any(|of| matches!(of, Shape::Bars { .. }));
+    let has_layers = shapes().any(|of| matches!(of, Shape::Layer(_)));
     if hits.peek().is_none() {
         ""
     } else if !hits.any(|hit| hit.pick.is_some()) {
         "Point at a line to read it."
+    } else if has_layers {
+        "Point at a band to read it. Click a point of the lines to replay that snake."
     } else if has_bars {
         "Click a bar to replay its best snake."
     } else {
@@ -75,7 +78,7 @@ fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
         Shape::Band(_) => {
             painter.rect_filled(rect.shrink(1.0), 0.0, theme::of(ui).band(color));
         }
-        Shape::Bars { .. } => {
+        Shape::Bars { .. } | Shape::Layer(_) => {
             painter.rect_filled(rect.shrink(1.0), 0.0, color);
         }
         Shape::Cells(_) => {

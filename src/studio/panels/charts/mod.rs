@@ -3,15 +3,18 @@
 
 mod ancestors;
 mod archive_map;
+mod chart_kind;
 mod downsample;
 mod draw;
 mod fitness;
+mod layer_labels;
 mod learning_curves;
 mod legend;
 mod parents;
 mod pareto_front;
 mod runs;
 mod search_charts;
+mod species;
 mod spread;
 mod torques;
 mod view;
@@ -31,98 +34,11 @@ use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
 
 use archive_map::archive_map;
+use chart_kind::ChartKind;
 use learning_curves::CurvesPanel;
 use pareto_front::front_plot;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
-
-/// Kind of chart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum ChartKind {
-    #[default]
-    Fitness,
-    Spread,
-    Ancestors,
-    Torques,
-    Parents,
-    Front,
-    Archive,
-    Runs,
-    Methods,
-}
-
-impl ChartKind {
-    const ALL: [Self; 9] = [
-        Self::Fitness,
-        Self::Spread,
-        Self::Ancestors,
-        Self::Torques,
-        Self::Parents,
-        Self::Front,
-        Self::Archive,
-        Self::Runs,
-        Self::Methods,
-    ];
-
-    /// Name on its button, and hover text.
-    fn labels(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Fitness => ("Fitness", "Best, mean and median fitness of each generation"),
-            Self::Spread => ("Spread", "Distribution of the fitness in the latest generation"),
-            Self::Ancestors => ("Ancestors", "Ancestors of the best snake"),
-            Self::Torques => (
-                "Torques",
-                "Joint torques of the snake on the stage and of its parent; of several, of the selected one",
-            ),
-            Self::Parents => ("Parents", "Gene values of the parents of the next generation"),
-            Self::Front => ("Front", "Best trade-offs between distance and energy"),
-            Self::Archive => ("Archive", "Best snake for each kind of behaviour (MAP-Elites)"),
-            Self::Runs => ("Runs", "Compare this run with other runs"),
-            Self::Methods => ("Methods", "Compare search methods over many runs"),
-        }
-    }
-
-    /// Prefix of exported file names.
-    fn file_name(self) -> &'static str {
-        match self {
-            Self::Fitness => "fitness",
-            Self::Spread => "spread",
-            Self::Ancestors => "ancestors",
-            Self::Torques => "torques",
-            Self::Parents => "parents",
-            Self::Front => "front",
-            Self::Archive => "archive",
-            Self::Runs => "runs",
-            Self::Methods => "methods",
-        }
-    }
-
-    /// Text shown while there is no data.
-    fn empty_text(self) -> &'static str {
-        match self {
-            Self::Fitness => {
-                "The fitness of each generation will appear here after the first generation."
-            }
-            Self::Spread => {
-                "The distribution of the fitness will appear here when this session finishes a generation."
-            }
-            Self::Ancestors => {
-                "The ancestors of the best snake will appear here after the first generation."
-            }
-            Self::Torques => "Computing torques…",
-            Self::Parents => {
-                "The gene values of the parents will appear here when this session finishes a generation. Random \
-                 search and CMA-ES have no parents."
-            }
-            Self::Front => "The best trade-offs between distance and energy will appear here.",
-            Self::Archive => "The best snake for each kind of behaviour will appear here.",
-            Self::Runs => "The curves of this run will appear here after the first generation.",
-            Self::Methods => {
-                "No comparison is open. \"snakes compare\" creates one, \"snakes --comparison FILE\" opens it."
-            }
-        }
-    }
-}
 
 /// The panel with the selected chart.
 pub(super) struct ChartsPanel {
@@ -158,9 +74,13 @@ impl ChartsPanel {
         selected: Option<&StagedChampion>,
         commands: &mut Vec<Command>,
     ) {
+        let strategy = run.settings().evolution.strategy;
+        if !self.kind.is_offered(strategy) {
+            self.kind = ChartKind::default();
+        }
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            for kind in ChartKind::ALL {
+            for kind in ChartKind::ALL.into_iter().filter(|kind| kind.is_offered(strategy)) {
                 let (name, hint) = kind.labels();
                 ui.selectable_value(&mut self.kind, kind, name).on_hover_text(hint);
             }
@@ -334,6 +254,7 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     match kind {
         ChartKind::Fitness => Some(fitness::view(settings, run.reports())),
         ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
+        ChartKind::Species => Some(species::view(settings, run.reports())),
         ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),

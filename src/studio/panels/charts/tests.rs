@@ -9,7 +9,7 @@ use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use crate::studio::panels::shown::ShownChampion;
-use crate::studio::state::current_run::{compared_run, explored_run, prepared_run};
+use crate::studio::state::current_run::{compared_run, explored_run, prepared_run, species_run};
 
 /// Result of `act` and the commands sent, in a panel of this width.
 fn with<T>(
@@ -50,6 +50,24 @@ fn a_chart_is_selected_by_its_name() {
     assert_eq!(sent, [Command::Run(RunCommand::ListRuns)], "other runs are looked for once");
 }
 
+/// The charts that a run has.
+fn offered(run: &CurrentRun) -> Vec<ChartKind> {
+    let strategy = run.settings().evolution.strategy;
+    ChartKind::ALL.into_iter().filter(|kind| kind.is_offered(strategy)).collect()
+}
+
+#[test]
+fn only_a_run_with_species_offers_their_chart() {
+    for (run, has_species) in [(explored_run(), false), (species_run(), true)] {
+        with(&run, ChartKind::Species, 600.0, |harness| {
+            let mut buttons = harness.query_all_by_label("Species");
+            assert_eq!(buttons.next().is_some(), has_species);
+            let mut titles = harness.query_all_by_label("Species by generation");
+            assert_eq!(titles.next().is_some(), has_species);
+        });
+    }
+}
+
 fn click(harness: &mut Harness<'_, Vec<Command>>, at: egui::Pos2) {
     harness.drag_at(at);
     harness.run();
@@ -60,7 +78,7 @@ fn click(harness: &mut Harness<'_, Vec<Command>>, at: egui::Pos2) {
 #[test]
 fn before_the_first_generation_every_chart_explains_its_content() {
     let run = prepared_run();
-    for kind in ChartKind::ALL {
+    for kind in offered(&run) {
         let ((), sent) = with(&run, kind, theme::PANEL_WIDTH, |harness| {
             let says = ["will appear here", "No comparison is open", "MAP-Elites keeps an archive"];
             let is_said =
@@ -74,10 +92,12 @@ fn before_the_first_generation_every_chart_explains_its_content() {
 
 #[test]
 fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
-    let run = explored_run();
+    let (run, neat) = (explored_run(), species_run());
     for width in [300.0, 900.0] {
-        for kind in ChartKind::ALL.into_iter().filter(|kind| *kind != ChartKind::Methods) {
-            let ((), sent) = with(&run, kind, width, |harness| {
+        let kinds = offered(&run).into_iter().filter(|kind| *kind != ChartKind::Methods);
+        let charts = kinds.map(|kind| (&run, kind)).chain([(&neat, ChartKind::Species)]);
+        for (run, kind) in charts {
+            let ((), sent) = with(run, kind, width, |harness| {
                 // The torques of waves are computed on another thread.
                 for _ in 0..3000 {
                     if harness.query_by_label("CSV").is_some() {
@@ -188,6 +208,7 @@ fn ten_thousand_generations_are_downsampled_on_screen_but_not_in_the_table() {
     let points = view.drawn[0].iter().map(|drawn| match drawn {
         downsample::DrawnSeries::Points(points) => points.len(),
         downsample::DrawnSeries::Band([along, ..]) => along.len(),
+        downsample::DrawnSeries::Layer([along, ..], _) => along.len(),
         downsample::DrawnSeries::AsItIs => 0,
     });
     assert!(points.max().expect("series") <= downsample::MAX_POINTS + 2);

@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use super::rule_row::{RULE_HEIGHT, RuleRow};
 use super::value_bar::ValueBar;
 use crate::control::{ActiveRule, DecisionActivity};
 use crate::studio::ui::check_box::check_box;
@@ -13,8 +14,6 @@ use crate::studio::ui::theme;
 const LIST_HEIGHT: f32 = theme::GAP * 36.0;
 /// Width of the names of postures, in points.
 const POSTURE_NAMES: f32 = theme::GAP * 20.5;
-/// Height of a rule in the list, in points.
-const RULE_HEIGHT: f32 = theme::GAP * 5.0;
 
 /// Draws a decision.
 pub(super) fn decision_view(
@@ -89,45 +88,19 @@ fn rules(ui: &mut egui::Ui, decision: &DecisionActivity, shows_all: &mut bool) {
 
 /// Draws a rule: its condition above, its posture and numbers below.
 fn entry(ui: &mut egui::Ui, rule: &ActiveRule, decision: &DecisionActivity) {
-    let palette = theme::of(ui);
-    let size = egui::vec2(ui.available_width(), RULE_HEIGHT);
-    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
-    let fill = match (rule.matches, rule.decides) {
-        (_, true) => palette.accent_soft,
-        (true, false) => palette.field_hovered,
-        (false, false) => palette.field,
-    };
-    ui.painter().rect_filled(rect, theme::GAP / 2.0, fill);
-    let inside = rect.shrink2(egui::vec2(theme::GAP * 0.75, theme::GAP / 4.0));
-    let (words, numbers) = (rule.words(), rule_numbers(rule));
     let posture = decision.postures.get(rule.posture).map_or("", |posture| posture.name);
-    let strong = if rule.matches { palette.text } else { palette.text_weak };
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let cut = |text: String, color: egui::Color32| {
-        let mut job = egui::text::LayoutJob::simple_singleline(text, font.clone(), color);
-        job.wrap = egui::text::TextWrapping::truncate_at_width(inside.width());
-        ui.fonts_mut(|fonts| fonts.layout_job(job))
+    let row = RuleRow {
+        condition: format!("If {}", rule.words()),
+        action: format!("{posture}: {}", rule_numbers(rule)),
+        holds: rule.matches,
+        decides: rule.decides,
+        state: match (rule.matches, rule.decides) {
+            (_, true) => "It matches, and its posture was chosen",
+            (true, false) => "It matches",
+            (false, false) => "It does not match this situation",
+        },
     };
-    let below = format!("{posture}: {numbers}");
-    for (text, color, top) in [
-        (format!("If {words}"), strong, inside.top()),
-        (
-            below.clone(),
-            if rule.decides { palette.text } else { palette.text_weak },
-            inside.center().y,
-        ),
-    ] {
-        let text = cut(text, color);
-        ui.painter().galley(egui::pos2(inside.left(), top), text, color);
-    }
-    let state = match (rule.matches, rule.decides) {
-        (_, true) => "It matches, and its posture was chosen",
-        (true, false) => "It matches",
-        (false, false) => "It does not match this situation",
-    };
-    let said = format!("If {words}: {below}. {state}");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
-    response.on_hover_text(&said);
+    row.ui(ui);
 }
 
 fn rule_numbers(rule: &ActiveRule) -> String {

@@ -4,10 +4,13 @@
 //! the World panel, so a copy without them walks beside the snake.
 
 mod decision_view;
+mod limb_view;
 mod network_graph;
 mod readouts;
 mod reflex_view;
+mod rule_row;
 mod value_bar;
+mod wave_view;
 
 use bevy_egui::egui;
 
@@ -120,6 +123,8 @@ impl SensesPanel {
                 decision_view::decision_view(ui, decision, &mut self.shows_all_rules);
             }
             Some(Activity::Reflex(reflex)) => reflex_view::reflex_view(ui, reflex),
+            Some(Activity::Waves(choice)) => wave_view::wave_view(ui, choice),
+            Some(Activity::Limbs(limbs)) => limb_view::limb_view(ui, limbs, view.limb),
             None => {}
         }
     }

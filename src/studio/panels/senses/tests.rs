@@ -159,3 +159,53 @@ fn decisions_show_situation_postures_and_rules() {
     assert!(shows(&rules, "does not match this situation"));
     assert_nothing_is_wider_than(&rules, 320.0);
 }
+
+#[test]
+fn waves_and_the_rules_that_chose_them_are_shown() {
+    let lane = lane_of(ControllerKind::Rules, &[], |_| ());
+    let panel = panel(&lane, 2);
+    let activity = lane.rollout().expect("simulated").activity(1);
+    let Some(Activity::Waves(choice)) = activity else { panic!("{activity:?}") };
+    assert!(shows(&panel, "Waves at joint 2"));
+    for (joint, wave) in choice.of_joints.iter().enumerate() {
+        let half = if joint < 2 { "front" } else { "rear" };
+        let said = format!("Joint {}, in the {half} half, follows wave {}", joint + 1, wave + 1);
+        assert!(shows(&panel, &said), "{said}");
+    }
+    for (index, wave) in choice.waves.iter().enumerate() {
+        let said = format!(
+            "Wave {}: {:.2} Hz, {:.0} % of",
+            index + 1,
+            wave.frequency_hz,
+            wave.share * 100.0
+        );
+        assert!(shows(&panel, &said), "{said}");
+    }
+    let held = choice.rules.iter().filter(|rule| rule.holds).count();
+    assert!(shows(&panel, &format!("Rules: {held} of {} hold", choice.rules.len())));
+    let strongest = choice.rules.iter().map(|rule| rule.rule.strength).fold(0.0, f32::max);
+    assert!(shows(&panel, &format!("strength {strongest:.2}. It ")), "the strongest is first");
+    assert_nothing_is_wider_than(&panel, 320.0);
+}
+
+#[test]
+fn the_neurons_of_all_limbs_are_shown_and_the_wiring_of_the_selected_one() {
+    let lane = lane_of(ControllerKind::LimbNeurons, &[], |_| ());
+    for (limb, title) in [(0, "the head"), (2, "limb 3"), (4, "the tail")] {
+        let panel = panel(&lane, limb);
+        assert!(shows(&panel, &format!("Wiring of {title}")));
+        let activity = lane.rollout().expect("simulated").activity(0);
+        let Some(Activity::Limbs(limbs)) = activity else { panic!("{activity:?}") };
+        let network = limbs.network(limb).expect("a limb");
+        for node in &network.nodes {
+            assert!(shows(&panel, &node.name), "{}", node.name);
+        }
+        for limb in 1..=5 {
+            for neuron in 1..=4 {
+                assert!(shows(&panel, &format!("Limb {limb}, neuron {neuron}")));
+            }
+        }
+        assert!(!shows(&panel, "Limb 5, neuron 1, bend target"), "no joint is behind it");
+        assert_nothing_is_wider_than(&panel, 320.0);
+    }
+}

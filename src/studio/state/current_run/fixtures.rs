@@ -19,8 +19,22 @@ pub fn prepared_run() -> CurrentRun {
 pub fn explored_run() -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.strategy = StrategyKind::MapElites;
-    settings.evolution.population = 20;
     settings.genome.controller = ControllerKind::Gait;
+    evolved_run(settings)
+}
+
+/// Run of NEAT with two finished generations of several species.
+pub fn species_run() -> CurrentRun {
+    let mut settings = Settings::default();
+    settings.evolution.strategy = StrategyKind::Neat;
+    settings.evolution.neat.species_threshold = 0.25;
+    settings.genome.controller = ControllerKind::Grown;
+    evolved_run(settings)
+}
+
+/// Run of these settings with two finished generations of 20 snakes for 1 s.
+fn evolved_run(mut settings: Settings) -> CurrentRun {
+    settings.evolution.population = 20;
     settings.trial.duration_s = 1.0;
     let plan = RunPlan::new("test", 2, settings);
     let mut experiment = Experiment::new(plan.clone());

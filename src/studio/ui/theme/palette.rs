@@ -275,7 +275,23 @@ impl Palette {
             Role::Twist => self.twist,
             Role::Strategy(kind) => self.strategy(kind),
             Role::Share(share) => ramp(share),
+            Role::Species(_) => {
+                let [red, green, blue] = role_color(role);
+                Color32::from_rgb(red, green, blue)
+            }
         }
+    }
+
+    /// Colour of a member of a list whose order means nothing, such as a wave of a library; after ten the colours repeat.
+    pub fn category(&self, number: usize) -> Color32 {
+        self.role(Role::Species(number as u32))
+    }
+
+    /// Text on a colour: black or white.
+    pub fn ink_on(color: Color32) -> Color32 {
+        let [red, green, blue, _] = color.to_array();
+        let [ink, ..] = plot::ink_on([red, green, blue]);
+        Color32::from_gray(ink)
     }
 
     /// Colour of a lane: on the snake's collar, beside its lane, in lists and in charts. The first lane is 0; after ten

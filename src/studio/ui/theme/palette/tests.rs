@@ -124,3 +124,22 @@ fn a_band_over_a_chart_has_the_hue_that_it_has_in_a_picture() {
         }
     }
 }
+
+#[test]
+fn species_have_colours_that_stay_apart_from_each_other_and_from_the_panel() {
+    for of in [&LIGHT, &DARK] {
+        for number in 0..10 {
+            let own = of.role(Role::Species(number));
+            assert!(contrast(own, of.panel) > 1.9, "{number}");
+            for other in 0..number {
+                let apart = apart(own, of.role(Role::Species(other)));
+                assert!(apart > 0.1, "{number} and {other}: {apart}");
+            }
+            let next = apart(own, of.role(Role::Species(number + 1)));
+            assert!(next > 0.19, "{number} and its neighbour: {next}");
+            let found = contrast(Palette::ink_on(own), own);
+            assert!(found >= READABLE, "{number}: its number has {found:.2}");
+        }
+        assert_eq!(of.role(Role::Species(17)), of.role(Role::Species(7)));
+    }
+}

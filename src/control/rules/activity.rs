@@ -1,0 +1,98 @@
+//! The choice of waves by rules at a moment, for display.
+
+use super::{HALVES, RuleFollower, deciding_rule};
+use crate::control::{Observation, WaveUses};
+use crate::genome::controllers::{JointGroup, JointWaves, WaveRule, Waves};
+
+/// Waves, and the rules that have chosen among them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WaveChoiceActivity {
+    /// The joint whose part of the waves is shown; the first is 0.
+    pub joint: usize,
+    /// The waves of the library.
+    pub waves: Vec<ActiveWave>,
+    /// The wave that each joint follows, by its place in the list.
+    pub of_joints: Vec<usize>,
+    /// Number of joints in the front half.
+    pub front_joints: usize,
+    /// The rules, in their order.
+    pub rules: Vec<ActiveWaveRule>,
+}
+
+/// A wave of the library.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActiveWave {
+    /// Its frequency, in Hz.
+    pub frequency_hz: f32,
+    /// The part of its period that has passed, from 0 to 1.
+    pub phase: f32,
+    /// What it asks of the joint that is shown, in radians.
+    pub targets: JointWaves,
+    /// Share of the decisions so far that were for it, from 0 to 1.
+    pub share: f32,
+}
+
+/// A rule, and whether it has decided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActiveWaveRule {
+    /// The rule.
+    pub rule: WaveRule,
+    /// Whether its condition held at the last decision.
+    pub holds: bool,
+    /// The joints for which it decided then; none if a stronger one did, or it did not hold.
+    pub decides: Option<JointGroup>,
+}
+
+impl RuleFollower {
+    /// The last decision, with the waves of a joint; none before the first decision.
+    pub(super) fn choice(
+        &self,
+        observation: &Observation,
+        joint: usize,
+    ) -> Option<WaveChoiceActivity> {
+        let bits = self.bits?;
+        let front_joints = self.front_joints();
+        let shares = shares(&self.uses);
+        let wave = |(index, waves): (usize, &Waves)| {
+            let periods = observation.periods(waves.frequency_hz);
+            Some(ActiveWave {
+                frequency_hz: waves.frequency_hz,
+                phase: (periods - libm::floor(periods)) as f32,
+                targets: waves.joints.get(joint)?.clone(),
+                share: shares.get(index).copied().unwrap_or(0.0),
+            })
+        };
+        let winners = HALVES.map(|half| deciding_rule(&self.genes.rules, bits, half));
+        // A half without joints has no decision.
+        let counts = [front_joints, self.joints() - front_joints];
+        let decides = |index: usize| {
+            let [front, rear] = [0, 1].map(|i| counts[i] > 0 && winners[i] == Some(index));
+            match (front, rear) {
+                (true, true) => Some(JointGroup::All),
+                (true, false) => Some(JointGroup::Front),
+                (false, true) => Some(JointGroup::Rear),
+                (false, false) => None,
+            }
+        };
+        let rule = |(index, rule): (usize, &WaveRule)| ActiveWaveRule {
+            rule: *rule,
+            holds: rule.condition.holds(bits),
+            decides: decides(index),
+        };
+        Some(WaveChoiceActivity {
+            joint,
+            waves: self.genes.library.iter().enumerate().map(wave).collect::<Option<_>>()?,
+            of_joints: (0..self.joints())
+                .map(|joint| self.chosen[usize::from(joint >= front_joints)])
+                .collect(),
+            front_joints,
+            rules: self.genes.rules.iter().enumerate().map(rule).collect(),
+        })
+    }
+}
+
+/// The share of each wave in all decisions.
+fn shares(uses: &WaveUses) -> Vec<f32> {
+    let total: f32 = uses.counts().iter().map(|count| *count as f32).sum();
+    uses.counts().iter().map(|count| *count as f32 / total.max(1.0)).collect()
+}

@@ -1,0 +1,105 @@
+//! The kinds of charts: their names, and what is said while one is empty.
+
+use crate::evolve::StrategyKind;
+
+/// Kind of chart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum ChartKind {
+    #[default]
+    Fitness,
+    Spread,
+    Species,
+    Ancestors,
+    Torques,
+    Parents,
+    Front,
+    Archive,
+    Runs,
+    Methods,
+}
+
+impl ChartKind {
+    /// In the order of their buttons.
+    pub const ALL: [Self; 10] = [
+        Self::Fitness,
+        Self::Spread,
+        Self::Species,
+        Self::Ancestors,
+        Self::Torques,
+        Self::Parents,
+        Self::Front,
+        Self::Archive,
+        Self::Runs,
+        Self::Methods,
+    ];
+
+    /// Whether a run of this strategy has such a chart, empty or not.
+    pub fn is_offered(self, strategy: StrategyKind) -> bool {
+        self != Self::Species || strategy.info().has_species
+    }
+
+    /// Name on its button, and hover text.
+    pub fn labels(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Fitness => ("Fitness", "Best, mean and median fitness of each generation"),
+            Self::Spread => ("Spread", "Distribution of the fitness in the latest generation"),
+            Self::Species => ("Species", "Snakes in each species of networks (NEAT)"),
+            Self::Ancestors => ("Ancestors", "Ancestors of the best snake"),
+            Self::Torques => (
+                "Torques",
+                "Joint torques of the snake on the stage and of its parent; of several, of the selected one",
+            ),
+            Self::Parents => ("Parents", "Gene values of the parents of the next generation"),
+            Self::Front => ("Front", "Best trade-offs between distance and energy"),
+            Self::Archive => ("Archive", "Best snake for each kind of behaviour (MAP-Elites)"),
+            Self::Runs => ("Runs", "Compare this run with other runs"),
+            Self::Methods => ("Methods", "Compare search methods over many runs"),
+        }
+    }
+
+    /// Prefix of exported file names.
+    pub fn file_name(self) -> &'static str {
+        match self {
+            Self::Fitness => "fitness",
+            Self::Spread => "spread",
+            Self::Species => "species",
+            Self::Ancestors => "ancestors",
+            Self::Torques => "torques",
+            Self::Parents => "parents",
+            Self::Front => "front",
+            Self::Archive => "archive",
+            Self::Runs => "runs",
+            Self::Methods => "methods",
+        }
+    }
+
+    /// Text shown while there is no data.
+    pub fn empty_text(self) -> &'static str {
+        match self {
+            Self::Fitness => {
+                "The fitness of each generation will appear here after the first generation."
+            }
+            Self::Spread => {
+                "The distribution of the fitness will appear here when this session finishes a generation."
+            }
+            Self::Species => {
+                "The species of each generation will appear here after the first generation. Runs of earlier versions \
+                 of the program have none in their logs."
+            }
+            Self::Ancestors => {
+                "The ancestors of the best snake will appear here after the first generation."
+            }
+            Self::Torques => "Computing torques…",
+            Self::Parents => {
+                "The gene values of the parents will appear here when this session finishes a generation. Random \
+                 search and CMA-ES have no parents."
+            }
+            Self::Front => "The best trade-offs between distance and energy will appear here.",
+            Self::Archive => "The best snake for each kind of behaviour will appear here.",
+            Self::Runs => "The curves of this run will appear here after the first generation.",
+            Self::Methods => {
+                "No comparison is open. \"snakes compare\" creates one, \"snakes --comparison FILE\" opens it."
+            }
+        }
+    }
+}
