@@ -86,7 +86,7 @@ impl StairsMap<'_> {
                 continue;
             };
             let rect = self.place.cell(self.grid, row, column);
-            let id = ui.id().with(("exam", self.grid.suite.name(), index));
+            let id = ui.id().with(("exam", self.title, index));
             let response = ui.interact(rect, id, egui::Sense::click());
             self.draw(ui, cell, rect);
             let palette = theme::of(ui);
