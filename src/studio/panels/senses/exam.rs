@@ -106,7 +106,7 @@ fn title_of(grid: &StairsGrid, grids: usize) -> &'static str {
     match grid.suite {
         ExamSuite::Lesion => "Without senses",
         _ if grids > 1 => "With senses",
-        _ => "Landed",
+        _ => "On other stairs",
     }
 }
 

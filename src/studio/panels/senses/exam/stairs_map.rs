@@ -95,7 +95,7 @@ impl StairsMap<'_> {
             } else if response.hovered() || response.has_focus() {
                 outlines.push((rect, palette.text));
             }
-            let said = format!("{}: {}", self.title, said(cell));
+            let said = format!("{}. {}", self.title, said(cell));
             response
                 .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &said));
             if response.clicked() {
@@ -185,7 +185,7 @@ impl StairsMap<'_> {
 fn said(cell: &StairsCell) -> String {
     let StairsCell { rise_m, tread_m, trials, landed, median_steps, typical, .. } = cell;
     format!(
-        "rise {rise_m} m, tread {tread_m} m, {landed} of {trials} landed, median {median_steps} of {} steps",
+        "Rise {rise_m} m, tread {tread_m} m: {landed} of {trials} landed, median {median_steps} of {} steps",
         typical.stairs.steps
     )
 }

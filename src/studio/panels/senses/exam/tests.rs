@@ -95,20 +95,20 @@ fn a_cell_tells_its_landings_and_a_click_watches_it() {
     let mut section = section(staged, &exams, theme::PANEL_WIDTH);
     assert_nothing_is_wider_than(&section, theme::PANEL_WIDTH);
     for (stairs, landed) in [
-        ("rise 0.3 m, tread 1.5 m", "5 of 5 landed, median 10 of 10 steps"),
-        ("rise 0.6 m, tread 2 m", "2 of 5 landed, median 3 of 10 steps"),
-        ("rise 0.7 m, tread 3 m", "1 of 5 landed, median 3 of 10 steps"),
+        ("Rise 0.3 m, tread 1.5 m", "5 of 5 landed, median 10 of 10 steps"),
+        ("Rise 0.6 m, tread 2 m", "2 of 5 landed, median 3 of 10 steps"),
+        ("Rise 0.7 m, tread 3 m", "1 of 5 landed, median 3 of 10 steps"),
     ] {
-        assert!(shows(&section, &format!("Landed: {stairs}, {landed}")), "{stairs}");
+        assert!(shows(&section, &format!("On other stairs. {stairs}: {landed}")), "{stairs}");
     }
-    let lowest = section.get_by_label_contains("rise 0.3 m, tread 2.5 m").rect();
-    let highest = section.get_by_label_contains("rise 0.7 m, tread 2.5 m").rect();
+    let lowest = section.get_by_label_contains("Rise 0.3 m, tread 2.5 m").rect();
+    let highest = section.get_by_label_contains("Rise 0.7 m, tread 2.5 m").rect();
     assert!(highest.bottom() < lowest.top(), "rises go upwards");
-    section.get_by_label_contains("rise 0.6 m, tread 1.5 m").click();
+    section.get_by_label_contains("Rise 0.6 m, tread 1.5 m").click();
     section.run();
     let watch = ExamCommand::Watch { suite: ExamSuite::Stairs, cell: 12 };
     assert_eq!(*section.state(), [Command::Exam(watch)]);
-    section.get_by_label_contains("rise 0.6 m, tread 1.5 m").hover();
+    section.get_by_label_contains("Rise 0.6 m, tread 1.5 m").hover();
     section.run();
     let typical = "with the first step as far away as on its own, the snake ends on step 3.";
     assert!(shows(&section, typical));
@@ -122,10 +122,10 @@ fn a_snake_with_senses_is_compared_with_itself_without_them() {
     for width in [theme::PANEL_WIDTH, 700.0] {
         let mut section = section(staged.clone(), &exams, width);
         assert_nothing_is_wider_than(&section, width);
-        let with = section.get_by_label_contains("With senses: rise 0.4 m, tread 2 m").rect();
-        let without = section.get_by_label_contains("Without senses: rise 0.4 m, tread 2 m").rect();
+        let with = section.get_by_label_contains("With senses. Rise 0.4 m, tread 2 m").rect();
+        let without = section.get_by_label_contains("Without senses. Rise 0.4 m, tread 2 m").rect();
         assert!(with.right() < without.left() && with.top() == without.top(), "side by side");
-        section.get_by_label_contains("Without senses: rise 0.3 m, tread 2 m").click();
+        section.get_by_label_contains("Without senses. Rise 0.3 m, tread 2 m").click();
         section.run();
         let watch = ExamCommand::Watch { suite: ExamSuite::Lesion, cell: 1 };
         assert_eq!(*section.state(), [Command::Exam(watch)]);
@@ -140,7 +140,7 @@ fn on_stairs_of_the_exam_a_button_leads_back() {
     exams.keep(staged.champion().clone(), vec![grid]);
     assert!(!shows(&section(staged, &exams, theme::PANEL_WIDTH), "Back to its own stairs"));
     let mut section = section(there, &exams, theme::PANEL_WIDTH);
-    assert!(shows(&section, "rise 0.7 m, tread 3 m"), "the results stay");
+    assert!(shows(&section, "Rise 0.7 m, tread 3 m"), "the results stay");
     section.get_by_label("Back to its own stairs").click();
     section.run();
     assert_eq!(*section.state(), [Command::Exam(ExamCommand::BackToOwnStairs)]);
