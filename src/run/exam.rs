@@ -4,7 +4,7 @@ use super::evaluator::LocalPool;
 use super::panics::caught;
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::Champion;
-use crate::score::{ExamCondition, ExamEnd, ExamSuite, SuiteResult};
+use crate::score::{ExamCondition, ExamEnd, ExamSuite, StairsGrid, SuiteResult};
 
 /// Number of trials that the suites take for a champion, the undisturbed ones included.
 pub fn exam_trials(champion: &Champion, suites: &[ExamSuite]) -> u32 {
@@ -38,6 +38,35 @@ pub fn examine(
     suites.filter(|(_, conditions)| !conditions.is_empty()).map(result).collect()
 }
 
+/// Number of trials that [`examine_on_stairs`] takes for a champion.
+pub fn stairs_trials(champion: &Champion) -> u32 {
+    stairs_conditions(champion).iter().map(|(_, conditions)| conditions.len() as u32).sum()
+}
+
+/// Examines a champion on the 100 other stairs, and once more without senses if its controller has them.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn examine_on_stairs(
+    champion: &Champion,
+    pool: &LocalPool,
+    control: &RunControl,
+) -> Result<Vec<StairsGrid>, Cancelled> {
+    control.start_generation();
+    let grid = |(suite, conditions): (ExamSuite, Vec<ExamCondition>)| {
+        let ends = exam_ends(champion, &conditions, pool, control)?;
+        Ok(StairsGrid::of(suite, &champion.trial, &conditions, &ends))
+    };
+    stairs_conditions(champion).into_iter().map(grid).collect()
+}
+
+/// The suites of other stairs that concern a champion, with their conditions.
+fn stairs_conditions(champion: &Champion) -> Vec<(ExamSuite, Vec<ExamCondition>)> {
+    let suites = ExamSuite::OF_STAIRS.into_iter();
+    let suites = suites.filter(|suite| suite.concerns(&champion.genome));
+    suites.map(|suite| (suite, suite.conditions(&champion.trial))).collect()
+}
+
 /// How a champion ends in each condition. A trial whose simulation panics counts as disqualified.
 ///
 /// # Errors
@@ -66,7 +95,10 @@ pub fn exam_ends(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
+    use crate::genome::ControllerKind;
+    use crate::rng::{Purpose, stream};
+    use crate::save::{load_preset, shipped_champion};
+    use crate::score::evaluate;
 
     #[test]
     fn an_exam_has_the_same_result_for_any_number_of_threads_and_can_be_cancelled() {
@@ -87,5 +119,35 @@ mod tests {
         control.cancel();
         let pool = LocalPool::new(1).expect("threads");
         assert!(examine(&champion, &suites, &pool, &control).is_err());
+        assert!(examine_on_stairs(&champion, &pool, &control).is_err());
+    }
+
+    #[test]
+    fn only_a_champion_that_senses_is_also_examined_without_senses() {
+        let mut champion = shipped_champion().expect("well formed").champion;
+        assert_eq!(stairs_trials(&champion), 100, "a gait");
+        let mut settings = load_preset("climb").expect("shipped").settings;
+        settings.genome.controller = ControllerKind::Reflex;
+        let mut rng = stream(1, 1, 3, Purpose::Birth);
+        champion.genome = settings.genome.random_genome(settings.trial.genome_shape(), &mut rng);
+        assert_eq!(stairs_trials(&champion), 200);
+    }
+
+    #[test]
+    #[ignore = "takes about ten seconds: cargo test --release --lib a_typical_trial -- --ignored"]
+    fn a_typical_trial_of_a_cell_ends_as_in_the_exam_when_it_is_simulated_again() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let pool = LocalPool::new(2).expect("threads");
+        let control = RunControl::default();
+        let grids = examine_on_stairs(&champion, &pool, &control).expect("not cancelled");
+        assert_eq!((grids.len(), grids[0].trials(), control.done()), (1, 100, 100));
+        let suite = examine(&champion, &[ExamSuite::Stairs], &pool, &control);
+        assert_eq!(grids[0].landed(), suite.expect("not cancelled")[0].landed);
+        for cell in &grids[0].cells {
+            let evaluation = evaluate(&champion.genome, &cell.typical);
+            let has_landed = evaluation.is_on_landing(&cell.typical.stairs);
+            assert_eq!(has_landed, cell.typical_end.has_landed, "{cell:?}");
+            assert_eq!(has_landed, cell.landed * 2 > cell.trials, "{cell:?}");
+        }
     }
 }

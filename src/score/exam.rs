@@ -1,7 +1,9 @@
 //! Examinations of a champion: the same genome in many other conditions than those in which it evolved.
 
+mod stairs_grid;
 mod suites;
 
+pub use stairs_grid::{StairsCell, StairsGrid};
 pub use suites::varied;
 
 use super::{Evaluation, Perturbation, Rollout, Trial};
@@ -79,6 +81,9 @@ pub struct SuiteResult {
 }
 
 impl ExamSuite {
+    /// The suites of the 100 other stairs.
+    pub const OF_STAIRS: [Self; 2] = [Self::Stairs, Self::Lesion];
+
     /// Whether the suite can say anything of a genome: senses that a controller does not use cannot be taken from it.
     pub fn concerns(self, genome: &Genome) -> bool {
         self != Self::Lesion || genome.controller.kind().senses_surroundings()

@@ -18,7 +18,7 @@ mod trial;
 
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
-pub use exam::{ExamCondition, ExamEnd, ExamSuite, SuiteResult, varied};
+pub use exam::{ExamCondition, ExamEnd, ExamSuite, StairsCell, StairsGrid, SuiteResult, varied};
 pub use fitness::{FITNESS_RANGE, Fitness};
 pub use history::KeyframeHistory;
 pub use perturbation::{Perturbation, PerturbationRange};

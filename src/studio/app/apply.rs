@@ -9,7 +9,7 @@ use crate::studio::commands::files::FileCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{
-    Command, LessonCommand, PlanCommand, PlayerCommand, RunCommand, WindowCommand,
+    Command, ExamCommand, LessonCommand, PlanCommand, PlayerCommand, RunCommand, WindowCommand,
 };
 use crate::studio::panels::help::tour::highlighted_panel;
 use crate::studio::scene::view_commands::ViewParams;
@@ -19,6 +19,7 @@ use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::library::Library;
+use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
@@ -37,7 +38,7 @@ pub(super) fn apply(
     mut history: ResMut<UndoHistory>,
     (opening, mut quit): (Res<OpeningChampions>, ResMut<QuitRequest>),
     mut workspace: ResMut<Workspace>,
-    mut lessons: ResMut<Lessons>,
+    (mut lessons, mut exams): (ResMut<Lessons>, ResMut<StairsExams>),
     (mut library, mut files): (ResMut<Library>, ResMut<Files>),
     mut stage: StageParams,
     mut view: ViewParams,
@@ -106,6 +107,13 @@ pub(super) fn apply(
                         stage.apply_to_player(&PlayerCommand::Toggle);
                     }
                 })
+            }
+            Command::Exam(command) => {
+                if *command == ExamCommand::Examine {
+                    workspace.open(PanelKind::Senses);
+                }
+                let show = exams.apply(command, stage.selected().as_ref());
+                show.map(|show| stage.present_others(show, notices))
             }
             // A running batch operation is not in the history yet, and an earlier step would be the wrong one.
             Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),

@@ -48,6 +48,7 @@ fn update(
             let is_what_if = matches!(mode, StageMode::WhatIf { .. });
             let manner = match (lane.staged().is_changed(), lane.staged().recording()) {
                 _ if is_what_if => copies_in_words(&lanes),
+                (true, _) if lane.staged().is_on_stairs_of_exam() => " on other stairs".to_owned(),
                 (true, _) => " in another world".to_owned(),
                 (false, Some(_)) => " as recorded".to_owned(),
                 (false, None) => String::new(),

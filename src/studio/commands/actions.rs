@@ -9,7 +9,8 @@ use super::panel::PanelKind;
 use super::pick::Pick;
 use super::screenshot_area::ScreenshotArea;
 use super::{
-    Command, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand, WindowCommand,
+    Command, ExamCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand,
+    WindowCommand,
 };
 
 /// A menu, and a group in the list of shortcuts.
@@ -166,6 +167,9 @@ pub(crate) const ACTIONS: &[Action] = &[
     }),
     action(Menu::Run, "Race best 10 of the latest generation", &["M"], |_| {
         Some(Command::Stage(StageCommand::RaceLeaders(None)))
+    }),
+    action(Menu::Run, "Examine the snake on 100 unseen staircases", &[], |_| {
+        Some(Command::Exam(ExamCommand::Examine))
     }),
     action(Menu::Edit, "Undo", &["Ctrl Z"], |now| now.can_undo.then_some(Command::Undo)),
     action(Menu::Edit, "Redo", &["Ctrl Shift Z", "Ctrl Y"], |now| {

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use bevy::prelude::*;
 
 use crate::save::library::SavePlace;
+use crate::score::ExamSuite;
 
 use camera_mode::CameraMode;
 use chart_export::ChartExport;
@@ -49,6 +50,8 @@ pub(super) enum Command {
     File(FileCommand),
     /// To the lessons.
     Lesson(LessonCommand),
+    /// To the exams of champions on unseen stairs.
+    Exam(ExamCommand),
     /// Undo the latest change of the next run's plan or of the saves.
     Undo,
     /// Redo the latest undone change.
@@ -249,4 +252,22 @@ pub(super) enum LessonCommand {
     ShowResult,
     /// End the lesson and restore the state from before it.
     Leave,
+}
+
+/// A command to the exam on unseen stairs of the selected snake.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum ExamCommand {
+    /// Begin the exam, in the background.
+    Examine,
+    /// Stop the exam that is under way.
+    Cancel,
+    /// Show the snake on the stairs of a cell of the results.
+    Watch {
+        /// On other stairs, or there without senses.
+        suite: ExamSuite,
+        /// Index of the cell; the first is 0.
+        cell: usize,
+    },
+    /// Show the snake on its own stairs again.
+    BackToOwnStairs,
 }

@@ -10,6 +10,7 @@ pub mod help;
 mod lessons;
 mod library;
 mod on_stage;
+mod own_stairs_button;
 mod player;
 mod run;
 mod senses;
@@ -36,6 +37,7 @@ use super::state::files::Files;
 use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
 use super::state::options::OpenedComparison;
+use super::state::stairs_exams::StairsExams;
 use super::ui::theme;
 use super::ui::viewport::StageArea;
 use super::workspace::Workspace;
@@ -120,6 +122,7 @@ struct PanelData<'w, 's> {
     on_stage: OnStage<'w, 's>,
     theme: Res<'w, theme::Theme>,
     lessons: Res<'w, Lessons>,
+    exams: Res<'w, StairsExams>,
     saves: Res<'w, Library>,
     files: Res<'w, Files>,
 }
@@ -332,7 +335,7 @@ impl Viewer<'_, '_, '_> {
             PanelKind::Senses => {
                 let focused = focused(self.lanes, &self.data.on_stage);
                 let view = SensesView::of(self.lanes, focused, &self.data.on_stage);
-                panels.senses.ui(ui, view.as_ref(), commands);
+                panels.senses.ui(ui, view.as_ref(), &self.data.exams, commands);
             }
             PanelKind::Library => {
                 let history = &self.data.on_stage.history;

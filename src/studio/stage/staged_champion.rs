@@ -51,6 +51,8 @@ struct ChangedWorld {
     /// Description of the difference.
     what_is_other: String,
     beginning: Beginning,
+    /// Whether it is a trial of the champion's exam, and no change that the user tries.
+    is_of_exam: bool,
 }
 
 /// Moment from which a champion is shown in a changed world.
@@ -130,8 +132,21 @@ impl StagedChampion {
     }
 
     fn changed(&self, trial: &Trial, what_is_other: String, beginning: Beginning) -> Self {
-        let world = ChangedWorld { trial: trial.clone(), what_is_other, beginning };
+        let trial = trial.clone();
+        let world = ChangedWorld { trial, what_is_other, beginning, is_of_exam: false };
         Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
+    }
+
+    /// The same champion in a trial of its exam, on other stairs in words.
+    pub fn on_stairs_of_exam(&self, trial: &Trial, stairs: String) -> Self {
+        let (trial, beginning) = (trial.clone(), Beginning::Start);
+        let world = ChangedWorld { trial, what_is_other: stairs, beginning, is_of_exam: true };
+        Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
+    }
+
+    /// Whether it is shown in a trial of its exam.
+    pub fn is_on_stairs_of_exam(&self) -> bool {
+        matches!(&self.shown_as, ShownAs::Changed(world) if world.is_of_exam)
     }
 
     /// The same champion in the same world from the start.
@@ -296,6 +311,9 @@ impl StagedChampion {
             (ShownAs::Changed(world), _) => {
                 let (what, score) = (&world.what_is_other, self.champion.score());
                 return match self.beginning_in_words() {
+                    _ if world.is_of_exam => {
+                        format!("{name} on other stairs: {what} (on its own: {score})")
+                    }
                     Some(beginning) => format!("What if: {what}, {beginning} ({name})"),
                     None => format!("{name}, tried with {what} (originally {score})"),
                 };

@@ -12,6 +12,7 @@ pub mod new_file;
 pub mod options;
 pub mod plan_commands;
 pub mod run_context;
+pub mod stairs_exams;
 mod stopped_run;
 pub mod sweep;
 pub mod undo;
@@ -32,5 +33,6 @@ pub(super) fn plugin(app: &mut App) {
         library::plugin,
         files::plugin,
         lessons::plugin,
+        stairs_exams::plugin,
     ));
 }

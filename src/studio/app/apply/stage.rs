@@ -51,6 +51,14 @@ impl StageParams<'_, '_> {
         champions
     }
 
+    /// The champion of the selected lane, or else of the first one.
+    pub fn selected(&self) -> Option<StagedChampion> {
+        let lanes = || self.lanes.iter();
+        let selected = lanes().find(|lane| lane.number() == self.selection.lane);
+        let lane = selected.or_else(|| lanes().min_by_key(|lane| lane.number()));
+        lane.map(|lane| lane.staged().clone())
+    }
+
     /// The champions on the stage and their mode.
     pub fn on_show(&self) -> Show {
         Show { champions: self.champions(), mode: self.mode.clone() }

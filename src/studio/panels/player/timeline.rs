@@ -5,6 +5,7 @@ use bevy_egui::egui;
 use super::torque_strip::TorqueStrip;
 use crate::score::Fitness;
 use crate::studio::commands::{Command, PlayerCommand, StageCommand};
+use crate::studio::panels::own_stairs_button::own_stairs_button;
 use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::{Playback, SPEED_RANGE};
@@ -96,6 +97,7 @@ impl TimelinePanel {
                         commands.push(Command::Stage(StageCommand::Simulate));
                     }
                 }
+                own_stairs_button(ui, staged, commands);
                 if lane.is_disturbed() {
                     let hint = "You pulled this snake, so its result does not count. Go back in time to undo it";
                     let text = egui::RichText::new("pulled with the mouse, not counted").color(theme::of(ui).problem);

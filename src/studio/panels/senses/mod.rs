@@ -4,6 +4,7 @@
 //! the World panel, so a copy without them walks beside the snake.
 
 mod decision_view;
+mod exam;
 mod limb_view;
 mod network_graph;
 mod readouts;
@@ -20,11 +21,13 @@ use crate::genome::ControllerKind;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
+use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 
+use exam::exam;
 use readouts::readouts;
 
 /// The panel with its choices.
@@ -83,6 +86,7 @@ impl SensesPanel {
         &mut self,
         ui: &mut egui::Ui,
         view: Option<&SensesView>,
+        exams: &StairsExams,
         commands: &mut Vec<Command>,
     ) {
         title(ui, "Senses");
@@ -94,13 +98,16 @@ impl SensesPanel {
         if !view.kind().senses_surroundings() {
             explain(ui, unsensing(view.kind()));
             explain(ui, &sensing_controllers());
+            exam(ui, view.lane, exams, commands);
             return;
         }
         let Some(rollout) = view.lane.rollout() else {
             explain(ui, "A recording contains poses, but no senses.");
+            exam(ui, view.lane, exams, commands);
             return;
         };
         switches(ui, view, commands);
+        exam(ui, view.lane, exams, commands);
         if rollout.perception().limbs.is_empty() {
             explain(
                 ui,

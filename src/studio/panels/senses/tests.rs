@@ -42,7 +42,7 @@ fn panel(lane: &Lane, limb: usize) -> Harness<'_, Vec<Command>> {
                 others: Vec::new(),
                 switched: lane.trial().agent.senses,
             };
-            panel.ui(ui, Some(&view), commands);
+            panel.ui(ui, Some(&view), &StairsExams::default(), commands);
         },
         Vec::new(),
     );

@@ -366,5 +366,11 @@ pub fn ramp(share: f32) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
+/// Colour of text on a colour of the [`ramp`]: dark or light, whichever is easier to read.
+pub fn text_on(ground: Color32) -> Color32 {
+    let texts = [Color32::BLACK, Color32::WHITE];
+    if contrast(texts[0], ground) > contrast(texts[1], ground) { texts[0] } else { texts[1] }
+}
+
 #[cfg(test)]
 mod tests;

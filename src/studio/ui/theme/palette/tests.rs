@@ -35,6 +35,15 @@ fn text_is_readable_in_both_themes() {
 }
 
 #[test]
+fn text_is_readable_on_every_colour_of_the_ramp() {
+    for step in 0..=100 {
+        let ground = ramp(step as f32 / 100.0);
+        let found = contrast(text_on(ground), ground);
+        assert!(found >= READABLE, "at {step} %: {found:.2}");
+    }
+}
+
+#[test]
 fn charts_in_the_light_theme_match_their_exported_pictures() {
     for role in [Role::First, Role::Second, Role::Third, Role::Others, Role::Bend, Role::Twist] {
         let [red, green, blue] = role_color(role);

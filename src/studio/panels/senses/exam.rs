@@ -1,0 +1,114 @@
+//! The exam on unseen stairs, by rise and tread: with senses and, beside it, without them. A click watches a cell.
+
+mod stairs_map;
+
+use bevy_egui::egui;
+
+use super::super::own_stairs_button::own_stairs_button;
+use crate::score::{ExamSuite, StairsGrid};
+use crate::studio::commands::{Command, ExamCommand};
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::state::stairs_exams::{StairsExams, no_exam_because};
+use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::theme;
+
+use stairs_map::{MapPlace, StairsMap, legend};
+
+/// Draws the section for the snake of a lane.
+pub(super) fn exam(
+    ui: &mut egui::Ui,
+    lane: &Lane,
+    exams: &StairsExams,
+    commands: &mut Vec<Command>,
+) {
+    ui.add_space(theme::GAP / 2.0);
+    let name = egui::RichText::new("Exam on unseen stairs").size(theme::TITLE_SIZE).strong();
+    let header = egui::CollapsingHeader::new(name).id_salt("exam").default_open(true);
+    let shown = header.show_unindented(ui, |ui| {
+        let staged = lane.staged();
+        match exams.of(staged.champion()) {
+            Some(grids) => results(ui, staged, grids, commands),
+            None => invitation(ui, staged, exams, commands),
+        }
+        progress(ui, exams, commands);
+    });
+    let hint = "How often the snake lands on 100 staircases on which it did not evolve";
+    shown.header_response.on_hover_text(hint);
+}
+
+/// Draws what the exam is, and the button that begins it.
+fn invitation(
+    ui: &mut egui::Ui,
+    staged: &StagedChampion,
+    exams: &StairsExams,
+    commands: &mut Vec<Command>,
+) {
+    if let Some(reason) = no_exam_because(staged) {
+        return explain(ui, &reason);
+    }
+    if exams.progress().is_some() {
+        return;
+    }
+    let senses = staged.champion().genome.controller.kind().senses_surroundings();
+    let again = if senses { ", with its senses and without them" } else { "" };
+    explain(
+        ui,
+        &format!(
+            "Can it climb other stairs than its own? Five rises, four treads, five starts{again}."
+        ),
+    );
+    let hint = "Simulates 30 s on each staircase, in the background: about half a minute";
+    if ui.button("Examine on 100 staircases").on_hover_text(hint).clicked() {
+        commands.push(Command::Exam(ExamCommand::Examine));
+    }
+}
+
+/// Draws the progress of the exam that is under way, of whichever snake, and a button that cancels it.
+fn progress(ui: &mut egui::Ui, exams: &StairsExams, commands: &mut Vec<Command>) {
+    let Some(progress) = exams.progress() else { return };
+    explain(ui, &format!("Examining {}", progress.name));
+    ui.horizontal(|ui| {
+        if ui.button("Cancel").on_hover_text("Stop the exam").clicked() {
+            commands.push(Command::Exam(ExamCommand::Cancel));
+        }
+        let share = progress.done as f32 / progress.trials.max(1) as f32;
+        let words = format!("{} of {} trials", progress.done, progress.trials);
+        ui.add(egui::ProgressBar::new(share).text(words).fill(theme::of(ui).accent_soft));
+    });
+}
+
+/// Draws the grids side by side, with one axis of the rises.
+fn results(
+    ui: &mut egui::Ui,
+    staged: &StagedChampion,
+    grids: &[StairsGrid],
+    commands: &mut Vec<Command>,
+) {
+    let Some(first) = grids.first() else { return };
+    let places = MapPlace::side_by_side(ui, grids);
+    for (grid, place) in grids.iter().zip(places) {
+        let map = StairsMap { grid, title: title_of(grid, grids.len()), staged, place };
+        if let Some(cell) = map.ui(ui) {
+            commands.push(Command::Exam(ExamCommand::Watch { suite: grid.suite, cell }));
+        }
+    }
+    legend(ui, first, &staged.champion().trial);
+    if staged.is_on_stairs_of_exam() {
+        own_stairs_button(ui, staged, commands);
+    } else {
+        explain(ui, "Click a cell to watch the snake on those stairs.");
+    }
+}
+
+/// What stands above a grid, in few words.
+fn title_of(grid: &StairsGrid, grids: usize) -> &'static str {
+    match grid.suite {
+        ExamSuite::Lesion => "Without senses",
+        _ if grids > 1 => "With senses",
+        _ => "On other stairs",
+    }
+}
+
+#[cfg(test)]
+mod tests;

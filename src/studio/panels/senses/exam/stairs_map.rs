@@ -1,0 +1,232 @@
+//! A grid of an exam as a map: rises upwards, treads to the right, in each cell the number of landings and its colour.
+
+use bevy_egui::egui;
+use bevy_egui::egui::Color32;
+
+use crate::score::{ExamSuite, StairsCell, StairsGrid, Trial};
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::state::stairs_exams::end_in_words;
+use crate::studio::ui::theme;
+use crate::studio::ui::theme::palette::{ramp, text_on};
+
+/// A map and where it is drawn.
+pub(super) struct StairsMap<'m> {
+    pub grid: &'m StairsGrid,
+    /// What stands above it.
+    pub title: &'m str,
+    /// The examined snake, as the stage shows it.
+    pub staged: &'m StagedChampion,
+    pub place: MapPlace,
+}
+
+/// Where a map is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MapPlace {
+    /// The cells.
+    cells: egui::Rect,
+    /// Whether the rises stand at its left.
+    has_rises: bool,
+}
+
+/// Width of the labels of the rises, in points.
+const RISES_WIDTH: f32 = theme::GAP * 6.0;
+/// Height of a cell and greatest width, in points.
+const CELL_HEIGHT: f32 = theme::GAP * 3.0;
+const MOST_CELL_WIDTH: f32 = theme::GAP * 8.0;
+/// Height of a line of text, in points.
+const LINE: f32 = theme::GAP * 2.25;
+/// Distance of two maps, in points.
+const APART: f32 = theme::GAP * 1.5;
+/// Radius of the dot that marks the snake's own stairs, in points.
+const DOT: f32 = 2.5;
+/// Size of a sample in the legend, in points.
+const SAMPLE: egui::Vec2 = egui::vec2(theme::GAP * 2.5, theme::GAP * 2.0);
+
+impl MapPlace {
+    /// Places for grids of the same stairs side by side.
+    pub fn side_by_side(ui: &mut egui::Ui, grids: &[StairsGrid]) -> Vec<Self> {
+        let columns: usize = grids.iter().map(|grid| grid.treads_m.len()).sum();
+        let rows = grids.iter().map(|grid| grid.rises_m.len()).max().unwrap_or(0);
+        let gaps = APART * grids.len().saturating_sub(1) as f32;
+        let room = ui.available_width() - RISES_WIDTH - gaps;
+        let width = (room / columns.max(1) as f32).min(MOST_CELL_WIDTH);
+        // Above, the title and the count; below, the treads and their name.
+        let height = CELL_HEIGHT * rows as f32 + 4.0 * LINE;
+        let all = egui::vec2(ui.available_width(), height);
+        let (all, _) = ui.allocate_exact_size(all, egui::Sense::hover());
+        let mut left = all.left() + RISES_WIDTH;
+        let place = |(index, grid): (usize, &StairsGrid)| {
+            let at = egui::pos2(left, all.top() + 2.0 * LINE);
+            let size = egui::vec2(width * grid.treads_m.len() as f32, CELL_HEIGHT * rows as f32);
+            left += size.x + APART;
+            Self { cells: egui::Rect::from_min_size(at, size), has_rises: index == 0 }
+        };
+        grids.iter().enumerate().map(place).collect()
+    }
+
+    /// The rectangle of the cell in a row, from the bottom, and a column, from the left.
+    fn cell(&self, grid: &StairsGrid, row: usize, column: usize) -> egui::Rect {
+        let (rows, columns) = (grid.rises_m.len() as f32, grid.treads_m.len() as f32);
+        let size = self.cells.size() / egui::vec2(columns, rows);
+        let corner = egui::vec2(column as f32 * size.x, (rows - 1.0 - row as f32) * size.y);
+        egui::Rect::from_min_size(self.cells.min + corner, size).shrink(0.5)
+    }
+}
+
+impl StairsMap<'_> {
+    /// Draws the map; returns the index of the cell that is clicked.
+    pub fn ui(&self, ui: &mut egui::Ui) -> Option<usize> {
+        self.labels(ui);
+        let mut clicked = None;
+        let mut outlines = Vec::new();
+        for (index, cell) in self.grid.cells.iter().enumerate() {
+            let same = |values: &[f32], value: f32| values.iter().position(|of| *of == value);
+            let row = same(&self.grid.rises_m, cell.rise_m);
+            let Some((row, column)) = row.zip(same(&self.grid.treads_m, cell.tread_m)) else {
+                continue;
+            };
+            let rect = self.place.cell(self.grid, row, column);
+            let id = ui.id().with(("exam", self.title, index));
+            let response = ui.interact(rect, id, egui::Sense::click());
+            self.draw(ui, cell, rect);
+            let palette = theme::of(ui);
+            if self.staged.is_on_stairs_of_exam() && cell.typical == *self.staged.trial() {
+                outlines.push((rect, palette.accent));
+            } else if response.hovered() || response.has_focus() {
+                outlines.push((rect, palette.text));
+            }
+            let said = format!("{}. {}", self.title, said(cell));
+            response
+                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &said));
+            if response.clicked() {
+                clicked = Some(index);
+            }
+            response.on_hover_text(self.hover_text(cell));
+        }
+        // Over the neighbouring cells.
+        for (rect, color) in outlines {
+            let stroke = egui::Stroke::new(2.0, color);
+            ui.painter().rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
+        }
+        clicked
+    }
+
+    /// Draws title, count and axes.
+    fn labels(&self, ui: &egui::Ui) {
+        let palette = theme::of(ui);
+        let cells = self.place.cells;
+        let body = egui::TextStyle::Body.resolve(ui.style());
+        let small = egui::FontId::proportional(theme::SMALL_SIZE);
+        let text =
+            |at: egui::Pos2, align: egui::Align2, text: String, font: &egui::FontId, color| {
+                ui.painter().text(at, align, text, font.clone(), color);
+            };
+        let top = cells.top() - 2.0 * LINE;
+        let left = egui::Align2::LEFT_TOP;
+        text(egui::pos2(cells.left(), top), left, self.title.to_owned(), &body, palette.text);
+        let count = format!("{} of {} landed", self.grid.landed(), self.grid.trials());
+        let at = egui::pos2(cells.left(), cells.top() - theme::GAP / 2.0);
+        text(at, egui::Align2::LEFT_BOTTOM, count, &small, palette.text_weak);
+        for (column, tread_m) in self.grid.treads_m.iter().enumerate() {
+            let at = self.place.cell(self.grid, 0, column).center_bottom();
+            let at = at + egui::vec2(0.0, theme::GAP / 4.0);
+            text(at, egui::Align2::CENTER_TOP, tread_m.to_string(), &small, palette.text_weak);
+        }
+        let at = egui::pos2(cells.center().x, cells.bottom() + LINE - theme::GAP / 4.0);
+        text(at, egui::Align2::CENTER_TOP, "Tread (m)".to_owned(), &small, palette.text_weak);
+        if !self.place.has_rises {
+            return;
+        }
+        let right = cells.left() - theme::GAP / 2.0;
+        for (row, rise_m) in self.grid.rises_m.iter().enumerate() {
+            let at = egui::pos2(right, self.place.cell(self.grid, row, 0).center().y);
+            text(at, egui::Align2::RIGHT_CENTER, rise_m.to_string(), &small, palette.text_weak);
+        }
+        let at = egui::pos2(right, cells.top() - theme::GAP / 2.0);
+        text(at, egui::Align2::RIGHT_BOTTOM, "Rise (m)".to_owned(), &small, palette.text_weak);
+    }
+
+    /// Draws a cell with its number.
+    fn draw(&self, ui: &egui::Ui, cell: &StairsCell, rect: egui::Rect) {
+        let fill = fill(cell.landed, cell.trials);
+        ui.painter().rect_filled(rect, 2.0, fill);
+        let text = format!("{}/{}", cell.landed, cell.trials);
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, font, text_on(fill));
+        if is_own(cell, &self.staged.champion().trial) {
+            let at = rect.right_top() + egui::vec2(-DOT - 2.0, DOT + 2.0);
+            ui.painter().circle_filled(at, DOT, text_on(fill));
+        }
+    }
+
+    /// What the pointer reads on a cell.
+    fn hover_text(&self, cell: &StairsCell) -> String {
+        let frozen = match self.grid.suite {
+            ExamSuite::Lesion => "Sight, touch and balance keep the values of the snake at rest.\n",
+            _ => "",
+        };
+        let own = self.staged.champion().trial.stairs.first_riser_y_m;
+        let further_m = cell.typical.stairs.first_riser_y_m - own;
+        let place = match further_m.abs() < 0.05 {
+            true => "as far away as on its own".to_owned(),
+            false if further_m > 0.0 => format!("{further_m:.1} m farther away than on its own"),
+            false => format!("{:.1} m nearer than on its own", -further_m),
+        };
+        format!(
+            "{}\n{frozen}Click to watch the most typical of the {}: with the first step {place}, the snake {}.",
+            said(cell),
+            cell.trials,
+            end_in_words(&cell.typical_end)
+        )
+    }
+}
+
+/// A cell in a sentence.
+fn said(cell: &StairsCell) -> String {
+    let StairsCell { rise_m, tread_m, trials, landed, median_steps, typical, .. } = cell;
+    format!(
+        "Rise {rise_m} m, tread {tread_m} m: {landed} of {trials} landed, median {median_steps} of {} steps",
+        typical.stairs.steps
+    )
+}
+
+/// Colour of a number of landings.
+fn fill(landed: u32, trials: u32) -> Color32 {
+    ramp(landed as f32 / trials.max(1) as f32)
+}
+
+/// Whether the stairs on which a champion evolved have the rise and the tread of a cell.
+fn is_own(cell: &StairsCell, own: &Trial) -> bool {
+    let is_rise = |step| (own.stairs.step_rise_m(step) - cell.rise_m).abs() < 1.0e-4;
+    (0..own.stairs.steps).all(is_rise) && (own.stairs.tread_m - cell.tread_m).abs() < 1.0e-4
+}
+
+/// Draws what the colours and the dot mean.
+pub(super) fn legend(ui: &mut egui::Ui, grid: &StairsGrid, own: &Trial) {
+    let trials = grid.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
+    let color = theme::of(ui).text_weak;
+    let small = |text: String| egui::RichText::new(text).small().color(color);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(theme::GAP / 2.0, theme::GAP / 2.0);
+        ui.label(small("Landed".to_owned()));
+        let gap = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
+        let font = egui::FontId::proportional(theme::SMALL_SIZE);
+        for landed in 0..=trials {
+            let (rect, _) = ui.allocate_exact_size(SAMPLE, egui::Sense::hover());
+            let fill = fill(landed, trials);
+            ui.painter().rect_filled(rect, 0.0, fill);
+            let (at, align) = (rect.center(), egui::Align2::CENTER_CENTER);
+            ui.painter().text(at, align, landed.to_string(), font.clone(), text_on(fill));
+        }
+        ui.spacing_mut().item_spacing.x = gap;
+        ui.add_space(gap);
+        ui.label(small(format!("of {trials}")));
+        if grid.cells.iter().any(|cell| is_own(cell, own)) {
+            ui.add_space(theme::GAP);
+            let size = egui::vec2(DOT * 2.0, SAMPLE.y);
+            let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+            ui.painter().circle_filled(rect.center(), DOT, color);
+            ui.add(egui::Label::new(small("its own rise and tread".to_owned())).extend());
+        }
+    });
+}

@@ -1,0 +1,231 @@
+//! Exams of champions on unseen stairs, simulated in the background, one at a time. The results of the latest ones stay.
+//!
+//! An exam belongs to a genome and its own trial, wherever and however the champion is shown.
+
+use std::sync::Arc;
+
+use bevy::prelude::*;
+
+use crate::evolve::Champion;
+use crate::run::exam::{examine_on_stairs, stairs_trials};
+use crate::run::{BackgroundTask, Cancelled, LocalPool, RunControl, available_cores};
+use crate::score::{ExamEnd, ExamSuite, StairsCell, StairsGrid};
+use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::{Command, ExamCommand, WindowCommand};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::Show;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::ui::notifications::Notices;
+
+/// The exams of this session.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct StairsExams {
+    /// Finished exams, the latest last.
+    finished: Vec<FinishedExam>,
+    under_way: Option<ExamUnderWay>,
+}
+
+#[derive(Debug)]
+struct FinishedExam {
+    champion: Champion,
+    grids: Vec<StairsGrid>,
+}
+
+/// An exam that is being simulated. Dropping this cancels it.
+#[derive(Debug)]
+struct ExamUnderWay {
+    champion: Champion,
+    name: String,
+    trials: u32,
+    control: Arc<RunControl>,
+    work: BackgroundTask<Result<Vec<StairsGrid>, Cancelled>>,
+}
+
+/// Progress of an exam.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ExamProgress {
+    /// Name of the champion.
+    pub name: String,
+    /// Number of finished trials.
+    pub done: u32,
+    /// Number of trials.
+    pub trials: u32,
+}
+
+/// Number of champions whose exams are kept.
+const MOST_KEPT: usize = 8;
+/// Notices about an exam replace each other.
+const SUBJECT: &str = "exam on stairs";
+
+impl Drop for ExamUnderWay {
+    fn drop(&mut self) {
+        self.control.cancel();
+    }
+}
+
+impl StairsExams {
+    /// Executes a command that concerns the selected champion of the stage, and returns what the stage shows then.
+    ///
+    /// # Errors
+    /// The command cannot be executed, with the reason.
+    pub fn apply(
+        &mut self,
+        command: &ExamCommand,
+        selected: Option<&StagedChampion>,
+    ) -> Result<Option<Show>, String> {
+        let selected = selected.ok_or("There is no snake on the stage.");
+        match command {
+            ExamCommand::Examine => self.examine(selected?)?,
+            ExamCommand::Cancel => {
+                if let Some(under_way) = &self.under_way {
+                    under_way.control.cancel();
+                }
+            }
+            ExamCommand::Watch { suite, cell } => {
+                let selected = selected?;
+                let cell =
+                    self.grid(selected.champion(), *suite).and_then(|of| of.cells.get(*cell));
+                // The selection may have changed since the click; then do nothing.
+                return Ok(cell.map(|cell| {
+                    Show::solo(
+                        selected.on_stairs_of_exam(&cell.typical, stairs_in_words(*suite, cell)),
+                    )
+                }));
+            }
+            ExamCommand::BackToOwnStairs => return Ok(Some(Show::solo(selected?.as_found()))),
+        }
+        Ok(None)
+    }
+
+    /// Begins to examine a champion.
+    fn examine(&mut self, staged: &StagedChampion) -> Result<(), String> {
+        if self.under_way.is_some() {
+            return Err("An exam is in progress: wait for it, or cancel it.".to_owned());
+        }
+        if let Some(reason) = no_exam_because(staged) {
+            return Err(reason);
+        }
+        let champion = staged.champion().clone();
+        if self.of(&champion).is_some() {
+            return Ok(());
+        }
+        let failed = |error: &dyn std::fmt::Display| format!("The exam could not start: {error}.");
+        // The run keeps at least half of the processor.
+        let pool = LocalPool::new(available_cores().div_ceil(2)).map_err(|error| failed(&error))?;
+        let control = Arc::new(RunControl::default());
+        let (examined, shared) = (champion.clone(), Arc::clone(&control));
+        let work = BackgroundTask::start(move || examine_on_stairs(&examined, &pool, &shared));
+        let work = work.map_err(|error| failed(&error))?;
+        let (name, trials) = (staged.name().to_owned(), stairs_trials(&champion));
+        self.under_way = Some(ExamUnderWay { champion, name, trials, control, work });
+        Ok(())
+    }
+
+    /// The finished exam of a champion: on other stairs and, if it senses, there without senses.
+    pub fn of(&self, champion: &Champion) -> Option<&[StairsGrid]> {
+        let mut finished = self.finished.iter();
+        finished.find(|exam| is_same(&exam.champion, champion)).map(|exam| exam.grids.as_slice())
+    }
+
+    fn grid(&self, champion: &Champion, suite: ExamSuite) -> Option<&StairsGrid> {
+        self.of(champion)?.iter().find(|grid| grid.suite == suite)
+    }
+
+    /// The progress of the exam that is under way.
+    pub fn progress(&self) -> Option<ExamProgress> {
+        self.under_way.as_ref().map(|exam| ExamProgress {
+            name: exam.name.clone(),
+            done: exam.control.done().min(exam.trials),
+            trials: exam.trials,
+        })
+    }
+
+    /// Takes over the result of an exam that has ended.
+    fn take_in(&mut self, notices: &mut Notices) {
+        let Some(result) = self.under_way.as_ref().and_then(|exam| exam.work.poll()) else {
+            return;
+        };
+        let Some(ended) = self.under_way.take() else { return };
+        match result {
+            Ok(Ok(grids)) => {
+                let text = format!("Exam of {}: {}", ended.name, result_in_words(&grids));
+                let open = Command::Window(WindowCommand::OpenPanel(PanelKind::Senses));
+                notices.offer(SUBJECT, text, [("Show the exam", open)]);
+                self.keep(ended.champion.clone(), grids);
+            }
+            Ok(Err(Cancelled)) => {
+                notices.update(SUBJECT, "The exam was cancelled.".to_owned());
+            }
+            Err(problem) => notices.problem(format!("The exam ended with an error: {problem}")),
+        }
+    }
+
+    /// Keeps a finished exam in the place of the oldest one.
+    pub(in crate::studio) fn keep(&mut self, champion: Champion, grids: Vec<StairsGrid>) {
+        self.finished.push(FinishedExam { champion, grids });
+        let too_many = self.finished.len().saturating_sub(MOST_KEPT);
+        self.finished.drain(..too_many);
+    }
+}
+
+/// Why a champion cannot be examined, if it cannot, in a sentence.
+pub(crate) fn no_exam_because(staged: &StagedChampion) -> Option<String> {
+    if let Some(engine) = staged.other_engine() {
+        return Some(format!(
+            "There is no exam of a snake of engine {engine}: it moves differently here."
+        ));
+    }
+    let has_stairs = staged.champion().trial.stairs.steps > 0;
+    (!has_stairs).then(|| "There is no exam in a world without stairs.".to_owned())
+}
+
+/// The results of an exam in a sentence.
+pub(crate) fn result_in_words(grids: &[StairsGrid]) -> String {
+    let count = |suite| {
+        let grid = grids.iter().find(|grid| grid.suite == suite)?;
+        Some((grid.landed(), grid.trials()))
+    };
+    let (landed, trials) = count(ExamSuite::Stairs).unwrap_or_default();
+    match count(ExamSuite::Lesion) {
+        None => format!("it lands on {landed} of {trials} staircases."),
+        Some((without, _)) => {
+            format!(
+                "it lands on {landed} of {trials} staircases; without its senses, on {without}."
+            )
+        }
+    }
+}
+
+/// How a trial of the exam ended, in a few words.
+pub(crate) fn end_in_words(end: &ExamEnd) -> String {
+    match (end.landed_s, end.steps) {
+        _ if end.is_disqualified => "is disqualified".to_owned(),
+        (Some(landed_s), _) if end.has_landed => format!("lands after {landed_s:.1} s"),
+        (Some(landed_s), _) => format!("lands after {landed_s:.1} s, but does not stay"),
+        (None, 0) => "climbs no step".to_owned(),
+        (None, steps) => format!("ends on step {steps}"),
+    }
+}
+
+/// The stairs of a cell: "rise 0.6 m, tread 1.5 m".
+fn stairs_in_words(suite: ExamSuite, cell: &StairsCell) -> String {
+    let StairsCell { rise_m, tread_m, .. } = cell;
+    let frozen = if suite == ExamSuite::Lesion { ", without its senses" } else { "" };
+    format!("rise {rise_m} m, tread {tread_m} m{frozen}")
+}
+
+/// Whether two champions behave alike in all trials.
+fn is_same(one: &Champion, other: &Champion) -> bool {
+    one.genome == other.genome && one.trial == other.trial
+}
+
+fn take_in(mut exams: ResMut<StairsExams>, mut notices: ResMut<Notices>) {
+    exams.take_in(&mut notices);
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<StairsExams>().add_systems(Update, take_in.in_set(FrameSet::TakeIn));
+}
+
+#[cfg(test)]
+mod tests;

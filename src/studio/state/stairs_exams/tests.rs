@@ -1,0 +1,110 @@
+//! Exams as the user begins, cancels and watches them.
+
+use super::*;
+use crate::save::shipped_champion;
+use crate::score::Trial;
+use crate::studio::stage::StageMode;
+
+/// The built-in champion.
+fn staged() -> StagedChampion {
+    StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
+}
+
+/// A made-up exam in which no snake lands.
+fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
+    let conditions = suite.conditions(own);
+    let end =
+        ExamEnd { steps: 2, way: 0.2, landed_s: None, has_landed: false, is_disqualified: false };
+    StairsGrid::of(suite, own, &conditions, &vec![end; conditions.len()])
+}
+
+#[test]
+fn an_exam_shows_its_progress_and_can_be_cancelled() {
+    let (mut exams, mut notices) = (StairsExams::default(), Notices::default());
+    let staged = staged();
+    assert!(exams.apply(&ExamCommand::Examine, Some(&staged)).expect("begun").is_none());
+    let progress = exams.progress().expect("under way");
+    assert_eq!((progress.name.as_str(), progress.trials), ("climber", 100));
+    let refused = exams.apply(&ExamCommand::Examine, Some(&staged)).expect_err("in progress");
+    assert!(refused.contains("in progress"), "{refused}");
+    assert!(exams.apply(&ExamCommand::Cancel, Some(&staged)).expect("allowed").is_none());
+    while exams.progress().is_some() {
+        exams.take_in(&mut notices);
+    }
+    assert_eq!(notices.last(), Some("The exam was cancelled."));
+    assert!(exams.of(staged.champion()).is_none());
+}
+
+#[test]
+fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
+    let mut exams = StairsExams::default();
+    let staged = staged();
+    let own = &staged.champion().trial;
+    exams.keep(staged.champion().clone(), vec![made_up(ExamSuite::Stairs, own)]);
+    // The fourth rise and the first tread.
+    let watch = ExamCommand::Watch { suite: ExamSuite::Stairs, cell: 12 };
+    let show = exams.apply(&watch, Some(&staged)).expect("allowed").expect("examined");
+    let [there] = show.champions.as_slice() else { panic!("a single lane") };
+    assert_eq!(show.mode, StageMode::Solo);
+    assert_eq!((there.trial().stairs.step_rise_m(0), there.trial().stairs.tread_m), (0.6, 1.5));
+    there.check().expect("it can be shown");
+    assert!(there.is_on_stairs_of_exam() && !there.must_match_record());
+    let score = staged.champion().score();
+    assert_eq!(
+        there.caption(),
+        format!("climber on other stairs: rise 0.6 m, tread 1.5 m (on its own: {score})")
+    );
+    assert!(exams.of(there.champion()).is_some(), "the exam is still that of the champion");
+    let back = exams.apply(&ExamCommand::BackToOwnStairs, Some(there)).expect("allowed");
+    assert_eq!(back.expect("the champion").champions, [staged.clone()]);
+    let without = ExamCommand::Watch { suite: ExamSuite::Lesion, cell: 12 };
+    let none = exams.apply(&without, Some(&staged)).expect("allowed");
+    assert!(none.is_none(), "there is no such exam");
+}
+
+#[test]
+fn only_the_latest_exams_are_kept() {
+    let mut exams = StairsExams::default();
+    let staged = staged();
+    let champion = |duration_s| {
+        let mut champion = staged.champion().clone();
+        champion.trial.duration_s = duration_s;
+        champion
+    };
+    for number in 0..=MOST_KEPT {
+        exams.keep(champion(number as f32 + 1.0), Vec::new());
+    }
+    assert!(exams.of(&champion(1.0)).is_none(), "the oldest");
+    assert!(exams.of(&champion(2.0)).is_some() && exams.of(&champion(9.0)).is_some());
+}
+
+#[test]
+fn a_champion_without_stairs_or_of_another_engine_is_refused() {
+    let mut loaded = shipped_champion().expect("well formed");
+    loaded.champion.trial.stairs.steps = 0;
+    let flat = StagedChampion::from_file(&loaded, 0, "flat");
+    let mut exams = StairsExams::default();
+    let refused = exams.apply(&ExamCommand::Examine, Some(&flat)).expect_err("no stairs");
+    assert!(refused.contains("without stairs"), "{refused}");
+    assert!(exams.apply(&ExamCommand::Examine, None).is_err(), "nothing is on the stage");
+    loaded.engine = crate::Engine { version: 1, ..crate::Engine::THIS };
+    let other = StagedChampion::from_file(&loaded, 0, "old");
+    assert!(no_exam_because(&other).expect("refused").contains("engine 1"));
+}
+
+#[test]
+fn an_end_is_said_in_a_few_words() {
+    let end = |steps, landed_s, has_landed| ExamEnd {
+        steps,
+        way: 0.0,
+        landed_s,
+        has_landed,
+        is_disqualified: false,
+    };
+    assert_eq!(end_in_words(&end(10, Some(12.34), true)), "lands after 12.3 s");
+    assert_eq!(end_in_words(&end(9, Some(12.34), false)), "lands after 12.3 s, but does not stay");
+    assert_eq!(end_in_words(&end(3, None, false)), "ends on step 3");
+    assert_eq!(end_in_words(&end(0, None, false)), "climbs no step");
+    let out = ExamEnd { is_disqualified: true, ..end(0, None, false) };
+    assert_eq!(end_in_words(&out), "is disqualified");
+}
