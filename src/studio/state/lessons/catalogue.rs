@@ -1,4 +1,7 @@
-//! Texts and scenes of the five lessons. Tests in [`super`] check that the conclusions are true.
+//! Texts and scenes of the lessons. Tests in [`super`] check that the conclusions are true.
+
+mod report;
+mod senses;
 
 use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::save::library::{SavePlace, load_entry};
@@ -129,202 +132,14 @@ pub(crate) const FITNESS_OF_THE_LANDED: &str = "Fitness is the distance, but it 
     whole snake is on the landing.";
 
 /// All lessons. Only findings and conclusions may state a result: the other texts are read before the experiments.
-pub(crate) const LESSONS: [Lesson; 5] = [
-    Lesson {
-        title: "Friction: how much?",
-        question: "How much grip do stairs need?",
-        story: "In the original experiment, the surface was tuned by eye, which took a long time. The stage shows \
-                the same snake on a surface like ice, on its own surface and on a surface like glue.",
-        to_try: "Guess which snake gets furthest, then watch the race. Afterwards select the original, go back to \
-                 the start, open the World panel and drag Friction: a copy of the snake starts beside it with the new value.",
-        look_for: "How far each snake gets. The genome is the same in all lanes; only the surface differs.",
-        conclusion: "A snake that evolved on one surface is fit for that surface and tolerates some change, but not \
-                     any. The World panel lets you set every property of a surface as a number and \
-                     see its effect at once.",
-        scenes: &[
-            LessonScene::Lanes {
-                label: "Ice, original, glue",
-                champion: "robust",
-                question: Some(furthest(
-                    "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
-                     holds the others back.",
-                )),
-                lanes: &[
-                    lane("friction 0.1", &[("surface.friction", "0.1")]),
-                    lane("original", &[]),
-                    lane("friction 5", &[("surface.friction", "5")]),
-                ],
-            },
-            LessonScene::Lanes {
-                label: "A little less, a little more",
-                champion: "robust",
-                question: Some(furthest(
-                    "With 0.3 less or more, the snake ends nearer, but still reaches the landing.",
-                )),
-                lanes: &[
-                    lane("friction 0.7", &[("surface.friction", "0.7")]),
-                    lane("original", &[]),
-                    lane("friction 1.3", &[("surface.friction", "1.3")]),
-                ],
-            },
-        ],
-        worksheet: include_str!("../../../../docs/worksheets/1.md"),
-    },
-    Lesson {
-        title: "Frame rate and physics steps",
-        question: "Why did the best snake climb on one computer and fall on another?",
-        story: "In the original experiment, forces were applied once per drawn frame. Moving the window slowed the \
-                drawing, and therefore the snake. The stage shows the same genome with its own number of physics \
-                steps per second, 60, and with two and four times as many.",
-        to_try: "Watch the race. Then show one snake alone and play it to its end at two or more speeds, for \
-                 example × 1 and × 4 (the field with × below the stage). You can also turn on everything in Show to \
-                 slow the drawing.",
-        look_for: "In the race, where each snake ends. At each playback speed, all digits of the end position, and \
-                   the hash of the motion: sixteen characters (0 to 9 and a to f) that summarise every bit of each \
-                   block's position after every physics step.",
-        conclusion: "Here every physics step has the same length, and drawing does not affect the simulation. A slow \
-                     computer shows fewer frames of the same climb. Some snakes climb with any number of steps.",
-        scenes: &[
-            LessonScene::Lanes {
-                label: "More physics steps per second",
-                champion: "by-heart",
-                question: Some(furthest(
-                    "With 120 steps it falls off the stairs, and goes further on the ground.",
-                )),
-                lanes: &[
-                    lane("original", &[]),
-                    lane("120 steps per second", &[("physics.steps_per_s", "120")]),
-                    lane("240 steps per second", &[("physics.steps_per_s", "240")]),
-                ],
-            },
-            LessonScene::Lanes {
-                label: "The original at two playback speeds",
-                champion: "climber",
-                question: Some(Question {
-                    text: "Play it to its end at two speeds. Will it end exactly the same?",
-                    asks: Asks::PlaybackSpeed,
-                    finding: "The playback speed changes when a physics step is drawn, not what happens in it.",
-                }),
-                lanes: &[lane("original", &[])],
-            },
-        ],
-        worksheet: include_str!("../../../../docs/worksheets/2.md"),
-    },
-    Lesson {
-        title: "Limits on the joints",
-        question: "Does it help evolution to restrict the joints, or does it hinder?",
-        story: "A joint that can turn all the way round allows more movements, and it can fold the snake into itself. \
-                In the original experiment, each joint had a maximum angle, chosen at random for each genome.",
-        to_try: "Run evolution twice for six generations of 120 snakes: with the original limits, and with limits of \
-                 172°, which hardly restrict a joint.",
-        look_for: "The number of disqualified snakes, the distance of the best one, and where that lies in the race \
-                   afterwards.",
-        conclusion: "Limits remove more useless movements than useful ones, so that evolution has more snakes to \
-                     choose from. What it then finds depends on the fitness: here only the distance counts, and six \
-                     generations go for a way beside the stairs.",
-        scenes: &[
-            AS_FOUND,
-            LessonScene::Runs {
-                label: "Evolve with and almost without limits",
-                question: best_run(
-                    "Almost without limits, more snakes are disqualified, and fewer are left to breed from. The \
-                     best snake with limits gets further, but it passes the stairs at their side.",
-                ),
-                runs: &[
-                    run("with limits", 3, 1, &[("population", "120"), ("generations", "6")]),
-                    run(
-                        "almost no limits",
-                        3,
-                        1,
-                        &[
-                            ("population", "120"),
-                            ("generations", "6"),
-                            ("bend_limits_rad", "[3]"),
-                            ("twist_limits_rad", "[3]"),
-                        ],
-                    ),
-                ],
-            },
-        ],
-        worksheet: include_str!("../../../../docs/worksheets/3.md"),
-    },
-    Lesson {
-        title: "Mutations: how fast should they shrink?",
-        question: "What happens to the progress of a run when its mutations become smaller?",
-        story: "Children differ from their parent by random changes within a mutation range. In the original \
-                experiment this range halved with each generation: 100, 50, 25 and so on.",
-        to_try: "Run evolution twice for fourteen generations: with a range that halves, and with one that shrinks \
-                 by only 5 % per generation.",
-        look_for: "The two lines, early and late: which is ahead, and which still rises?",
-        conclusion: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
-                     generations can only refine. You can set the range and its decay in the Run panel; some other \
-                     strategies, such as CMA-ES, adapt the size of their changes themselves.",
-        scenes: &[
-            AS_FOUND,
-            LessonScene::Runs {
-                label: "Evolve with both ranges",
-                question: best_run(
-                    "With the range that stays large, the best snake gets further. Not every seed shows this, \
-                     because some runs are lucky early.",
-                ),
-                runs: &[
-                    run("range halves", 4, 1, &[("population", "120"), ("generations", "14")]),
-                    run(
-                        "range stays large",
-                        4,
-                        1,
-                        &[("population", "120"), ("generations", "14"), ("mutation_decay", "0.95")],
-                    ),
-                ],
-            },
-        ],
-        worksheet: include_str!("../../../../docs/worksheets/4.md"),
-    },
-    Lesson {
-        title: "Repeating a run",
-        question: "Does a run give the same result when you repeat it?",
-        story: "In the original experiment, the same forces gave different results from run to run and from computer \
-                to computer. Results could not be checked, work could not be shared between computers, and runs \
-                were repeated only to discard outliers.",
-        to_try: "Repeat the same run on one thread and on two threads. Then repeat it with the friction changed by \
-                 a millionth.",
-        look_for: "The hash of each run: sixteen characters (0 to 9 and a to f) that summarise every bit of \
-                   every evaluation.",
-        conclusion: "A hash tells at once whether two runs are the same in every bit. Only a result that can be \
-                     repeated exactly can be checked, and work on it can be shared between computers.",
-        scenes: &[
-            AS_FOUND,
-            LessonScene::Runs {
-                label: "The same run twice",
-                question: same_hash(
-                    "The same seed and settings give the same hash, with any number of threads and on every \
-                     computer with an x86-64 processor.",
-                ),
-                runs: &[
-                    run("on one thread", 1, 1, &[("population", "60"), ("generations", "6")]),
-                    run("on two threads", 1, 2, &[("population", "60"), ("generations", "6")]),
-                ],
-            },
-            LessonScene::Runs {
-                label: "Friction changed by a millionth",
-                question: same_hash("Even a change of a millionth gives another result."),
-                runs: &[
-                    run("friction 1", 1, 1, &[("population", "60"), ("generations", "6")]),
-                    run(
-                        "friction 1.000001",
-                        1,
-                        1,
-                        &[
-                            ("population", "60"),
-                            ("generations", "6"),
-                            ("surface.friction", "1.000001"),
-                        ],
-                    ),
-                ],
-            },
-        ],
-        worksheet: include_str!("../../../../docs/worksheets/5.md"),
-    },
+pub(crate) const LESSONS: [Lesson; 7] = [
+    report::FRICTION,
+    report::FRAME_RATE,
+    report::JOINT_LIMITS,
+    report::MUTATIONS,
+    report::REPETITION,
+    senses::LEARNED_BY_HEART,
+    senses::BLINDFOLD,
 ];
 
 /// A built-in champion in each of these worlds.
