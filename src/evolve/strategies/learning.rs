@@ -150,18 +150,19 @@ impl Strategy for Learning {
         match &mut self.policy {
             Policy::Table(table) => {
                 let rule = self.evolution.q_learning.rule();
-                Arc::make_mut(table).replay(&transitions, &rule);
+                let trace = self.evolution.q_learning.trace;
+                Arc::make_mut(table).learn_returns(&transitions, &rule, trace);
             }
             Policy::Xcs(rules) => {
-                let rules = Arc::make_mut(rules);
+                let (rules, trace) = (Arc::make_mut(rules), self.evolution.xcs.trace);
                 for (decisions, end) in &decisions {
-                    let _ = rules.learn(decisions, *end, &mut rng);
+                    let _ = rules.learn_returns(decisions, *end, trace, &mut rng);
                 }
             }
             Policy::Zcs(rules) => {
-                let rules = Arc::make_mut(rules);
+                let (rules, trace) = (Arc::make_mut(rules), self.evolution.zcs.trace);
                 for (decisions, end) in &decisions {
-                    let _ = rules.learn(decisions, *end, &mut rng);
+                    let _ = rules.learn_returns(decisions, *end, trace, &mut rng);
                 }
             }
         }
