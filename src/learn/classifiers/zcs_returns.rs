@@ -57,7 +57,9 @@ mod tests {
 
     /// The summed strength of an action after many episodes of two decisions, of which the second earns 1000.
     fn strength_of_the_first(trace: f32, episodes: u32) -> f32 {
-        let settings = ZcsSettings { ga_rate: 0.0, population: 30, ..ZcsSettings::default() };
+        // Without the tax, which also takes from rules that match both situations.
+        let settings =
+            ZcsSettings { ga_rate: 0.0, population: 30, tax: 0.0, ..ZcsSettings::default() };
         let mut rng = stream(1, 0, 0, Purpose::Birth);
         let mut zcs = Zcs::new(settings, 2, 3, &mut rng).unwrap();
         for _ in 0..episodes {
