@@ -107,14 +107,14 @@ impl ActiveRule {
             .collect()
     }
 
-    /// Its condition in words: "riser at the head, not moving".
+    /// Its condition in words: "riser at the middle, not moving".
     pub fn words(&self) -> String {
         let (care, value) = (self.condition.care(), self.condition.value());
         let parts = self.names.iter().enumerate().filter(|(bit, _)| care >> bit & 1 == 1);
         let words: Vec<String> = parts
             .map(|(bit, name)| match value >> bit & 1 {
                 1 => (*name).to_owned(),
-                // "no riser at the head", but "not moving".
+                // "no riser within half a metre", but "not moving".
                 _ if name.starts_with("riser") || name.starts_with("step") => format!("no {name}"),
                 _ => format!("not {name}"),
             })
@@ -153,7 +153,7 @@ mod tests {
                 }
             });
             let Some(Activity::Decision(decision)) = rollout.activity(0) else { panic!("one") };
-            assert_eq!((decision.postures.len(), decision.rules.len()), (12, rules));
+            assert_eq!((decision.postures.len(), decision.rules.len()), (POSTURES.len(), rules));
             assert!(decision.situation.contains("head"), "{}", decision.situation);
             let advised: u32 = decision.postures.iter().map(|posture| posture.count).sum();
             let matching = decision.rules.iter().filter(|rule| rule.matches).count();
@@ -204,9 +204,9 @@ mod tests {
             matches: false,
             decides: false,
         };
-        assert_eq!(rule(0b1, 0b1).words(), "riser at the head");
-        assert_eq!(rule(1 | 1 << 13, 1).words(), "riser at the head, not moving");
-        assert_eq!(rule(0b1000, 0).words(), "no step ahead");
+        assert_eq!(rule(0b1, 0b1).words(), "riser within half a metre");
+        assert_eq!(rule(1 | 1 << 4, 0).words(), "no riser within half a metre, not moving");
+        assert_eq!(rule(0b100, 0).words(), "not head up");
         assert_eq!(rule(0, 0).words(), "always");
     }
 }

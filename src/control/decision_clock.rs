@@ -1,10 +1,7 @@
-//! The beat of decisions, and how an explorer takes them.
-
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
+//! The beat of decisions.
 
 use super::Observation;
-use crate::genome::controllers::{DECISIONS_PER_S, Explorer};
+use crate::genome::controllers::DECISIONS_PER_S;
 
 /// Tells when the next decision is due.
 #[derive(Debug, Clone, Default)]
@@ -34,21 +31,4 @@ impl DecisionClock {
 /// The step times the decisions per second: the time, in a unit in which steps and decisions are whole numbers.
 fn quarters(observation: &Observation) -> u64 {
     u64::from(observation.step) * u64::from(DECISIONS_PER_S)
-}
-
-/// The action of rules that would take the frozen one: an explorer's random one now and then, and where there is none.
-pub fn explored(
-    explorer: Option<(&Explorer, &mut ChaCha8Rng)>,
-    actions: usize,
-    frozen: Option<usize>,
-) -> Option<usize> {
-    // An explorer draws both numbers in each decision, so that its stream does not depend on what it knows.
-    let random = explorer.map(|(explorer, rng)| {
-        let is_random = rng.random::<f32>() < explorer.epsilon;
-        (is_random, rng.random_range(0..actions as u32) as usize)
-    });
-    match (random, frozen) {
-        (Some((true, random)), _) | (Some((false, random)), None) => Some(random),
-        (_, frozen) => frozen,
-    }
 }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use rand_chacha::ChaCha8Rng;
 
-use super::decision_clock::{DecisionClock, explored};
+use super::decision_clock::DecisionClock;
 use super::network::servos;
+use super::posture_choice::{best_posture, explored_posture};
 use super::postures::bend;
 use super::rewards::RewardMeter;
 use super::servo::JointServos;
@@ -25,7 +26,7 @@ use crate::world::JointTorque;
 /// Ticks of 1/60 s that a decision lasts: the unit of the learner's discount, whatever the step rate.
 const TICKS: u16 = 60 / DECISIONS_PER_S as u16;
 /// The posture before the first decision: straight.
-const FIRST_POSTURE: usize = 1;
+const FIRST_POSTURE: usize = 0;
 
 /// Decides by a learned policy. An explorer decides at random now and then, and learns in its own copy of a table.
 #[derive(Debug, Clone)]
@@ -36,9 +37,8 @@ pub struct DecisionController {
     clock: DecisionClock,
     /// The situation in which it was taken.
     at: Option<DecisionPoint>,
+    /// The posture that it took.
     action: usize,
-    /// The last posture other than holding one.
-    posture: usize,
     /// Bends at the last decision, and those that it asks for, in radians.
     bends_rad: Vec<[f32; 2]>,
     moved_m: f32,
@@ -66,8 +66,7 @@ impl DecisionController {
             rng: genes.explorer.as_ref().map(Explorer::rng),
             clock: DecisionClock::default(),
             at: None,
-            action: 0,
-            posture: FIRST_POSTURE,
+            action: FIRST_POSTURE,
             bends_rad: vec![[0.0; 2]; genes.joints as usize],
             moved_m: 0.0,
             rewards: RewardMeter::default(),
@@ -86,55 +85,48 @@ impl DecisionController {
         self.moved_m = 0.0;
         self.action = self.choice(&place);
         self.at = Some(place);
-        if self.action > 0 && self.action < POSTURES.len() {
-            self.posture = self.action;
-        }
         let joints = self.bends_rad.len();
         for (joint, [from, to]) in self.bends_rad.iter_mut().enumerate() {
             *from = *to;
-            if let Some(share) = bend(self.action, joint, joints) {
-                *to = share * self.genes.servo.bend_range_rad;
-            }
+            *to = bend(self.action, joint, joints) * self.genes.servo.bend_range_rad;
         }
     }
 
     /// The situation that the senses show now.
     fn place(&self, observation: &Observation) -> DecisionPoint {
         let senses = &observation.perception;
-        let situation = SensedSituation::of(senses, self.posture, self.moved_m);
+        let situation = SensedSituation::of(senses, self.action, self.moved_m);
         let (state, bits) = (situation.table_state() as u32, situation.bits(senses));
         DecisionPoint { situation, state, bits }
     }
 
     /// The posture that the policy takes, or the explorer's.
     fn choice(&mut self, place: &DecisionPoint) -> usize {
-        let explorer = self.genes.explorer.as_ref().zip(self.rng.as_mut());
-        let frozen = match &self.genes.policy {
+        let worths = self.known_worths(place);
+        match self.genes.explorer.as_ref().zip(self.rng.as_mut()) {
+            Some((explorer, rng)) => explored_posture(&worths, self.action, explorer.epsilon, rng),
+            None => best_posture(&worths, self.action),
+        }
+    }
+
+    /// What each posture is worth in a place, as far as it is known. No rule is made: it would change the champion.
+    fn known_worths(&self, place: &DecisionPoint) -> Vec<Option<f32>> {
+        match &self.genes.policy {
             Policy::Table(table) => {
-                let state = place.state as usize;
-                return match explorer {
-                    Some((explorer, rng)) => table.epsilon_greedy(state, explorer.epsilon, rng),
-                    None => table.greedy(state),
-                };
+                table.values(place.state as usize).iter().copied().map(Some).collect()
             }
-            Policy::Xcs(rules) => rules.frozen_action(place.bits),
-            Policy::Zcs(rules) => rules.frozen_action(place.bits),
-        };
-        // Without a rule the snake keeps its posture: covering would change the champion.
-        explored(explorer, POSTURES.len(), frozen).unwrap_or(0)
+            Policy::Xcs(rules) => rules.prediction_array(place.bits),
+            Policy::Zcs(rules) => rules.strength_array(place.bits),
+        }
     }
 
     /// What the policy knows about the postures in a place.
     fn worths(&self, place: &DecisionPoint, rules: &[ActiveRule]) -> Vec<PostureWorth> {
-        let (worths, visits): (Vec<Option<f32>>, &[u16]) = match &self.genes.policy {
-            Policy::Table(table) => {
-                let state = place.state as usize;
-                (table.values(state).iter().copied().map(Some).collect(), table.visits(state))
-            }
-            Policy::Xcs(rules) => (rules.prediction_array(place.bits), &[]),
-            Policy::Zcs(rules) => (rules.strength_array(place.bits), &[]),
+        let visits = match &self.genes.policy {
+            Policy::Table(table) => table.visits(place.state as usize),
+            Policy::Xcs(_) | Policy::Zcs(_) => &[],
         };
-        let mut of_rules = ActiveRule::worths(&POSTURES, worths, rules);
+        let mut of_rules = ActiveRule::worths(&POSTURES, self.known_worths(place), rules);
         for (worth, visits) in of_rules.iter_mut().zip(visits) {
             worth.count = u32::from(*visits);
         }
@@ -165,7 +157,7 @@ impl DecisionController {
                     next: next.map_or(Next::Terminal, |next| Next::State(next.state)),
                 };
                 if let Some(explorer) = &self.genes.explorer {
-                    Arc::make_mut(table).update(&transition, &explorer.rule);
+                    Arc::make_mut(table).learn_next(&transition, &explorer.rule);
                 }
                 self.transitions.push(transition);
             }
@@ -250,10 +242,10 @@ mod tests {
     fn cycling(space: &GenomeSpace, trial: &Trial, next: impl Fn(usize) -> usize) -> Genome {
         let shape = trial.genome_shape();
         let mut genome = space.genome_at(&vec![0.5; space.dimension(shape)], shape);
-        let per_posture = TABLE_STATES / (POSTURES.len() - 1);
+        let per_posture = TABLE_STATES / POSTURES.len();
         let row = |state: usize| {
             let mut values = vec![0.0; POSTURES.len()];
-            values[next(state / per_posture + 1)] = 1.0;
+            values[next(state / per_posture)] = 1.0;
             SparseRow(state, values, vec![1; POSTURES.len()])
         };
         let rows = (0..TABLE_STATES).map(row).collect();
@@ -293,13 +285,13 @@ mod tests {
                 best.push((evaluation.fitness, steps, cycle));
             }
         };
-        for a in 1..12 {
-            for b in a + 1..12 {
+        for a in 0..POSTURES.len() {
+            for b in a + 1..POSTURES.len() {
                 consider(vec![a, b]);
-                for c in (a + 1..12).filter(|c| *c != b) {
+                for c in (a + 1..POSTURES.len()).filter(|c| *c != b) {
                     consider(vec![a, b, c]);
                     if std::env::var("LONG").is_ok() {
-                        for d in (a + 1..12).filter(|d| *d != b && *d != c) {
+                        for d in (a + 1..POSTURES.len()).filter(|d| *d != b && *d != c) {
                             consider(vec![a, b, c, d]);
                         }
                     }

@@ -1,8 +1,9 @@
 //! Decisions of each joint at work: a bend four times a second, and the experience that comes of it.
 
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::decision_clock::{DecisionClock, explored};
+use super::decision_clock::DecisionClock;
 use super::network::servos;
 use super::perception::{JointSenses, LimbSenses};
 use super::rewards::RewardMeter;
@@ -97,6 +98,23 @@ impl JointDecisionController {
             decisions.push(RecordedDecision { bits: *bits, action, reward });
         }
         self.is_over = is_end;
+    }
+}
+
+/// The action of rules that would take the frozen one: an explorer's random one now and then, and where there is none.
+fn explored(
+    explorer: Option<(&Explorer, &mut ChaCha8Rng)>,
+    actions: usize,
+    frozen: Option<usize>,
+) -> Option<usize> {
+    // An explorer draws both numbers in each decision, so that its stream does not depend on what it knows.
+    let random = explorer.map(|(explorer, rng)| {
+        let is_random = rng.random::<f32>() < explorer.epsilon;
+        (is_random, rng.random_range(0..actions as u32) as usize)
+    });
+    match (random, frozen) {
+        (Some((true, random)), _) | (Some((false, random)), None) => Some(random),
+        (_, frozen) => frozen,
     }
 }
 

@@ -16,6 +16,7 @@ mod limb_neurons;
 mod network;
 mod observation;
 mod perception;
+mod posture_choice;
 mod postures;
 mod reflex;
 mod rewards;

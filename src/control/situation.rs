@@ -1,7 +1,6 @@
 //! What the snake senses as one of a few situations, by which decisions are learned.
 
 use super::Perception;
-use super::perception::LimbSenses;
 use super::postures::bend;
 use super::sense::{ANGLE_SCALE_RAD, GAP_SCALE_M, SPEED_SCALE_M_S};
 use crate::genome::controllers::SITUATION_BITS;
@@ -16,13 +15,15 @@ const PITCH_EDGES: [f32; 2] = [-0.3, 0.3];
 pub(super) const MOVED_M: f32 = 0.1;
 /// The bend from which on a joint is folded, in radians.
 const FOLDED_RAD: f32 = 0.9;
+/// The gap below which the head is near a riser for a rule, in metres.
+const NEAR_M: f32 = 0.5;
 /// The gap below which the middle limb is near a riser, in metres.
 const MIDDLE_GAP_M: f32 = 1.0;
 
 /// A situation in which a decision is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SensedSituation {
-    /// The last posture that was taken, other than holding one: an index of the postures.
+    /// The last posture that was taken: an index of the postures.
     pub posture: usize,
     /// Gap of the head: 0 near, 1 within reach, 2 far.
     pub gap: usize,
@@ -65,7 +66,7 @@ impl SensedSituation {
 
     /// Its number among the states of a table, in mixed radix.
     pub fn table_state(&self) -> usize {
-        let mut state = self.posture.saturating_sub(1);
+        let mut state = self.posture;
         for (digit, radix) in [
             (self.gap, 3),
             (self.step, 3),
@@ -82,41 +83,21 @@ impl SensedSituation {
 
     /// The bits by which rules distinguish it: see [`SITUATION_BITS`].
     pub fn bits(&self, senses: &Perception) -> u32 {
-        let limbs = senses.limbs.len();
-        let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
-        let (head, tail) = (limb(0), limb(limbs.saturating_sub(1)));
-        let near = |limb: &LimbSenses, gap_m: f32| limb.gap * GAP_SCALE_M < gap_m;
-        let touches = |index: usize| limb(index).touch > 0.5;
-        let joints = limbs.saturating_sub(1);
-        let bent = |joint: usize, least: f32| {
-            bend(self.posture, joint, joints).is_some_and(|bend| bend.abs() >= least)
-        };
+        let head = senses.limbs.first().copied().unwrap_or_default();
+        let joints = senses.limbs.len().saturating_sub(1);
+        let bent = |joint: usize| bend(self.posture, joint, joints);
         let (third, last) = (joints.saturating_sub(2), joints.saturating_sub(1));
         let bits: [bool; SITUATION_BITS.len()] = [
-            near(&head, 0.25),
-            near(&head, 0.5),
-            near(&head, 1.0),
-            head.step_up >= 0.05,
-            head.step_up >= 0.3,
-            head.step_up >= 0.6,
-            head.pitch >= 0.3,
-            head.pitch < -0.3,
-            touches(0),
-            touches(1),
-            touches(limbs / 2),
-            touches(limbs.saturating_sub(2)),
-            touches(limbs.saturating_sub(1)),
-            self.has_moved,
+            head.gap * GAP_SCALE_M < NEAR_M,
             self.middle_near,
-            near(&tail, 1.0),
-            bent(0, 0.25),
-            bent(1, 0.25),
-            bent(third, 0.25),
-            bent(last, 0.25),
-            bent(0, 0.75),
-            bent(1, 0.75),
-            bent(third, 0.75),
-            bent(last, 0.75),
+            head.pitch >= PITCH_EDGES[1],
+            head.pitch < PITCH_EDGES[0],
+            self.has_moved,
+            bent(0) != 0.0,
+            bent(0) > 0.0,
+            bent(last) != 0.0,
+            bent(1).abs() >= 1.0,
+            bent(third).abs() >= 1.0,
         ];
         bits.iter().enumerate().map(|(index, bit)| u32::from(*bit) << index).sum()
     }
@@ -150,6 +131,7 @@ pub fn way_m(senses: &Perception, steps_per_s: u32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::perception::LimbSenses;
     use super::*;
     use crate::genome::controllers::{POSTURES, TABLE_STATES};
     use std::collections::BTreeSet;
@@ -157,7 +139,7 @@ mod tests {
     #[test]
     fn every_situation_has_a_state_of_its_own() {
         let mut states = BTreeSet::new();
-        for posture in 1..POSTURES.len() {
+        for posture in 0..POSTURES.len() {
             for number in 0..27 {
                 for flags in 0..16 {
                     let situation = SensedSituation {
@@ -175,6 +157,16 @@ mod tests {
         }
         assert_eq!(states.len(), TABLE_STATES);
         assert_eq!(states.last(), Some(&(TABLE_STATES - 1)));
+    }
+
+    #[test]
+    fn the_bits_of_rules_tell_all_postures_apart() {
+        let mut senses = Perception::default();
+        senses.limbs = vec![LimbSenses::default(); 5];
+        let bits = |posture| SensedSituation::of(&senses, posture, 0.2).bits(&senses);
+        let all: BTreeSet<u32> = (0..POSTURES.len()).map(bits).collect();
+        assert_eq!(all.len(), POSTURES.len());
+        assert!(all.iter().all(|bits| bits >> 4 & 1 == 1 && bits >> SITUATION_BITS.len() == 0));
     }
 
     #[test]

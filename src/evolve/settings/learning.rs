@@ -51,13 +51,19 @@ setting_group! {
             number("Least learning rate", 0.0..=1.0)
                 .hint("Below this value the learning rate does not fall: what is new always counts a little")
                 .slider(0.0, 0.5);
+
+        /// Share of what came later in the outcome of a decision; the rest is what was expected of the next situation.
+        trace: f32 = 0.8,
+            number("What came later", 0.0..=1.0).advanced()
+                .hint("How much of what came later counts, in place of what was expected. Near 1 helps where situations look alike")
+                .slider(0.0, 1.0);
     }
 }
 
 impl QLearningSettings {
     /// The rule of the updates.
     pub fn rule(&self) -> QRule {
-        let Self { rate_power, rate_floor } = *self;
+        let Self { rate_power, rate_floor, .. } = *self;
         // A tick is 1/60 s.
         let ticks = 60.0 / DECISIONS_PER_S as f32;
         let discount_per_tick = libm::powf(DECISION_DISCOUNT, 1.0 / ticks);
@@ -80,42 +86,48 @@ setting_group! {
                 .slider(100.0, 5000.0);
 
         /// Probability that a bit does not matter in a rule for a new situation.
-        wildcard_share: f32 = 0.5,
+        wildcard_share: f32 = 0.05,
             number("Wildcards", 0.0..=1.0)
                 .hint("Probability that a new rule ignores a bit of the situation. More wildcards make rules more general")
                 .slider(0.0, 1.0);
 
         /// Worth of what follows a decision.
-        discount: f32 = 0.9,
+        discount: f32 = 0.95,
             number("Worth of the future", 0.0..=0.99)
                 .hint("What a reward counts one decision later, relative to one now")
                 .slider(0.0, 0.99);
 
         /// Learning rate.
-        learning_rate: f32 = 0.2,
+        learning_rate: f32 = 0.05,
             number("Learning rate", 0.001..=1.0).advanced()
                 .hint("How fast the predictions of rules follow experience")
                 .slider(0.01, 0.5);
 
         /// Mean number of decisions between two runs of the genetic algorithm in a set of rules.
-        ga_interval: f32 = 50.0,
+        ga_interval: f32 = 500.0,
             number("Decisions between new rules", 0.0..=10_000.0).advanced()
                 .hint("Mean number of decisions after which rules of an action set have children")
                 .slider(1.0, 500.0);
 
         /// Error below which a rule counts as accurate, in units of reward.
-        error_threshold: f32 = 10.0,
+        error_threshold: f32 = 100.0,
             number("Accurate below", 0.001..=1000.0).advanced()
                 .hint("Error of its prediction below which a rule counts as accurate. A whole tread is worth 1,000")
                 .slider(1.0, 200.0);
+
+        /// Share of what came later in the outcome of a decision; the rest is what was expected of the next situation.
+        trace: f32 = 0.8,
+            number("What came later", 0.0..=1.0).advanced()
+                .hint("How much of what came later counts, in place of what was expected. Near 1 helps where situations look alike")
+                .slider(0.0, 1.0);
     }
 }
 
 impl XcsRunSettings {
     /// The parameters of the classifier system.
     pub fn parameters(&self) -> XcsSettings {
-        let Self { rules, wildcard_share, discount, learning_rate, ga_interval, error_threshold } =
-            *self;
+        let Self { rules, wildcard_share, discount, learning_rate, .. } = *self;
+        let Self { ga_interval, error_threshold, .. } = *self;
         XcsSettings {
             population: rules,
             wildcard_share,
@@ -123,6 +135,9 @@ impl XcsRunSettings {
             learning_rate,
             ga_interval,
             error_threshold,
+            // Outcomes scatter by more than the threshold, so that no rule is accurate. The usual power of 5 would then
+            // leave the fitness to the luckiest rules.
+            accuracy_power: 2.0,
             ..XcsSettings::default()
         }
     }
@@ -145,13 +160,13 @@ setting_group! {
                 .slider(100.0, 5000.0);
 
         /// Probability that a bit does not matter in a new rule.
-        wildcard_share: f32 = 0.5,
+        wildcard_share: f32 = 0.2,
             number("Wildcards", 0.0..=1.0)
                 .hint("Probability that a new rule ignores a bit of the situation. More wildcards make rules more general")
                 .slider(0.0, 1.0);
 
         /// Share of a payment that reaches the rules of the decision before.
-        discount: f32 = 0.71,
+        discount: f32 = 0.9,
             number("Worth of the future", 0.0..=0.99)
                 .hint("What a reward counts one decision later, relative to one now")
                 .slider(0.0, 0.99);
@@ -167,13 +182,19 @@ setting_group! {
             number("New rules per decision", 0.0..=1.0).advanced()
                 .hint("Probability that two rules have children after a decision")
                 .slider(0.0, 1.0);
+
+        /// Share of what came later in the outcome of a decision; the rest is what was expected of the next situation.
+        trace: f32 = 0.8,
+            number("What came later", 0.0..=1.0).advanced()
+                .hint("How much of what came later counts, in place of what was expected. Near 1 helps where situations look alike")
+                .slider(0.0, 1.0);
     }
 }
 
 impl ZcsRunSettings {
     /// The parameters of the classifier system.
     pub fn parameters(&self) -> ZcsSettings {
-        let Self { rules, wildcard_share, discount, learning_rate, ga_rate } = *self;
+        let Self { rules, wildcard_share, discount, learning_rate, ga_rate, .. } = *self;
         ZcsSettings {
             population: rules,
             wildcard_share,

@@ -107,18 +107,20 @@ impl Learned for Policy {
         }
         match self {
             Self::Table(table) => {
-                Arc::make_mut(table).replay(&transitions, &evolution.q_learning.rule());
+                let trace = evolution.q_learning.trace;
+                let rule = evolution.q_learning.rule();
+                Arc::make_mut(table).learn_returns(&transitions, &rule, trace);
             }
             Self::Xcs(rules) => {
-                let rules = Arc::make_mut(rules);
+                let (rules, trace) = (Arc::make_mut(rules), evolution.xcs.trace);
                 for (decisions, end) in &decisions {
-                    let _ = rules.learn(decisions, *end, rng);
+                    let _ = rules.learn_returns(decisions, *end, trace, false, rng);
                 }
             }
             Self::Zcs(rules) => {
-                let rules = Arc::make_mut(rules);
+                let (rules, trace) = (Arc::make_mut(rules), evolution.zcs.trace);
                 for (decisions, end) in &decisions {
-                    let _ = rules.learn(decisions, *end, rng);
+                    let _ = rules.learn_returns(decisions, *end, trace, rng);
                 }
             }
         }
@@ -172,13 +174,14 @@ impl Learned for JointSystems {
     fn learn(
         &mut self,
         episodes: Vec<Episode>,
-        _evolution: &EvolutionSettings,
+        evolution: &EvolutionSettings,
         rng: &mut ChaCha8Rng,
     ) {
         for episode in episodes {
             let Episode::Joints(of_joints) = episode else { continue };
             for (system, (decisions, end)) in self.0.iter_mut().zip(of_joints) {
-                let _ = system.learn(&decisions, end, rng);
+                // A joint may keep its bend, and does for the most part.
+                let _ = system.learn_returns(&decisions, end, evolution.xcs.trace, true, rng);
             }
         }
     }

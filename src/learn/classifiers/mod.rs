@@ -2,7 +2,7 @@
 //!
 //! A situation is a word of 1 to 32 bits, an action a small number. [`Xcs`] values a rule by how accurately it
 //! predicts the payoff (Wilson 1995), [`Zcs`] by the payoff itself (Wilson 1994). Both learn from recorded
-//! experience with `learn`, or one decision at a time with `episode`, and act on what they know with
+//! experience with `learn` or, where situations hide much of the world, `learn_returns`, or one decision at a time with `episode`, and act on what they know with
 //! `frozen_action`, which changes nothing and draws no random number.
 //!
 //! Rules stand in order of birth, sums run in that order, and every random number comes from the stream that is
@@ -21,6 +21,7 @@ mod xcs;
 mod xcs_deletion;
 mod xcs_discovery;
 mod xcs_episode;
+mod xcs_returns;
 mod xcs_rules;
 mod xcs_saved;
 mod xcs_settings;
@@ -30,6 +31,7 @@ mod xcs_textbook;
 mod xcs_update;
 mod zcs;
 mod zcs_episode;
+mod zcs_returns;
 mod zcs_rules;
 #[cfg(test)]
 mod zcs_textbook;

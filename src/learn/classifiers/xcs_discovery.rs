@@ -49,7 +49,7 @@ impl Xcs {
         (0..self.actions).filter(|&action| !has_rule[action]).collect()
     }
 
-    fn covering_rule(&self, bits: u32, action: usize, rng: &mut impl Rng) -> XcsRule {
+    pub(super) fn covering_rule(&self, bits: u32, action: usize, rng: &mut impl Rng) -> XcsRule {
         let settings = &self.settings;
         XcsRule {
             condition: Condition::covering(bits, self.situation_bits, settings.wildcard_share, rng),

@@ -83,18 +83,26 @@ impl Zcs {
         end: EpisodeEnd,
         rng: &mut impl Rng,
     ) -> Result<ReplayReport, Invalid> {
-        for (index, decision) in decisions.iter().enumerate() {
-            decision
-                .check(self.situation_bits, self.actions, 0.0..=MOST_REWARD)
-                .map_err(|error| error.inside(&format!("decisions[{index}]")))?;
-        }
-        end.check(self.situation_bits)?;
+        self.check_experience(decisions, end)?;
         let mut episode = self.episode();
         for decision in decisions {
             episode.decide(decision.bits, ActionChoice::Given(usize::from(decision.action)), rng);
             episode.reward(decision.reward);
         }
         Ok(episode.finish(end))
+    }
+
+    pub(super) fn check_experience(
+        &self,
+        decisions: &[RecordedDecision],
+        end: EpisodeEnd,
+    ) -> Result<(), Invalid> {
+        for (index, decision) in decisions.iter().enumerate() {
+            decision
+                .check(self.situation_bits, self.actions, 0.0..=MOST_REWARD)
+                .map_err(|error| error.inside(&format!("decisions[{index}]")))?;
+        }
+        end.check(self.situation_bits)
     }
 
     /// Starts an episode that is learned from one decision at a time.

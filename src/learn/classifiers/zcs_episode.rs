@@ -52,15 +52,10 @@ impl<'a> ZcsEpisode<'a> {
                 random_largest(&self.zcs.strengths(&self.matched), rng).unwrap_or_default()
             }
         };
-        let masks = &self.zcs.masks;
-        let (mut set, others): (Vec<usize>, Vec<usize>) =
-            self.matched.iter().partition(|&&index| masks.action(index) == action);
+        let (mut set, others) = self.advisers(action);
         let bucket = self.zcs.collect(&set, self.zcs.settings.learning_rate);
         self.zcs.share_out(&self.last_set, self.zcs.settings.discount * bucket);
-        self.zcs.collect(&others, self.zcs.settings.tax);
-        if happens(self.zcs.settings.ga_rate, rng) {
-            self.zcs.evolve(&mut set, rng);
-        }
+        self.finish_decision(&mut set, &others, rng);
         self.last_set = set;
         action
     }
@@ -81,6 +76,43 @@ impl<'a> ZcsEpisode<'a> {
             let payment = settings.discount * settings.learning_rate * best;
             self.zcs.share_out(&self.last_set, payment);
         }
+        self.report
+    }
+
+    /// Pays the rules that advise a recorded action in a situation, after making one if there is none, and breeds. The
+    /// rules pay a share of their strength first, which is lost: what came later is in `payoff`.
+    pub(super) fn pay(&mut self, bits: u32, action: usize, payoff: f32, rng: &mut impl Rng) {
+        let covered = self.match_or_cover(bits, ActionChoice::Given(action), rng);
+        self.report.add(ReplayReport { decisions: 1, covered: u32::from(covered) });
+        let (mut set, others) = self.advisers(action);
+        let rate = self.zcs.settings.learning_rate;
+        self.zcs.collect(&set, rate);
+        self.zcs.share_out(&set, rate * payoff);
+        self.finish_decision(&mut set, &others, rng);
+    }
+
+    /// The matching rules that advise an action, and the others.
+    fn advisers(&self, action: usize) -> (Vec<usize>, Vec<usize>) {
+        self.matched.iter().partition(|&&index| self.zcs.masks.action(index) == action)
+    }
+
+    /// Takes the tax of the rules whose action was not taken, and breeds.
+    fn finish_decision(&mut self, set: &mut Vec<usize>, others: &[usize], rng: &mut impl Rng) {
+        self.zcs.collect(others, self.zcs.settings.tax);
+        if happens(self.zcs.settings.ga_rate, rng) {
+            self.zcs.evolve(set, rng);
+        }
+    }
+
+    /// The largest summed strength in a situation of an action other than `action`; 0 if there is none.
+    pub(super) fn strength_beside(&self, bits: u32, action: usize) -> f32 {
+        let strengths = self.zcs.strength_array(bits).into_iter().enumerate();
+        let others = strengths.filter(|(other, _)| *other != action);
+        others.filter_map(|(_, strength)| strength).reduce(f32::max).unwrap_or(0.0)
+    }
+
+    /// What was met so far.
+    pub(super) fn report(&self) -> ReplayReport {
         self.report
     }
 

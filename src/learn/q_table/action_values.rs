@@ -113,6 +113,19 @@ impl ActionValues {
     }
 }
 
+impl ActionValues {
+    /// Moves the value of a pair towards an outcome and counts the visit. Nothing changes if the value would not be
+    /// finite.
+    pub(super) fn approach(&mut self, pair: usize, outcome: f32, rule: &QRule) {
+        let value = self.values[pair];
+        let moved = value + rule.rate(self.visits[pair]) * (outcome - value);
+        if moved.is_finite() {
+            self.values[pair] = moved.clamp(-LARGEST_VALUE, LARGEST_VALUE);
+            self.visits[pair] = self.visits[pair].saturating_add(1);
+        }
+    }
+}
+
 /// The entries of one state; empty if there is no such state.
 fn row<T>(entries: &[T], state: usize, actions: usize) -> &[T] {
     let start = state.saturating_mul(actions);

@@ -8,13 +8,15 @@
 //!
 //! A generation works on one master table. Each actor learns in a copy of it while it acts; the copies
 //! are thrown away, and the master table learns from the experience of all actors, in their order
-//! ([`ActionValues::replay`]). The result depends on no thread.
+//! ([`ActionValues::replay`], or [`ActionValues::learn_returns`] where situations hide much of the world). The result
+//! depends on no thread.
 
 mod action_values;
 mod choice;
 mod exploration;
 mod q_rule;
 mod replay;
+mod returns;
 mod shaping;
 mod sparse_values;
 mod transition;

@@ -24,10 +24,8 @@ pub const DECISIONS_PER_S: u32 = 4;
 /// What a reward counts one decision later, relative to one now, to a table: a horizon of five seconds.
 pub const DECISION_DISCOUNT: f32 = 0.95;
 
-/// The postures among which a decision chooses. The first keeps the posture; a frozen policy takes it in a situation that
-/// it does not know.
-pub const POSTURES: [&str; 12] = [
-    "hold",
+/// The postures among which a decision chooses: always another than the one before.
+pub const POSTURES: [&str; 11] = [
     "straight",
     "fold in front",
     "fold in the middle",
@@ -43,38 +41,25 @@ pub const POSTURES: [&str; 12] = [
 
 /// Number of situations that a table distinguishes: eleven last postures, three gaps, heights and pitches of the head, and
 /// four questions: see [`TABLE_QUESTIONS`].
-pub const TABLE_STATES: usize = (POSTURES.len() - 1) * 3 * 3 * 3 * (1 << TABLE_QUESTIONS.len());
+pub const TABLE_STATES: usize = POSTURES.len() * 3 * 3 * 3 * (1 << TABLE_QUESTIONS.len());
 
 /// What a table asks of a situation beside its bins.
 pub const TABLE_QUESTIONS: [&str; 4] =
     ["moving", "middle at a riser", "folded in front", "folded behind"];
 
-/// The bits by which rules distinguish situations, in their order.
-pub const SITUATION_BITS: [&str; 24] = [
-    "riser at the head",
+/// The bits by which rules distinguish situations, in their order. Few, because each further one splits the experience of
+/// a run; the last five tell the last posture, so that a rule can say what comes after it.
+pub const SITUATION_BITS: [&str; 10] = [
     "riser within half a metre",
-    "riser within a metre",
-    "step ahead",
-    "step of 0.3 m",
-    "step of 0.6 m",
+    "riser at the middle",
     "head up",
     "head down",
-    "head touches",
-    "second limb touches",
-    "middle touches",
-    "last limb but one touches",
-    "tail touches",
     "moving",
-    "riser at the middle",
-    "riser at the tail",
     "first joint bent",
-    "second joint bent",
-    "last joint but one bent",
+    "first joint bent down",
     "last joint bent",
-    "first joint folded",
     "second joint folded",
     "last joint but one folded",
-    "last joint folded",
 ];
 
 /// A learned policy, and the servos that move the joints to its postures. It does not evolve: it has no genes, but learns
@@ -135,7 +120,7 @@ impl ControllerEncoding for DecisionGenes {
         &ControllerInfo {
             name: "decisions",
             title: "Decisions",
-            words: "Takes one of twelve postures four times a second, as it has learned to.",
+            words: "Takes one of eleven postures four times a second, as it has learned to.",
             senses_surroundings: true,
             settings: &[
                 "wave.angle_range_rad",

@@ -34,7 +34,10 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
     let worths = || decision.postures.iter().filter_map(|posture| posture.worth);
     let (least, most) = (worths().fold(0.0, f32::min), worths().fold(0.0, f32::max));
     if decision.postures.iter().all(|posture| posture.count == 0) {
-        explain(ui, "It knows nothing about this situation yet, and holds its posture.");
+        explain(
+            ui,
+            "It knows nothing about this situation yet, and takes the first other posture.",
+        );
     }
     for (index, posture) in decision.postures.iter().enumerate() {
         let (one, many) = if has_rules { ("rule", "rules") } else { ("visit", "visits") };

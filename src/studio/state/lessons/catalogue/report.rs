@@ -196,11 +196,7 @@ pub(super) const REPETITION: Lesson = Lesson {
                     "friction 1.000001",
                     1,
                     1,
-                    &[
-                        ("population", "60"),
-                        ("generations", "6"),
-                        ("surface.friction", "1.000001"),
-                    ],
+                    &[("population", "60"), ("generations", "6"), ("surface.friction", "1.000001")],
                 ),
             ],
         },

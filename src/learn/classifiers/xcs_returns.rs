@@ -1,0 +1,159 @@
+//! How XCS learns from whole episodes, where a situation hides much of the world.
+//!
+//! The payoff of a decision is a mixture of what is predicted of the next situation and of what came later indeed, the
+//! λ-return, so that a wrong prediction is not passed on (see `q_table::returns`). Textbook XCS only takes the
+//! prediction, and covers all actions of a situation; here a rule is only made for the recorded action, which leaves the
+//! population to what was tried.
+
+use rand::Rng;
+
+use super::experience::{EpisodeEnd, RecordedDecision, ReplayReport};
+use super::xcs::Xcs;
+use super::xcs_episode::PendingActionSet;
+use crate::check::Invalid;
+
+impl Xcs {
+    /// Learns from a recorded episode backwards in time. `trace` is the share of what came later in a payoff, from 0
+    /// (only the prediction counts) to 1 (only what came). Unless it `may_repeat`, no action is expected to follow itself.
+    ///
+    /// # Errors
+    /// As of [`Xcs::learn`]. Nothing is learned then.
+    pub fn learn_returns(
+        &mut self,
+        decisions: &[RecordedDecision],
+        end: EpisodeEnd,
+        trace: f32,
+        may_repeat: bool,
+        rng: &mut impl Rng,
+    ) -> Result<ReplayReport, Invalid> {
+        self.check_experience(decisions, end)?;
+        let mut report = ReplayReport::default();
+        let mut next = match end {
+            EpisodeEnd::Terminal => None,
+            EpisodeEnd::TimeOut { bits } => Some(bits),
+        };
+        let mut later = None;
+        for decision in decisions.iter().rev() {
+            let action = usize::from(decision.action);
+            let guess =
+                next.map_or(0.0, |bits| self.payoff_beside(bits, (!may_repeat).then_some(action)));
+            let future = later.map_or(guess, |later| (1.0 - trace) * guess + trace * later);
+            let payoff = decision.reward + self.settings.discount * future;
+            let is_covered = self.learn_payoff(decision, payoff, rng);
+            report.add(ReplayReport { decisions: 1, covered: u32::from(is_covered) });
+            (next, later) = (Some(decision.bits), Some(payoff));
+        }
+        Ok(report)
+    }
+
+    /// Corrects the rules that advise a recorded action, after making one if there is none, and lets new rules arise
+    /// among them. True if a rule was made.
+    fn learn_payoff(
+        &mut self,
+        decision: &RecordedDecision,
+        payoff: f32,
+        rng: &mut impl Rng,
+    ) -> bool {
+        self.time += 1;
+        let (bits, action) = (decision.bits, usize::from(decision.action));
+        let mut rules = self.action_set(bits, action);
+        let is_covered = rules.is_empty();
+        if is_covered {
+            let older = self.rules.len();
+            let rule = self.covering_rule(bits, action, rng);
+            self.add(rule);
+            // The new rule cannot be deleted before it has learned.
+            self.delete_surplus(older, &mut Vec::new(), rng);
+            rules = self.action_set(bits, action);
+        }
+        self.update(&rules, payoff);
+        let pending = PendingActionSet { bits, rules, reward: 0.0, evolves: true };
+        self.evolve(&pending, &mut Vec::new(), rng);
+        is_covered
+    }
+
+    /// The indices of the rules that match a situation and advise an action, rising.
+    fn action_set(&self, bits: u32, action: usize) -> Vec<usize> {
+        let mut matched = self.match_set(bits);
+        matched.retain(|&index| self.masks.action(index) == action);
+        matched
+    }
+
+    /// The largest payoff that is predicted in a situation for an action other than `except`; 0 if there is none.
+    fn payoff_beside(&self, bits: u32, except: Option<usize>) -> f32 {
+        let predictions = self.prediction_array(bits).into_iter().enumerate();
+        let others = predictions.filter(|(other, _)| Some(*other) != except);
+        others.filter_map(|(_, prediction)| prediction).reduce(f32::max).unwrap_or(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learn::classifiers::XcsSettings;
+    use crate::rng::{Purpose, stream};
+
+    fn quiet() -> Xcs {
+        let settings =
+            XcsSettings { ga_interval: 1.0e9, wildcard_share: 0.0, ..XcsSettings::default() };
+        Xcs::new(settings, 2, 3).unwrap()
+    }
+
+    fn prediction(xcs: &Xcs, bits: u32, action: usize) -> Option<f32> {
+        xcs.prediction_array(bits)[action]
+    }
+
+    fn step(bits: u32, action: u16, reward: f32) -> RecordedDecision {
+        RecordedDecision { bits, action, reward }
+    }
+
+    #[test]
+    fn a_payoff_mixes_what_came_later_with_the_prediction() {
+        // Action 2 is predicted to earn 500 in situation 1, but action 1 is taken and earns 100.
+        for (trace, expected) in [(0.0, 355.0), (0.5, 213.0), (1.0, 71.0)] {
+            let mut xcs = quiet();
+            let mut rng = stream(1, 0, 0, Purpose::Birth);
+            let known = xcs.learn(&[step(1, 2, 500.0)], EpisodeEnd::Terminal, &mut rng);
+            assert!(known.is_ok());
+            let episode = [step(0, 0, 0.0), step(1, 1, 100.0)];
+            let report = xcs.learn_returns(&episode, EpisodeEnd::Terminal, trace, false, &mut rng);
+            assert_eq!(report.unwrap().decisions, 2);
+            let found = prediction(&xcs, 0, 0).unwrap();
+            assert!((found - expected).abs() < 0.1, "{found} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn only_recorded_actions_get_rules_and_none_follows_itself() {
+        let mut xcs = quiet();
+        let mut rng = stream(1, 0, 0, Purpose::Birth);
+        let mut learn = |decisions: &[RecordedDecision], end| {
+            xcs.learn_returns(decisions, end, 0.0, false, &mut rng).unwrap().covered
+        };
+        assert_eq!(learn(&[step(1, 0, 100.0)], EpisodeEnd::Terminal), 1);
+        let time_is_up = EpisodeEnd::TimeOut { bits: 1 };
+        assert_eq!(learn(&[step(0, 0, 8.0)], time_is_up), 1);
+        assert_eq!(learn(&[step(0, 1, 8.0)], time_is_up), 1);
+        assert_eq!(learn(&[step(0, 1, 8.0)], time_is_up), 0);
+        assert!((prediction(&xcs, 0, 0).unwrap() - 8.0).abs() < 0.01);
+        assert!((prediction(&xcs, 0, 1).unwrap() - 79.0).abs() < 0.01);
+        assert_eq!(prediction(&xcs, 0, 2), None);
+        assert_eq!(xcs.rules().len(), 3);
+    }
+
+    #[test]
+    fn a_full_population_stays_within_its_limit() {
+        let settings = XcsSettings { population: 6, ..XcsSettings::default() };
+        let mut xcs = Xcs::new(settings, 4, 3).unwrap();
+        let mut rng = stream(1, 0, 0, Purpose::Birth);
+        for round in 0..200_u32 {
+            let episode: Vec<_> =
+                (0..20).map(|i| step((i + round) % 16, (i % 3) as u16, 1.0)).collect();
+            xcs.learn_returns(&episode, EpisodeEnd::TimeOut { bits: 3 }, 0.8, false, &mut rng)
+                .unwrap();
+            assert!(xcs.check().is_ok() && xcs.numerosity() <= 6);
+        }
+        let bad = [step(0, 0, 0.0), step(16, 0, 0.0)];
+        assert!(xcs.learn_returns(&bad, EpisodeEnd::Terminal, 0.8, false, &mut rng).is_err());
+    }
+}

@@ -1,0 +1,91 @@
+//! How ZCS learns from whole episodes, where a situation hides much of the world.
+//!
+//! Wilson's bucket brigade hands a share of each payment to the rules of the decision before, so that a reward takes as
+//! many episodes to reach the beginning as it is decisions away, and passes through whatever looks alike on the way. Here
+//! the rules of a decision are paid at once from what came later, mixed with the strength of the next rules (see
+//! `q_table::returns`).
+
+use rand::Rng;
+
+use super::experience::{EpisodeEnd, RecordedDecision, ReplayReport};
+use super::zcs::Zcs;
+use super::zcs_episode::ZcsEpisode;
+use crate::check::Invalid;
+
+impl Zcs {
+    /// Learns from a recorded episode backwards in time. `trace` is the share of what came later in a payment, from 0
+    /// (only the strength of the next rules counts) to 1 (only what came). No action is expected to follow itself.
+    ///
+    /// # Errors
+    /// As of [`Zcs::learn`]. Nothing is learned then.
+    pub fn learn_returns(
+        &mut self,
+        decisions: &[RecordedDecision],
+        end: EpisodeEnd,
+        trace: f32,
+        rng: &mut impl Rng,
+    ) -> Result<ReplayReport, Invalid> {
+        self.check_experience(decisions, end)?;
+        let discount = self.settings.discount;
+        let mut next = match end {
+            EpisodeEnd::Terminal => None,
+            EpisodeEnd::TimeOut { bits } => Some(bits),
+        };
+        let mut later = None;
+        let mut episode = ZcsEpisode::new(self);
+        for decision in decisions.iter().rev() {
+            let action = usize::from(decision.action);
+            let guess = next.map_or(0.0, |bits| episode.strength_beside(bits, action));
+            let future = later.map_or(guess, |later| (1.0 - trace) * guess + trace * later);
+            let payoff = decision.reward + discount * future;
+            episode.pay(decision.bits, action, payoff, rng);
+            (next, later) = (Some(decision.bits), Some(payoff));
+        }
+        Ok(episode.report())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learn::classifiers::ZcsSettings;
+    use crate::rng::{Purpose, stream};
+
+    fn step(bits: u32, action: u16, reward: f32) -> RecordedDecision {
+        RecordedDecision { bits, action, reward }
+    }
+
+    /// The summed strength of an action after many episodes of two decisions, of which the second earns 1000.
+    fn strength_of_the_first(trace: f32, episodes: u32) -> f32 {
+        // Without the tax, which also takes from rules that match both situations.
+        let settings =
+            ZcsSettings { ga_rate: 0.0, population: 30, tax: 0.0, ..ZcsSettings::default() };
+        let mut rng = stream(1, 0, 0, Purpose::Birth);
+        let mut zcs = Zcs::new(settings, 2, 3, &mut rng).unwrap();
+        for _ in 0..episodes {
+            let episode = [step(0, 0, 0.0), step(1, 1, 1000.0)];
+            zcs.learn_returns(&episode, EpisodeEnd::Terminal, trace, &mut rng).unwrap();
+        }
+        zcs.strength_array(0)[0].unwrap()
+    }
+
+    #[test]
+    fn strengths_approach_what_came_later_and_at_once_with_a_trace() {
+        let known = strength_of_the_first(1.0, 200);
+        assert!((known - 710.0).abs() < 1.0, "{known}");
+        let (with, without) = (strength_of_the_first(1.0, 2), strength_of_the_first(0.0, 2));
+        assert!(with > 1.5 * without, "{with} and {without}");
+    }
+
+    #[test]
+    fn hostile_experience_changes_nothing() {
+        let mut rng = stream(7, 0, 0, Purpose::Birth);
+        let mut zcs = Zcs::new(ZcsSettings::default(), 2, 3, &mut rng).unwrap();
+        let before = zcs.clone();
+        for bad in [step(4, 0, 0.0), step(0, 3, 0.0), step(0, 0, -1.0)] {
+            let end = EpisodeEnd::Terminal;
+            assert!(zcs.learn_returns(&[step(0, 0, 0.0), bad], end, 0.5, &mut rng).is_err());
+        }
+        assert_eq!(zcs, before);
+    }
+}
