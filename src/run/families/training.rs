@@ -66,7 +66,7 @@ impl PlannedFamilyRun {
         let stops_at_landing = self.family.info().stops_at_landing;
         let mut experiment = Experiment::new(self.plan.clone());
         let mut first_landing = None;
-        while !experiment.is_over() && !(stops_at_landing && first_landing.is_some()) {
+        while !experiment.is_over() && (first_landing.is_none() || !stops_at_landing) {
             let before = u32::try_from(experiment.evaluated()).unwrap_or(u32::MAX);
             let report = experiment.run_generation(evaluator, control)?;
             let number = |index: u32| before.saturating_add(index + 1);
