@@ -233,7 +233,7 @@ mod tests {
         for family in Family::OPTIONS.iter().copied() {
             let info = family.info();
             let preset = load_preset(info.preset).expect("shipped").settings;
-            let plan = family.plan(&preset, 201, 6000, None).expect(family.name());
+            let plan = family.plan(&preset, 201, 6000, None).expect("allowed");
             let evolution = &plan.settings.evolution;
             assert!(evolution.strategy.improves(plan.settings.genome.controller), "{family:?}");
             assert_eq!(plan.settings.trial.duration_s, 30.0);
