@@ -55,7 +55,7 @@ fn invitation(
     explain(
         ui,
         &format!(
-            "Can it climb other stairs than its own? Five rises, four treads, five starts{again}."
+            "Can it climb other stairs than its own? Five rises, four treads, five distances to the first step{again}."
         ),
     );
     let hint = "Simulates 30 s on each staircase, in the background: about half a minute";

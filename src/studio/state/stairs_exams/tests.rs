@@ -56,7 +56,7 @@ fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
     );
     assert!(exams.of(there.champion()).is_some(), "the exam is still that of the champion");
     let back = exams.apply(&ExamCommand::BackToOwnStairs, Some(there)).expect("allowed");
-    assert_eq!(back.expect("the champion").champions, [staged.clone()]);
+    assert_eq!(back.expect("the champion").champions, std::slice::from_ref(&staged));
     let without = ExamCommand::Watch { suite: ExamSuite::Lesion, cell: 12 };
     let none = exams.apply(&without, Some(&staged)).expect("allowed");
     assert!(none.is_none(), "there is no such exam");

@@ -91,9 +91,10 @@ impl StairsMap<'_> {
             self.draw(ui, cell, rect);
             let palette = theme::of(ui);
             if self.staged.is_on_stairs_of_exam() && cell.typical == *self.staged.trial() {
-                outlines.push((rect, palette.accent));
-            } else if response.hovered() || response.has_focus() {
+                // The accent would be lost on colours of the ramp.
                 outlines.push((rect, palette.text));
+            } else if response.hovered() || response.has_focus() {
+                outlines.push((rect, palette.text_weak));
             }
             let said = format!("{}. {}", self.title, said(cell));
             response
