@@ -175,6 +175,7 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
         (StrategyKind::Neat, ControllerKind::Grown, "neat"),
         (StrategyKind::QLearning, ControllerKind::Decisions, "q-learning"),
         (StrategyKind::Xcs, ControllerKind::Decisions, "xcs"),
+        (StrategyKind::Xcs, ControllerKind::JointDecisions, "xcs-per-joint"),
         (StrategyKind::Zcs, ControllerKind::Decisions, "zcs"),
     ] {
         let (mut plan, _) = plan();

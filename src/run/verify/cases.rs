@@ -218,6 +218,11 @@ const CASES: &[Case] = &[
          xcs.learning_rate=0.1; ga_interval=5; error_threshold=20; start_y_m=-3",
     ),
     (
+        "XCS of each joint",
+        [3, 8, 5],
+        "controller=joint_decisions; strategy=xcs; xcs.rules=300; xcs.wildcard_share=0.6; ga_interval=5; start_y_m=-3",
+    ),
+    (
         "ZCS",
         [3, 8, 5],
         "controller=decisions; strategy=zcs; zcs.rules=300; zcs.wildcard_share=0.6; zcs.discount=0.8; \

@@ -26,7 +26,11 @@ pub(super) fn lessons(
 }
 
 fn list(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    explain(ui, "Five two-minute experiments. Your own run is paused and comes back unchanged.");
+    let text = format!(
+        "{} two-minute experiments. Your own run is paused and comes back unchanged.",
+        LESSONS.len()
+    );
+    explain(ui, &text);
     for (index, lesson) in LESSONS.iter().enumerate() {
         let palette = theme::of(ui);
         palette.card(palette.field_hovered).show(ui, |ui| {

@@ -67,8 +67,8 @@ const STEPS: [TourStep; 5] = [
     },
     TourStep {
         highlights: PanelKind::Lessons,
-        title: "Five short lessons",
-        text: "Five two-minute experiments. Your own run is paused and comes back unchanged. Press ? for \
+        title: "Short lessons",
+        text: "Seven two-minute experiments. Your own run is paused and comes back unchanged. Press ? for \
                all shortcuts, Ctrl K to search commands.",
         try_it: "Begin lesson 1, which ends the tour",
         is_done_by: |command| matches!(command, Command::Lesson(LessonCommand::Begin(_))),

@@ -21,7 +21,15 @@ pub(super) fn decision_view(
     decision: &DecisionActivity,
     shows_all_rules: &mut bool,
 ) {
-    ui.label(egui::RichText::new(format!("Situation: {}", decision.situation)).strong());
+    let of_joint = |joint| format!("Joint {}. ", joint + 1);
+    let joint = decision.joint.map_or_else(String::new, of_joint);
+    ui.label(egui::RichText::new(format!("{joint}Situation: {}", decision.situation)).strong());
+    if decision.joint.is_some() {
+        explain(
+            ui,
+            "Each joint has rules of its own. Click a limb to see those of the joint in front of it.",
+        );
+    }
     postures(ui, decision);
     if !decision.rules.is_empty() {
         rules(ui, decision, shows_all_rules);
@@ -34,10 +42,11 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
     let worths = || decision.postures.iter().filter_map(|posture| posture.worth);
     let (least, most) = (worths().fold(0.0, f32::min), worths().fold(0.0, f32::max));
     if decision.postures.iter().all(|posture| posture.count == 0) {
-        explain(
-            ui,
-            "It knows nothing about this situation yet, and takes the first other posture.",
-        );
+        let then = match decision.joint {
+            Some(_) => "keeps its bend",
+            None => "takes the first other posture",
+        };
+        explain(ui, &format!("It knows nothing about this situation yet, and {then}."));
     }
     for (index, posture) in decision.postures.iter().enumerate() {
         let (one, many) = if has_rules { ("rule", "rules") } else { ("visit", "visits") };
@@ -54,12 +63,17 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
             is_frozen: posture.worth.is_none() || posture.count == 0,
             is_chosen,
             hint: match is_chosen {
-                true => "The posture that it has chosen".to_owned(),
-                false => "What it has learned this posture to be worth here".to_owned(),
+                true => format!("The {} that it has chosen", noun(decision)),
+                false => format!("What it has learned this {} to be worth here", noun(decision)),
             },
         };
         row.ui(ui);
     }
+}
+
+/// What it decides about.
+fn noun(decision: &DecisionActivity) -> &'static str {
+    if decision.joint.is_some() { "bend" } else { "posture" }
 }
 
 /// A worth with as many decimals as its size leaves room for.
@@ -98,12 +112,19 @@ fn entry(ui: &mut egui::Ui, rule: &ActiveRule, decision: &DecisionActivity) {
         holds: rule.matches,
         decides: rule.decides,
         state: match (rule.matches, rule.decides) {
-            (_, true) => "It matches, and its posture was chosen",
+            (_, true) => state_of_deciding(decision),
             (true, false) => "It matches",
             (false, false) => "It does not match this situation",
         },
     };
     row.ui(ui);
+}
+
+fn state_of_deciding(decision: &DecisionActivity) -> &'static str {
+    match decision.joint {
+        Some(_) => "It matches, and its bend was chosen",
+        None => "It matches, and its posture was chosen",
+    }
 }
 
 fn rule_numbers(rule: &ActiveRule) -> String {

@@ -156,6 +156,43 @@ fn the_conclusion_about_bits_is_true() {
 }
 
 #[test]
+fn the_conclusion_about_what_was_learned_by_heart_is_true() {
+    let climbed = |scene: usize| -> Vec<u32> {
+        let steps =
+            |(_, of): &(String, Evaluation)| of.behaviour.as_ref().map(|of| of.steps_climbed);
+        result(5, scene).lanes.iter().filter_map(steps).collect()
+    };
+    assert_eq!(climbed(0), [10, 10, 5], "as the finding says");
+    assert_eq!(climbed(1), [10, 10, 10]);
+    for scene in [0, 1] {
+        let LessonScene::Lanes { champion, lanes, .. } = &LESSONS[5].scenes[scene] else {
+            panic!()
+        };
+        let staged = champions(champion, lanes).expect("they fit");
+        let lands = staged
+            .iter()
+            .zip(&result(5, scene).lanes)
+            .map(|(staged, (_, of))| of.is_on_landing(&staged.trial().stairs));
+        assert_eq!(lands.collect::<Vec<_>>(), [true, true, scene == 1]);
+    }
+    assert_eq!([answer(5, 0), answer(5, 1)], ["original"; 2]);
+}
+
+#[test]
+fn the_conclusion_about_the_senses_is_true() {
+    assert_eq!(answer(6, 0), "all within 1 m of each other");
+    let sight = &result(6, 0).lanes;
+    assert_eq!(sight[0].1.trace_hash, sight[1].1.trace_hash, "exactly alike");
+    assert_eq!(answer(6, 1), "with all senses");
+    let climbed = |lane: usize| {
+        result(6, 1).lanes[lane].1.behaviour.as_ref().map(|behaviour| behaviour.steps_climbed)
+    };
+    let [all, touchless, dizzy] = [0, 1, 2].map(|lane| climbed(lane).expect("measured"));
+    assert_eq!(all, 10);
+    assert!(touchless + 2 < dizzy && dizzy < all, "{touchless} and {dizzy} steps");
+}
+
+#[test]
 fn every_scene_of_every_lesson_can_be_shown() {
     for lesson in &LESSONS {
         for scene in lesson.scenes {

@@ -19,7 +19,7 @@ struct Sheet {
     expected: &'static str,
 }
 
-const SHEETS: [Sheet; 5] = [
+const SHEETS: [Sheet; 7] = [
     Sheet {
         steps: &[
             "Begin lesson 1, give your guess, and watch the race to its end. Fill in the table.",
@@ -77,6 +77,30 @@ const SHEETS: [Sheet; 5] = [
         questions: [
             "What does it tell you if two runs have the same hash?",
             "Why should a scientific result be repeatable by other people?",
+        ],
+        expected: "",
+    },
+    Sheet {
+        steps: &[
+            "Begin lesson 6, give your guess, and watch the race to its end. Fill in the table.",
+            "Choose \"A snake that feels its limbs\" and do the same.",
+            "Open the Senses panel and choose Examine on 100 staircases: on how many does it land?",
+        ],
+        questions: [
+            "The first snake moves alike on all stairs. Why is that enough for lower steps, but not for higher ones?",
+            "What would you change in its training so that it climbs other stairs, too?",
+        ],
+        expected: "Of 100 staircases the second snake lands on 78. ",
+    },
+    Sheet {
+        steps: &[
+            "Begin lesson 7, guess, and watch the snake with and without sight. Fill in the table.",
+            "Choose \"Without touch, without balance\" and do the same.",
+            "Click a limb and look at the wiring in the Senses panel: which senses do its neurons read?",
+        ],
+        questions: [
+            "Why can a snake do without a sense that it has?",
+            "Why is it not enough to look at a snake in order to know what it senses?",
         ],
         expected: "",
     },
