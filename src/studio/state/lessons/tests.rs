@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use super::*;
 use crate::run::{Experiment, LocalPool, RunControl};
+use crate::score::Evaluation;
 use crate::studio::state::current_run::prepared_run;
 
 /// Results of a scene, computed once.
