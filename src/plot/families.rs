@@ -87,7 +87,11 @@ mod tests {
         };
         let counts: Vec<usize> = chart.series.iter().map(|series| bars(series).len()).collect();
         let count = Family::OPTIONS.len();
-        assert_eq!(counts, [count, count, count, count, count - 1], "a gait has no senses to freeze");
+        assert_eq!(
+            counts,
+            [count, count, count, count, count - 1],
+            "a gait has no senses to freeze"
+        );
         let heights: Vec<f64> = chart.series.iter().map(|series| bars(series)[0][1]).collect();
         assert_eq!(heights, [100.0, 80.0, 60.0, 40.0, 20.0]);
         let picture = families(&all, &DEFAULT_SUITES).expect("drawn");

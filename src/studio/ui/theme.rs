@@ -114,9 +114,9 @@ pub const FIELD_WIDTH: f32 = 64.0;
 /// Width of a combo box, in points.
 pub const COMBO_WIDTH: f32 = 190.0;
 /// Maximum height of an open list, in points: all presets of the program and some of the user's.
-const LIST_HEIGHT: f32 = 400.0;
+const LIST_HEIGHT: f32 = 560.0;
 /// Maximum share of the window's height that an open list takes.
-const LIST_SHARE: f32 = 0.75;
+const LIST_SHARE: f32 = 0.8;
 /// Minimum width that panel layouts support, in points.
 #[cfg(test)]
 pub const PANEL_WIDTH: f32 = 320.0;
@@ -200,6 +200,8 @@ pub fn apply(context: &egui::Context) {
         style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
         style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
         style.spacing.interact_size.y = GAP * 3.0;
+        // Otherwise an open list begins with a height of 400 points, whatever it holds.
+        style.spacing.default_area_size.y = LIST_HEIGHT;
         // Keep a faint scroll bar visible, beside the content, so that users notice hidden content.
         style.spacing.scroll = egui::style::ScrollStyle {
             floating_width: GAP / 2.0,

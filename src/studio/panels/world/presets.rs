@@ -56,6 +56,9 @@ fn presets(ui: &mut egui::Ui, presets: &PresetList, chosen: &str, commands: &mut
             commands.push(Command::Plan(PlanCommand::SetPreset(name.to_owned())));
         }
     };
+    // Close together, so that all fit into a small window.
+    ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
+    ui.spacing_mut().interact_size.y = theme::GAP * 2.5;
     for preset in presets.shipped() {
         choice(ui, &preset.name, &preset.about);
     }
@@ -168,10 +171,15 @@ mod tests {
 
     fn panel(run: &CurrentRun) -> Panel<'_> {
         let mut choice = PresetChoice::default();
-        let size = egui::vec2(theme::PANEL_WIDTH, 600.0);
-        Harness::builder()
-            .with_size(size)
-            .build_ui_state(move |ui, commands| choice.ui(ui, run, commands), Vec::new())
+        // The height of the smallest usual window.
+        let size = egui::vec2(theme::PANEL_WIDTH, 720.0);
+        let draw = move |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
+            theme::apply(ui.ctx());
+            choice.ui(ui, run, commands);
+        };
+        let mut panel = Harness::builder().with_size(size).build_ui_state(draw, Vec::new());
+        panel.run();
+        panel
     }
 
     /// Opens the field and types a name.

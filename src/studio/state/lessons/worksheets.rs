@@ -87,7 +87,7 @@ const SHEETS: [Sheet; 7] = [
             "Open the Senses panel and choose Examine on 100 staircases: on how many does it land?",
         ],
         questions: [
-            "The first snake moves alike on all stairs. Why is that enough for lower steps, but not for higher ones?",
+            "The first snake moves alike on all stairs. Why is that enough for lower steps only?",
             "What would you change in its training so that it climbs other stairs, too?",
         ],
         expected: "Of 100 staircases the second snake lands on 78. ",

@@ -6,16 +6,16 @@ use super::{Lesson, LessonScene, furthest, lane};
 pub(super) const LEARNED_BY_HEART: Lesson = Lesson {
     title: "Learned by heart",
     question: "Does a snake that climbs its own stairs climb others?",
-    story: "Most snakes of this program feel nothing but their joints. They repeat one motion, whatever happens to them, \
-            and evolution has fitted this motion to one staircase. The stage shows such a snake on its own steps of \
-            0.5 m, on lower and on higher ones; then a snake whose limbs feel the ground.",
+    story: "Most snakes of this program feel nothing but their joints. They repeat one motion, which evolution has \
+            fitted to one staircase. The stage shows such a snake on its own steps of 0.5 m, on lower and on higher \
+            ones; then a snake whose limbs feel the ground.",
     to_try: "Guess, and watch the first race. Do the same with the second snake. Afterwards open the Senses panel \
              and choose Examine on 100 staircases.",
     look_for: "Whether the motion changes with the stairs: the first snake moves its joints alike on all of them; the \
                second waits, pushes and turns as its limbs touch the steps.",
-    conclusion: "A motion that was learned by heart fits the stairs on which it was learned, and perhaps others by luck. \
-                 The second snake reacts to what it touches, and it was evolved on many staircases. Both matter: snakes \
-                 without senses become better on other stairs, too, if they are evolved on many.",
+    conclusion: "What was learned by heart fits other stairs by luck at best. The second snake reacts to what it touches, \
+                 and it was evolved on many staircases. Both matter: snakes without senses, too, do better \
+                 if they are evolved on many.",
     scenes: &[
         LessonScene::Lanes {
             label: "A snake that feels nothing",
@@ -33,10 +33,9 @@ pub(super) const LEARNED_BY_HEART: Lesson = Lesson {
         LessonScene::Lanes {
             label: "A snake that feels its limbs",
             champion: "feeler",
-            question: Some(furthest("It stands on the landing of all three stairs.")),
+            question: Some(furthest("It stands on the landing of both stairs.")),
             lanes: &[
                 lane("0.4 m, with senses", &[("stairs.rise_m", "0.4")]),
-                lane("original", &[]),
                 lane("0.6 m, with senses", &[("stairs.rise_m", "0.6")]),
             ],
         },
@@ -75,7 +74,7 @@ pub(super) const BLINDFOLD: Lesson = Lesson {
                  stairs; without balance it stops further up.",
             )),
             lanes: &[
-                lane("with all senses", &[]),
+                lane("original", &[]),
                 lane("without touch", &[("senses.touch", "false")]),
                 lane("without balance", &[("senses.balance", "false")]),
             ],
