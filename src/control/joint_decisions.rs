@@ -5,7 +5,6 @@ use rand_chacha::ChaCha8Rng;
 
 use super::decision_clock::DecisionClock;
 use super::network::servos;
-use super::perception::{JointSenses, LimbSenses};
 use super::rewards::RewardMeter;
 use super::sense::{ANGLE_SCALE_RAD, GAP_SCALE_M};
 use super::servo::JointServos;
@@ -122,9 +121,9 @@ fn explored(
 fn situation(senses: &Perception, joint: usize, moved: bool) -> u32 {
     let bend_rad = |joint: Option<usize>| {
         let of = joint.and_then(|joint| senses.joints.get(joint).copied());
-        of.unwrap_or_else(JointSenses::default).bend * ANGLE_SCALE_RAD
+        of.unwrap_or_default().bend * ANGLE_SCALE_RAD
     };
-    let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_else(LimbSenses::default);
+    let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
     let (own, ahead, behind) =
         (bend_rad(Some(joint)), bend_rad(joint.checked_sub(1)), bend_rad(Some(joint + 1)));
     let (front, rear) = (limb(joint), limb(joint + 1));
@@ -212,6 +211,7 @@ impl Controller for JointDecisionController {
 
 #[cfg(test)]
 mod tests {
+    use super::super::perception::{JointSenses, LimbSenses};
     use super::*;
 
     #[test]
