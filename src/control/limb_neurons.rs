@@ -12,8 +12,6 @@ use crate::genome::controllers::{
 };
 use crate::world::JointTorque;
 
-pub use activity::{ActiveLimb, LimbActivity};
-
 /// Lets the neurons of all limbs respond, step after step.
 #[derive(Debug, Clone)]
 pub struct LimbNeuronController {

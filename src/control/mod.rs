@@ -12,6 +12,7 @@ mod decisions;
 mod gait;
 mod grown;
 mod joint_decisions;
+mod limb_activity;
 mod limb_neurons;
 mod network;
 mod observation;
@@ -26,6 +27,7 @@ mod servo;
 mod signal;
 mod situation;
 mod wave;
+mod wave_choice;
 mod wave_uses;
 
 use decision_activity::RulePlace;
@@ -35,11 +37,11 @@ pub use activity::{
 };
 pub use controller::Controller;
 pub use decision_activity::{ActiveRule, DecisionActivity, PostureWorth};
-pub use limb_neurons::{ActiveLimb, LimbActivity};
+pub use limb_activity::{ActiveLimb, LimbActivity};
 pub use observation::{Observation, Senses};
 pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};
-pub use rules::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
+pub use wave_choice::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 pub use wave_uses::WaveUses;
 
 use crate::genome::ControllerGenes;

@@ -9,8 +9,6 @@ use super::{Activity, Controller, Observation, Senses, WaveUses};
 use crate::genome::controllers::{JointGroup, RuleGenes, WaveRule};
 use crate::world::JointTorque;
 
-pub use activity::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
-
 /// Decisions per second.
 const DECISIONS_PER_S: u64 = 4;
 /// Time in which the targets pass from one wave to the next, in s: less than the time between decisions.

@@ -45,7 +45,7 @@ fn hostile_tables_are_refused_with_field_value_and_range() {
         ("states: ", "9", ["rows[0].state is ", "allowed: 0 to 8"]),
         ("states: ", "4294967295", ["states is 4294967295", "allowed"]),
         ("states: ", "0", ["states is 0", "allowed"]),
-        ("actions: ", "11", ["numbers", "11"]),
+        ("actions: ", "10", ["numbers", "10"]),
         ("actions: ", "1000000000", ["actions is 1000000000", "allowed"]),
         ("rows: [(", "1000000", ["state is 1000000", "allowed: 0 to "]),
         ("rows: [(", "-1", ["out of bounds", "line"]),
@@ -68,7 +68,7 @@ fn hostile_tables_are_refused_with_field_value_and_range() {
         assert_refused("q-learning", &with_first(value), &[part, "allowed", "rows[0]"]);
     }
     let longer = format!("{}0.5, {}", &table[..values], &table[values..]);
-    assert_refused("q-learning", &longer, &["rows[0].values is 13 numbers; allowed: 12"]);
+    assert_refused("q-learning", &longer, &["rows[0].values is 12 numbers; allowed: 11"]);
     let row = &table[start - 1..start + table[start..].find(")").expect("an end") + 1];
     let twice = table.replacen("rows: [", &format!("rows: [{row}, "), 1);
     assert_refused("q-learning", &twice, &["rows[1].state is ", "states in rising order"]);
@@ -81,7 +81,7 @@ fn hostile_rules_are_refused_with_field_value_and_range() {
             ("condition: ", "\"0101\"", ["rules[0].condition is 0101", "allowed"]),
             ("condition: ", "\"\"", ["condition", "allowed"]),
             ("condition: ", "\"012\"", ["condition", "allowed"]),
-            ("action: ", "12", ["rules[0].action is 12", "allowed: 0 to 11"]),
+            ("action: ", "11", ["rules[0].action is 11", "allowed: 0 to 10"]),
             ("action: ", "-1", ["out of bounds", "line"]),
             ("actions: ", "3", ["action", "allowed"]),
             ("situation_bits: ", "33", ["situation_bits is 33", "allowed: 1 to 32"]),

@@ -2,6 +2,7 @@
 //! run is paused meanwhile.
 
 mod catalogue;
+mod lesson;
 mod plays;
 mod prediction;
 #[cfg(test)]
@@ -21,9 +22,11 @@ use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::ui::notifications::Notices;
 
-use catalogue::{Side, champions, plan};
+use catalogue::{champions, plan};
+use lesson::Side;
 
-pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSONS, LessonScene};
+pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSONS};
+pub(crate) use lesson::LessonScene;
 pub(crate) use plays::Plays;
 pub(crate) use prediction::{Asks, Progress};
 

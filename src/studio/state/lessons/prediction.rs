@@ -1,7 +1,7 @@
 //! Questions that the reader answers before an experiment, and what came of them.
 
 use super::Found;
-use super::catalogue::LessonScene;
+use super::lesson::LessonScene;
 use super::plays::Plays;
 use crate::score::Evaluation;
 

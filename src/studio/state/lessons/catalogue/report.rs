@@ -1,6 +1,8 @@
 //! The lessons about what the authors of the report learned the hard way.
 
-use super::{AS_FOUND, Lesson, LessonScene, best_run, furthest, lane, run, same_hash};
+use crate::studio::state::lessons::lesson::{
+    AS_FOUND, Lesson, LessonScene, best_run, furthest, lane, run, same_hash,
+};
 use crate::studio::state::lessons::prediction::{Asks, Question};
 
 /// Friction: how much?

@@ -1,6 +1,6 @@
 //! The lessons about senses: what a snake that feels nothing has learned, and what it does with the senses that it has.
 
-use super::{Lesson, LessonScene, furthest, lane};
+use crate::studio::state::lessons::lesson::{Lesson, LessonScene, furthest, lane};
 
 /// Learned by heart.
 pub(super) const LEARNED_BY_HEART: Lesson = Lesson {
