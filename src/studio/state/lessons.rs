@@ -2,6 +2,7 @@
 //! run is paused meanwhile.
 
 mod catalogue;
+mod found;
 mod lesson;
 mod plays;
 mod prediction;
@@ -12,8 +13,8 @@ use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
-use crate::evolve::{Champion, RunPlan};
-use crate::run::{GenerationReport, ParallelRuns, ParallelRunsEvent};
+use crate::evolve::RunPlan;
+use crate::run::{ParallelRuns, ParallelRunsEvent};
 use crate::score::evaluate;
 use crate::studio::commands::LessonCommand;
 use crate::studio::stage::lane::Lane;
@@ -26,6 +27,7 @@ use catalogue::{champions, plan};
 use lesson::Side;
 
 pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSONS};
+pub(crate) use found::Found;
 pub(crate) use lesson::LessonScene;
 pub(crate) use plays::Plays;
 pub(crate) use prediction::{Asks, Progress};
@@ -48,17 +50,6 @@ struct Current {
     /// Runs of the selected scene that are in progress.
     under_way: Option<ParallelRuns>,
     own: Own,
-}
-
-/// Results of a lesson's run.
-#[derive(Debug, Clone)]
-pub(crate) struct Found {
-    /// Name of the run.
-    pub name: String,
-    /// Reports of the finished generations.
-    pub reports: Vec<GenerationReport>,
-    /// Hash, once the run is finished.
-    pub run_hash: Option<u64>,
 }
 
 /// State to restore after the lesson.
@@ -350,14 +341,6 @@ impl Progress {
         });
         let champions: Vec<StagedChampion> = best.collect();
         (!champions.is_empty()).then(|| Show::race(champions))
-    }
-}
-
-impl Found {
-    /// The best champion so far.
-    pub fn best(&self) -> Option<&Champion> {
-        let champions = self.reports.iter().filter_map(|report| report.champion.as_ref());
-        champions.max_by(|a, b| a.evaluation.fitness.total_cmp(&b.evaluation.fitness))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Questions that the reader answers before an experiment, and what came of them.
 
-use super::Found;
+use super::found::Found;
 use super::lesson::LessonScene;
 use super::plays::Plays;
 use crate::score::Evaluation;
