@@ -24,6 +24,7 @@ use crate::save::{
     FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, SaveError, SavesFolder, load_champion, load_families,
     load_preset, store_champion, store_csv, store_exam, store_families, store_picture,
 };
+use crate::schema::Choices;
 use crate::score::ExamSuite;
 
 /// Seed of the first run unless one is given: no setting was chosen by it or by those after it.
@@ -146,8 +147,11 @@ fn earlier_runs(
     }
     let loaded = load_families(ron);
     if restarts {
-        // Runs of another engine cannot be continued.
-        let mut finished = loaded.unwrap_or_default();
+        // Where all families begin again, nothing in the file can be lost.
+        let mut finished = match loaded {
+            Err(_) if families.len() == Family::OPTIONS.len() => FamilyRuns::new(),
+            other => other?,
+        };
         let is_named = |name: &str| families.iter().any(|family| family.name() == name);
         finished.families.retain(|trained| !is_named(&trained.protocol.family));
         return Ok(finished);

@@ -13,6 +13,8 @@ pub struct DecisionActivity {
     pub postures: Vec<PostureWorth>,
     /// The posture that was chosen, by its place in the list.
     pub chosen: usize,
+    /// The posture before it, which a decision cannot take again; none where it can.
+    pub barred: Option<usize>,
     /// The rules, in order of birth; none for a table.
     pub rules: Vec<ActiveRule>,
 }
@@ -34,7 +36,7 @@ pub struct ActiveRule {
     /// The situations that it is about.
     pub condition: Condition,
     /// The names of the bits of situations.
-    pub names: &'static [&'static str],
+    pub names: &'static [[&'static str; 2]],
     /// The posture that it is about, by its number.
     pub posture: usize,
     /// The payoff that it predicts, or its strength.
@@ -55,7 +57,7 @@ pub(super) struct RulePlace {
     /// The bits of the situation.
     pub bits: u32,
     /// Their names.
-    pub names: &'static [&'static str],
+    pub names: &'static [[&'static str; 2]],
     /// The action that was taken, if one was.
     pub chosen: Option<usize>,
 }
@@ -111,14 +113,11 @@ impl ActiveRule {
     pub fn words(&self) -> String {
         let (care, value) = (self.condition.care(), self.condition.value());
         let parts = self.names.iter().enumerate().filter(|(bit, _)| care >> bit & 1 == 1);
-        let words: Vec<String> = parts
-            .map(|(bit, name)| match value >> bit & 1 {
-                1 => (*name).to_owned(),
-                // "no riser within half a metre", but "not moving".
-                _ if name.starts_with("riser") || name.starts_with("step") => format!("no {name}"),
-                _ => format!("not {name}"),
-            })
-            .collect();
+        let word = |(bit, [set, clear]): (usize, &[&'static str; 2])| match value >> bit & 1 {
+            1 => *set,
+            _ => *clear,
+        };
+        let words: Vec<&str> = parts.map(word).collect();
         if words.is_empty() { "always".to_owned() } else { words.join(", ") }
     }
 }
@@ -187,7 +186,7 @@ mod tests {
         let (first, last) = (decision(0), decision(3));
         assert_eq!((first.joint, first.rules.len(), first.chosen), (Some(0), 0, 0));
         assert_eq!(last.postures.iter().map(|bend| bend.name).collect::<Vec<_>>(), JOINT_BENDS);
-        assert_eq!((last.rules.len(), JOINT_BENDS[last.chosen]), (3, "bend down"));
+        assert_eq!((last.rules.len(), JOINT_BENDS[last.chosen]), (3, "sag"));
         assert!(last.rules.iter().all(|rule| rule.matches && rule.names == JOINT_BITS));
         assert_eq!(last.rules.iter().filter(|rule| rule.decides).count(), 1);
     }
@@ -206,7 +205,7 @@ mod tests {
         };
         assert_eq!(rule(0b1, 0b1).words(), "riser within half a metre");
         assert_eq!(rule(1 | 1 << 4, 0).words(), "no riser within half a metre, not moving");
-        assert_eq!(rule(0b100, 0).words(), "not head up");
+        assert_eq!(rule(0b100, 0).words(), "head not up");
         assert_eq!(rule(0, 0).words(), "always");
     }
 }

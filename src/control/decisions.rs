@@ -37,8 +37,9 @@ pub struct DecisionController {
     clock: DecisionClock,
     /// The situation in which it was taken.
     at: Option<DecisionPoint>,
-    /// The posture that it took.
+    /// The posture that it took, and the one before.
     action: usize,
+    previous: usize,
     /// Bends at the last decision, and those that it asks for, in radians.
     bends_rad: Vec<[f32; 2]>,
     moved_m: f32,
@@ -67,6 +68,7 @@ impl DecisionController {
             clock: DecisionClock::default(),
             at: None,
             action: FIRST_POSTURE,
+            previous: FIRST_POSTURE,
             bends_rad: vec![[0.0; 2]; genes.joints as usize],
             moved_m: 0.0,
             rewards: RewardMeter::default(),
@@ -83,6 +85,7 @@ impl DecisionController {
         self.close(Some(place));
         self.rewards.begin_decision();
         self.moved_m = 0.0;
+        self.previous = self.action;
         self.action = self.choice(&place);
         self.at = Some(place);
         let joints = self.bends_rad.len();
@@ -219,6 +222,7 @@ impl Controller for DecisionController {
             situation: place.situation.words(),
             postures: self.worths(&place, &rules),
             chosen: self.action,
+            barred: Some(self.previous),
             rules,
         }))
     }

@@ -147,7 +147,7 @@ fn situation(senses: &Perception, joint: usize, moved: bool) -> u32 {
 /// The situation of a joint in words: all that is so.
 fn in_words(bits: u32) -> String {
     let is_so = JOINT_BITS.iter().enumerate().filter(|(bit, _)| bits >> bit & 1 == 1);
-    let words: Vec<&str> = is_so.map(|(_, name)| *name).collect();
+    let words: Vec<&str> = is_so.map(|(_, [set, _])| *set).collect();
     if words.is_empty() { "nothing near".to_owned() } else { words.join(", ") }
 }
 
@@ -200,6 +200,7 @@ impl Controller for JointDecisionController {
             situation: in_words(bits),
             postures: ActiveRule::worths(&JOINT_BENDS, system.prediction_array(bits), &rules),
             chosen: self.chosen[joint].unwrap_or(0),
+            barred: None,
             rules,
         }))
     }
@@ -225,11 +226,11 @@ mod tests {
         senses.limbs[1].gap = 0.4;
         senses.limbs[1].step_up = 0.5;
         let words = |joint| in_words(situation(&senses, joint, joint == 3));
-        assert_eq!(words(0), "joint behind bent up");
+        assert_eq!(words(0), "joint behind arched");
         let second =
-            "bent up, limb behind touches, riser within a metre of the limb ahead, step ahead";
+            "arched, limb behind touches, riser within a metre of the limb ahead, step ahead";
         assert_eq!(words(1), second);
-        assert_eq!(words(2), "joint ahead bent up, limb ahead touches");
+        assert_eq!(words(2), "joint ahead arched, limb ahead touches");
         assert_eq!(words(3), "moving");
     }
 }

@@ -130,14 +130,36 @@ fn hostile_rules_are_refused_with_field_value_and_range() {
 }
 
 #[test]
+fn hostile_rules_of_joints_are_refused_with_field_value_and_range() {
+    for (mark, value, part) in [
+        ("situation_bits: ", "33", "situation_bits is 33"),
+        ("actions: ", "300", "actions is 300"),
+        ("action: ", "3", "action is 3"),
+        ("prediction: ", "NaN", "prediction is NaN"),
+        ("condition: ", "\"01\"", "condition is 01"),
+    ] {
+        let parts = [part, "allowed"];
+        assert_refuses_behind("systems: [(", "joint-decisions", mark, value, &parts);
+    }
+    let text = champion("joint-decisions");
+    let start = text.find("systems: [").expect("systems") + "systems: [".len();
+    let end = text.rfind("],").expect("the end of the systems");
+    let systems = &text[start..end];
+    let with = |systems: &str| format!("{}{systems}{}", &text[..start], &text[end..]);
+    assert_refused("no systems", &with(""), &["joints", "allowed"]);
+    let twice = with(&format!("{systems}, {systems}"));
+    assert_refused("eight systems", &twice, &["joints", "allowed"]);
+}
+
+#[test]
 fn hostile_networks_are_refused_with_field_value_and_range() {
     let cases: [(&str, &str, &str, &str); 21] = [
-        ("central", "hidden: [[", "NaN", "hidden"),
+        ("central", "hidden: [[", "NaN", "is NaN; allowed"),
         ("central", "hidden: [[", "1.0e9", "1000000000"),
-        ("central", "outputs: [[", "-inf", "outputs"),
+        ("central", "outputs: [[", "-inf", "is -inf; allowed"),
         ("central", "joints: ", "1000000000", "joints is 1000000000"),
         ("central", "joints: ", "3", "allowed"),
-        ("modular", "hidden: [[", "NaN", "hidden"),
+        ("modular", "hidden: [[", "NaN", "is NaN; allowed"),
         ("modular", "frequency_hz: ", "-1.0", "frequency_hz is -1"),
         ("modular", "lag_rad: ", "inf", "lag_rad is inf"),
         ("ctrnn", "log_time_constant: ", "-9.0", "log_time_constant is -9"),
@@ -148,7 +170,7 @@ fn hostile_networks_are_refused_with_field_value_and_range() {
         ("limb-neurons", "source: ", "own9", "own9"),
         ("neat", "inputs: ", "0", "inputs is 0"),
         ("neat", "outputs: ", "1000", "outputs is 1000"),
-        ("neat", "links: [(", "4294967295", "links"),
+        ("neat", "links: [(", "4294967295", "4294967295; allowed"),
         ("reflex", "reach_rad: ", "-1.0", "reach_rad is -1"),
         ("reflex", "load_phase_rad_per_s: ", "NaN", "load_phase_rad_per_s is NaN"),
         ("reflex", "blocked_phase_rad_per_s: ", "1.0e9", "blocked_phase_rad_per_s is"),

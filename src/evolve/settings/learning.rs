@@ -82,7 +82,7 @@ setting_group! {
         /// Greatest number of rules, counted with their copies.
         rules: u32 = 2000,
             whole("Rules at most", 12..=MOST_SYSTEM_RULES)
-                .hint("Maximum number of rules, copies included. More rules distinguish more situations")
+                .hint("Maximum number of rules, copies included. More rules distinguish more situations. Joint decisions share them among the joints")
                 .slider(100.0, 5000.0);
 
         /// Probability that a bit does not matter in a rule for a new situation.

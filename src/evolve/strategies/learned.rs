@@ -10,7 +10,9 @@ use crate::check::Invalid;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{EvolutionSettings, StrategyKind};
 use crate::genome::ControllerGenes;
-use crate::genome::controllers::{Explorer, JointDecisionGenes, POSTURES, Policy, SITUATION_BITS};
+use crate::genome::controllers::{
+    Explorer, JointDecisionGenes, POSTURES, Policy, SITUATION_BITS, shared,
+};
 use crate::learn::Episode;
 use crate::learn::classifiers::{Xcs, Zcs};
 use crate::rng::{Purpose, stream};
@@ -143,19 +145,20 @@ impl Learned for Policy {
 /// The rules of each joint.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct JointSystems(Vec<Xcs>);
+pub struct JointSystems(#[serde(with = "shared")] Arc<Vec<Xcs>>);
 
 impl Learned for JointSystems {
     fn first(plan: &RunPlan) -> Self {
         let joints = plan.settings.trial.agent.joints();
         let parameters = plan.settings.evolution.xcs.of_each(joints);
         // The settings' own ranges allow no parameter that is refused here.
-        Self(JointDecisionGenes::empty_systems(&parameters, joints).unwrap_or_default())
+        let systems = JointDecisionGenes::empty_systems(&parameters, joints);
+        Self(Arc::new(systems.unwrap_or_default()))
     }
 
     fn of(genes: &ControllerGenes) -> Option<Self> {
         match genes {
-            ControllerGenes::JointDecisions(genes) => Some(Self(genes.systems.as_ref().clone())),
+            ControllerGenes::JointDecisions(genes) => Some(Self(Arc::clone(&genes.systems))),
             _ => None,
         }
     }
@@ -166,7 +169,7 @@ impl Learned for JointSystems {
 
     fn give(&self, genes: &mut ControllerGenes, explorer: Option<Explorer>) {
         if let ControllerGenes::JointDecisions(genes) = genes {
-            genes.systems = Arc::new(self.0.clone());
+            genes.systems = Arc::clone(&self.0);
             genes.explorer = explorer;
         }
     }
@@ -177,9 +180,10 @@ impl Learned for JointSystems {
         evolution: &EvolutionSettings,
         rng: &mut ChaCha8Rng,
     ) {
+        let systems = Arc::make_mut(&mut self.0);
         for episode in episodes {
             let Episode::Joints(of_joints) = episode else { continue };
-            for (system, (decisions, end)) in self.0.iter_mut().zip(of_joints) {
+            for (system, (decisions, end)) in systems.iter_mut().zip(of_joints) {
                 // A joint may keep its bend, and does for the most part.
                 let _ = system.learn_returns(&decisions, end, evolution.xcs.trace, true, rng);
             }
@@ -188,7 +192,7 @@ impl Learned for JointSystems {
 
     fn apply(&mut self, evolution: &EvolutionSettings) {
         let parameters = evolution.xcs.of_each(self.0.len());
-        for system in &mut self.0 {
+        for system in Arc::make_mut(&mut self.0) {
             let _ = system.set_settings(parameters.clone());
         }
     }

@@ -62,7 +62,11 @@ impl<L: Learned> Strategy for Learning<L> {
         let of_founder = |genome: &Genome| L::of(&genome.controller);
         let founded = plan.founder.as_ref().and_then(|founder| of_founder(founder.genome()));
         // A founder that learned otherwise lends its body.
-        let fitting = founded.filter(|learned| learned.check_fits(plan).is_ok());
+        let mut fitting = founded.filter(|learned| learned.check_fits(plan).is_ok());
+        if let Some(learned) = &mut fitting {
+            // It was learned under settings of its own.
+            learned.apply(&plan.settings.evolution);
+        }
         Self::with(plan, 0, fitting.unwrap_or_else(|| L::first(plan)))
     }
 
@@ -115,5 +119,29 @@ impl<L: Learned> Strategy for Learning<L> {
 
     fn parents(&self) -> Vec<Parents> {
         vec![Parents::None; self.search.population]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{Founder, StrategyKind, with_fields};
+    use crate::genome::controllers::Policy;
+    use crate::genome::{ControllerGenes, ControllerKind};
+    use crate::save::load_preset;
+
+    #[test]
+    fn rules_of_a_founder_learn_under_the_settings_of_the_run() {
+        let settings = load_preset("xcs").expect("shipped").settings;
+        assert_eq!(settings.evolution.strategy, StrategyKind::Xcs);
+        assert_eq!(settings.genome.controller, ControllerKind::Decisions);
+        let founder = Learning::<Policy>::begin(&RunPlan::new("x", 1, settings.clone())).ask();
+        let changed = with_fields(&settings, [("xcs.learning_rate", "0.5")]).expect("allowed");
+        let plan = RunPlan::new("x", 1, changed);
+        let plan = plan.starting_from(Founder::new("x", founder[0].clone())).expect("it fits");
+        let asked = Learning::<Policy>::begin(&plan).ask();
+        let ControllerGenes::Decisions(genes) = &asked[0].controller else { panic!("decisions") };
+        let Policy::Xcs(rules) = &genes.policy else { panic!("rules") };
+        assert_eq!(rules.settings().learning_rate, 0.5);
     }
 }

@@ -17,24 +17,23 @@ use crate::genome::gene::{GeneVisitor, GenomeShape};
 use crate::genome::space::GenomeSpace;
 use crate::learn::classifiers::{Xcs, XcsSettings};
 
-/// The bends among which a joint decides, in their order. A positive bend lifts the middle of the body above the joint's
-/// neighbours.
-pub const JOINT_BENDS: [&str; 3] = ["straight", "bend up", "bend down"];
+/// The bends among which a joint decides, in their order. An arched joint lies above its neighbours, a sagging one below.
+pub const JOINT_BENDS: [&str; 3] = ["straight", "arch", "sag"];
 
-/// The bits of the situation of a joint, in their order.
-pub const JOINT_BITS: [&str; 12] = [
-    "bent up",
-    "bent down",
-    "joint ahead bent up",
-    "joint ahead bent down",
-    "joint behind bent up",
-    "joint behind bent down",
-    "limb ahead touches",
-    "limb behind touches",
-    "riser within a metre of the limb ahead",
-    "step ahead",
-    "limb ahead raised",
-    "moving",
+/// The bits of the situation of a joint, in their order: what is so where a bit is set, and where it is not.
+pub const JOINT_BITS: [[&str; 2]; 12] = [
+    ["arched", "not arched"],
+    ["sagging", "not sagging"],
+    ["joint ahead arched", "joint ahead not arched"],
+    ["joint ahead sagging", "joint ahead not sagging"],
+    ["joint behind arched", "joint behind not arched"],
+    ["joint behind sagging", "joint behind not sagging"],
+    ["limb ahead touches", "limb ahead does not touch"],
+    ["limb behind touches", "limb behind does not touch"],
+    ["riser within a metre of the limb ahead", "no riser within a metre of the limb ahead"],
+    ["step ahead", "no step ahead"],
+    ["limb ahead raised", "limb ahead not raised"],
+    ["moving", "not moving"],
 ];
 
 /// The rules of all joints, and the servos that move them. It does not evolve: it has no genes, but learns from the outcome of

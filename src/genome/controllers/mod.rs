@@ -24,6 +24,7 @@ mod wave_rule;
 
 pub use central::{CentralNetwork, sense_count};
 pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
+pub(crate) use decisions::shared;
 pub use decisions::{
     DECISION_DISCOUNT, DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, SITUATION_BITS,
     TABLE_QUESTIONS, TABLE_STATES,

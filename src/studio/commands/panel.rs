@@ -58,7 +58,7 @@ impl PanelKind {
             Self::Charts => "See how evolution works (Ctrl 3)",
             Self::Champions => "Replay the best of every generation (Ctrl 4)",
             Self::Library => "All saved champions and runs: replay, race, export (Ctrl 5)",
-            Self::Lessons => "Seven two-minute experiments (Ctrl 6)",
+            Self::Lessons => "Two-minute experiments (Ctrl 6)",
             Self::Senses => "What the snake senses, and its controller at work (Ctrl 7)",
         }
     }

@@ -26,11 +26,7 @@ pub(super) fn lessons(
 }
 
 fn list(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    let text = format!(
-        "{} two-minute experiments. Your own run is paused and comes back unchanged.",
-        LESSONS.len()
-    );
-    explain(ui, &text);
+    explain(ui, "Two-minute experiments. Your own run is paused and comes back unchanged.");
     for (index, lesson) in LESSONS.iter().enumerate() {
         let palette = theme::of(ui);
         palette.card(palette.field_hovered).show(ui, |ui| {

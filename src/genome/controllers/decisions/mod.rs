@@ -4,7 +4,8 @@
 mod policy;
 
 pub use policy::Policy;
-pub(super) use policy::{hash_xcs, shared};
+pub(super) use policy::hash_xcs;
+pub(crate) use policy::shared;
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -47,19 +48,20 @@ pub const TABLE_STATES: usize = POSTURES.len() * 3 * 3 * 3 * (1 << TABLE_QUESTIO
 pub const TABLE_QUESTIONS: [&str; 4] =
     ["moving", "middle at a riser", "folded in front", "folded behind"];
 
-/// The bits by which rules distinguish situations, in their order. Few, because each further one splits the experience of
-/// a run; the last five tell the last posture, so that a rule can say what comes after it.
-pub const SITUATION_BITS: [&str; 10] = [
-    "riser within half a metre",
-    "riser at the middle",
-    "head up",
-    "head down",
-    "moving",
-    "first joint bent",
-    "first joint bent down",
-    "last joint bent",
-    "second joint folded",
-    "last joint but one folded",
+/// The bits by which rules distinguish situations, in their order: what is so where a bit is set, and where it is not. Few,
+/// because each further one splits the experience of a run; the last five tell the last posture, so that a rule can say what
+/// comes after it.
+pub const SITUATION_BITS: [[&str; 2]; 10] = [
+    ["riser within half a metre", "no riser within half a metre"],
+    ["riser at the middle", "no riser at the middle"],
+    ["head up", "head not up"],
+    ["head down", "head not down"],
+    ["moving", "not moving"],
+    ["first joint bent", "first joint straight"],
+    ["first joint arched", "first joint not arched"],
+    ["last joint bent", "last joint straight"],
+    ["second joint folded", "second joint not folded"],
+    ["last joint but one folded", "last joint but one not folded"],
 ];
 
 /// A learned policy, and the servos that move the joints to its postures. It does not evolve: it has no genes, but learns

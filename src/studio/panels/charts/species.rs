@@ -41,10 +41,10 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
     let unit = settings.trial.fitness.unit();
     let hits = drawn.iter().flat_map(|report| hits(report, &lives, unit, every as f64)).collect();
     let (network, points) = best_network(&known, x);
-    let (now, ever) = (latest.species.len(), lives.len());
+    let (now, ever) = (species_in_words(latest), lives.len());
     let note = format!(
-        "Each band is a species; its height is the number of its snakes. Generation {}: {now} species. Since the \
-         start: {ever}.",
+        "Each band is a species; its height is the number of its snakes. Generation {}: {now}. Recorded \
+         since the start: {ever}.",
         latest.generation
     );
     let figure = Figure {
@@ -125,12 +125,22 @@ fn hits(report: &GenerationReport, lives: &Lives, unit: &'static str, width: f64
             };
             format!(
                 "Species {id} in generation {generation}\n{size} of {evaluations} snakes, {best}\nfirst in \
-                 generation {first}\n{count} species in this generation"
+                 generation {first}\n{count} in this generation"
             )
         };
         ChartHit::new(HitShape::Area(area), words)
     };
     report.species.iter().map(hit).collect()
+}
+
+/// The number of species of a generation: a record has only the largest of many.
+fn species_in_words(report: &GenerationReport) -> String {
+    let recorded: u32 = report.species.iter().map(|species| species.size).sum();
+    let (count, others) = (report.species.len(), report.evaluations.saturating_sub(recorded));
+    match others {
+        0 => format!("{count} species"),
+        _ => format!("more than {count} species"),
+    }
 }
 
 /// Number of hidden nodes and of links that are on, of the network of the best snake.

@@ -68,7 +68,7 @@ const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Lessons,
         title: "Short lessons",
-        text: "Seven two-minute experiments. Your own run is paused and comes back unchanged. Press ? for \
+        text: "Two-minute experiments. Your own run is paused and comes back unchanged. Press ? for \
                all shortcuts, Ctrl K to search commands.",
         try_it: "Begin lesson 1, which ends the tour",
         is_done_by: |command| matches!(command, Command::Lesson(LessonCommand::Begin(_))),

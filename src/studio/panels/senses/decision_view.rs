@@ -50,8 +50,11 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
     }
     for (index, posture) in decision.postures.iter().enumerate() {
         let (one, many) = if has_rules { ("rule", "rules") } else { ("visit", "visits") };
-        let note = format!("{} {}", posture.count, if posture.count == 1 { one } else { many });
-        let is_chosen = index == decision.chosen;
+        let note = match decision.barred == Some(index) {
+            true => "taken before".to_owned(),
+            false => format!("{} {}", posture.count, if posture.count == 1 { one } else { many }),
+        };
+        let (is_chosen, is_barred) = (index == decision.chosen, decision.barred == Some(index));
         let row = ValueBar {
             name: posture.name,
             names_width: POSTURE_NAMES,
@@ -60,11 +63,12 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
             range: [least, most],
             note: &note,
             color: if is_chosen { palette.accent } else { palette.second },
-            is_frozen: posture.worth.is_none() || posture.count == 0,
+            is_frozen: is_barred || posture.worth.is_none() || posture.count == 0,
             is_chosen,
-            hint: match is_chosen {
-                true => format!("The {} that it has chosen", noun(decision)),
-                false => format!("What it has learned this {} to be worth here", noun(decision)),
+            hint: match (is_chosen, is_barred) {
+                (true, _) => format!("The {} that it has chosen", noun(decision)),
+                (_, true) => "The posture before: none follows itself".to_owned(),
+                _ => format!("What it has learned this {} to be worth here", noun(decision)),
             },
         };
         row.ui(ui);
@@ -107,7 +111,10 @@ fn rules(ui: &mut egui::Ui, decision: &DecisionActivity, shows_all: &mut bool) {
 fn entry(ui: &mut egui::Ui, rule: &ActiveRule, decision: &DecisionActivity) {
     let posture = decision.postures.get(rule.posture).map_or("", |posture| posture.name);
     let row = RuleRow {
-        condition: format!("If {}", rule.words()),
+        condition: match rule.condition.care() {
+            0 => "Always".to_owned(),
+            _ => format!("If {}", rule.words()),
+        },
         action: format!("{posture}: {}", rule_numbers(rule)),
         holds: rule.matches,
         decides: rule.decides,

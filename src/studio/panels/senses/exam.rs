@@ -33,7 +33,7 @@ pub(super) fn exam(
         }
         progress(ui, exams, commands);
     });
-    let hint = "How often the snake lands on 100 staircases on which it did not evolve";
+    let hint = "How often the snake lands on 100 staircases, nearly all unlike its own";
     shown.header_response.on_hover_text(hint);
 }
 
