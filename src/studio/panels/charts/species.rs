@@ -111,13 +111,14 @@ fn layers(drawn: &[&GenerationReport], lives: &Lives) -> Vec<Series> {
 /// Hover texts of the species of a generation, which is drawn `width` generations wide.
 fn hits(report: &GenerationReport, lives: &Lives, unit: &'static str, width: f64) -> Vec<ChartHit> {
     let (generation, evaluations) = (report.generation, report.evaluations);
-    let count = report.species.len();
+    let count = species_in_words(report);
     let x = f64::from(generation);
     let hit = |species: &SpeciesCount| {
         let SpeciesCount { id, size, best } = *species;
         let [low, _] = place(&report.species, id).map(f64::from);
         let area = [x - width / 2.0, x + width / 2.0, low, low + f64::from(size)];
         let first = lives.get(&id).map_or(generation, |life| life[0]);
+        let count = count.clone();
         let words = move || {
             let best = match best {
                 Some(best) => format!("best {best:.2}{unit}"),
@@ -267,7 +268,9 @@ mod tests {
         assert_eq!(layer(&view, 2), expected);
         assert_eq!(layer(&view, 1).last(), Some(&[3.25, 0.0, 0.0]));
         assert_eq!(layer(&view, 3)[0], [1.75, 6.0, 6.0], "it is born in generation 3");
-        assert!(view.figure.note.ends_with("Generation 5: 1 species. Since the start: 3."));
+        assert!(
+            view.figure.note.ends_with("Generation 5: 1 species. Recorded since the start: 3.")
+        );
     }
 
     #[test]
@@ -300,7 +303,7 @@ mod tests {
         let view = view_of(7, &[few]);
         let words: Vec<String> = view.hits[0].iter().map(ChartHit::words).collect();
         let expected = "Species 4 in generation 7\n2 of 6 snakes, best 1.50 m\nfirst in generation 7\n\
-                        2 species in this generation";
+                        more than 2 species in this generation";
         assert_eq!(words[0], expected);
         assert!(words[1].contains("1 of 6 snakes, all disqualified"));
         let table = view.figure.table();

@@ -139,7 +139,8 @@ fn reflexes_are_listed_by_sense() {
 fn decisions_show_situation_postures_and_rules() {
     let lane = lane_of(ControllerKind::Decisions, &[], |_| ());
     let table = panel(&lane, 0);
-    for label in ["Situation: ", "fold in front: 0.00 0 visits", "0.00 0 visits, chosen"] {
+    for label in ["Situation: ", "fold all: 0.00 0 visits", "0.00 0 visits, chosen", "taken before"]
+    {
         assert!(shows(&table, label), "{label}");
     }
     assert!(!shows(&table, "Rules: "));

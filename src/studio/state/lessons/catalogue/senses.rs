@@ -6,9 +6,8 @@ use crate::studio::state::lessons::lesson::{Lesson, LessonScene, furthest, lane}
 pub(super) const LEARNED_BY_HEART: Lesson = Lesson {
     title: "Learned by heart",
     question: "Does a snake that climbs its own stairs climb others?",
-    story: "Most snakes of this program feel nothing but their joints. They repeat one motion, which evolution has \
-            fitted to one staircase. The stage shows such a snake on its own steps of 0.5 m, on lower and on higher \
-            ones; then a snake whose limbs feel the ground.",
+    story: "Most snakes of this program feel nothing but their joints: they repeat one motion. The stage shows such \
+            a snake on its own steps of 0.5 m, on lower and on higher ones; then a snake whose limbs feel the ground.",
     to_try: "Guess, and watch the first race. Do the same with the second snake. Afterwards open the Senses panel \
              and choose Examine on 100 staircases.",
     look_for: "Whether the motion changes with the stairs: the first snake moves its joints alike on all of them; the \
