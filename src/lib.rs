@@ -63,6 +63,10 @@ pub mod save;
 /// Experiments on worker threads, and the headless mode.
 pub mod run;
 
+/// One run on many machines, through a NATS server.
+#[cfg(feature = "cluster")]
+pub mod cluster;
+
 /// Plots as image files.
 pub mod plot;
 

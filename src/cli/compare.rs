@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use super::args::{Args, CompareArgs};
 use super::error::{CliError, of_flag};
+use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings, StrategyKind};
@@ -134,19 +135,21 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     let bar = bar_of(u64::from(compared.evaluations) * plans.len() as u64, "evaluations");
     let control = cancel_on_interrupt();
     let spent = |evaluations: u32| bar.inc(evaluations.into());
-    let evaluator = args.evaluator()?;
+    let place = std::path::absolute(&ron).unwrap_or_else(|_| ron.clone());
+    let evaluator = evaluator(args, "compare", &place)?;
     let result = run_all(&plans, &*evaluator, &control, spent, |run| {
         comparison.add(run);
         // After each run, so that a kill loses none that is finished.
         Ok(store_comparison(&ron, &comparison)?)
     });
     bar.finish_and_clear();
-    result.map_err(|error| match error {
+    let result = result.map_err(|error| match error {
         HeadlessError::Cancelled { .. } => {
             HeadlessError::Cancelled { kept: ron.exists().then(|| ron.clone()) }
         }
         other => other,
-    })?;
+    });
+    trusted(&*evaluator, result)?;
     store_comparison(&ron, &comparison)?;
     store_csv(&csv, &comparison.records())?;
     store_picture(&png, &plot::comparison(&comparison)?)?;

@@ -27,6 +27,19 @@ pub enum CliError {
     /// The golden trajectories could not be computed.
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    /// The workers on other machines could not be used.
+    #[cfg(feature = "cluster")]
+    #[error(transparent)]
+    Cluster(#[from] crate::cluster::ClusterError),
+    /// This build knows no other machines.
+    #[cfg(not(feature = "cluster"))]
+    #[error(
+        "this build computes on this computer only; build it with the feature cluster to use --nats"
+    )]
+    NoCluster,
+    /// A worker sent wrong results after right ones.
+    #[error("{0}")]
+    Tainted(String),
     /// This machine computes other bits.
     #[error(
         "{differ} of {all} trajectories differ from the reference: champions saved on other machines move \

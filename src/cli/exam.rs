@@ -7,13 +7,14 @@ use serde_json::json;
 
 use super::args::Args;
 use super::error::CliError;
+use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::HeadlessError;
 use crate::run::markdown::markdown_table;
 use crate::run::progress_bar::with_bar;
-use crate::run::{LocalPool, short};
+use crate::run::short;
 use crate::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
 use crate::schema::Choices;
 use crate::score::{ExamSuite, SuiteResult};
@@ -34,15 +35,16 @@ pub fn exam(
         Ok(loaded)
     };
     let champions = files.iter().map(load).collect::<Result<Vec<_>, SaveError>>()?;
-    let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
+    let evaluator = evaluator(args, "exam", &place_of(files))?;
     let control = cancel_on_interrupt();
     let mut rows = Vec::new();
     let mut examine_one = |file: &PathBuf, loaded: LoadedChampion| -> Result<(), CliError> {
         let matches = equals_record(file, &loaded)?;
         let bar = ProgressBar::new(exam_trials(&loaded.champion, &suites).into());
-        let examined = || examine(&loaded.champion, &suites, &pool, &control);
+        let examined = || examine(&loaded.champion, &suites, &*evaluator, &control);
         let results = with_bar(&bar, &control, examined);
-        let results = results.map_err(|_| HeadlessError::Cancelled { kept: None })?;
+        let results = results.map_err(|_| HeadlessError::Cancelled { kept: None });
+        let results = trusted(&*evaluator, results)?;
         if writes {
             store_exam(file, &loaded, &results)?;
         }
@@ -66,6 +68,12 @@ pub fn exam(
         return print(&format!("{}\n", json!({"done": true, "files": files.len()})));
     }
     print(&table(&suites, &rows))
+}
+
+/// The place of the first file, which stands for all.
+pub(super) fn place_of(files: &[PathBuf]) -> PathBuf {
+    let first = files.first().cloned().unwrap_or_default();
+    std::path::absolute(&first).unwrap_or(first)
 }
 
 /// The suites that the user names; the default ones, if none.

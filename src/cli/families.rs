@@ -8,6 +8,7 @@ use serde_json::json;
 use super::args::{Args, FamiliesArgs};
 use super::compare::{kinds, seeds_from};
 use super::error::{CliError, of_flag};
+use super::evaluators::{evaluator, trusted};
 use super::exam::chosen;
 use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
@@ -19,7 +20,7 @@ use crate::run::families::{
 };
 use crate::run::headless::{HeadlessError, say};
 use crate::run::progress_bar::{bar_of, with_bar};
-use crate::run::{LocalPool, RunControl, with_short_numbers};
+use crate::run::{Evaluator, RunControl, with_short_numbers};
 use crate::save::{
     FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, SaveError, SavesFolder, load_champion, load_families,
     load_preset, store_champion, store_csv, store_exam, store_families, store_picture,
@@ -61,8 +62,9 @@ pub fn families(args: &Args, wanted: &FamiliesArgs) -> Result<(), CliError> {
     let suites = chosen(&wanted.suite, &DEFAULT_SUITES)?;
     let planned = plans(args, wanted, &families)?;
     within("runs", planned.len(), 1..=MAX_FAMILY_RUNS)?;
-    let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
     let files = ResultFiles::prepare(&args.results_folder())?;
+    let place = std::path::absolute(&files.ron).unwrap_or_else(|_| files.ron.clone());
+    let evaluator = evaluator(args, "families", &place)?;
     let mut finished = earlier_runs(&files.ron, &planned, &families, args.restart)?;
     let has_file = |family, seed| files.champion(family, seed).exists();
     let left = missing(&planned, &finished, has_file);
@@ -74,7 +76,7 @@ pub fn families(args: &Args, wanted: &FamiliesArgs) -> Result<(), CliError> {
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
     let result = train(
         &left,
-        &pool,
+        &*evaluator,
         &control,
         |spent| bar.inc(spent),
         |done: FinishedRun| {
@@ -93,14 +95,15 @@ pub fn families(args: &Args, wanted: &FamiliesArgs) -> Result<(), CliError> {
         HeadlessError::Cancelled { .. } => HeadlessError::Cancelled { kept: kept() },
         other => other,
     };
-    result.map_err(cancelled)?;
+    trusted(&*evaluator, result.map_err(cancelled))?;
     // The gaits that the named families are compared with, if they have been trained before.
     let mut gaits: Vec<Family> = families.iter().map(|family| family.gait()).collect();
     gaits.retain(|gait| !families.contains(gait));
     let gaits = plans(args, wanted, &gaits)?;
     let mut results = results_of(&finished, &[planned, gaits].concat());
     for family in &mut results.0 {
-        family.examined = examined(family, &suites, &files, &pool, &control).map_err(cancelled)?;
+        let found = examined(family, &suites, &files, &*evaluator, &control).map_err(cancelled);
+        family.examined = trusted(&*evaluator, found)?;
     }
     store_csv(&files.csv, &exam_records(&results))?;
     store_picture(&files.png, &plot::families(&results, &suites)?)?;
@@ -196,7 +199,7 @@ fn examined(
     family: &FamilyResults,
     suites: &[ExamSuite],
     files: &ResultFiles,
-    pool: &LocalPool,
+    evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<ExaminedChampion>, HeadlessError> {
     let mut champions = Vec::new();
@@ -210,7 +213,8 @@ fn examined(
         if trials > 0 {
             let bar: ProgressBar = bar_of(trials.into(), "trials");
             say(&format!("exam of {}, seed {seed}", family.family.name()));
-            let found = with_bar(&bar, control, || examine(&loaded.champion, &left, pool, control));
+            let found =
+                with_bar(&bar, control, || examine(&loaded.champion, &left, evaluator, control));
             let found = found.map_err(|_| HeadlessError::Cancelled { kept: None })?;
             store_exam(&path, &loaded, &found)?;
             loaded.exam.extend(found);

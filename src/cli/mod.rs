@@ -4,8 +4,11 @@
 
 mod args;
 mod bench;
+#[cfg(feature = "cluster")]
+mod cluster;
 mod compare;
 mod error;
+mod evaluators;
 mod exam;
 mod families;
 #[cfg(feature = "studio")]
@@ -29,6 +32,7 @@ pub use error::CliError;
 use output::{cancel_on_interrupt, print};
 
 use crate::run::headless::{self, say};
+use crate::save::run_name;
 
 /// Runs the program with the given arguments, the program's name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -46,46 +50,68 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
-fn dispatch(args: Args) -> Result<(), CliError> {
+/// Does what the arguments ask for. If results turn out to be wrong, because a machine computed other bits after right
+/// ones, everything begins again without that machine.
+fn dispatch(mut args: Args) -> Result<(), CliError> {
+    loop {
+        match perform(&args) {
+            Err(CliError::Tainted(reason)) => {
+                say(&format!(
+                    "{reason}; everything begins again, since earlier results may be wrong"
+                ));
+                args.restart = true;
+            }
+            result => return result,
+        }
+    }
+}
+
+fn perform(args: &Args) -> Result<(), CliError> {
     match &args.command {
         Some(Subcommand::Presets) => lists::print_presets(args.json),
-        Some(Subcommand::Settings { markdown }) => lists::print_settings(&args, *markdown),
-        Some(Subcommand::Bench) => bench::print_bench(&args),
-        Some(Subcommand::Verify) => verify::verify(&args),
+        Some(Subcommand::Settings { markdown }) => lists::print_settings(args, *markdown),
+        Some(Subcommand::Bench) => bench::print_bench(args),
+        Some(Subcommand::Verify) => verify::verify(args),
         Some(Subcommand::Robust { file, trials, range }) => {
-            robust::robust(&args, file, *trials, &range.into())
+            robust::robust(args, file, *trials, &range.into())
         }
-        Some(Subcommand::Exam { files, suite, write }) => exam::exam(&args, files, suite, *write),
-        Some(Subcommand::Compare(compared)) => compare::compare(&args, compared),
-        Some(Subcommand::Families(wanted)) => families::families(&args, wanted),
-        Some(Subcommand::Table1 { seeds, first_seed }) => {
-            table1::table1(&args, *first_seed, *seeds)
-        }
+        Some(Subcommand::Exam { files, suite, write }) => exam::exam(args, files, suite, *write),
+        Some(Subcommand::Compare(compared)) => compare::compare(args, compared),
+        Some(Subcommand::Families(wanted)) => families::families(args, wanted),
+        Some(Subcommand::Table1 { seeds, first_seed }) => table1::table1(args, *first_seed, *seeds),
         #[cfg(feature = "studio")]
         Some(Subcommand::Figures { run }) => {
             crate::studio::name_runtime_folder(|_| ());
-            figures::draw(&args, run)
+            figures::draw(args, run)
         }
         #[cfg(feature = "studio")]
         Some(Subcommand::Render(wanted)) => {
             crate::studio::name_runtime_folder(|_| ());
-            render::draw(&args, wanted)
+            render::draw(args, wanted)
         }
         #[cfg(not(feature = "studio"))]
         Some(Subcommand::Figures { .. } | Subcommand::Render(_)) => Err(CliError::NoStudio),
+        #[cfg(feature = "cluster")]
+        Some(Subcommand::Worker) => cluster::worker(args),
+        #[cfg(feature = "cluster")]
+        Some(Subcommand::Machines { purge }) => cluster::list(args, purge.as_deref()),
+        #[cfg(not(feature = "cluster"))]
+        Some(Subcommand::Worker | Subcommand::Machines { .. }) => Err(CliError::NoCluster),
         Some(Subcommand::Replay { files }) if args.no_render => replay::replay(files, args.json),
-        None if args.no_render => evolve(&args),
-        None | Some(Subcommand::Replay { .. }) => open_studio(&args),
+        None if args.no_render => evolve(args),
+        None | Some(Subcommand::Replay { .. }) => open_studio(args),
     }
 }
 
 /// The headless experiment.
 fn evolve(args: &Args) -> Result<(), CliError> {
     let source = args.run_source()?;
-    let evaluator = args.evaluator()?;
+    let place = std::path::absolute(&source.folder).unwrap_or_else(|_| source.folder.clone());
+    let evaluator = evaluators::evaluator(args, &run_name(&source.plan), &place)?;
     let control = cancel_on_interrupt();
     let mut out = io::stdout();
-    Ok(headless::evolve(source, &*evaluator, args.json, &control, &mut out)?)
+    let result = headless::evolve(source, &*evaluator, args.json, &control, &mut out);
+    evaluators::trusted(&*evaluator, result)
 }
 
 #[cfg(feature = "studio")]

@@ -1,7 +1,7 @@
 //! Standard output, and the interrupt key.
 
 use std::io::{self, Write};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::error::CliError;
 use crate::run::RunControl;
@@ -15,11 +15,21 @@ pub fn print(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// A control that the interrupt key cancels.
+/// The control that the interrupt key cancels.
+static CANCELLED_BY_KEY: Mutex<Option<Arc<RunControl>>> = Mutex::new(None);
+
+/// A control that the interrupt key cancels, in the place of any earlier one.
 pub fn cancel_on_interrupt() -> Arc<RunControl> {
+    let current = || CANCELLED_BY_KEY.lock().unwrap_or_else(PoisonError::into_inner);
     let control = Arc::new(RunControl::default());
-    let cancelled = Arc::clone(&control);
-    // Without a handler the key ends the program at once; files written by then are whole.
-    let _ = ctrlc::set_handler(move || cancelled.cancel());
+    let is_first = current().replace(Arc::clone(&control)).is_none();
+    if is_first {
+        // Without a handler the key ends the program at once; files written by then are whole.
+        let _ = ctrlc::set_handler(move || {
+            if let Some(control) = current().as_ref() {
+                control.cancel();
+            }
+        });
+    }
     control
 }

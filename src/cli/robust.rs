@@ -6,10 +6,10 @@ use indicatif::ProgressBar;
 
 use super::args::Args;
 use super::error::{CliError, of_flag};
+use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
 use crate::check::{Invalid, within};
-use crate::run::LocalPool;
 use crate::run::headless::HeadlessError;
 use crate::run::progress_bar::with_bar;
 use crate::run::robust::{Robustness, Share, robustness};
@@ -29,12 +29,14 @@ pub fn robust(
     let loaded = load_champion(file)?;
     let matches = equals_record(file, &loaded)?;
     let champion = loaded.champion;
-    let pool = LocalPool::new(args.threads()?).map_err(HeadlessError::from)?;
+    let place = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+    let evaluator = evaluator(args, "robust", &place)?;
     let (control, seed) = (cancel_on_interrupt(), args.seed()?);
     let bar = ProgressBar::new(trials.into());
-    let found =
-        with_bar(&bar, &control, || robustness(&champion, range, trials, seed, &pool, &control));
-    let found = found.map_err(|_| HeadlessError::Cancelled { kept: None })?;
+    let measure = || robustness(&champion, range, trials, seed, &*evaluator, &control);
+    let found = with_bar(&bar, &control, measure);
+    let found = found.map_err(|_| HeadlessError::Cancelled { kept: None });
+    let found = trusted(&*evaluator, found)?;
     if args.json {
         for (step, share) in shares(&found) {
             let Share { seen, least, most } = share;

@@ -2,6 +2,7 @@
 
 use super::args::Args;
 use super::error::CliError;
+use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings};
@@ -22,7 +23,8 @@ pub fn table1(args: &Args, first_seed: u64, count: u64) -> Result<(), CliError> 
     check_fitness(&settings).map_err(|invalid| args.of_its_flag(invalid))?;
     let folder = args.results_folder();
     folder.prepare()?;
-    let evaluator = args.evaluator()?;
+    let place = std::path::absolute(folder.path()).unwrap_or_else(|_| folder.path().to_owned());
+    let evaluator = evaluator(args, "table1", &place)?;
     let control = cancel_on_interrupt();
     let plan = |seed| RunPlan::new(&preset, seed, settings.clone());
     let run = run_name(&plan(*seeds.start()));
@@ -41,7 +43,8 @@ pub fn table1(args: &Args, first_seed: u64, count: u64) -> Result<(), CliError> 
             run_generation_with_bar(run, &*evaluator, &control, |_, _, _| ())
         });
         let kept = (!table.seeds.is_empty()).then(|| csv.clone());
-        let result = result.map_err(|Cancelled| HeadlessError::Cancelled { kept })?;
+        let result = result.map_err(|Cancelled| HeadlessError::Cancelled { kept });
+        let result = trusted(&*evaluator, result)?;
         if args.json {
             print(&format!("{}\n", json_of(&result)))?;
         } else {

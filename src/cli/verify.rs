@@ -11,7 +11,7 @@ use crate::run::verify::Trajectories;
 /// Computes the golden trajectories and compares them with the reference.
 pub fn verify(args: &Args) -> Result<(), CliError> {
     let reference = Trajectories::reference()?;
-    let evaluator = args.evaluator()?;
+    let evaluator = args.local_evaluator()?;
     let control = cancel_on_interrupt();
     let bar = ProgressBar::new(1);
     let computed = Trajectories::computed(&*evaluator, &control, |done, all| {

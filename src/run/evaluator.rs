@@ -16,12 +16,12 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::panics::caught;
 use super::run_control::{Cancelled, RunControl};
 use crate::genome::Genome;
-use crate::score::{Scored, Trial, score};
+use crate::score::{ExamCondition, ExamEnd, Scored, Trial, score};
 
 /// The result of evaluating one genome; an error is the message of the panic in it.
 pub type EvaluationResult = Result<Scored, String>;
 
-/// Evaluates batches of genomes.
+/// Evaluates batches of genomes, and examines champions.
 pub trait Evaluator: Debug + Send + Sync {
     /// Evaluates each genome in `trial`, in any order, and calls `report` with its index and result as soon as that
     /// is known. `report` may be called from several threads at once.
@@ -39,6 +39,19 @@ pub trait Evaluator: Debug + Send + Sync {
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
     ) -> Result<(), Cancelled>;
 
+    /// Simulates a genome in each condition of an exam, as [`Self::evaluate_batch`] does genomes in a trial. A
+    /// simulation that panics counts as [`ExamEnd::CRASHED`].
+    ///
+    /// # Errors
+    /// [`Cancelled`], if `control` was.
+    fn examine_batch(
+        &self,
+        genome: &Genome,
+        conditions: &[ExamCondition],
+        control: &RunControl,
+        report: &(dyn Fn(usize, ExamEnd) + Sync),
+    ) -> Result<(), Cancelled>;
+
     /// Maximum number of evaluations at the same time.
     fn workers(&self) -> usize;
 
@@ -47,6 +60,12 @@ pub trait Evaluator: Debug + Send + Sync {
     /// # Errors
     /// The workers could not be started.
     fn with_workers(&self, workers: usize) -> Result<Arc<dyn Evaluator>, WorkersError>;
+
+    /// Why results that were reported earlier cannot be trusted any more, if they cannot. The evaluator then cancels all
+    /// batches, and what they belonged to begins again with another evaluator.
+    fn fault(&self) -> Option<String> {
+        None
+    }
 }
 
 /// The workers of an evaluator could not be started.
@@ -68,6 +87,11 @@ pub fn available_cores() -> usize {
 /// The evaluation panicked.
 pub fn evaluate_caught(genome: &Genome, trial: &Trial) -> EvaluationResult {
     caught(|| score(genome, trial))
+}
+
+/// Simulates a genome in a condition of an exam; a panic in it counts as a crash.
+pub fn examine_caught(genome: &Genome, condition: &ExamCondition) -> ExamEnd {
+    caught(|| ExamEnd::of(genome, condition)).unwrap_or(ExamEnd::CRASHED)
 }
 
 /// Evaluates on threads of this process.
@@ -113,6 +137,22 @@ impl Evaluator for LocalPool {
             genomes.par_iter().enumerate().try_for_each(|(index, genome)| {
                 control.wait_while_paused()?;
                 report(index, evaluate_caught(genome, trial));
+                Ok(())
+            })
+        })
+    }
+
+    fn examine_batch(
+        &self,
+        genome: &Genome,
+        conditions: &[ExamCondition],
+        control: &RunControl,
+        report: &(dyn Fn(usize, ExamEnd) + Sync),
+    ) -> Result<(), Cancelled> {
+        self.0.install(|| {
+            conditions.par_iter().enumerate().try_for_each(|(index, condition)| {
+                control.wait_while_paused()?;
+                report(index, examine_caught(genome, condition));
                 Ok(())
             })
         })

@@ -1,7 +1,8 @@
-//! Examining a champion on worker threads.
+//! Examining a champion by an evaluator.
 
-use super::evaluator::LocalPool;
-use super::panics::caught;
+use std::sync::OnceLock;
+
+use super::evaluator::{Evaluator, examine_caught};
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::Champion;
 use crate::score::{ExamCondition, ExamEnd, ExamSuite, StairsGrid, SuiteResult};
@@ -21,7 +22,7 @@ pub fn exam_trials(champion: &Champion, suites: &[ExamSuite]) -> u32 {
 pub fn examine(
     champion: &Champion,
     suites: &[ExamSuite],
-    pool: &LocalPool,
+    evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<SuiteResult>, Cancelled> {
     control.start_generation();
@@ -30,7 +31,7 @@ pub fn examine(
     let result = |(suite, mut conditions): (ExamSuite, Vec<ExamCondition>)| {
         let first = conditions.len();
         conditions.push(suite.undisturbed(&champion.trial));
-        let mut ends = exam_ends(champion, &conditions, pool, control)?;
+        let mut ends = exam_ends(champion, &conditions, evaluator, control)?;
         let own = ends.remove(first);
         conditions.truncate(first);
         Ok(SuiteResult::of(suite, &own, &conditions, &ends))
@@ -49,12 +50,12 @@ pub fn stairs_trials(champion: &Champion) -> u32 {
 /// [`Cancelled`], if `control` was.
 pub fn examine_on_stairs(
     champion: &Champion,
-    pool: &LocalPool,
+    evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<StairsGrid>, Cancelled> {
     control.start_generation();
     let grid = |(suite, conditions): (ExamSuite, Vec<ExamCondition>)| {
-        let ends = exam_ends(champion, &conditions, pool, control)?;
+        let ends = exam_ends(champion, &conditions, evaluator, control)?;
         Ok(StairsGrid::of(suite, &champion.trial, &conditions, &ends))
     };
     stairs_conditions(champion).into_iter().map(grid).collect()
@@ -74,22 +75,24 @@ fn stairs_conditions(champion: &Champion) -> Vec<(ExamSuite, Vec<ExamCondition>)
 pub fn exam_ends(
     champion: &Champion,
     conditions: &[ExamCondition],
-    pool: &LocalPool,
+    evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<ExamEnd>, Cancelled> {
-    pool.map(conditions.len(), |index| {
-        control.wait_while_paused()?;
-        let end = caught(|| ExamEnd::of(&champion.genome, &conditions[index]));
-        control.count_one();
-        let disqualified = ExamEnd {
-            steps: 0,
-            way: 0.0,
-            landed_s: None,
-            has_landed: false,
-            is_disqualified: true,
-        };
-        Ok(end.unwrap_or(disqualified))
-    })
+    let ends: Vec<OnceLock<ExamEnd>> = conditions.iter().map(|_| OnceLock::new()).collect();
+    let store = |index: usize, end: ExamEnd| {
+        if ends.get(index).is_some_and(|place| place.set(end).is_ok()) {
+            control.count_one();
+        }
+    };
+    evaluator.examine_batch(&champion.genome, conditions, control, &store)?;
+    // What the evaluator did not report.
+    for (index, condition) in conditions.iter().enumerate() {
+        if ends[index].get().is_none() {
+            control.wait_while_paused()?;
+            store(index, examine_caught(&champion.genome, condition));
+        }
+    }
+    Ok(ends.into_iter().filter_map(OnceLock::into_inner).collect())
 }
 
 #[cfg(test)]
@@ -97,6 +100,7 @@ mod tests {
     use super::*;
     use crate::genome::ControllerKind;
     use crate::rng::{Purpose, stream};
+    use crate::run::LocalPool;
     use crate::save::{load_preset, shipped_champion};
     use crate::score::evaluate;
 

@@ -31,6 +31,7 @@ pub use background::{BackgroundRun, Exploration, OpenedRun, RunEvent};
 pub use background_task::{BackgroundTask, TaskProgress};
 pub use evaluator::{
     EvaluationResult, Evaluator, LocalPool, THREADS_RANGE, WorkersError, available_cores,
+    evaluate_caught, examine_caught,
 };
 pub use experiment::Experiment;
 pub use json::{short, with_short_numbers};

@@ -1,6 +1,6 @@
 //! Robustness of a champion: the same genome in many slightly perturbed trials.
 
-use super::evaluator::LocalPool;
+use super::evaluator::Evaluator;
 use super::exam::exam_ends;
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::Champion;
@@ -37,12 +37,12 @@ pub fn robustness(
     range: &PerturbationRange,
     trials: u32,
     seed: u64,
-    pool: &LocalPool,
+    evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Robustness, Cancelled> {
     let trial = &champion.trial;
     control.start_generation();
-    let ends = exam_ends(champion, &varied(trial, range, trials, seed), pool, control)?;
+    let ends = exam_ends(champion, &varied(trial, range, trials, seed), evaluator, control)?;
     let reached = |steps: u32| ends.iter().filter(|end| end.steps >= steps).count() as u32;
     Ok(Robustness {
         trials,
@@ -68,6 +68,7 @@ impl Share {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::LocalPool;
     use crate::save::shipped_champion;
 
     #[test]

@@ -55,7 +55,7 @@ impl RunControl {
     }
 
     /// Whether the run was cancelled.
-    pub(super) fn is_cancelled(&self) -> bool {
+    pub fn is_cancelled(&self) -> bool {
         *self.gate() == Gate::Cancelled
     }
 

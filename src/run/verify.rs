@@ -15,11 +15,17 @@ use super::experiment::Experiment;
 use super::run_control::{Cancelled, RunControl};
 use crate::check::Invalid;
 use crate::engine::{ENGINE_VERSION, Processors};
+use crate::evolve::RunPlan;
 use crate::save::SaveError;
 use crate::schema::is_default;
 
 use cases::cases;
 use drawn_points::drawn_points;
+
+/// A case with at most this many evaluations is short.
+const SHORT_BUDGET: u64 = 12;
+/// Maximum number of short cases.
+const SHORT_CASES: usize = 12;
 
 /// A computation and the hash of its bits.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -59,6 +65,9 @@ pub enum VerifyError {
         "there is no reference for this processor, or for a build without SIMD; there are some for x86-64 and arm64"
     )]
     NoReference,
+    /// This machine computes other bits than its reference.
+    #[error("{0}: this machine computes other bits than the reference (see snakes verify)")]
+    OtherBits(String),
     /// The interrupt key was pressed.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -93,6 +102,26 @@ impl Trajectories {
         Ok(ron::from_str(text)?)
     }
 
+    /// The results of this machine in some short cases, which show within a second or two whether it computes the same bits
+    /// as the reference machine.
+    ///
+    /// # Errors
+    /// [`VerifyError::NoReference`] or [`VerifyError::OtherBits`], if it does not; [`VerifyError::Cancelled`], if `control`
+    /// was cancelled.
+    pub fn short(evaluator: &dyn Evaluator, control: &RunControl) -> Result<Self, VerifyError> {
+        let reference = Self::reference()?;
+        let is_short = |(_, plan): &(String, RunPlan)| plan.budget() <= SHORT_BUDGET;
+        let mut trajectories = Vec::new();
+        for (what, plan) in cases()?.into_iter().filter(is_short).take(SHORT_CASES) {
+            trajectories.push(trajectory(what, plan, evaluator, control)?);
+        }
+        trajectories.push(drawn_points());
+        match trajectories.iter().find(|found| !reference.trajectories.contains(found)) {
+            Some(other) => Err(VerifyError::OtherBits(other.what.clone())),
+            None => Ok(Self { engine: ENGINE_VERSION, processors: Processors::THIS, trajectories }),
+        }
+    }
+
     /// The results of this machine. Calls `progress` with the number of finished trajectories and their total.
     ///
     /// # Errors
@@ -107,17 +136,26 @@ impl Trajectories {
         let mut trajectories = Vec::with_capacity(all);
         for (index, (what, plan)) in cases.into_iter().enumerate() {
             progress(index, all);
-            let mut experiment = Experiment::new(plan);
-            while !experiment.is_over() {
-                experiment.run_generation(evaluator, control)?;
-            }
-            let hash = format!("{:016x}", experiment.run_hash());
-            trajectories.push(Trajectory { what, hash });
+            trajectories.push(trajectory(what, plan, evaluator, control)?);
         }
         trajectories.push(drawn_points());
         progress(all, all);
         Ok(Self { engine: ENGINE_VERSION, processors: Processors::THIS, trajectories })
     }
+}
+
+/// The result of a case.
+fn trajectory(
+    what: String,
+    plan: RunPlan,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Trajectory, Cancelled> {
+    let mut experiment = Experiment::new(plan);
+    while !experiment.is_over() {
+        experiment.run_generation(evaluator, control)?;
+    }
+    Ok(Trajectory { what, hash: format!("{:016x}", experiment.run_hash()) })
 }
 
 #[cfg(test)]

@@ -144,6 +144,14 @@ pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
     Ok(bytes)
 }
 
+/// Reads a small text file.
+///
+/// # Errors
+/// It cannot be read, is no text, or is larger than a MiB.
+pub fn load_text(path: &Path) -> Result<String, SaveError> {
+    text_of(path, read_bytes(path, 1)?)
+}
+
 /// Refuses anything that exists and is not a regular file, links included: a run's folder may come from anywhere, and
 /// no name in it may lead out of it.
 pub fn refuse_link(path: &Path) -> std::io::Result<()> {

@@ -46,9 +46,9 @@ pub use families::{
     FamilyChampion, FamilyProtocol, FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, RuleUse, TrainedFamily,
     load_families, store_families,
 };
-pub use files::SaveError;
 #[cfg(test)]
 pub use files::names_in;
+pub use files::{SaveError, load_text};
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
@@ -66,3 +66,4 @@ pub use record::{
 };
 pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};
+pub use v5::RecordedV5;

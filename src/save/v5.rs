@@ -55,6 +55,7 @@ pub struct ChampionV5 {
 /// The champion's evaluation when it was found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the fields are those of Evaluation, which explains them")]
 pub struct RecordedV5 {
     pub fitness: f32,
     pub centre_y_m: f32,

@@ -6,7 +6,10 @@ mod suites;
 pub use stairs_grid::{StairsCell, StairsGrid};
 pub use suites::varied;
 
+use serde::{Deserialize, Serialize};
+
 use super::{Evaluation, Perturbation, Rollout, Trial};
+use crate::check::{Invalid, within};
 use crate::genome::Genome;
 use crate::schema::choices;
 use crate::world::Stairs;
@@ -34,7 +37,8 @@ choices! {
 }
 
 /// One trial of a suite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ExamCondition {
     /// The condition in a few words.
     pub label: String,
@@ -45,7 +49,8 @@ pub struct ExamCondition {
 }
 
 /// The end of a trial of an exam.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ExamEnd {
     /// Steps under the middle limb at the end; 0 after a disqualification.
     pub steps: u32,
@@ -90,7 +95,32 @@ impl ExamSuite {
     }
 }
 
+impl ExamCondition {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// A trial that is not allowed, or a perturbation that no exam has.
+    pub fn check(&self) -> Result<(), Invalid> {
+        self.trial.check().map_err(|error| error.inside("trial"))?;
+        self.perturbation.check().map_err(|error| error.inside("perturbation"))
+    }
+}
+
 impl ExamEnd {
+    /// The end of a trial whose simulation panicked.
+    pub const CRASHED: Self =
+        Self { steps: 0, way: 0.0, landed_s: None, has_landed: false, is_disqualified: true };
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// A value that no trial ends with.
+    pub fn check(&self) -> Result<(), Invalid> {
+        within("steps", self.steps, 0..=1000)?;
+        within("way", self.way, 0.0..=1.0)?;
+        self.landed_s.map_or(Ok(()), |landed_s| within("landed_s", landed_s, 0.0..=1.0e4))
+    }
+
     /// Simulates a genome in a condition.
     pub fn of(genome: &Genome, condition: &ExamCondition) -> Self {
         let ExamCondition { trial, perturbation, .. } = condition;

@@ -1,9 +1,12 @@
 //! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
-use crate::schema::{is_default, number, setting_group};
-use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Vector, WorldPlan};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
+use crate::schema::{is_default, number, setting_group};
+use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Vector, WorldPlan};
 
 setting_group! {
     /// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal one.
@@ -109,7 +112,8 @@ pub fn draw_shove(
 }
 
 /// Deviation of one trial from the nominal one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Perturbation {
     /// Factor on the friction of stairs and ground.
     pub friction: f32,
@@ -149,6 +153,26 @@ impl Default for Perturbation {
 }
 
 impl Perturbation {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// A value that no range of perturbations can draw.
+    pub fn check(&self) -> Result<(), Invalid> {
+        for (field, factor) in [
+            ("friction", self.friction),
+            ("rise", self.rise),
+            ("density", self.density),
+            ("tread", self.tread),
+        ] {
+            within(field, factor, 0.0..=2.0)?;
+        }
+        within("step_rate", self.step_rate, 0.01..=100.0)?;
+        within("ahead_m", self.ahead_m, -10.0..=10.0)?;
+        within("aside_m", self.aside_m, -10.0..=10.0)?;
+        within("turn_rad", self.turn_rad, -4.0..=4.0)?;
+        self.shove.map_or(Ok(()), |shove| shove.check().map_err(|error| error.inside("shove")))
+    }
+
     /// Applies the perturbation to a world, all but the shove.
     pub fn apply(&self, plan: &mut WorldPlan) {
         plan.surface.friction *= self.friction;

@@ -104,9 +104,9 @@ fn test_modules_are_removed_and_the_rest_of_a_file_is_scanned() {
 }
 
 /// The modules in the order of the pipeline: each may use only those before it.
-const PIPELINE: [&str; 15] = [
+const PIPELINE: [&str; 16] = [
     "check", "rng", "learn", "schema", "engine", "world", "genome", "control", "score", "evolve",
-    "save", "run", "plot", "studio", "cli",
+    "save", "run", "cluster", "plot", "studio", "cli",
 ];
 
 /// Lines without those that are only comments.
@@ -230,21 +230,23 @@ fn no_two_types_share_a_name() {
 }
 
 /// Words that may be used only in certain modules: word, modules, reason.
-const RESTRICTED_WORDS: [(&str, &[&str], &str); 13] = [
+const RESTRICTED_WORDS: [(&str, &[&str], &str); 15] = [
     ("bevy", &["studio"], "the core builds without Bevy"),
     ("egui", &["studio"], "the core builds without egui"),
     ("rapier3d", &["world", "studio"], "only the world knows the physics engine"),
     ("rayon", &["run"], "results of a strategy or a world could depend on threads"),
-    ("std::thread", &["run"], "as above"),
-    ("crossbeam", &["run"], "as above"),
-    ("std::net", &["run"], "only an evaluator connects to other machines"),
+    ("std::thread", &["run", "cluster"], "as above"),
+    ("crossbeam", &["run", "cluster"], "as above"),
+    ("tokio", &["cluster"], "as above"),
+    ("async_nats", &["cluster"], "only an evaluator connects to other machines"),
+    ("std::net", &["cluster"], "as above"),
     (
         "process::Command",
         &["run", "studio"],
         "child processes evaluate, or replace a failed studio",
     ),
     ("std::fs", &["save"], "only one module accesses files"),
-    ("Instant", &["run", "studio"], "a clock must not decide a result"),
+    ("Instant", &["run", "cluster", "studio"], "a clock must not decide a result"),
     ("SystemTime", &[], "a clock must not decide a result"),
     ("HashMap", &[], "its iteration order differs between runs"),
     ("HashSet", &[], "its iteration order differs between runs"),

@@ -22,18 +22,25 @@ enum Task {
     Table1,
     Figures,
     Render,
+    Worker,
+    Machines,
     Presets,
     Settings,
     SettingsAsMarkdown,
 }
 
 use Task::{
-    Bench, CheckReplay, Compare, Exam, Families, Figures, Presets, Render, ReplayInWindow, Robust,
-    Run, Settings, SettingsAsMarkdown, Table1, Verify, Window,
+    Bench, CheckReplay, Compare, Exam, Families, Figures, Machines, Presets, Render,
+    ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown, Table1, Verify, Window, Worker,
 };
 
+/// The tasks that compute on other machines.
+const SPREAD: &[Task] = &[Run, Exam, Robust, Compare, Families, Table1];
+/// These, and the tasks that need a server.
+const WITH_SERVER: &[Task] = &[Run, Exam, Robust, Compare, Families, Table1, Worker, Machines];
+
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
-const FLAGS: [(&str, &[Task]); 23] = [
+const FLAGS: [(&str, &[Task]); 28] = [
     ("no_render", &[Run, CheckReplay]),
     (
         "json",
@@ -47,6 +54,7 @@ const FLAGS: [(&str, &[Task]); 23] = [
             Compare,
             Families,
             Table1,
+            Machines,
             Presets,
             Settings,
         ],
@@ -79,8 +87,25 @@ const FLAGS: [(&str, &[Task]); 23] = [
     ("restart", &[Window, Run, ReplayInWindow, Compare, Families]),
     (
         "threads",
-        &[Window, Run, ReplayInWindow, Bench, Verify, Exam, Robust, Compare, Families, Table1],
+        &[
+            Window,
+            Run,
+            ReplayInWindow,
+            Bench,
+            Verify,
+            Exam,
+            Robust,
+            Compare,
+            Families,
+            Table1,
+            Worker,
+        ],
     ),
+    ("nats", WITH_SERVER),
+    ("creds", WITH_SERVER),
+    ("tls_ca", WITH_SERVER),
+    ("expect_workers", SPREAD),
+    ("local_threads", SPREAD),
     ("evaluator", &[Window, Run, ReplayInWindow, Verify, Compare, Table1]),
     ("out", &[Window, Run, ReplayInWindow, Compare, Families, Table1, Figures]),
     ("saves", &[Window, Run, ReplayInWindow]),
@@ -109,6 +134,8 @@ impl Task {
             Some(Subcommand::Table1 { .. }) => Table1,
             Some(Subcommand::Figures { .. }) => Figures,
             Some(Subcommand::Render(_)) => Render,
+            Some(Subcommand::Worker) => Worker,
+            Some(Subcommand::Machines { .. }) => Machines,
             Some(Subcommand::Presets) => Presets,
             Some(Subcommand::Settings { markdown: false }) => Settings,
             Some(Subcommand::Settings { markdown: true }) => SettingsAsMarkdown,
@@ -131,6 +158,8 @@ impl Task {
             Table1 => "snakes table1",
             Figures => "snakes figures",
             Render => "snakes render",
+            Worker => "snakes worker",
+            Machines => "snakes machines",
             Presets => "snakes presets",
             Settings => "snakes settings",
             SettingsAsMarkdown => "snakes settings --markdown",
@@ -175,7 +204,7 @@ pub(super) fn check(matches: &ArgMatches, args: &Args) -> Result<(), CliError> {
     let task = Task::of(args);
     let is_given = |id: &str| matches.value_source(id) == Some(ValueSource::CommandLine);
     let without_effect = FLAGS.iter().find(|(id, tasks)| is_given(id) && !tasks.contains(&task));
-    let Some((id, tasks)) = without_effect else { return Ok(()) };
+    let Some((id, tasks)) = without_effect else { return check_server(task, is_given) };
     let other = task.other_mode().filter(|(other, _)| tasks.contains(other));
     let advice = other.map_or("", |(_, advice)| advice);
     Err(CliError::Usage(format!(
@@ -183,6 +212,33 @@ pub(super) fn check(matches: &ArgMatches, args: &Args) -> Result<(), CliError> {
         id.replace('_', "-"),
         task.words()
     )))
+}
+
+/// Refuses flags that have an effect only with a server, or only without.
+fn check_server(task: Task, is_given: impl Fn(&str) -> bool) -> Result<(), CliError> {
+    let needs_server = matches!(task, Worker | Machines);
+    let name = |id: &str| id.replace('_', "-");
+    if !is_given("nats") {
+        if needs_server {
+            let words = task.words();
+            let problem =
+                format!("{words} needs --nats URL, the address of a server (see {words} --help)");
+            return Err(CliError::Usage(problem));
+        }
+        let of_server = ["creds", "tls_ca", "expect_workers", "local_threads"];
+        let given = of_server.into_iter().find(|id| is_given(id));
+        return given.map_or(Ok(()), |id| {
+            let problem =
+                format!("--{} has no effect without --nats (see snakes --help)", name(id));
+            Err(CliError::Usage(problem))
+        });
+    }
+    let of_threads = [("threads", "; use --local-threads"), ("evaluator", "")];
+    let given = of_threads.into_iter().find(|(id, _)| !needs_server && is_given(id));
+    given.map_or(Ok(()), |(id, advice)| {
+        let problem = format!("--{id} has no effect with --nats{advice} (see snakes --help)");
+        Err(CliError::Usage(problem))
+    })
 }
 
 #[cfg(test)]
@@ -193,7 +249,7 @@ mod tests {
     use std::ffi::OsString;
 
     /// Every task, as words of the command line.
-    const TASKS: [(Task, &str); 16] = [
+    const TASKS: [(Task, &str); 18] = [
         (Window, ""),
         (Run, "--no-render"),
         (ReplayInWindow, "replay a.ron"),
@@ -207,6 +263,8 @@ mod tests {
         (Table1, "table1"),
         (Figures, "figures run"),
         (Render, "render a.ron"),
+        (Worker, "worker --nats nats://a"),
+        (Machines, "machines --nats nats://a"),
         (Presets, "presets"),
         (Settings, "settings"),
         (SettingsAsMarkdown, "settings --markdown"),
@@ -248,11 +306,15 @@ mod tests {
         for (task, words) in TASKS {
             assert_eq!(Task::of(&parsed(words).expect("allowed")), task, "{words}");
             for (id, tasks) in FLAGS {
-                if id == "no_render" {
+                if id == "no_render" || (id == "nats" && words.contains("--nats")) {
                     continue;
                 }
                 // Before the subcommand, where all flags are known.
-                let line = format!("{} {words}", flag(id));
+                let needs_server = ["creds", "tls_ca", "expect_workers", "local_threads"];
+                let is_one = needs_server.contains(&id) && tasks.contains(&task);
+                let server =
+                    if is_one && !words.contains("--nats") { "--nats nats://a" } else { "" };
+                let line = format!("{server} {} {words}", flag(id));
                 match parsed(&line) {
                     Ok(_) => assert!(tasks.contains(&task), "{line}"),
                     Err(message) => {
@@ -264,6 +326,28 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn flags_of_a_server_are_refused_without_one_and_threads_with_one() {
+        for (words, problem) in [
+            ("--no-render --expect-workers 2", "--expect-workers has no effect without --nats"),
+            ("compare --tls-ca a.pem", "--tls-ca has no effect without --nats"),
+            ("worker", "snakes worker needs --nats URL"),
+            ("machines", "snakes machines needs --nats URL"),
+            (
+                "exam a.ron --nats nats://a --threads 2",
+                "--threads has no effect with --nats; use --local-threads",
+            ),
+            (
+                "--no-render --nats nats://a --evaluator threads",
+                "--evaluator has no effect with --nats",
+            ),
+        ] {
+            let message = parsed(words).expect_err("refused");
+            assert!(message.starts_with(problem), "{words}: {message}");
+        }
+        assert!(parsed("worker --nats nats://a --threads 2").is_ok());
     }
 
     #[test]
@@ -285,6 +369,8 @@ mod tests {
             ("table1", &[Table1]),
             ("figures", &[Figures]),
             ("render", &[Render]),
+            ("worker", &[Worker]),
+            ("machines", &[Machines]),
             ("presets", &[Presets]),
             ("settings", &[Settings, SettingsAsMarkdown]),
             ("replay", &[ReplayInWindow, CheckReplay]),

@@ -77,6 +77,22 @@ pub struct Args {
         hide = EVALUATORS.len() == 1
     )]
     pub(super) evaluator: Option<String>,
+    /// Compute on the workers of this NATS server, such as nats://192.168.1.5:4222, with the same results as here (start
+    /// workers with `snakes worker`)
+    #[arg(long, global = true, value_name = "URL", help_heading = MACHINES)]
+    pub nats: Option<String>,
+    /// File with the credentials for the server: what `nsc` writes (.creds), or the seed of an NKey
+    #[arg(long, global = true, value_name = "FILE", help_heading = MACHINES)]
+    pub creds: Option<PathBuf>,
+    /// File with the certificate of the authority that signed the server's
+    #[arg(long, global = true, value_name = "FILE", help_heading = MACHINES)]
+    pub tls_ca: Option<PathBuf>,
+    /// Begin when this number of workers is there [default: 1; 0 with --local-threads]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = MACHINES)]
+    pub(super) expect_workers: Option<String>,
+    /// Compute on this number of threads of this computer, too [default: 0]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = MACHINES)]
+    pub(super) local_threads: Option<String>,
     /// Folder for the files that this run writes: champions, tables, pictures
     #[arg(long, global = true, value_name = "DIR", help_heading = FILES)]
     pub(super) out: Option<PathBuf>,
@@ -110,6 +126,7 @@ pub struct Args {
 }
 
 const RUN: &str = "Run";
+const MACHINES: &str = "Other computers";
 const FILES: &str = "Files";
 const WINDOW: &str = "Window";
 
@@ -168,6 +185,14 @@ pub enum Subcommand {
     },
     /// Draw one moment of saved champions side by side as a PNG file; opens no window
     Render(RenderArgs),
+    /// Compute for runs on other computers, through the server that --nats names, until stopped
+    Worker,
+    /// List the workers and runs on the server that --nats names, and what waits there
+    Machines {
+        /// Remove what waits for this run
+        #[arg(long, value_name = "RUN")]
+        purge: Option<String>,
+    },
     /// List the presets
     Presets,
     /// List every setting with its value, in the form that --set takes

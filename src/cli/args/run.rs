@@ -47,7 +47,11 @@ impl Args {
     /// The run in the folder to resume, or the run that the flags describe.
     pub fn run_source(&self) -> Result<RunSource, CliError> {
         if let Some(folder) = &self.resume {
-            return run_in(folder, self.json);
+            let mut run = run_in(folder, self.json)?;
+            if self.restart {
+                run.earlier = ExistingRun::Discard;
+            }
+            return Ok(run);
         }
         let plan = match &self.from {
             Some(file) => self.plan_from(file)?,

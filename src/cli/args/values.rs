@@ -57,8 +57,25 @@ impl Args {
         self.threads_or(available_cores())
     }
 
-    /// The evaluator without a window.
-    pub fn evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
+    /// Number of workers on other machines that a run waits for.
+    #[cfg(feature = "cluster")]
+    pub fn expect_workers(&self) -> Result<usize, CliError> {
+        let default = usize::from(self.local_threads()? == 0);
+        let Some(text) = &self.expect_workers else { return Ok(default) };
+        let workers = number("--expect-workers", text, "a whole number from 1 to 10000")?;
+        Ok(within("--expect-workers", workers, 1..=10_000).map(|()| workers)?)
+    }
+
+    /// Number of threads of this computer that compute beside the workers on other machines.
+    #[cfg(feature = "cluster")]
+    pub fn local_threads(&self) -> Result<usize, CliError> {
+        let Some(text) = &self.local_threads else { return Ok(0) };
+        let threads = number("--local-threads", text, "a whole number from 1 to 1024")?;
+        Ok(within("--local-threads", threads, THREADS_RANGE).map(|()| threads)?)
+    }
+
+    /// The evaluator without a window, on this computer.
+    pub fn local_evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
         self.evaluator_of(self.threads()?)
     }
 

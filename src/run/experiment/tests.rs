@@ -3,7 +3,7 @@
 use super::*;
 use crate::evolve::Settings;
 use crate::run::{LocalPool, WorkersError};
-use crate::score::{PerturbationList, Trial, evaluate};
+use crate::score::{ExamCondition, ExamEnd, PerturbationList, Trial, evaluate};
 
 fn small(seed: u64) -> Experiment {
     let mut settings = Settings::default();
@@ -66,6 +66,16 @@ impl Evaluator for TestEvaluator {
                 report(index, evaluate_caught(genome, trial));
             }
         }
+        Ok(())
+    }
+
+    fn examine_batch(
+        &self,
+        _: &Genome,
+        _: &[ExamCondition],
+        _: &RunControl,
+        _: &(dyn Fn(usize, ExamEnd) + Sync),
+    ) -> Result<(), Cancelled> {
         Ok(())
     }
 

@@ -1,0 +1,129 @@
+//! `snakes worker`, `snakes machines`, and the flag `--nats`.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use serde_json::json;
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::args::Args;
+use super::error::CliError;
+use super::output::{cancel_on_interrupt, print};
+use crate::cluster::{
+    Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, Simulator, WorkerOptions,
+    host_name, machines, proof, purge, unique_name, work,
+};
+use crate::run::Evaluator;
+use crate::run::headless::say;
+
+fn server(args: &Args) -> BrokerOptions {
+    let url = args.nats.clone().unwrap_or_default();
+    BrokerOptions { url, creds: args.creds.clone(), tls_ca: args.tls_ca.clone() }
+}
+
+/// An evaluator on the workers of a server.
+pub fn coordinator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evaluator>, CliError> {
+    let (expect_workers, local_threads) = (args.expect_workers()?, args.local_threads()?);
+    let server = server(args);
+    server.check()?;
+    // The same run of two people, or of one person in two folders, is two runs on the server.
+    let place = format!("{} {}", host_name(), place.display());
+    let run = format!("{words}-{:08x}", xxh3_64(place.as_bytes()) as u32);
+    let broker = Broker::connect(&server, &run)?;
+    let options = CoordinatorOptions {
+        run: run.clone(),
+        proof: proof()?,
+        expect_workers,
+        local_threads,
+        compute: Arc::new(Simulator),
+    };
+    let url = broker.url().to_owned();
+    let coordinator = Coordinator::start(broker, options)?;
+    say(&format!("computing on the workers of {url}, as run {run}"));
+    Ok(Arc::new(coordinator))
+}
+
+/// Works for the runs on a server until the interrupt key is pressed.
+pub fn worker(args: &Args) -> Result<(), CliError> {
+    let threads = args.threads()?;
+    let name = unique_name();
+    let broker = Broker::connect(&server(args), &name)?;
+    let proof = proof()?;
+    let plural = if threads == 1 { "" } else { "s" };
+    say(&format!(
+        "worker {name}: {threads} thread{plural} for the runs on {}; Ctrl-C stops it",
+        broker.url()
+    ));
+    let options = WorkerOptions { name, threads, proof, compute: Arc::new(Simulator) };
+    Ok(work(broker, options, &cancel_on_interrupt())?)
+}
+
+/// Lists what is on a server, or removes what waits for a run.
+pub fn list(args: &Args, purged: Option<&str>) -> Result<(), CliError> {
+    let broker = Broker::connect(&server(args), "machines")?;
+    if let Some(run) = purged {
+        let found = purge(&broker, run)?;
+        let line = match args.json {
+            true => {
+                json!({"run": run, "batches": found.batches, "results": found.results}).to_string()
+            }
+            false => {
+                format!("{run}: removed {} batches and {} results", found.batches, found.results)
+            }
+        };
+        return print(&format!("{line}\n"));
+    }
+    let machines = machines(&broker)?;
+    print(&if args.json { as_json(&machines) } else { as_text(&machines) })
+}
+
+fn as_json(machines: &Machines) -> String {
+    let workers = machines.workers.values().map(|worker| json!({"worker": worker}));
+    let runs = machines.runs.values().map(|run| json!({"run": run}));
+    let queues = machines.queues.iter().map(|(run, queue)| json!({"queue": run, "waiting": queue}));
+    workers.chain(runs).chain(queues).map(|line| format!("{line}\n")).collect()
+}
+
+fn as_text(machines: &Machines) -> String {
+    let mut text = format!(
+        "{:<28} {:<16} {:>7} {:>12} {:>7} {:>11}  engine\n",
+        "worker", "computer", "threads", "evaluations", "per s", "redelivered"
+    );
+    for worker in machines.workers.values() {
+        text += &format!(
+            "{:<28} {:<16} {:>7} {:>12} {:>7.1} {:>11}  {}\n",
+            worker.worker,
+            worker.host,
+            worker.threads,
+            worker.evaluations,
+            worker.per_s,
+            worker.redelivered,
+            worker.engine_words()
+        );
+    }
+    if machines.workers.is_empty() {
+        text += "none\n";
+    }
+    text += &format!(
+        "\n{:<50} {:>8} {:>8} {:>8}  coordinator\n",
+        "run", "pending", "batches", "results"
+    );
+    let names: std::collections::BTreeSet<&String> =
+        machines.runs.keys().chain(machines.queues.keys()).collect();
+    for name in &names {
+        let queue = machines.queues.get(*name).cloned().unwrap_or_default();
+        let run = machines.runs.get(*name);
+        let pending = run.map_or("–".to_owned(), |run| run.pending.to_string());
+        let host =
+            run.map_or("none; snakes machines --purge removes what is left", |run| &run.host);
+        text +=
+            &format!("{name:<50} {pending:>8} {:>8} {:>8}  {host}\n", queue.batches, queue.results);
+        for worker in run.iter().flat_map(|run| &run.set_aside) {
+            text += &format!("    set aside: {worker}\n");
+        }
+    }
+    if names.is_empty() {
+        text += "none\n";
+    }
+    text
+}

@@ -1,0 +1,34 @@
+//! The evaluator of a command: threads of this computer, or workers on others.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::args::Args;
+use super::error::CliError;
+use crate::run::Evaluator;
+
+/// The evaluator that the flags name. On a server the command has a name made of `words` and `place`, the folder of its
+/// results: the same command in the same place finds what is left of it there.
+pub fn evaluator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evaluator>, CliError> {
+    if args.nats.is_none() {
+        return args.local_evaluator();
+    }
+    #[cfg(feature = "cluster")]
+    return super::cluster::coordinator(args, words, place);
+    #[cfg(not(feature = "cluster"))]
+    {
+        let _ = (words, place);
+        Err(CliError::NoCluster)
+    }
+}
+
+/// The result of work with an evaluator, unless results that it reported cannot be trusted.
+pub fn trusted<T, E: Into<CliError>>(
+    evaluator: &dyn Evaluator,
+    result: Result<T, E>,
+) -> Result<T, CliError> {
+    match evaluator.fault() {
+        Some(reason) => Err(CliError::Tainted(reason)),
+        None => result.map_err(Into::into),
+    }
+}

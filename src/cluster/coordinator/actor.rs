@@ -1,0 +1,392 @@
+//! The input and output of a coordinator: one thread that feeds the ledger and does what it says.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use async_nats::jetstream::context::PublishErrorKind;
+use async_nats::jetstream::message::PublishMessage;
+use crossbeam_channel::Sender;
+use futures_util::StreamExt;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use tokio::sync::mpsc::{Receiver, UnboundedReceiver, UnboundedSender, channel};
+use tokio::task::JoinHandle;
+
+use super::ledger::{Action, AuditTask, CallId, Checker, Ledger};
+use super::{CoordinatorOptions, SharedTexts, Status};
+use crate::cluster::broker::{Broker, one_line, result_consumer, result_stream, work_stream};
+use crate::cluster::compute::{Compute, outcome_of_texts};
+use crate::cluster::error::ClusterError;
+use crate::cluster::hello::{NOTICE_FORMAT, RunNotice, WorkerNotice, host_name, random_number};
+use crate::cluster::names::{
+    NOTICE_INTERVAL, PULL_WAIT, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_subject, work_subject,
+};
+use crate::cluster::outcome::Outcome;
+use crate::cluster::packing::pack;
+use crate::cluster::wire::{ResultBatch, TaskKind, WorkBatch, hash_of, line_of};
+use crate::run::headless::say;
+use crate::{ENGINE_VERSION, Processors};
+
+/// What the actor is told.
+#[derive(Debug)]
+pub enum Command {
+    /// A call of the evaluator begins.
+    Open {
+        /// Its number.
+        call: CallId,
+        /// The kind of its tasks.
+        kind: TaskKind,
+        /// Hash of what they share.
+        shared: u64,
+        /// The tasks, by index.
+        tasks: Vec<Arc<str>>,
+        /// Takes the index and the outcome of each.
+        sender: Sender<(usize, Outcome)>,
+    },
+    /// It holds or continues.
+    Pause(CallId, bool),
+    /// It ends.
+    Close(CallId),
+    /// A thread of the coordinator asks for a task.
+    TakeLocal(Sender<Option<LocalTask>>),
+    /// It computed one.
+    Local(u64, Outcome),
+    /// A check was answered with this outcome, or not at all.
+    Audited(u64, Option<Arc<str>>),
+    /// The coordinator ends.
+    End,
+}
+
+/// A task for a thread of the coordinator: key, kind, hash of what it shares, text.
+pub type LocalTask = (u64, TaskKind, u64, Arc<str>);
+
+/// What arrived from the server.
+enum News {
+    Results(ResultBatch),
+    Notice(WorkerNotice),
+}
+
+/// See the module.
+pub struct Actor {
+    broker: Arc<Broker>,
+    options: CoordinatorOptions,
+    ledger: Ledger,
+    calls: BTreeMap<CallId, Sender<(usize, Outcome)>>,
+    shared: Arc<SharedTexts>,
+    status: Arc<Mutex<Status>>,
+    commands: UnboundedSender<Command>,
+    news: Receiver<News>,
+    tasks: Vec<JoinHandle<()>>,
+}
+
+/// Pause before the server is asked again after it refused a request.
+const RETRY_PAUSE: Duration = Duration::from_millis(500);
+/// Interval at which late batches and silent workers are looked for.
+const TICK: Duration = Duration::from_millis(250);
+/// How long a worker may take to answer a check, besides the time of its evaluation.
+const AUDIT_WAIT: Duration = Duration::from_secs(20);
+/// Maximum number of results that are fetched at once.
+const MOST_FETCHED: usize = 256;
+/// Maximum number of messages that wait for the ledger.
+const MOST_WAITING: usize = 1024;
+
+impl Actor {
+    /// Makes the run's consumer and removes batches of a predecessor.
+    ///
+    /// # Errors
+    /// The server refuses the run.
+    pub fn start(
+        broker: Arc<Broker>,
+        options: &CoordinatorOptions,
+        shared: Arc<SharedTexts>,
+        status: Arc<Mutex<Status>>,
+        commands: UnboundedSender<Command>,
+    ) -> Result<Self, ClusterError> {
+        let jetstream = broker.jetstream();
+        let prepared = broker.runtime().block_on(async {
+            let stream = work_stream(jetstream).await?;
+            let left = stream.purge().filter(work_subject(&options.proof, &options.run)).await;
+            left.map_err(|error| one_line(&error))?;
+            result_consumer(jetstream, &options.run).await
+        });
+        prepared.map_err(|problem| broker.refused("the run", problem))?;
+        // The numbers of a predecessor's batches are far away. Neither number can change a result.
+        let seed = random_number();
+        let rng = ChaCha8Rng::seed_from_u64(seed);
+        let ledger = Ledger::new(
+            &options.run,
+            &options.proof,
+            broker.largest_message(),
+            (seed >> 24) << 20,
+            rng,
+        );
+        let (sender, news) = channel(MOST_WAITING);
+        let runtime = broker.runtime();
+        let tasks = vec![
+            runtime.spawn(fetch_results(Arc::clone(&broker), options.run.clone(), sender.clone())),
+            runtime.spawn(hear_workers(Arc::clone(&broker), sender)),
+            runtime.spawn(answer_shared(
+                Arc::clone(&broker),
+                options.run.clone(),
+                Arc::clone(&shared),
+            )),
+        ];
+        let calls = BTreeMap::new();
+        let options = options.clone();
+        Ok(Self { broker, options, ledger, calls, shared, status, commands, news, tasks })
+    }
+
+    fn act(&mut self, actions: Vec<Action>) {
+        for action in actions {
+            match action {
+                Action::Publish(batch) => self.publish(batch),
+                Action::Deliver(call, index, outcome) => {
+                    // A call that was cancelled does not listen any more.
+                    if let Some(sender) = self.calls.get(&call) {
+                        let _ = sender.send((index, outcome));
+                    }
+                }
+                Action::Audit(task) => self.audit(task),
+                Action::Say(line) => say(&line),
+                Action::Taint(line) => {
+                    self.status().taint.get_or_insert(line);
+                }
+            }
+        }
+    }
+
+    fn publish(&mut self, batch: WorkBatch) {
+        let bytes = batch.encode();
+        if bytes.len() > self.broker.largest_message() {
+            let actions = self.ledger.on_too_large(&batch);
+            return self.act(actions);
+        }
+        let id = format!("{}.{}", batch.run, batch.batch);
+        let subject = work_subject(&self.options.proof, &batch.run);
+        let broker = Arc::clone(&self.broker);
+        self.tasks.retain(|task| !task.is_finished());
+        self.tasks.push(self.broker.runtime().spawn(publish(broker, subject, id, bytes)));
+    }
+
+    fn audit(&mut self, audit: AuditTask) {
+        let commands = self.commands.clone();
+        let key = audit.task.key;
+        let answer = move |line| {
+            let _ = commands.send(Command::Audited(key, line));
+        };
+        let runtime = self.broker.runtime();
+        match audit.checker {
+            Checker::Coordinator => {
+                let compute: Arc<dyn Compute> = Arc::clone(&self.options.compute);
+                let text = self.shared.get(audit.shared).unwrap_or_default();
+                runtime.spawn_blocking(move || {
+                    let outcome = outcome_of_texts(&compute, audit.kind, &text, &audit.task.text);
+                    answer(Some(outcome.line().into()));
+                });
+            }
+            Checker::Worker(worker) => {
+                let work = WorkBatch {
+                    run: self.options.run.clone(),
+                    batch: 0,
+                    kind: audit.kind,
+                    shared: audit.shared,
+                    tasks: vec![audit.task],
+                };
+                let client = self.broker.client().clone();
+                runtime.spawn(async move {
+                    let request = async_nats::Request::new()
+                        .payload(work.encode().into())
+                        .timeout(Some(AUDIT_WAIT));
+                    let reply = client.send_request(audit_subject(&worker), request).await;
+                    let results = reply.ok().and_then(|of| ResultBatch::decode(&of.payload).ok());
+                    let outcome = results.and_then(|results| results.outcomes.into_iter().next());
+                    answer(outcome.filter(|of| of.key == key).map(|outcome| outcome.text));
+                });
+            }
+        }
+    }
+
+    fn status(&self) -> std::sync::MutexGuard<'_, Status> {
+        self.status.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn update_status(&self) {
+        let (workers, threads) = (self.ledger.staff().workers(), self.ledger.staff().threads());
+        let mut status = self.status();
+        (status.workers, status.threads) = (workers, threads);
+    }
+
+    fn on_command(&mut self, command: Command) -> bool {
+        let now = Instant::now();
+        let actions = match command {
+            Command::Open { call, kind, shared, tasks, sender } => {
+                self.calls.insert(call, sender);
+                self.ledger.open(call, kind, shared, tasks, now)
+            }
+            Command::Pause(call, is_paused) => self.ledger.pause(call, is_paused, now),
+            Command::Close(call) => {
+                self.calls.remove(&call);
+                self.ledger.close(call);
+                Vec::new()
+            }
+            Command::TakeLocal(sender) => {
+                let _ = sender.send(self.ledger.take_for_local());
+                Vec::new()
+            }
+            Command::Local(key, outcome) => self.ledger.on_local(key, outcome),
+            Command::Audited(key, line) => self.ledger.on_audit(key, line, now),
+            Command::End => return false,
+        };
+        self.act(actions);
+        true
+    }
+
+    fn on_news(&mut self, news: News) {
+        let now = Instant::now();
+        let actions = match news {
+            News::Results(results) => self.ledger.on_results(results, now),
+            News::Notice(notice) => self.ledger.on_notice(notice, now),
+        };
+        self.act(actions);
+        self.update_status();
+    }
+
+    fn on_tick(&mut self) {
+        let actions = self.ledger.on_tick(Instant::now());
+        self.act(actions);
+        self.update_status();
+    }
+
+    async fn tell(&self) {
+        let notice = RunNotice {
+            format: NOTICE_FORMAT,
+            run: self.options.run.clone(),
+            host: host_name(),
+            engine: ENGINE_VERSION,
+            processors: Processors::THIS,
+            proof: self.options.proof.clone(),
+            pending: self.ledger.pending() as u64,
+            results: self.ledger.results(),
+            set_aside: self.ledger.staff().set_aside_names(),
+        };
+        let _ = self.broker.client().publish(RUN_NOTICES, line_of(&notice).into()).await;
+    }
+}
+
+/// Runs a coordinator until it is told to end. Then its batches and its consumer are removed from the server.
+pub fn run_actor(broker: &Broker, mut actor: Actor, mut commands: UnboundedReceiver<Command>) {
+    broker.runtime().block_on(async {
+        let mut ticks = tokio::time::interval(TICK);
+        let mut notices = tokio::time::interval(NOTICE_INTERVAL);
+        loop {
+            tokio::select! {
+                command = commands.recv() => {
+                    let Some(command) = command else { break };
+                    if !actor.on_command(command) {
+                        break;
+                    }
+                }
+                news = actor.news.recv() => if let Some(news) = news { actor.on_news(news) },
+                _ = ticks.tick() => actor.on_tick(),
+                _ = notices.tick() => actor.tell().await,
+            }
+        }
+        actor.tasks.iter().for_each(JoinHandle::abort);
+        let _ = tokio::time::timeout(SILENCE, clean_up(&actor)).await;
+    });
+}
+
+/// Removes what the run leaves on the server.
+async fn clean_up(actor: &Actor) {
+    let jetstream = actor.broker.jetstream();
+    if let Ok(stream) = work_stream(jetstream).await {
+        let subject = work_subject(&actor.options.proof, &actor.options.run);
+        let _ = stream.purge().filter(subject).await;
+    }
+    if let Ok(stream) = result_stream(jetstream).await {
+        let _ =
+            stream.purge().filter(crate::cluster::names::result_subject(&actor.options.run)).await;
+        let _ = stream.delete_consumer(&actor.options.run).await;
+    }
+}
+
+/// Publishes a batch, however long that takes.
+async fn publish(broker: Arc<Broker>, subject: String, id: String, bytes: Vec<u8>) {
+    let mut complaint = String::new();
+    loop {
+        let message = PublishMessage::build().payload(bytes.clone().into()).message_id(&id);
+        let published = async {
+            let sent = broker.jetstream().send_publish(subject.clone(), message).await?;
+            sent.await
+        };
+        let Err(error) = published.await else { return };
+        if error.kind() == PublishErrorKind::StreamNotFound {
+            let _ = work_stream(broker.jetstream()).await;
+        }
+        let problem = one_line(&error);
+        if problem != complaint {
+            say(&format!("{}: work cannot be stored: {problem}; trying again", broker.url()));
+            complaint = problem;
+        }
+        tokio::time::sleep(RETRY_PAUSE).await;
+    }
+}
+
+/// Fetches the results of a run.
+async fn fetch_results(broker: Arc<Broker>, run: String, news: tokio::sync::mpsc::Sender<News>) {
+    let mut complaint = String::new();
+    loop {
+        let fetched = async {
+            let consumer = result_consumer(broker.jetstream(), &run).await?;
+            loop {
+                let request = consumer.batch().max_messages(MOST_FETCHED).expires(PULL_WAIT);
+                let mut messages = request.messages().await.map_err(|error| one_line(&error))?;
+                while let Some(message) = messages.next().await {
+                    let message = message.map_err(|error| error.to_string())?;
+                    match ResultBatch::decode(&message.payload) {
+                        Ok(results) if results.run == run => {
+                            if news.send(News::Results(results)).await.is_err() {
+                                return Ok::<(), String>(());
+                            }
+                        }
+                        Ok(_) => {}
+                        Err(error) => say(&format!("a result is ignored: {error}")),
+                    }
+                    // Without an acknowledgement the results arrive again, and count once.
+                    let _ = message.ack().await;
+                }
+            }
+        };
+        let Err(problem) = fetched.await else { return };
+        if problem != complaint {
+            say(&format!("{}: no results: {problem}; asking again", broker.url()));
+            complaint = problem;
+        }
+        tokio::time::sleep(RETRY_PAUSE).await;
+    }
+}
+
+/// Hears what workers tell of themselves.
+async fn hear_workers(broker: Arc<Broker>, news: tokio::sync::mpsc::Sender<News>) {
+    let Ok(mut notices) = broker.client().subscribe(WORKER_NOTICES).await else { return };
+    while let Some(message) = notices.next().await {
+        let Ok(notice) = WorkerNotice::read(&message.payload) else { continue };
+        if news.send(News::Notice(notice)).await.is_err() {
+            return;
+        }
+    }
+}
+
+/// Answers workers that ask for what tasks share.
+async fn answer_shared(broker: Arc<Broker>, run: String, shared: Arc<SharedTexts>) {
+    let subject = crate::cluster::names::shared_subject(&run, "*");
+    let Ok(mut requests) = broker.client().subscribe(subject).await else { return };
+    while let Some(request) = requests.next().await {
+        let hash = request.subject.rsplit('.').next().unwrap_or_default();
+        let text = hash_of("hash", hash).ok().and_then(|hash| shared.get(hash));
+        if let (Some(reply), Some(text)) = (request.reply, text) {
+            let _ = broker.client().publish(reply, pack(text.to_string()).into()).await;
+        }
+    }
+}
