@@ -6,8 +6,8 @@ mod local;
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::SeqCst;
+use std::sync::atomic::{AtomicBool, AtomicU64};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -52,6 +52,8 @@ pub struct Coordinator {
 struct Inner {
     commands: tokio::sync::mpsc::UnboundedSender<Command>,
     next_call: AtomicU64,
+    /// Whether as many workers as expected have been there.
+    has_begun: AtomicBool,
     status: Arc<Mutex<Status>>,
     shared: Arc<SharedTexts>,
     actor: Mutex<Option<thread::JoinHandle<()>>>,
@@ -64,6 +66,8 @@ struct Inner {
 struct Status {
     workers: usize,
     threads: usize,
+    /// Number of results that are being checked.
+    audits: usize,
     /// Why earlier results cannot be trusted any more.
     taint: Option<String>,
 }
@@ -76,6 +80,8 @@ pub struct SharedTexts(Mutex<BTreeMap<u64, (u64, Arc<str>)>>);
 const MOST_SHARED: usize = 256;
 /// Interval at which a waiting call looks at its control.
 const CONTROL_INTERVAL: Duration = Duration::from_millis(50);
+/// How long the end of a run waits for checks of its last results.
+const LONGEST_CHECK: Duration = Duration::from_secs(60);
 /// How long a coordinator waits for workers before it says so.
 const PATIENCE: Duration = Duration::from_secs(3);
 
@@ -131,6 +137,7 @@ impl Coordinator {
         let inner = Inner {
             commands,
             next_call: AtomicU64::new(1),
+            has_begun: AtomicBool::new(false),
             status,
             shared,
             actor: Mutex::new(Some(running)),
@@ -181,7 +188,10 @@ impl Coordinator {
         if left == 0 {
             return Ok(());
         }
-        self.wait_for_workers(control)?;
+        if !self.inner.has_begun.load(SeqCst) {
+            self.wait_for_workers(control)?;
+            self.inner.has_begun.store(true, SeqCst);
+        }
         let number = self.inner.next_call.fetch_add(1, SeqCst);
         let hash = shared_hash(kind, &shared);
         self.inner.shared.keep(hash, number, shared.into());
@@ -208,7 +218,7 @@ impl Coordinator {
                 is_paused = control.is_paused();
                 self.send(Command::Pause(call, is_paused));
             }
-            if control.is_cancelled() {
+            if control.is_cancelled() || self.status().taint.is_some() {
                 return Err(Cancelled);
             }
             match outcomes.recv_timeout(CONTROL_INTERVAL) {
@@ -220,10 +230,7 @@ impl Coordinator {
                 // The coordinator's thread has ended: its caller computes the rest.
                 Err(RecvTimeoutError::Disconnected) => return Ok(()),
                 Err(RecvTimeoutError::Timeout) => {
-                    let Status { workers, taint, .. } = self.status();
-                    if taint.is_some() {
-                        return Err(Cancelled);
-                    }
+                    let Status { workers, .. } = self.status();
                     let is_alone = workers == 0 && self.inner.options.local_threads == 0;
                     if is_alone && !is_paused && !has_said && waits_since.elapsed() > PATIENCE {
                         has_said = true;
@@ -302,6 +309,14 @@ impl Evaluator for Coordinator {
     }
 
     fn fault(&self) -> Option<String> {
-        self.status().taint
+        // The last results may still be being checked.
+        let began = Instant::now();
+        loop {
+            let Status { taint, audits, .. } = self.status();
+            if taint.is_some() || audits == 0 || began.elapsed() > LONGEST_CHECK {
+                return taint;
+            }
+            thread::sleep(CONTROL_INTERVAL);
+        }
     }
 }

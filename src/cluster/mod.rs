@@ -21,7 +21,7 @@ mod wire;
 mod worker;
 
 pub use broker::{Broker, BrokerOptions};
-pub use compute::{Compute, Simulator};
+pub use compute::{Compute, Shared, Simulator};
 pub use coordinator::{Coordinator, CoordinatorOptions};
 pub use error::ClusterError;
 pub use hello::{RunNotice, WorkerNotice, host_name, unique_name};

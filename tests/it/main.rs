@@ -4,6 +4,8 @@
 mod architecture;
 mod bad_input;
 mod champions;
+#[cfg(all(feature = "cluster", target_os = "linux"))]
+mod cluster;
 mod determinism;
 mod docs;
 mod families;

@@ -230,7 +230,8 @@ mod tests {
 
     #[test]
     fn an_unknown_evaluator_is_refused_with_the_names_of_all() {
-        let refusal = args_of("--evaluator nosuch").evaluator().expect_err("refused").to_string();
+        let refusal =
+            args_of("--evaluator nosuch").local_evaluator().expect_err("refused").to_string();
         assert!(refusal.starts_with("--evaluator is \"nosuch\"; allowed: threads"), "{refusal}");
     }
 

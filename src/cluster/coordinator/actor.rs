@@ -213,8 +213,9 @@ impl Actor {
 
     fn update_status(&self) {
         let (workers, threads) = (self.ledger.staff().workers(), self.ledger.staff().threads());
+        let audits = self.ledger.audits();
         let mut status = self.status();
-        (status.workers, status.threads) = (workers, threads);
+        (status.workers, status.threads, status.audits) = (workers, threads, audits);
     }
 
     fn on_command(&mut self, command: Command) -> bool {
@@ -239,6 +240,7 @@ impl Actor {
             Command::End => return false,
         };
         self.act(actions);
+        self.update_status();
         true
     }
 

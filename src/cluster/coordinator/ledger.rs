@@ -123,6 +123,11 @@ impl Ledger {
         self.results
     }
 
+    /// Number of results that are being checked.
+    pub fn audits(&self) -> usize {
+        self.audits.len()
+    }
+
     /// The workers.
     pub fn staff(&self) -> &Staff {
         &self.staff

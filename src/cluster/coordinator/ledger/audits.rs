@@ -53,6 +53,11 @@ struct Audit {
 pub struct Audits(BTreeMap<u64, Audit>);
 
 impl Audits {
+    /// Number of checks.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
     /// Begins to check what a worker sent; none if the same task is being checked.
     pub fn start(
         &mut self,

@@ -1,0 +1,162 @@
+//! Faults at random instants: the run goes on or waits, loses nothing, and ends with the hash of a run on one machine.
+
+use std::sync::OnceLock;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::proxy::Proxy;
+use super::server::{Process, Run, Server, empty, fill, run_hash, worker};
+use crate::program::{folder, json_lines};
+
+/// A run of some seconds, with a generation every second or so.
+const RUN: &str =
+    "--no-render --preset climb --seed 7 --population 40 --generations 16 --duration 8";
+
+/// The hash of the run on this machine alone.
+fn local_hash() -> &'static str {
+    static HASH: OnceLock<String> = OnceLock::new();
+    HASH.get_or_init(|| {
+        let folder = folder();
+        run_hash(&json_lines(folder.path(), &format!("{RUN} --json")))
+    })
+}
+
+/// Number of times that each fault is tried.
+fn rounds() -> u64 {
+    let wanted = std::env::var("SNAKES_FAULT_ROUNDS").ok().and_then(|text| text.parse().ok());
+    wanted.unwrap_or(1)
+}
+
+/// What a fault can reach.
+struct Room {
+    server: Server,
+    workers: Vec<Process>,
+    run: Run,
+    /// Cuts off the coordinator.
+    coordinator_proxy: Proxy,
+    /// Cuts off the first worker.
+    worker_proxy: Proxy,
+}
+
+/// Runs with three workers, lets `fault` happen after a random time, and compares the hash.
+fn with_fault(name: &str, mut fault: impl FnMut(&mut Room, &mut ChaCha8Rng)) {
+    for round in 0..rounds() {
+        let mut rng = ChaCha8Rng::seed_from_u64(round);
+        let Some(server) = Server::start_small() else { return };
+        let (coordinator_proxy, worker_proxy) = (Proxy::to(server.port), Proxy::to(server.port));
+        let workers =
+            vec![worker(&worker_proxy.url()), worker(&server.url()), worker(&server.url())];
+        let folder = folder();
+        let run = Run::start(folder.path(), RUN, &coordinator_proxy.url());
+        let mut room = Room { server, workers, run, coordinator_proxy, worker_proxy };
+        sleep(Duration::from_millis(rng.random_range(2_000..8_000)));
+        assert!(room.run.is_running(), "{name}, round {round}: the run is too short");
+        let began = Instant::now();
+        fault(&mut room, &mut rng);
+        let hash = room.run.hash();
+        assert_eq!(hash, local_hash(), "{name}, round {round}");
+        eprintln!("{name}, round {round}: {:.0} s after the fault", began.elapsed().as_secs_f32());
+    }
+}
+
+/// How long the network is cut: a minute where faults are repeated.
+fn cut() -> Duration {
+    Duration::from_secs(if rounds() > 1 { 60 } else { 12 })
+}
+
+#[test]
+fn a_worker_is_killed() {
+    with_fault("worker killed", |room, _| drop(room.workers.remove(1)));
+}
+
+#[test]
+fn a_worker_freezes_and_goes_on_later() {
+    with_fault("worker frozen", |room, rng| {
+        room.workers[1].signal("-STOP");
+        sleep(Duration::from_millis(rng.random_range(3_000..12_000)));
+        room.workers[1].signal("-CONT");
+    });
+}
+
+#[test]
+fn a_worker_is_ten_times_slower_than_the_others() {
+    with_fault("slow worker", |room, _| {
+        for _ in 0..10 {
+            room.workers[1].signal("-STOP");
+            sleep(Duration::from_millis(900));
+            room.workers[1].signal("-CONT");
+            sleep(Duration::from_millis(100));
+        }
+    });
+}
+
+#[test]
+fn a_worker_arrives_late_and_the_others_leave() {
+    with_fault("late worker", |room, _| {
+        let url = room.server.url();
+        // A worker that is asked to stop returns what it holds.
+        room.workers.iter().for_each(|worker| worker.signal("-INT"));
+        sleep(Duration::from_secs(2));
+        room.workers = vec![worker(&url)];
+    });
+}
+
+#[test]
+fn the_server_is_killed_and_started_again() {
+    with_fault("server killed", |room, rng| {
+        room.server.kill();
+        sleep(Duration::from_millis(rng.random_range(100..5_000)));
+        room.server.restart();
+    });
+}
+
+#[test]
+fn the_network_between_a_worker_and_the_server_is_cut() {
+    with_fault("worker cut off", |room, _| {
+        room.worker_proxy.cut(true);
+        sleep(cut());
+        room.worker_proxy.cut(false);
+    });
+}
+
+#[test]
+fn the_network_between_the_coordinator_and_the_server_is_cut() {
+    with_fault("coordinator cut off", |room, _| {
+        room.coordinator_proxy.cut(true);
+        sleep(cut());
+        room.coordinator_proxy.cut(false);
+    });
+}
+
+#[test]
+fn the_network_is_cut_around_the_server() {
+    with_fault("server cut off", |room, _| {
+        room.coordinator_proxy.cut(true);
+        room.worker_proxy.cut(true);
+        sleep(cut());
+        room.coordinator_proxy.cut(false);
+        room.worker_proxy.cut(false);
+    });
+}
+
+#[test]
+fn the_coordinator_is_killed_and_continued() {
+    with_fault("coordinator killed", |room, rng| {
+        for _ in 0..2 {
+            room.run.restart();
+            sleep(Duration::from_millis(rng.random_range(500..3_000)));
+        }
+    });
+}
+
+#[test]
+fn the_disk_of_the_server_is_full_for_a_while() {
+    with_fault("disk full", |room, rng| {
+        fill(&room.server);
+        sleep(Duration::from_millis(rng.random_range(3_000..8_000)));
+        empty(&room.server);
+    });
+}

@@ -1,0 +1,103 @@
+//! Servers and machines that cannot be used: one line each, exit code 1, nothing lost.
+
+use std::path::Path;
+
+use super::server::{Server, free_port, is_there, worker};
+use crate::program::{folder, run, snakes};
+
+/// Runs a command that must fail, and returns its only line on standard error.
+fn refusal(folder: &Path, arguments: &str) -> String {
+    let output = run(folder, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{arguments}: {stderr}");
+    assert!(output.stdout.is_empty(), "{arguments}");
+    let lines: Vec<&str> = stderr.lines().collect();
+    assert_eq!(lines.len(), 1, "{arguments}: {stderr}");
+    lines[0].to_owned()
+}
+
+/// What a coordinator and a worker say.
+fn refusals(folder: &Path, flags: &str) -> [String; 2] {
+    let evolve = format!("--no-render --population 6 --generations 1 --duration 1 {flags}");
+    [refusal(folder, &evolve), refusal(folder, &format!("worker {flags}"))]
+}
+
+#[test]
+fn an_address_without_a_server_and_one_with_a_password_are_refused() {
+    let folder = folder();
+    let url = format!("nats://127.0.0.1:{}", free_port());
+    for line in refusals(folder.path(), &format!("--nats {url}")) {
+        assert!(line.starts_with(&format!("error: {url}: cannot connect")), "{line}");
+    }
+    let output = run(folder.path(), "worker --nats nats://ann:secret@127.0.0.1");
+    let line = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(line.starts_with("error: --nats is ") && !line.contains("secret"), "{line}");
+}
+
+#[test]
+fn a_server_without_jetstream_is_refused() {
+    let Some(server) = Server::start_with(&[]) else { return };
+    for line in refusals(folder().path(), &format!("--nats {}", server.url())) {
+        assert!(
+            line.ends_with("the server has no JetStream; start it with: nats-server -js"),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn without_the_right_credentials_there_is_no_connection() {
+    if !is_there() {
+        return;
+    }
+    let place = folder();
+    // Pairs of keys that were made for this test.
+    let config = place.path().join("server.conf");
+    let user = "UDIVNDU75JOXBUGTAN2ENBBEWGMQSW2FNKX4GMAS6P6QINQEEWPUGRNS";
+    let text = format!("jetstream {{ }}\nauthorization {{ users = [ {{ nkey: {user} }} ] }}\n");
+    std::fs::write(&config, text).expect("written");
+    let path = config.to_str().expect("UTF-8");
+    let Some(server) = Server::start_with(&["-c", path]) else { return };
+    let flags = format!("--nats {}", server.url());
+    for line in refusals(place.path(), &flags) {
+        assert!(line.contains("cannot connect: authorization violation"), "{line}");
+    }
+    let seed = place.path().join("other.nk");
+    std::fs::write(&seed, "SUAGUNQAWACRUD3BFTKXSZAGF6E6NLCPZ54QQ42O77J3QGRS42LSZXPIQE\n")
+        .expect("written");
+    for line in refusals(place.path(), &format!("{flags} --creds {}", seed.display())) {
+        assert!(line.contains("cannot connect: authorization violation"), "{line}");
+        assert!(!line.contains("SUAGUNQA"), "{line}");
+    }
+    let own = place.path().join("own.nk");
+    std::fs::write(&own, "SUAAXOCPLOU3VIXXF2F5WQQ5BA7WL5IXAFIA4OQLTQZTGOA46WTXSY7UGE\n")
+        .expect("written");
+    let listed = run(place.path(), &format!("machines {flags} --creds {}", own.display()));
+    assert!(listed.status.success(), "{}", String::from_utf8_lossy(&listed.stderr));
+    let missing = place.path().join("missing.creds");
+    for line in refusals(place.path(), &format!("{flags} --creds {}", missing.display())) {
+        assert!(line.contains("missing.creds: cannot be read"), "{line}");
+    }
+    let text = place.path().join("text.creds");
+    std::fs::write(&text, "nothing of that kind\n").expect("written");
+    for line in refusals(place.path(), &format!("{flags} --creds {}", text.display())) {
+        assert!(line.contains("text.creds: neither credentials nor the seed of an NKey"), "{line}");
+    }
+}
+
+#[test]
+fn hostile_messages_neither_stop_nor_fill_a_worker_or_a_coordinator() {
+    let Some(server) = Server::start() else { return };
+    let _worker = worker(&server.url());
+    let place = folder();
+    let arguments =
+        "--no-render --preset climb --seed 2 --population 12 --generations 3 --duration 4 --json";
+    let local = crate::program::json_lines(folder().path(), arguments);
+    let run =
+        super::server::Run::start(place.path(), &arguments.replace(" --json", ""), &server.url());
+    super::server::attack(&server);
+    assert_eq!(run.hash(), super::server::run_hash(&local));
+    let listed = snakes(place.path(), &format!("machines --json --nats {}", server.url())).output();
+    let listed = listed.expect("the program starts");
+    assert!(listed.status.success(), "{}", String::from_utf8_lossy(&listed.stderr));
+}

@@ -1,0 +1,264 @@
+//! A server, workers and coordinators as processes of their own.
+
+use std::io::Read;
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::program::{folder, snakes};
+
+/// A process that is killed when it is dropped.
+pub struct Process(pub Child);
+
+impl Process {
+    /// Sends a signal, such as `-STOP`.
+    pub fn signal(&self, signal: &str) {
+        let id = self.0.id().to_string();
+        let status = Command::new("kill").args([signal, &id]).status();
+        assert!(status.expect("kill starts").success(), "kill {signal} {id}");
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A `nats-server` with its own folder.
+pub struct Server {
+    process: Option<Process>,
+    pub port: u16,
+    folder: tempfile::TempDir,
+    arguments: Vec<String>,
+}
+
+/// A port that was free a moment ago.
+pub fn free_port() -> u16 {
+    let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
+    listener.local_addr().expect("an address").port()
+}
+
+/// Whether there is a server program. Says so if there is none, or fails where it is required.
+pub fn is_there() -> bool {
+    let found = Command::new("nats-server").arg("--version").output().is_ok();
+    let is_required = std::env::var_os("SNAKES_CLUSTER_TESTS").is_some_and(|it| it == "required");
+    assert!(found || !is_required, "nats-server is not installed");
+    if !found {
+        eprintln!("skipped: nats-server is not installed");
+    }
+    found
+}
+
+impl Server {
+    /// Starts a server with JetStream, if the program is installed.
+    pub fn start() -> Option<Self> {
+        Self::start_with(&["-js"])
+    }
+
+    /// Starts a server that stores 8 MB at most, if the program is installed.
+    pub fn start_small() -> Option<Self> {
+        let mut server = Self::start_with(&["-js"])?;
+        let config = server.folder.path().join("server.conf");
+        std::fs::write(&config, "jetstream { max_file_store: 8MB }\n").expect("written");
+        server.arguments = vec!["-c".to_owned(), config.to_string_lossy().into_owned()];
+        server.kill();
+        server.restart();
+        Some(server)
+    }
+
+    /// Starts a server with these arguments, if the program is installed.
+    pub fn start_with(arguments: &[&str]) -> Option<Self> {
+        if !is_there() {
+            return None;
+        }
+        let arguments = arguments.iter().map(|argument| (*argument).to_owned()).collect();
+        let mut server = Self { process: None, port: free_port(), folder: folder(), arguments };
+        server.restart();
+        Some(server)
+    }
+
+    /// Starts the server, or starts it again with the files it had.
+    pub fn restart(&mut self) {
+        let mut command = Command::new("nats-server");
+        command.args(&self.arguments).args([
+            "-a",
+            "127.0.0.1",
+            "-p",
+            &self.port.to_string(),
+            "-sd",
+        ]);
+        command.arg(self.folder.path()).stdout(Stdio::null()).stderr(Stdio::null());
+        self.process = Some(Process(command.spawn().expect("the server starts")));
+        let began = Instant::now();
+        while TcpStream::connect(("127.0.0.1", self.port)).is_err() {
+            assert!(began.elapsed() < Duration::from_secs(20), "the server answers");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Kills the server, as a power failure would.
+    pub fn kill(&mut self) {
+        self.process = None;
+    }
+
+    pub fn url(&self) -> String {
+        format!("nats://127.0.0.1:{}", self.port)
+    }
+}
+
+/// Starts a worker with one thread.
+pub fn worker(url: &str) -> Process {
+    let folder = std::env::temp_dir();
+    let mut command = snakes(&folder, &format!("worker --nats {url} --threads 1"));
+    let quiet = command.stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null());
+    Process(quiet.spawn().expect("the worker starts"))
+}
+
+/// A coordinator in a folder of its own.
+pub struct Run {
+    pub folder: PathBuf,
+    arguments: String,
+    process: Process,
+}
+
+impl Run {
+    /// Starts a command on a server.
+    pub fn start(folder: &Path, arguments: &str, url: &str) -> Self {
+        let arguments = format!("{arguments} --json --nats {url}");
+        let process = spawned(folder, &arguments);
+        Self { folder: folder.to_owned(), arguments, process }
+    }
+
+    /// Whether it has not ended.
+    pub fn is_running(&mut self) -> bool {
+        self.process.0.try_wait().expect("a state").is_none()
+    }
+
+    /// Kills the coordinator and starts it again.
+    pub fn restart(&mut self) {
+        self.process.0.kill().expect("it can be killed");
+        self.process.0.wait().expect("it ends");
+        self.process = spawned(&self.folder, &self.arguments);
+    }
+
+    /// Waits for the end.
+    pub fn output(mut self) -> Output {
+        let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
+        let errors = self.process.0.stderr.take();
+        let reader = std::thread::spawn(move || {
+            let mut text = Vec::new();
+            errors.expect("piped").read_to_end(&mut text).expect("read");
+            text
+        });
+        let pipe = self.process.0.stdout.as_mut().expect("piped");
+        pipe.read_to_end(&mut stdout).expect("read");
+        stderr.extend(reader.join().expect("read"));
+        let status = self.process.0.wait().expect("it ends");
+        Output { status, stdout, stderr }
+    }
+
+    /// Waits for the end, which must be a success, and returns the JSON lines.
+    pub fn lines(self) -> Vec<Value> {
+        let arguments = self.arguments.clone();
+        let output = self.output();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments}: {:?}\n{stderr}", output.status);
+        let text = String::from_utf8(output.stdout).expect("UTF-8");
+        text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+    }
+
+    /// Waits for the end, and returns the hash of the run.
+    pub fn hash(self) -> String {
+        run_hash(&self.lines())
+    }
+}
+
+fn spawned(folder: &Path, arguments: &str) -> Process {
+    let mut command = snakes(folder, arguments);
+    let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped()).stdin(Stdio::null());
+    Process(piped.spawn().expect("the coordinator starts"))
+}
+
+/// The hash of a run on the last of its lines.
+pub fn run_hash(lines: &[Value]) -> String {
+    let last = lines.last().expect("a line");
+    last["run_hash"].as_str().expect("a hash").to_owned()
+}
+
+/// A connection of the test itself.
+fn with_server<T>(server: &Server, task: impl AsyncFnOnce(async_nats::Client) -> T) -> T {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    runtime
+        .expect("a runtime")
+        .block_on(async { task(async_nats::connect(server.url()).await.expect("connected")).await })
+}
+
+/// Stores as much on a server as it takes.
+pub fn fill(server: &Server) {
+    with_server(server, async |client| {
+        let jetstream = async_nats::jetstream::new(client);
+        let config = async_nats::jetstream::stream::Config {
+            name: "FILLER".to_owned(),
+            subjects: vec!["filler".to_owned()],
+            ..Default::default()
+        };
+        jetstream.create_stream(config).await.expect("a stream");
+        for length in [500_000, 50_000, 5_000, 500] {
+            loop {
+                let sent = jetstream.publish("filler", vec![0; length].into()).await;
+                let Ok(sent) = sent else { break };
+                if sent.await.is_err() {
+                    break;
+                }
+            }
+        }
+    });
+}
+
+/// Removes what [`fill`] stored.
+pub fn empty(server: &Server) {
+    with_server(server, async |client| {
+        let jetstream = async_nats::jetstream::new(client);
+        jetstream.delete_stream("FILLER").await.expect("removed");
+    });
+}
+
+/// Sends messages of every wrong kind to all subjects.
+pub fn attack(server: &Server) {
+    with_server(server, async |client| {
+        let run = "climb-seed2";
+        let huge = vec![b'{'; 900_000];
+        let bodies: Vec<Vec<u8>> = vec![
+            Vec::new(),
+            b"{".to_vec(),
+            b"\xff\xfe".to_vec(),
+            b"x\x9c\x01\x02\x03".to_vec(),
+            b"{\"format\":9}".to_vec(),
+            b"{\"format\":1,\"run\":\"a.>\",\"batch\":1,\"kind\":\"score\",\"shared\":\"0\",\"keys\":[]}\n{}".to_vec(),
+            huge,
+        ];
+        for round in 0..3_000 {
+            let body = &bodies[round % bodies.len()];
+            if body.len() > 1000 && round > 300 {
+                continue;
+            }
+            for subject in
+                ["snakes.worker", "snakes.run", "snakes.work.0000000000000000.x", "snakes.result.x"]
+            {
+                client.publish(subject, body.clone().into()).await.expect("sent");
+            }
+            // To a run that is there, and to its workers.
+            client
+                .publish(format!("snakes.result.{run}"), body.clone().into())
+                .await
+                .expect("sent");
+            client.publish("snakes.shared.x.y", body.clone().into()).await.expect("sent");
+        }
+        client.flush().await.expect("sent");
+    });
+}
