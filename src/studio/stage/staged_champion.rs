@@ -315,7 +315,7 @@ impl StagedChampion {
                         format!("{name} on other stairs: {what} (on its own: {score})")
                     }
                     Some(beginning) => format!("What if: {what}, {beginning} ({name})"),
-                    None => format!("{name}, tried with {what} (originally {score})"),
+                    None => format!("{name} with a change: {what} (originally {score})"),
                 };
             }
             (_, None) => ": ".to_owned(),
