@@ -6,7 +6,7 @@ use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::Champion;
 use crate::save::LoadedChampion;
-use crate::score::{Recording, Rollout, Trial};
+use crate::score::{Evaluation, Recording, Rollout, Trial};
 use crate::world::{BodyPlan, Discontinuity};
 
 /// A champion on the stage, with its caption.
@@ -196,6 +196,13 @@ impl StagedChampion {
             return rollout;
         }
         Rollout::new(genome, self.trial())
+    }
+
+    /// The result that the stage shows at the end: that of one trial, also where a record has the mean of several.
+    pub fn shown_result(&self) -> Evaluation {
+        let mut rollout = self.rollout();
+        while rollout.advance() {}
+        rollout.evaluation()
     }
 
     /// Its rollout at the moment of its change, continued from that of the unchanged champion.
