@@ -16,6 +16,7 @@ mod headless;
 mod hostile;
 mod keep;
 mod learned_files;
+mod opening;
 mod program;
 mod same_bits;
 mod soak;

@@ -6,7 +6,7 @@ use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::Champion;
 use crate::save::LoadedChampion;
-use crate::score::{Recording, Rollout, Trial};
+use crate::score::{Evaluation, Recording, Rollout, Trial};
 use crate::world::{BodyPlan, Discontinuity};
 
 /// A champion on the stage, with its caption.
@@ -198,6 +198,13 @@ impl StagedChampion {
         Rollout::new(genome, self.trial())
     }
 
+    /// The result that the stage shows at the end: that of one trial, also where a record has the mean of several.
+    pub fn shown_result(&self) -> Evaluation {
+        let mut rollout = self.rollout();
+        while rollout.advance() {}
+        rollout.evaluation()
+    }
+
     /// Its rollout at the moment of its change, continued from that of the unchanged champion.
     pub fn continued_from(&self, original: Rollout) -> Option<Rollout> {
         let step = self.changes_at_step().filter(|step| *step == original.step())?;
@@ -315,7 +322,7 @@ impl StagedChampion {
                         format!("{name} on other stairs: {what} (on its own: {score})")
                     }
                     Some(beginning) => format!("What if: {what}, {beginning} ({name})"),
-                    None => format!("{name}, tried with {what} (originally {score})"),
+                    None => format!("{name} with a change: {what} (originally {score})"),
                 };
             }
             (_, None) => ": ".to_owned(),

@@ -15,7 +15,6 @@ use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
 use crate::evolve::RunPlan;
 use crate::run::{ParallelRuns, ParallelRunsEvent};
-use crate::score::evaluate;
 use crate::studio::commands::LessonCommand;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
@@ -242,10 +241,7 @@ impl Lessons {
                 if progress.lanes.is_empty() {
                     progress.lanes = champions
                         .iter()
-                        .map(|staged| {
-                            let evaluation = evaluate(&staged.champion().genome, staged.trial());
-                            (staged.label().to_owned(), evaluation)
-                        })
+                        .map(|staged| (staged.label().to_owned(), staged.shown_result()))
                         .collect();
                 }
                 Ok(Some(Show::race(champions)))

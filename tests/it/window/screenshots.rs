@@ -13,7 +13,7 @@ use super::display::{Studio, preferences};
 const RUN: &str = "--preset climb --generations 30 --threads 2";
 
 /// The README's screenshots; only these are written to `assets/screenshots`.
-const IN_README: [&str; 5] = ["single", "race", "charts", "library", "lesson"];
+const IN_README: [&str; 6] = ["single", "race", "charts", "library", "lesson", "senses"];
 
 /// Target folder, sizes and theme of the screenshots.
 struct Album {
@@ -111,6 +111,26 @@ impl Album {
         Some(())
     }
 
+    /// A screenshot of a snake that feels its way, beside its copy without touch.
+    fn senses(&self) -> Option<()> {
+        let feeler =
+            concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/feeler.ron --preset quick");
+        let studio = self.open(feeler, true)?;
+        for key in ["a", "0", "space"] {
+            studio.key(key);
+        }
+        studio.wait_for_title(", stopped");
+        studio.seek(0.2);
+        studio.open_panel("Senses");
+        studio.scroll_and_click("CheckBox", "Touch");
+        studio.wait_for_title("what-if");
+        studio.key("space");
+        studio.wait_for_title(", stopped");
+        studio.seek(0.76);
+        self.keep(&studio, "senses");
+        Some(())
+    }
+
     /// Screenshots of the main view, the panels and the modal views.
     fn panels(&self) -> Option<()> {
         let studio = self.open(RUN, true)?;
@@ -167,6 +187,12 @@ impl Album {
 #[ignore = "takes minutes, and writes into the repository; run it by hand after a change of what is drawn"]
 fn screenshots_of_the_stage() {
     let _skipped = Album::from_environment().stage();
+}
+
+#[test]
+#[ignore = "takes minutes, and writes into the repository; run it by hand after a change of what is drawn"]
+fn screenshots_of_the_senses() {
+    let _skipped = Album::from_environment().senses();
 }
 
 #[test]

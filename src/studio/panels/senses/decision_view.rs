@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::rule_row::{RULE_HEIGHT, RuleRow};
+use super::rule_row::{RuleRow, rule_list};
 use super::value_bar::ValueBar;
 use crate::control::{ActiveRule, DecisionActivity};
 use crate::studio::ui::check_box::check_box;
@@ -10,10 +10,11 @@ use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 
-/// Height of the list of rules, in points.
-const LIST_HEIGHT: f32 = theme::GAP * 36.0;
 /// Width of the names of postures, in points.
 const POSTURE_NAMES: f32 = theme::GAP * 20.5;
+
+/// Width of the worths, in points: up to seven characters without a unit.
+const WORTHS: f32 = theme::GAP * 7.0;
 
 /// Draws a decision.
 pub(super) fn decision_view(
@@ -41,6 +42,7 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
     let has_rules = !decision.rules.is_empty();
     let worths = || decision.postures.iter().filter_map(|posture| posture.worth);
     let (least, most) = (worths().fold(0.0, f32::min), worths().fold(0.0, f32::max));
+    let largest = most.max(-least);
     if decision.postures.iter().all(|posture| posture.count == 0) {
         let then = match decision.joint {
             Some(_) => "keeps its bend",
@@ -58,7 +60,10 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
         let row = ValueBar {
             name: posture.name,
             names_width: POSTURE_NAMES,
-            text: posture.worth.map_or_else(|| "-".to_owned(), worth_in_words),
+            numbers_width: WORTHS,
+            text: posture
+                .worth
+                .map_or_else(|| "-".to_owned(), |worth| worth_in_words(worth, largest)),
             value: posture.worth.unwrap_or(0.0),
             range: [least, most],
             note: &note,
@@ -80,9 +85,9 @@ fn noun(decision: &DecisionActivity) -> &'static str {
     if decision.joint.is_some() { "bend" } else { "posture" }
 }
 
-/// A worth with as many decimals as its size leaves room for.
-fn worth_in_words(worth: f32) -> String {
-    match worth.abs() {
+/// A worth, with as many decimals as the largest of its list leaves room for.
+fn worth_in_words(worth: f32, most: f32) -> String {
+    match most {
         size if size >= 1.0e6 => format!("{worth:.1e}"),
         size if size >= 100.0 => decimals(worth, 0),
         _ => decimals(worth, 2),
@@ -94,23 +99,26 @@ fn rules(ui: &mut egui::Ui, decision: &DecisionActivity, shows_all: &mut bool) {
     title(ui, &format!("Rules: {matching} of {} match", decision.rules.len()));
     check_box(ui, shows_all, "Also rules that do not match")
         .on_hover_text("List all rules; those that match are lit");
+    explain(
+        ui,
+        match decision.rules.iter().any(|rule| rule.fitness.is_some()) {
+            true => "Each predicts the worth of what it advises, and counts by its accuracy.",
+            false => "The strengths of those that match and advise the same add up.",
+        },
+    );
     let listed = decision.rules.iter().filter(|rule| *shows_all || rule.matches);
     let mut listed: Vec<&ActiveRule> = listed.collect();
-    // The rules that count most come first.
+    // Those that decided come first, then those that match; among them, those that count most.
+    let rank = |rule: &ActiveRule| (rule.decides, rule.matches);
     let use_of = |rule: &ActiveRule| rule.fitness.unwrap_or(rule.worth);
-    listed.sort_by(|a, b| use_of(b).total_cmp(&use_of(a)));
-    let area = egui::ScrollArea::vertical().max_height(LIST_HEIGHT).auto_shrink([false, true]);
-    area.id_salt("rules").show_rows(ui, RULE_HEIGHT, listed.len(), |ui, seen| {
-        for rule in listed.iter().take(seen.end).skip(seen.start) {
-            entry(ui, rule, decision);
-        }
-    });
+    listed.sort_by(|a, b| rank(b).cmp(&rank(a)).then(use_of(b).total_cmp(&use_of(a))));
+    rule_list(ui, "rules", listed.len(), |index| entry(listed[index], decision));
 }
 
-/// Draws a rule: its condition above, its posture and numbers below.
-fn entry(ui: &mut egui::Ui, rule: &ActiveRule, decision: &DecisionActivity) {
+/// A rule: its condition above, its posture and numbers below.
+fn entry(rule: &ActiveRule, decision: &DecisionActivity) -> RuleRow {
     let posture = decision.postures.get(rule.posture).map_or("", |posture| posture.name);
-    let row = RuleRow {
+    RuleRow {
         condition: match rule.condition.care() {
             0 => "Always".to_owned(),
             _ => format!("If {}", rule.words()),
@@ -123,8 +131,7 @@ fn entry(ui: &mut egui::Ui, rule: &ActiveRule, decision: &DecisionActivity) {
             (true, false) => "It matches",
             (false, false) => "It does not match this situation",
         },
-    };
-    row.ui(ui);
+    }
 }
 
 fn state_of_deciding(decision: &DecisionActivity) -> &'static str {
@@ -134,11 +141,12 @@ fn state_of_deciding(decision: &DecisionActivity) -> &'static str {
     }
 }
 
+/// The numbers of a rule, in few words: they stand behind its posture.
 fn rule_numbers(rule: &ActiveRule) -> String {
-    let worth = worth_in_words(rule.worth);
+    let worth = worth_in_words(rule.worth, rule.worth.abs());
     match (rule.fitness, rule.experience) {
         (Some(fitness), Some(experience)) => {
-            format!("predicts {worth}, accuracy {}, used {experience} times", decimals(fitness, 3))
+            format!("{worth}, accuracy {}, used {experience}×", decimals(fitness, 2))
         }
         _ => format!("strength {worth}"),
     }

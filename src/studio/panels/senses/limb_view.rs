@@ -16,7 +16,7 @@ const NAMES: f32 = theme::GAP * 13.0;
 /// Largest radius of a neuron, in points.
 const RADIUS: f32 = theme::GAP;
 /// The rows of the table, from the top.
-const ROWS: [&str; 4] = ["1: bend target", "2: twist target", "neuron 3", "neuron 4"];
+const ROWS: [&str; 4] = ["neuron 1: bend", "neuron 2: twist", "neuron 3", "neuron 4"];
 
 /// Draws the neurons.
 pub(super) fn limb_view(ui: &mut egui::Ui, activity: &LimbActivity, limb: usize) {

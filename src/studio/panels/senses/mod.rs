@@ -18,6 +18,7 @@ use bevy_egui::egui;
 use super::on_stage::OnStage;
 use crate::control::{ActiveSenses, Activity, SenseOrgan};
 use crate::genome::ControllerKind;
+use crate::score::Rollout;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -108,13 +109,13 @@ impl SensesPanel {
         };
         switches(ui, view, commands);
         exam(ui, view.lane, exams, commands);
-        if rollout.perception().limbs.is_empty() {
-            explain(
-                ui,
-                "The senses begin with the first step: play, or press the right arrow key.",
-            );
-            return;
-        }
+        let started;
+        let rollout = if rollout.perception().limbs.is_empty() {
+            started = with_first_senses(rollout);
+            &started
+        } else {
+            rollout
+        };
         readouts(ui, view, rollout);
         self.controller(ui, view, rollout.activity(view.joint()).as_ref());
     }
@@ -135,6 +136,14 @@ impl SensesPanel {
             None => {}
         }
     }
+}
+
+/// A copy that has sensed the start and acted on it: nothing is sensed before the first step. Without it, the panel would
+/// be empty for a moment, and scrolled to its top, whenever a replay starts over.
+fn with_first_senses(rollout: &Rollout) -> Rollout {
+    let mut started = rollout.clone();
+    started.advance();
+    started
 }
 
 /// The controllers that sense their surroundings, in a sentence.

@@ -30,7 +30,11 @@ pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
     let palette = theme::of(ui);
     let whose = network.joint.map_or_else(String::new, |joint| format!("Joint {}. ", joint + 1));
     let text = "Lines are weights, wider for larger ones; nodes show activity. Point at a node to see its links.";
-    explain(ui, &format!("{whose}{text}"));
+    let senses = match names_inputs(network) {
+        true => "",
+        false => " At the left are all its senses.",
+    };
+    explain(ui, &format!("{whose}{text}{senses}"));
     legend(ui, palette);
     let places = Places::of(ui, network);
     let mut hovered = None;
@@ -63,6 +67,16 @@ fn legend(ui: &mut egui::Ui, palette: &Palette) {
     });
 }
 
+/// The number of nodes of a column.
+fn count(network: &NetworkActivity, column: NodeColumn) -> usize {
+    network.nodes.iter().filter(|node| node.column == column).count()
+}
+
+/// Whether the inputs have their names beside them.
+fn names_inputs(network: &NetworkActivity) -> bool {
+    count(network, NodeColumn::Input) <= MOST_NAMED
+}
+
 /// Where the nodes are drawn.
 struct Places {
     at: Vec<Pos2>,
@@ -76,9 +90,9 @@ struct Places {
 impl Places {
     /// Takes the room of the graph.
     fn of(ui: &mut egui::Ui, network: &NetworkActivity) -> Self {
-        let count = |column| network.nodes.iter().filter(|node| node.column == column).count();
+        let count = |column| count(network, column);
         let inputs = count(NodeColumn::Input);
-        let names_inputs = inputs <= MOST_NAMED;
+        let names_inputs = names_inputs(network);
         let height = (inputs as f32 * NAMED_ROW).clamp(LEAST_HEIGHT, MOST_HEIGHT);
         let size = egui::vec2(ui.available_width(), height + theme::GAP);
         let (room, _) = ui.allocate_exact_size(size, egui::Sense::hover());

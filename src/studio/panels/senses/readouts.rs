@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 
 use super::SensesView;
-use super::value_bar::{SENSE_NAMES, ValueBar};
+use super::value_bar::{SENSE_NAMES, SENSE_NUMBERS, ValueBar};
 use crate::control::{ActiveSenses, Perception, SenseKind};
 use crate::score::Rollout;
 use crate::studio::ui::decimals::decimals;
@@ -116,6 +116,7 @@ impl ReadSenses<'_> {
         let row = ValueBar {
             name: &name,
             names_width: SENSE_NAMES,
+            numbers_width: SENSE_NUMBERS,
             text,
             value,
             range,

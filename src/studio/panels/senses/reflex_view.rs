@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::value_bar::{SENSE_NAMES, ValueBar};
+use super::value_bar::{SENSE_NAMES, SENSE_NUMBERS, ValueBar};
 use crate::control::ReflexActivity;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::explain;
@@ -19,6 +19,7 @@ pub(super) fn reflex_view(ui: &mut egui::Ui, reflex: &ReflexActivity) {
         let row = ValueBar {
             name: push.name,
             names_width: SENSE_NAMES,
+            numbers_width: SENSE_NUMBERS,
             text: decimals(push.push, 2),
             value: push.push,
             range: [-most, most],
@@ -33,6 +34,7 @@ pub(super) fn reflex_view(ui: &mut egui::Ui, reflex: &ReflexActivity) {
     let row = ValueBar {
         name: "Target moved",
         names_width: SENSE_NAMES,
+        numbers_width: SENSE_NUMBERS,
         text: format!("{}°", decimals(moved_deg, 1)),
         value: moved_deg,
         range: [-reach_deg, reach_deg],

@@ -1,11 +1,27 @@
-//! A rule in a list: its condition above, what it does below. Those that hold are lit.
+//! A list of rules: the condition of each above, what it does below. Those that hold are lit.
 
 use bevy_egui::egui;
 
 use crate::studio::ui::theme;
 
-/// Height of a rule in the list, in points.
-pub(super) const RULE_HEIGHT: f32 = theme::GAP * 5.0;
+/// Height of a rule in the list, in points: two lines for its condition, one for what it does.
+const RULE_HEIGHT: f32 = theme::GAP * 6.75;
+/// Height of the list, in points. The panel scrolls, too, and a list in it would otherwise get no more than the room that
+/// is left in the window.
+const LIST_HEIGHT: f32 = theme::GAP * 40.0;
+
+/// Draws a list of rules with its own scroll bar, of which only those in sight are laid out.
+pub(super) fn rule_list(
+    ui: &mut egui::Ui,
+    id_salt: &str,
+    rules: usize,
+    row: impl Fn(usize) -> RuleRow,
+) {
+    let area =
+        egui::ScrollArea::vertical().max_height(LIST_HEIGHT).min_scrolled_height(LIST_HEIGHT);
+    let area = area.auto_shrink([false, true]).id_salt(id_salt);
+    area.show_rows(ui, RULE_HEIGHT, rules, |ui, seen| seen.for_each(|index| row(index).ui(ui)));
+}
 
 /// A rule of a list.
 pub(super) struct RuleRow {
@@ -23,7 +39,7 @@ pub(super) struct RuleRow {
 
 impl RuleRow {
     /// Draws the rule over the whole width.
-    pub fn ui(&self, ui: &mut egui::Ui) {
+    fn ui(&self, ui: &mut egui::Ui) {
         let palette = theme::of(ui);
         let size = egui::vec2(ui.available_width(), RULE_HEIGHT);
         let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
@@ -35,19 +51,18 @@ impl RuleRow {
         ui.painter().rect_filled(rect, theme::GAP / 2.0, fill);
         let inside = rect.shrink2(egui::vec2(theme::GAP * 0.75, theme::GAP / 4.0));
         let font = egui::TextStyle::Body.resolve(ui.style());
-        let cut = |text: String, color: egui::Color32| {
-            let mut job = egui::text::LayoutJob::simple_singleline(text, font.clone(), color);
-            job.wrap = egui::text::TextWrapping::truncate_at_width(inside.width());
+        let cut = |text: &str, lines: usize, color: egui::Color32| {
+            let mut job =
+                egui::text::LayoutJob::simple(text.to_owned(), font.clone(), color, inside.width());
+            job.wrap.max_rows = lines;
             ui.fonts_mut(|fonts| fonts.layout_job(job))
         };
         let of = |is_lit| if is_lit { palette.text } else { palette.text_weak };
-        for (text, color, top) in [
-            (&self.condition, of(self.holds), inside.top()),
-            (&self.action, of(self.decides), inside.center().y),
-        ] {
-            let text = cut(text.clone(), color);
-            ui.painter().galley(egui::pos2(inside.left(), top), text, color);
-        }
+        let condition = cut(&self.condition, 2, of(self.holds));
+        ui.painter().galley(inside.left_top(), condition, palette.text);
+        let action = cut(&self.action, 1, of(self.decides));
+        let bottom = inside.left_bottom() - egui::vec2(0.0, action.size().y);
+        ui.painter().galley(bottom, action, palette.text);
         let said = format!("{}: {}. {}", self.condition, self.action, self.state);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
         response.on_hover_text(&said);

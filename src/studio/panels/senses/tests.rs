@@ -14,7 +14,11 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use std::sync::Arc;
 
 /// A lane of a random snake with a controller, at 0.5 s, in a world with other settings.
-fn lane_of(kind: ControllerKind, fields: &[(&str, &str)], change: fn(&mut Genome)) -> Lane {
+fn lane_of(
+    kind: ControllerKind,
+    fields: &[(&str, &str)],
+    change: impl FnOnce(&mut Genome),
+) -> Lane {
     let settings = load_preset("climb").expect("shipped").settings;
     let mut settings = with_fields(&settings, fields.iter().copied()).expect("allowed");
     settings.genome.controller = kind;
@@ -31,8 +35,13 @@ fn lane_of(kind: ControllerKind, fields: &[(&str, &str)], change: fn(&mut Genome
 
 /// The panel for a limb of a lane.
 fn panel(lane: &Lane, limb: usize) -> Harness<'_, Vec<Command>> {
+    panel_in_window(lane, limb, 1600.0)
+}
+
+/// The panel in a window of this height, in which it scrolls.
+fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Harness<'_, Vec<Command>> {
     let mut panel = SensesPanel::default();
-    let mut harness = Harness::builder().with_size(egui::vec2(320.0, 1600.0)).build_ui_state(
+    let mut harness = Harness::builder().with_size(egui::vec2(320.0, height)).build_ui_state(
         move |ui, commands| {
             theme::apply(ui.ctx());
             let view = SensesView {
@@ -42,7 +51,8 @@ fn panel(lane: &Lane, limb: usize) -> Harness<'_, Vec<Command>> {
                 others: Vec::new(),
                 switched: lane.trial().agent.senses,
             };
-            panel.ui(ui, Some(&view), &StairsExams::default(), commands);
+            let area = egui::ScrollArea::vertical().auto_shrink(false);
+            area.show(ui, |ui| panel.ui(ui, Some(&view), &StairsExams::default(), commands));
         },
         Vec::new(),
     );
@@ -135,6 +145,40 @@ fn reflexes_are_listed_by_sense() {
     }
 }
 
+/// A lane of a snake with 400 rules of equal strength that leave out this share of what they could say.
+fn lane_of_rules(wildcard_share: f32) -> Lane {
+    lane_of(ControllerKind::Decisions, &[], |genome| {
+        let ControllerGenes::Decisions(genes) = &mut genome.controller else { panic!("decisions") };
+        let mut rng = stream(1, 1, 1, Purpose::Learn);
+        let settings = ZcsSettings { wildcard_share, ..ZcsSettings::default() };
+        let rules = Zcs::new(settings, SITUATION_BITS.len(), POSTURES.len(), &mut rng);
+        genes.policy = Policy::Zcs(Arc::new(rules.expect("allowed")));
+    })
+}
+
+#[test]
+fn a_low_window_has_as_many_rules_in_sight_as_a_high_one() {
+    let lane = lane_of_rules(0.9);
+    let rules = |height| {
+        let panel = panel_in_window(&lane, 0, height);
+        panel.query_all_by_label_contains("strength 20.00. It matches").count()
+    };
+    assert_eq!(rules(500.0), rules(1600.0));
+    assert!(rules(500.0) >= 6);
+}
+
+#[test]
+fn the_panel_is_as_long_at_the_start_as_later() {
+    for kind in [ControllerKind::Reflex, ControllerKind::Modular, ControllerKind::LimbNeurons] {
+        let mut lane = lane_of(kind, &[], |_| ());
+        let later = panel(&lane, 0).get_by_label_contains("Controller: ").rect();
+        lane.show(0.0, None, 3000).expect("healthy");
+        assert!(lane.rollout().expect("simulated").perception().limbs.is_empty());
+        assert_eq!(panel(&lane, 0).get_by_label_contains("Controller: ").rect(), later, "{kind}");
+        assert!(shows(&panel(&lane, 0), "Joint 4 bend: "), "{kind}");
+    }
+}
+
 #[test]
 fn decisions_show_situation_postures_and_rules() {
     let lane = lane_of(ControllerKind::Decisions, &[], |_| ());
@@ -144,13 +188,7 @@ fn decisions_show_situation_postures_and_rules() {
         assert!(shows(&table, label), "{label}");
     }
     assert!(!shows(&table, "Rules: "));
-    let lane = lane_of(ControllerKind::Decisions, &[], |genome| {
-        let ControllerGenes::Decisions(genes) = &mut genome.controller else { panic!("decisions") };
-        let mut rng = stream(1, 1, 1, Purpose::Learn);
-        let settings = ZcsSettings { wildcard_share: 0.9, ..ZcsSettings::default() };
-        let rules = Zcs::new(settings, SITUATION_BITS.len(), POSTURES.len(), &mut rng);
-        genes.policy = Policy::Zcs(Arc::new(rules.expect("allowed")));
-    });
+    let lane = lane_of_rules(0.2);
     let mut rules = panel(&lane, 0);
     assert!(shows(&rules, "of 400 match"));
     assert!(shows(&rules, "strength 20.00. It matches"));

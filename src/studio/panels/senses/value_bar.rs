@@ -10,6 +10,8 @@ pub(super) struct ValueBar<'b> {
     pub name: &'b str,
     /// Width of the names of the list, in points.
     pub names_width: f32,
+    /// Width of its numbers, in points.
+    pub numbers_width: f32,
     /// The number with its unit.
     pub text: String,
     /// The value on the bar, and the ends of the bar.
@@ -29,8 +31,9 @@ pub(super) struct ValueBar<'b> {
 pub(super) const ROW_HEIGHT: f32 = theme::GAP * 2.25;
 /// Width of the names of senses, in points.
 pub(super) const SENSE_NAMES: f32 = theme::GAP * 12.5;
-/// Widths of the numbers and the notes, in points.
-const NUMBERS: f32 = theme::GAP * 9.5;
+/// Width of the numbers of senses with their units, in points.
+pub(super) const SENSE_NUMBERS: f32 = theme::GAP * 9.5;
+/// Width of the notes, in points.
 const NOTES: f32 = theme::GAP * 9.5;
 /// Height of a bar, in points.
 const BAR: f32 = theme::GAP * 0.75;
@@ -60,7 +63,7 @@ impl ValueBar<'_> {
         painter.text(at(left), egui::Align2::LEFT_CENTER, self.note, small, weak);
         let bar = egui::Rect::from_min_max(
             egui::pos2(rect.left() + self.names_width, middle - BAR / 2.0),
-            egui::pos2(numbers_end - NUMBERS - theme::GAP / 2.0, middle + BAR / 2.0),
+            egui::pos2(numbers_end - self.numbers_width - theme::GAP / 2.0, middle + BAR / 2.0),
         );
         if bar.width() > 1.0 {
             painter.rect_filled(bar, BAR / 2.0, palette.field_hovered);

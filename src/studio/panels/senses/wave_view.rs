@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 use bevy_egui::egui::{Align2, FontId, Rect, Stroke};
 
-use super::rule_row::{RULE_HEIGHT, RuleRow};
+use super::rule_row::{RuleRow, rule_list};
 use crate::control::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 use crate::genome::controllers::{JointGroup, Wave};
 use crate::studio::ui::decimals::decimals;
@@ -17,8 +17,6 @@ const WAVE_HEIGHT: f32 = theme::GAP * 5.5;
 /// Widths of the names and the shares beside the curves, in points.
 const NAMES: f32 = theme::GAP * 9.0;
 const SHARES: f32 = theme::GAP * 6.0;
-/// Height of the list of rules, in points.
-const LIST_HEIGHT: f32 = theme::GAP * 44.0;
 /// Width from which a joint has room for a word, in points.
 const WORD_WIDTH: f32 = theme::GAP * 6.0;
 /// Points of a curve.
@@ -163,12 +161,7 @@ fn rules(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     let mut listed: Vec<&ActiveWaveRule> = choice.rules.iter().collect();
     // The sort is stable, because of equals the first decides.
     listed.sort_by(|a, b| b.rule.strength.total_cmp(&a.rule.strength));
-    let area = egui::ScrollArea::vertical().max_height(LIST_HEIGHT).auto_shrink([false, true]);
-    area.id_salt("wave rules").show_rows(ui, RULE_HEIGHT, listed.len(), |ui, seen| {
-        for rule in listed.iter().take(seen.end).skip(seen.start) {
-            entry(ui, rule);
-        }
-    });
+    rule_list(ui, "wave rules", listed.len(), |index| entry(listed[index]));
 }
 
 /// The joints of a group in words.
@@ -180,14 +173,14 @@ fn joints_of(group: JointGroup) -> &'static str {
     }
 }
 
-/// Draws a rule.
-fn entry(ui: &mut egui::Ui, ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) {
+/// A rule: its condition above, its joints and wave below.
+fn entry(ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) -> RuleRow {
     let (joints, strength) = (joints_of(rule.group), decimals(rule.strength, 2));
     let condition = match rule.condition.words() {
         always if always == "always" => "Always".to_owned(),
         words => format!("If {words}"),
     };
-    let row = RuleRow {
+    RuleRow {
         condition,
         action: format!("{joints}: wave {}, strength {strength}", rule.wave),
         holds: *holds,
@@ -199,6 +192,5 @@ fn entry(ui: &mut egui::Ui, ActiveWaveRule { rule, holds, decides }: &ActiveWave
             (true, None) => "It holds, but a stronger rule decides",
             (false, None) => "It does not hold",
         },
-    };
-    row.ui(ui);
+    }
 }

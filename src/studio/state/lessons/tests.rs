@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::*;
 use crate::run::{Experiment, LocalPool, RunControl};
-use crate::score::Evaluation;
+use crate::score::{Evaluation, evaluate};
 use crate::studio::state::current_run::prepared_run;
 
 /// Results of a scene, computed once.
@@ -14,10 +14,7 @@ pub(super) fn result(lesson: usize, scene: usize) -> &'static Progress {
     KNOWN[lesson][scene].get_or_init(|| match &LESSONS[lesson].scenes[scene] {
         LessonScene::Lanes { champion, lanes, .. } => {
             let staged = champions(champion, lanes).expect("they fit");
-            let of = |staged: &StagedChampion| {
-                let evaluation = evaluate(&staged.champion().genome, staged.trial());
-                (staged.label().to_owned(), evaluation)
-            };
+            let of = |staged: &StagedChampion| (staged.label().to_owned(), staged.shown_result());
             let asks = LESSONS[lesson].scenes[scene].question().map(|question| question.asks);
             let plays = match asks {
                 Some(Asks::PlaybackSpeed) => played(&staged[0], &[1.0, 4.0]),
@@ -254,6 +251,15 @@ fn a_race_waits_for_a_guess_and_starts_after_it() {
     assert!(lessons.hides_result(), "the race was not watched yet");
     apply(&mut lessons, &mut run, LessonCommand::Guess(0));
     assert_eq!(lessons.view().expect("begun").progress.guess, Some(1), "a first guess stands");
+}
+
+#[test]
+fn the_fitness_of_a_snake_is_that_of_the_trial_on_the_stage() {
+    // The record of this snake has the mean of four trials.
+    for (name, result) in &result(6, 1).lanes {
+        let counted_m = result.centre_y_m.min(26.0);
+        assert!((result.fitness - counted_m).abs() < 2.0, "{name}: {result:?}");
+    }
 }
 
 #[test]
