@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use async_nats::Subscriber;
 use async_nats::jetstream::context::PublishErrorKind;
 use async_nats::jetstream::message::PublishMessage;
 use crossbeam_channel::Sender;
@@ -108,9 +109,12 @@ impl Actor {
             let stream = work_stream(jetstream).await?;
             let left = stream.purge().filter(work_subject(&options.proof, &options.run)).await;
             left.map_err(|error| one_line(&error))?;
-            result_consumer(jetstream, &options.run).await
+            result_consumer(jetstream, &options.run).await?;
+            // Before this run tells of itself: workers answer.
+            let notices = broker.client().subscribe(WORKER_NOTICES).await;
+            notices.map_err(|error| one_line(&error))
         });
-        prepared.map_err(|problem| broker.refused("the run", problem))?;
+        let notices = prepared.map_err(|problem| broker.refused("the run", problem))?;
         // The numbers of a predecessor's batches are far away. Neither number can change a result.
         let seed = random_number();
         let rng = ChaCha8Rng::seed_from_u64(seed);
@@ -125,7 +129,7 @@ impl Actor {
         let runtime = broker.runtime();
         let tasks = vec![
             runtime.spawn(fetch_results(Arc::clone(&broker), options.run.clone(), sender.clone())),
-            runtime.spawn(hear_workers(Arc::clone(&broker), sender)),
+            runtime.spawn(hear_workers(notices, sender)),
             runtime.spawn(answer_shared(
                 Arc::clone(&broker),
                 options.run.clone(),
@@ -370,8 +374,7 @@ async fn fetch_results(broker: Arc<Broker>, run: String, news: tokio::sync::mpsc
 }
 
 /// Hears what workers tell of themselves.
-async fn hear_workers(broker: Arc<Broker>, news: tokio::sync::mpsc::Sender<News>) {
-    let Ok(mut notices) = broker.client().subscribe(WORKER_NOTICES).await else { return };
+async fn hear_workers(mut notices: Subscriber, news: tokio::sync::mpsc::Sender<News>) {
     while let Some(message) = notices.next().await {
         let Ok(notice) = WorkerNotice::read(&message.payload) else { continue };
         if news.send(News::Notice(notice)).await.is_err() {

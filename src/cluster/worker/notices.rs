@@ -20,6 +20,7 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
     let mut heard = client.subscribe(RUN_NOTICES).await.ok();
     let mut ticks = tokio::time::interval(NOTICE_INTERVAL);
     let mut rate = Rate::new();
+    let mut latest_run: Option<String> = None;
     let mut own_run: Option<Instant> = None;
     let mut foreign: Option<(Instant, RunNotice)> = None;
     loop {
@@ -42,6 +43,11 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
             message = notice => {
                 let Some(message) = message else { heard = None; continue };
                 let Ok(notice) = RunNotice::read(&message.payload) else { continue };
+                if latest_run.as_ref() != Some(&notice.run) {
+                    // A coordinator that has just begun learns at once that this worker is there.
+                    latest_run = Some(notice.run.clone());
+                    ticks.reset_immediately();
+                }
                 match notice.proof == place.options.proof {
                     true => own_run = Some(Instant::now()),
                     false => {

@@ -11,9 +11,12 @@ use super::proxy::Proxy;
 use super::server::{Process, Run, Server, empty, fill, run_hash, worker};
 use crate::program::{folder, json_lines};
 
-/// A run of some seconds, with a generation every second or so.
-const RUN: &str =
-    "--no-render --preset climb --seed 7 --population 40 --generations 16 --duration 8";
+/// A run of half a minute or so, which is longer than the latest fault.
+const RUN: &str = if cfg!(debug_assertions) {
+    "--no-render --preset climb --seed 7 --population 40 --generations 16 --duration 8"
+} else {
+    "--no-render --preset climb --seed 7 --population 200 --generations 16 --duration 8"
+};
 
 /// The hash of the run on this machine alone.
 fn local_hash() -> &'static str {
@@ -25,7 +28,7 @@ fn local_hash() -> &'static str {
 }
 
 /// Number of times that each fault is tried.
-fn rounds() -> u64 {
+pub fn rounds() -> u64 {
     let wanted = std::env::var("SNAKES_FAULT_ROUNDS").ok().and_then(|text| text.parse().ok());
     wanted.unwrap_or(1)
 }

@@ -95,7 +95,7 @@ fn hostile_messages_neither_stop_nor_fill_a_worker_or_a_coordinator() {
     let local = crate::program::json_lines(folder().path(), arguments);
     let run =
         super::server::Run::start(place.path(), &arguments.replace(" --json", ""), &server.url());
-    super::server::attack(&server);
+    super::server::attack(&server, if super::faults::rounds() > 1 { 1_000_000 } else { 20_000 });
     assert_eq!(run.hash(), super::server::run_hash(&local));
     let listed = snakes(place.path(), &format!("machines --json --nats {}", server.url())).output();
     let listed = listed.expect("the program starts");

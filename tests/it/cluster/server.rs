@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use futures_util::StreamExt;
 use serde_json::Value;
 
 use crate::program::{folder, snakes};
@@ -228,36 +229,45 @@ pub fn empty(server: &Server) {
     });
 }
 
-/// Sends messages of every wrong kind to all subjects.
-pub fn attack(server: &Server) {
+/// Sends this number of messages of every wrong kind to the subjects of a run that is there and of its workers.
+pub fn attack(server: &Server, messages: usize) {
     with_server(server, async |client| {
-        let run = "climb-seed2";
-        let huge = vec![b'{'; 900_000];
+        let first = async |subject: &'static str| -> Value {
+            let mut notices = client.subscribe(subject).await.expect("heard");
+            let message = notices.next().await.expect("a notice");
+            serde_json::from_slice(&message.payload).expect("JSON")
+        };
+        let (run, worker) = (first("snakes.run").await, first("snakes.worker").await);
+        let text = |value: &Value| value.as_str().expect("a text").to_owned();
+        let (run, proof) = (text(&run["run"]), text(&run["proof"]));
+        let subjects = [
+            "snakes.worker".to_owned(),
+            "snakes.run".to_owned(),
+            format!("snakes.work.{proof}.{run}"),
+            format!("snakes.result.{run}"),
+            format!("snakes.shared.{run}.0"),
+            format!("snakes.audit.{}", text(&worker["worker"])),
+        ];
+        let result = "{\"format\":1,\"run\":\"R\",\"batch\":1,\"worker\":\"w\",\"elapsed_s\":1,\"keys\":[\"0000000000000000\"]}\n{}";
+        let work = "{\"format\":1,\"run\":\"R\",\"batch\":1,\"kind\":\"score\",\"shared\":\"0000000000000000\",\
+                    \"keys\":[\"0000000000000000\"]}\n{}";
         let bodies: Vec<Vec<u8>> = vec![
             Vec::new(),
             b"{".to_vec(),
             b"\xff\xfe".to_vec(),
             b"x\x9c\x01\x02\x03".to_vec(),
             b"{\"format\":9}".to_vec(),
-            b"{\"format\":1,\"run\":\"a.>\",\"batch\":1,\"kind\":\"score\",\"shared\":\"0\",\"keys\":[]}\n{}".to_vec(),
-            huge,
+            result.replace('R', &run).into_bytes(),
+            work.replace('R', &run).into_bytes(),
+            vec![b'{'; 900_000],
         ];
-        for round in 0..3_000 {
-            let body = &bodies[round % bodies.len()];
-            if body.len() > 1000 && round > 300 {
+        for number in 0..messages {
+            let body = &bodies[number % bodies.len()];
+            if body.len() > 100_000 && number > 200 {
                 continue;
             }
-            for subject in
-                ["snakes.worker", "snakes.run", "snakes.work.0000000000000000.x", "snakes.result.x"]
-            {
-                client.publish(subject, body.clone().into()).await.expect("sent");
-            }
-            // To a run that is there, and to its workers.
-            client
-                .publish(format!("snakes.result.{run}"), body.clone().into())
-                .await
-                .expect("sent");
-            client.publish("snakes.shared.x.y", body.clone().into()).await.expect("sent");
+            let subject = subjects[number / bodies.len() % subjects.len()].clone();
+            client.publish(subject, body.clone().into()).await.expect("sent");
         }
         client.flush().await.expect("sent");
     });

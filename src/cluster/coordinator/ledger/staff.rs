@@ -11,6 +11,11 @@ use crate::cluster::hello::{WorkerNotice, own_engine};
 use crate::cluster::names::SILENCE;
 use crate::cluster::wire::TaskText;
 
+/// Maximum number of workers. Others are not heard.
+const MOST_MEMBERS: usize = 20_000;
+/// Maximum number of workers whose arrival is told to the user.
+const MOST_TOLD: usize = 50;
+
 /// Whether results of a worker count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standing {
@@ -88,6 +93,10 @@ impl Staff {
     pub fn on_notice(&mut self, notice: WorkerNotice, proof: &str, now: Instant) -> Vec<Action> {
         let name = notice.worker.clone();
         let is_new = !self.0.contains_key(&name);
+        if is_new && self.0.len() >= MOST_MEMBERS {
+            return Vec::new();
+        }
+        let is_told = self.0.len() < MOST_TOLD;
         let member = self.0.entry(name.clone()).or_insert_with(|| StaffMember::new(now));
         member.seen = now;
         let mut actions = Vec::new();
@@ -99,7 +108,7 @@ impl Staff {
                 notice.engine_words(),
                 own_engine(proof)
             )));
-        } else if is_new && !notice.leaves {
+        } else if is_new && is_told && !notice.leaves {
             let threads = notice.threads;
             let plural = if threads == 1 { "" } else { "s" };
             let line = format!("worker {name} on {}: {threads} thread{plural}", notice.host);
@@ -137,6 +146,9 @@ impl Staff {
 
     /// Holds a result.
     pub fn hold(&mut self, worker: &str, outcome: TaskText, now: Instant) {
+        if self.0.len() >= MOST_MEMBERS && !self.0.contains_key(worker) {
+            return;
+        }
         let new = || StaffMember::new(now);
         let member = self.0.entry(worker.to_owned()).or_insert_with(new);
         if !member.held.iter().any(|held| held.key == outcome.key) {
