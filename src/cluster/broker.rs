@@ -10,7 +10,7 @@ use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
 use async_nats::jetstream::stream::{Config, DiscardPolicy, RetentionPolicy, StorageType, Stream};
 use async_nats::jetstream::{self, Context};
 use async_nats::{Client, ConnectOptions, Event};
-use tokio::runtime::{Builder, Runtime};
+use tokio::runtime::{Builder, Handle, Runtime};
 
 use super::error::ClusterError;
 use super::names::{
@@ -36,7 +36,9 @@ pub struct BrokerOptions {
 #[derive(Debug)]
 pub struct Broker {
     url: String,
-    runtime: Runtime,
+    runtime: Handle,
+    /// Present until this is dropped.
+    owned_runtime: Option<Runtime>,
     client: Client,
     jetstream: Context,
 }
@@ -92,7 +94,14 @@ impl Broker {
             .enable_all()
             .build()?;
         let (client, jetstream) = runtime.block_on(connect(options, name))?;
-        let broker = Self { url: options.url.clone(), runtime, client, jetstream };
+        let handle = runtime.handle().clone();
+        let broker = Self {
+            url: options.url.clone(),
+            runtime: handle,
+            owned_runtime: Some(runtime),
+            client,
+            jetstream,
+        };
         broker.check_jetstream()?;
         broker.runtime.block_on(broker.make_streams())?;
         Ok(broker)
@@ -104,7 +113,7 @@ impl Broker {
     }
 
     /// What the connection runs on.
-    pub(super) fn runtime(&self) -> &Runtime {
+    pub(super) fn runtime(&self) -> &Handle {
         &self.runtime
     }
 
@@ -138,6 +147,15 @@ impl Broker {
 
     pub(super) fn refused(&self, task: &'static str, problem: String) -> ClusterError {
         ClusterError::Refused { url: self.url.clone(), task, problem }
+    }
+}
+
+impl Drop for Broker {
+    /// A task on the runtime may hold the broker last, and must not wait for its own end.
+    fn drop(&mut self) {
+        if let Some(runtime) = self.owned_runtime.take() {
+            runtime.shutdown_background();
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 //! A task is named by the hash of its content. What is delivered twice, computed twice, or left by a coordinator that was
 //! killed therefore counts once, and for the same task only.
 
+mod any_message;
 mod broker;
 mod compute;
 mod coordinator;
@@ -20,6 +21,7 @@ mod proof;
 mod wire;
 mod worker;
 
+pub use any_message::kinds_of_message;
 pub use broker::{Broker, BrokerOptions};
 pub use compute::{Compute, Shared, Simulator};
 pub use coordinator::{Coordinator, CoordinatorOptions};

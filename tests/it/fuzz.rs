@@ -242,3 +242,17 @@ fn every_value_of_a_setting_is_accepted_or_gives_one_line() {
         with_field(&settings, field, value)
     });
 }
+
+#[cfg(feature = "cluster")]
+#[test]
+fn every_message_between_machines_is_read_or_gives_one_line() {
+    use snakes_and_stairs::cluster::kinds_of_message;
+    for file in corpus("wire") {
+        assert!(kinds_of_message(&fs::read(&file).expect("read")).is_ok(), "{}", file.display());
+    }
+    proptest!(rules(3000), |(bytes in inputs("wire"))| {
+        if let Err(error) = kinds_of_message(&bytes) {
+            prop_assert!(!error.to_string().contains('\n'), "{error}");
+        }
+    });
+}

@@ -5,6 +5,8 @@
 mod audits;
 mod batches;
 mod staff;
+#[cfg(test)]
+mod tests;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -159,6 +161,8 @@ impl Ledger {
         for key in early {
             if let Some((worker, line)) = self.early.remove(&key) {
                 actions.extend(self.take(&worker, vec![TaskText { key, text: line }], now));
+                // No batch is needed for it, unless its worker turns out to be wrong.
+                self.queue.retain(|queued| *queued != key);
             }
         }
         actions.extend(self.publish(now));
@@ -316,8 +320,11 @@ impl Ledger {
                 task: TaskText { key: held.key, text: Arc::clone(&pending.text) },
                 checker: Checker::Coordinator,
             };
-            self.staff.begin_proof(&worker);
-            actions.extend(self.audits.start(task, &worker, held.text));
+            // If the same task is being checked already, another one will be, soon.
+            if let Some(action) = self.audits.start(task, &worker, held.text) {
+                self.staff.begin_proof(&worker);
+                actions.push(action);
+            }
         }
         actions
     }
@@ -337,6 +344,7 @@ impl Ledger {
                 workers.iter().flat_map(|worker| self.set_aside(worker, words)).collect()
             }
         };
+        actions.extend(self.start_first_audits());
         actions.extend(self.publish(now));
         actions
     }

@@ -26,7 +26,7 @@ struct Sleeper {
 
 impl Compute for Sleeper {
     fn outcome(&self, _: &Shared, _: &str) -> Outcome {
-        std::thread::sleep(Duration::from_millis(30));
+        std::thread::sleep(Duration::from_millis(20));
         Outcome::Scored(Ok(self.scored.clone()))
     }
 }
