@@ -42,11 +42,11 @@ mod tests {
     use super::*;
     use crate::cluster::hello::NOTICE_FORMAT;
     use crate::cluster::wire::{TaskText, line_of, shared_hash, task_key};
+    use crate::engine::{ENGINE_VERSION, Processors};
     use crate::rng::{Purpose, stream};
     use crate::run::evaluate_caught;
     use crate::save::load_preset;
     use crate::score::ExamSuite;
-    use crate::{ENGINE_VERSION, Processors};
 
     /// Messages of every kind, by name.
     fn examples() -> Vec<(String, Vec<u8>)> {

@@ -13,9 +13,9 @@ use crate::score::{ExamCondition, Trial};
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shared {
     /// The trial in which genomes are scored.
-    Trial(Trial),
+    Trial(Box<Trial>),
     /// The genome that is examined.
-    Genome(Genome),
+    Genome(Box<Genome>),
 }
 
 /// Computes outcomes. The program has one implementation, [`Simulator`]; tests have slower and wrong ones.
@@ -40,12 +40,12 @@ impl Shared {
                 let trial: Trial = parse_line(text)?;
                 trial.check()?;
                 let own_text = line_of(&trial);
-                (Self::Trial(trial), own_text)
+                (Self::Trial(Box::new(trial)), own_text)
             }
             TaskKind::Examine => {
                 let genome: Genome = parse_line(text)?;
                 let own_text = line_of(&genome);
-                (Self::Genome(genome), own_text)
+                (Self::Genome(Box::new(genome)), own_text)
             }
         };
         if own_text != text {

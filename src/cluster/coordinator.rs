@@ -3,6 +3,7 @@
 mod actor;
 mod ledger;
 mod local;
+mod traffic;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -24,7 +25,7 @@ use crate::genome::Genome;
 use crate::run::headless::say;
 use crate::run::{Cancelled, EvaluationResult, Evaluator, RunControl, WorkersError};
 use crate::score::{ExamCondition, ExamEnd, Trial};
-use actor::{Command, run_actor};
+use actor::{CoordinatorCommand, run_actor};
 use ledger::CallId;
 
 /// How a coordinator works.
@@ -50,7 +51,7 @@ pub struct Coordinator {
 }
 
 struct Inner {
-    commands: tokio::sync::mpsc::UnboundedSender<Command>,
+    commands: tokio::sync::mpsc::UnboundedSender<CoordinatorCommand>,
     next_call: AtomicU64,
     /// Whether as many workers as expected have been there.
     has_begun: AtomicBool,
@@ -197,9 +198,9 @@ impl Coordinator {
         self.inner.shared.keep(hash, number, shared.into());
         let (sender, outcomes) = unbounded();
         let tasks = tasks.into_iter().map(Into::into).collect();
-        self.send(Command::Open { call: number, kind, shared: hash, tasks, sender });
+        self.send(CoordinatorCommand::Open { call: number, kind, shared: hash, tasks, sender });
         let result = self.collect(number, left, &outcomes, control, report);
-        self.send(Command::Close(number));
+        self.send(CoordinatorCommand::Close(number));
         result
     }
 
@@ -216,7 +217,7 @@ impl Coordinator {
         while left > 0 {
             if control.is_paused() != is_paused {
                 is_paused = control.is_paused();
-                self.send(Command::Pause(call, is_paused));
+                self.send(CoordinatorCommand::Pause(call, is_paused));
             }
             if control.is_cancelled() || self.status().taint.is_some() {
                 return Err(Cancelled);
@@ -244,7 +245,7 @@ impl Coordinator {
         Ok(())
     }
 
-    fn send(&self, command: Command) {
+    fn send(&self, command: CoordinatorCommand) {
         // It fails only after the coordinator's thread has ended, which the caller notices by itself.
         let _ = self.inner.commands.send(command);
     }
@@ -258,7 +259,7 @@ impl fmt::Debug for Coordinator {
 
 impl Drop for Inner {
     fn drop(&mut self) {
-        let _ = self.commands.send(Command::End);
+        let _ = self.commands.send(CoordinatorCommand::End);
         let actor = self.actor.get_mut().unwrap_or_else(PoisonError::into_inner).take();
         let local = std::mem::take(self.local.get_mut().unwrap_or_else(PoisonError::into_inner));
         for thread in actor.into_iter().chain(local) {
@@ -275,7 +276,7 @@ impl Evaluator for Coordinator {
         control: &RunControl,
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
     ) -> Result<(), Cancelled> {
-        let tasks = genomes.iter().map(|genome| line_of(genome)).collect();
+        let tasks = genomes.iter().copied().map(line_of).collect();
         self.call(TaskKind::Score, line_of(trial), tasks, control, &|index, outcome| {
             if let Outcome::Scored(result) = outcome {
                 report(index, result);

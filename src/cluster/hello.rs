@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::names::check_name;
 use super::wire::{WIRE_FORMAT, WireError, hash_of, parse_line};
 use crate::check::within;
+use crate::engine::{ENGINE_VERSION, Processors};
 use crate::schema::Choices;
-use crate::{ENGINE_VERSION, Processors};
 
 /// The largest notice, in bytes.
 const LARGEST_NOTICE: usize = 4096;

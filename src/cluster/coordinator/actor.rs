@@ -4,34 +4,31 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use async_nats::Subscriber;
-use async_nats::jetstream::context::PublishErrorKind;
-use async_nats::jetstream::message::PublishMessage;
 use crossbeam_channel::Sender;
-use futures_util::StreamExt;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tokio::sync::mpsc::{Receiver, UnboundedReceiver, UnboundedSender, channel};
 use tokio::task::JoinHandle;
 
-use super::ledger::{Action, AuditTask, CallId, Checker, Ledger};
+use super::ledger::{AuditTask, CallId, Checker, Ledger, LedgerAction};
+use super::traffic::{News, answer_shared, fetch_results, hear_workers, publish};
 use super::{CoordinatorOptions, SharedTexts, Status};
 use crate::cluster::broker::{Broker, one_line, result_consumer, result_stream, work_stream};
 use crate::cluster::compute::{Compute, outcome_of_texts};
 use crate::cluster::error::ClusterError;
-use crate::cluster::hello::{NOTICE_FORMAT, RunNotice, WorkerNotice, host_name, random_number};
+use crate::cluster::hello::{NOTICE_FORMAT, RunNotice, host_name, random_number};
 use crate::cluster::names::{
-    NOTICE_INTERVAL, PULL_WAIT, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_subject, work_subject,
+    NOTICE_INTERVAL, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_subject, result_subject,
+    work_subject,
 };
 use crate::cluster::outcome::Outcome;
-use crate::cluster::packing::pack;
-use crate::cluster::wire::{ResultBatch, TaskKind, WorkBatch, hash_of, line_of};
+use crate::cluster::wire::{ResultBatch, TaskKind, WorkBatch, line_of};
+use crate::engine::{ENGINE_VERSION, Processors};
 use crate::run::headless::say;
-use crate::{ENGINE_VERSION, Processors};
 
 /// What the actor is told.
 #[derive(Debug)]
-pub enum Command {
+pub enum CoordinatorCommand {
     /// A call of the evaluator begins.
     Open {
         /// Its number.
@@ -62,12 +59,6 @@ pub enum Command {
 /// A task for a thread of the coordinator: key, kind, hash of what it shares, text.
 pub type LocalTask = (u64, TaskKind, u64, Arc<str>);
 
-/// What arrived from the server.
-enum News {
-    Results(ResultBatch),
-    Notice(WorkerNotice),
-}
-
 /// See the module.
 pub struct Actor {
     broker: Arc<Broker>,
@@ -76,19 +67,15 @@ pub struct Actor {
     calls: BTreeMap<CallId, Sender<(usize, Outcome)>>,
     shared: Arc<SharedTexts>,
     status: Arc<Mutex<Status>>,
-    commands: UnboundedSender<Command>,
+    commands: UnboundedSender<CoordinatorCommand>,
     news: Receiver<News>,
     tasks: Vec<JoinHandle<()>>,
 }
 
-/// Pause before the server is asked again after it refused a request.
-const RETRY_PAUSE: Duration = Duration::from_millis(500);
 /// Interval at which late batches and silent workers are looked for.
 const TICK: Duration = Duration::from_millis(250);
 /// How long a worker may take to answer a check, besides the time of its evaluation.
 const AUDIT_WAIT: Duration = Duration::from_secs(20);
-/// Maximum number of results that are fetched at once.
-const MOST_FETCHED: usize = 256;
 /// Maximum number of messages that wait for the ledger.
 const MOST_WAITING: usize = 1024;
 
@@ -102,7 +89,7 @@ impl Actor {
         options: &CoordinatorOptions,
         shared: Arc<SharedTexts>,
         status: Arc<Mutex<Status>>,
-        commands: UnboundedSender<Command>,
+        commands: UnboundedSender<CoordinatorCommand>,
     ) -> Result<Self, ClusterError> {
         let jetstream = broker.jetstream();
         let prepared = broker.runtime().block_on(async {
@@ -141,19 +128,19 @@ impl Actor {
         Ok(Self { broker, options, ledger, calls, shared, status, commands, news, tasks })
     }
 
-    fn act(&mut self, actions: Vec<Action>) {
+    fn act(&mut self, actions: Vec<LedgerAction>) {
         for action in actions {
             match action {
-                Action::Publish(batch) => self.publish(batch),
-                Action::Deliver(call, index, outcome) => {
+                LedgerAction::Publish(batch) => self.publish(batch),
+                LedgerAction::Deliver(call, index, outcome) => {
                     // A call that was cancelled does not listen any more.
                     if let Some(sender) = self.calls.get(&call) {
                         let _ = sender.send((index, outcome));
                     }
                 }
-                Action::Audit(task) => self.audit(task),
-                Action::Say(line) => say(&line),
-                Action::Taint(line) => {
+                LedgerAction::Audit(task) => self.audit(task),
+                LedgerAction::Say(line) => say(&line),
+                LedgerAction::Taint(line) => {
                     self.status().taint.get_or_insert(line);
                 }
             }
@@ -177,7 +164,7 @@ impl Actor {
         let commands = self.commands.clone();
         let key = audit.task.key;
         let answer = move |line| {
-            let _ = commands.send(Command::Audited(key, line));
+            let _ = commands.send(CoordinatorCommand::Audited(key, line));
         };
         let runtime = self.broker.runtime();
         match audit.checker {
@@ -222,26 +209,26 @@ impl Actor {
         (status.workers, status.threads, status.audits) = (workers, threads, audits);
     }
 
-    fn on_command(&mut self, command: Command) -> bool {
+    fn on_command(&mut self, command: CoordinatorCommand) -> bool {
         let now = Instant::now();
         let actions = match command {
-            Command::Open { call, kind, shared, tasks, sender } => {
+            CoordinatorCommand::Open { call, kind, shared, tasks, sender } => {
                 self.calls.insert(call, sender);
                 self.ledger.open(call, kind, shared, tasks, now)
             }
-            Command::Pause(call, is_paused) => self.ledger.pause(call, is_paused, now),
-            Command::Close(call) => {
+            CoordinatorCommand::Pause(call, is_paused) => self.ledger.pause(call, is_paused, now),
+            CoordinatorCommand::Close(call) => {
                 self.calls.remove(&call);
                 self.ledger.close(call);
                 Vec::new()
             }
-            Command::TakeLocal(sender) => {
+            CoordinatorCommand::TakeLocal(sender) => {
                 let _ = sender.send(self.ledger.take_for_local());
                 Vec::new()
             }
-            Command::Local(key, outcome) => self.ledger.on_local(key, outcome),
-            Command::Audited(key, line) => self.ledger.on_audit(key, line, now),
-            Command::End => return false,
+            CoordinatorCommand::Local(key, outcome) => self.ledger.on_local(key, outcome),
+            CoordinatorCommand::Audited(key, line) => self.ledger.on_audit(key, line, now),
+            CoordinatorCommand::End => return false,
         };
         self.act(actions);
         self.update_status();
@@ -281,7 +268,11 @@ impl Actor {
 }
 
 /// Runs a coordinator until it is told to end. Then its batches and its consumer are removed from the server.
-pub fn run_actor(broker: &Broker, mut actor: Actor, mut commands: UnboundedReceiver<Command>) {
+pub fn run_actor(
+    broker: &Broker,
+    mut actor: Actor,
+    mut commands: UnboundedReceiver<CoordinatorCommand>,
+) {
     broker.runtime().block_on(async {
         let mut ticks = tokio::time::interval(TICK);
         let mut notices = tokio::time::interval(NOTICE_INTERVAL);
@@ -311,87 +302,7 @@ async fn clean_up(actor: &Actor) {
         let _ = stream.purge().filter(subject).await;
     }
     if let Ok(stream) = result_stream(jetstream).await {
-        let _ =
-            stream.purge().filter(crate::cluster::names::result_subject(&actor.options.run)).await;
+        let _ = stream.purge().filter(result_subject(&actor.options.run)).await;
         let _ = stream.delete_consumer(&actor.options.run).await;
-    }
-}
-
-/// Publishes a batch, however long that takes.
-async fn publish(broker: Arc<Broker>, subject: String, id: String, bytes: Vec<u8>) {
-    let mut complaint = String::new();
-    loop {
-        let message = PublishMessage::build().payload(bytes.clone().into()).message_id(&id);
-        let published = async {
-            let sent = broker.jetstream().send_publish(subject.clone(), message).await?;
-            sent.await
-        };
-        let Err(error) = published.await else { return };
-        if error.kind() == PublishErrorKind::StreamNotFound {
-            let _ = work_stream(broker.jetstream()).await;
-        }
-        let problem = one_line(&error);
-        if problem != complaint {
-            say(&format!("{}: work cannot be stored: {problem}; trying again", broker.url()));
-            complaint = problem;
-        }
-        tokio::time::sleep(RETRY_PAUSE).await;
-    }
-}
-
-/// Fetches the results of a run.
-async fn fetch_results(broker: Arc<Broker>, run: String, news: tokio::sync::mpsc::Sender<News>) {
-    let mut complaint = String::new();
-    loop {
-        let fetched = async {
-            let consumer = result_consumer(broker.jetstream(), &run).await?;
-            loop {
-                let request = consumer.batch().max_messages(MOST_FETCHED).expires(PULL_WAIT);
-                let mut messages = request.messages().await.map_err(|error| one_line(&error))?;
-                while let Some(message) = messages.next().await {
-                    let message = message.map_err(|error| error.to_string())?;
-                    match ResultBatch::decode(&message.payload) {
-                        Ok(results) if results.run == run => {
-                            if news.send(News::Results(results)).await.is_err() {
-                                return Ok::<(), String>(());
-                            }
-                        }
-                        Ok(_) => {}
-                        Err(error) => say(&format!("a result is ignored: {error}")),
-                    }
-                    // Without an acknowledgement the results arrive again, and count once.
-                    let _ = message.ack().await;
-                }
-            }
-        };
-        let Err(problem) = fetched.await else { return };
-        if problem != complaint {
-            say(&format!("{}: no results: {problem}; asking again", broker.url()));
-            complaint = problem;
-        }
-        tokio::time::sleep(RETRY_PAUSE).await;
-    }
-}
-
-/// Hears what workers tell of themselves.
-async fn hear_workers(mut notices: Subscriber, news: tokio::sync::mpsc::Sender<News>) {
-    while let Some(message) = notices.next().await {
-        let Ok(notice) = WorkerNotice::read(&message.payload) else { continue };
-        if news.send(News::Notice(notice)).await.is_err() {
-            return;
-        }
-    }
-}
-
-/// Answers workers that ask for what tasks share.
-async fn answer_shared(broker: Arc<Broker>, run: String, shared: Arc<SharedTexts>) {
-    let subject = crate::cluster::names::shared_subject(&run, "*");
-    let Ok(mut requests) = broker.client().subscribe(subject).await else { return };
-    while let Some(request) = requests.next().await {
-        let hash = request.subject.rsplit('.').next().unwrap_or_default();
-        let text = hash_of("hash", hash).ok().and_then(|hash| shared.get(hash));
-        if let (Some(reply), Some(text)) = (request.reply, text) {
-            let _ = broker.client().publish(reply, pack(text.to_string()).into()).await;
-        }
     }
 }

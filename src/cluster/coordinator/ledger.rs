@@ -32,7 +32,7 @@ pub type CallId = u64;
 
 /// What is to be done.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Action {
+pub enum LedgerAction {
     /// Publish a batch.
     Publish(WorkBatch),
     /// Give an outcome to a call: its index there.
@@ -143,7 +143,7 @@ impl Ledger {
         shared: u64,
         texts: Vec<Arc<str>>,
         now: Instant,
-    ) -> Vec<Action> {
+    ) -> Vec<LedgerAction> {
         for (index, text) in texts.into_iter().enumerate() {
             let key = task_key(shared, &text);
             if let Some(pending) = self.tasks.get_mut(&key) {
@@ -170,7 +170,7 @@ impl Ledger {
     }
 
     /// A call holds or continues.
-    pub fn pause(&mut self, call: CallId, is_paused: bool, now: Instant) -> Vec<Action> {
+    pub fn pause(&mut self, call: CallId, is_paused: bool, now: Instant) -> Vec<LedgerAction> {
         match is_paused {
             true => self.paused.insert(call),
             false => self.paused.remove(&call),
@@ -191,7 +191,7 @@ impl Ledger {
     }
 
     /// A worker told of itself.
-    pub fn on_notice(&mut self, notice: WorkerNotice, now: Instant) -> Vec<Action> {
+    pub fn on_notice(&mut self, notice: WorkerNotice, now: Instant) -> Vec<LedgerAction> {
         let mut actions = self.staff.on_notice(notice, &self.proof, now);
         actions.extend(self.start_first_audits());
         actions.extend(self.publish(now));
@@ -199,7 +199,7 @@ impl Ledger {
     }
 
     /// Results arrived.
-    pub fn on_results(&mut self, results: ResultBatch, now: Instant) -> Vec<Action> {
+    pub fn on_results(&mut self, results: ResultBatch, now: Instant) -> Vec<LedgerAction> {
         let batch = self.batches.remove(&results.batch);
         if batch.is_some() {
             let each_s = results.elapsed_s / results.outcomes.len().max(1) as f64;
@@ -213,7 +213,7 @@ impl Ledger {
     }
 
     /// Time passed: late batches are sent again, silent workers forgotten.
-    pub fn on_tick(&mut self, now: Instant) -> Vec<Action> {
+    pub fn on_tick(&mut self, now: Instant) -> Vec<LedgerAction> {
         for key in self.staff.forget_silent(now) {
             self.requeue(key);
         }
@@ -238,19 +238,19 @@ impl Ledger {
     }
 
     /// A thread of the coordinator computed a task.
-    pub fn on_local(&mut self, key: u64, outcome: Outcome) -> Vec<Action> {
+    pub fn on_local(&mut self, key: u64, outcome: Outcome) -> Vec<LedgerAction> {
         self.deliver(key, outcome)
     }
 
     /// A batch is larger than the server takes: its tasks stay for the coordinator.
-    pub fn on_too_large(&mut self, batch: &WorkBatch) -> Vec<Action> {
+    pub fn on_too_large(&mut self, batch: &WorkBatch) -> Vec<LedgerAction> {
         self.batches.remove(&batch.batch);
         let refused = || Outcome::Refused("the task is larger than the server takes".to_owned());
         batch.tasks.iter().flat_map(|task| self.deliver(task.key, refused())).collect()
     }
 
     /// Takes outcomes of a worker: holds them until it is proven, delivers them if it is.
-    fn take(&mut self, worker: &str, outcomes: Vec<TaskText>, now: Instant) -> Vec<Action> {
+    fn take(&mut self, worker: &str, outcomes: Vec<TaskText>, now: Instant) -> Vec<LedgerAction> {
         let mut actions = Vec::new();
         for outcome in outcomes {
             if !self.tasks.contains_key(&outcome.key) {
@@ -272,7 +272,7 @@ impl Ledger {
     }
 
     /// Accepts an outcome of a proven worker, and chooses one in a hundred for a check.
-    fn accept(&mut self, worker: &str, outcome: TaskText) -> Vec<Action> {
+    fn accept(&mut self, worker: &str, outcome: TaskText) -> Vec<LedgerAction> {
         let Some(pending) = self.tasks.get(&outcome.key) else { return Vec::new() };
         let TaskText { key, text: line } = outcome;
         let read = Outcome::read(&line);
@@ -297,16 +297,16 @@ impl Ledger {
         actions
     }
 
-    fn deliver(&mut self, key: u64, outcome: Outcome) -> Vec<Action> {
+    fn deliver(&mut self, key: u64, outcome: Outcome) -> Vec<LedgerAction> {
         let Some(pending) = self.tasks.remove(&key) else { return Vec::new() };
         self.results += 1;
         self.early.clear();
         let each = pending.waiting.into_iter();
-        each.map(|(call, index)| Action::Deliver(call, index, outcome.clone())).collect()
+        each.map(|(call, index)| LedgerAction::Deliver(call, index, outcome.clone())).collect()
     }
 
     /// The first result of a worker that has not been checked is computed once more here, before any of them counts.
-    fn start_first_audits(&mut self) -> Vec<Action> {
+    fn start_first_audits(&mut self) -> Vec<LedgerAction> {
         let mut actions = Vec::new();
         for (worker, held) in self.staff.to_be_proven(&mut self.rng) {
             let Some(pending) = self.tasks.get(&held.key) else {
@@ -330,11 +330,16 @@ impl Ledger {
     }
 
     /// The answer to an audit: the outcome that the checker computed, none if it did not answer.
-    pub fn on_audit(&mut self, key: u64, line: Option<Arc<str>>, now: Instant) -> Vec<Action> {
+    pub fn on_audit(
+        &mut self,
+        key: u64,
+        line: Option<Arc<str>>,
+        now: Instant,
+    ) -> Vec<LedgerAction> {
         use audits::Finding::{Equal, Repeat, Wrong};
         let mut actions = match self.audits.on_answer(key, line) {
             None => Vec::new(),
-            Some(Repeat(task)) => vec![Action::Audit(task)],
+            Some(Repeat(task)) => vec![LedgerAction::Audit(task)],
             Some(Equal(suspect)) => {
                 let held = self.staff.prove(&suspect);
                 held.into_iter().flat_map(|outcome| self.accept_held(&suspect, outcome)).collect()
@@ -349,7 +354,7 @@ impl Ledger {
         actions
     }
 
-    fn accept_held(&mut self, worker: &str, outcome: TaskText) -> Vec<Action> {
+    fn accept_held(&mut self, worker: &str, outcome: TaskText) -> Vec<LedgerAction> {
         match self.staff.standing(worker) {
             Standing::Proven => self.accept(worker, outcome),
             _ => {
@@ -360,7 +365,7 @@ impl Ledger {
     }
 
     /// Sets a worker aside: nothing that it sends counts any more, and what is held of it is computed again.
-    fn set_aside(&mut self, worker: &str, reason: &str) -> Vec<Action> {
+    fn set_aside(&mut self, worker: &str, reason: &str) -> Vec<LedgerAction> {
         let Some(member) = self.staff.set_aside(worker) else { return Vec::new() };
         for outcome in &member.held {
             self.requeue(outcome.key);
@@ -371,8 +376,8 @@ impl Ledger {
             member.held.len() as u64 + member.results,
         );
         match member.results {
-            0 => vec![Action::Say(line)],
-            _ => vec![Action::Taint(line)],
+            0 => vec![LedgerAction::Say(line)],
+            _ => vec![LedgerAction::Taint(line)],
         }
     }
 }

@@ -7,7 +7,7 @@ use crossbeam_channel::bounded;
 use tokio::sync::mpsc::UnboundedSender;
 
 use super::SharedTexts;
-use super::actor::Command;
+use super::actor::CoordinatorCommand;
 use crate::cluster::compute::{Compute, outcome_of_texts};
 
 /// Pause before the next question after there was no task.
@@ -15,13 +15,13 @@ const IDLE_PAUSE: Duration = Duration::from_millis(10);
 
 /// Computes tasks until the coordinator ends.
 pub fn compute(
-    commands: &UnboundedSender<Command>,
+    commands: &UnboundedSender<CoordinatorCommand>,
     shared: &SharedTexts,
     compute: &Arc<dyn Compute>,
 ) {
     loop {
         let (sender, answer) = bounded(1);
-        if commands.send(Command::TakeLocal(sender)).is_err() {
+        if commands.send(CoordinatorCommand::TakeLocal(sender)).is_err() {
             return;
         }
         match answer.recv() {
@@ -30,7 +30,7 @@ pub fn compute(
             Ok(Some((key, kind, of, task))) => {
                 let text = shared.get(of).unwrap_or_default();
                 let outcome = outcome_of_texts(compute, kind, &text, &task);
-                if commands.send(Command::Local(key, outcome)).is_err() {
+                if commands.send(CoordinatorCommand::Local(key, outcome)).is_err() {
                     return;
                 }
             }

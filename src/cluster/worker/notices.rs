@@ -11,7 +11,7 @@ use crate::cluster::error::ClusterError;
 use crate::cluster::hello::{NOTICE_FORMAT, RunNotice, WorkerNotice, host_name, own_engine};
 use crate::cluster::names::{NOTICE_INTERVAL, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_subject};
 use crate::cluster::wire::{WorkBatch, line_of};
-use crate::{ENGINE_VERSION, Processors};
+use crate::engine::{ENGINE_VERSION, Processors};
 
 /// Tells of this worker once a second, and listens to coordinators. Ends when the worker is stopped, or with an error when
 /// all coordinators compute with another engine.

@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::proxy::Proxy;
-use super::server::{Process, Run, Server, empty, fill, run_hash, worker};
+use super::server::{Process, Run, Server, empty, fill, run_hash, say, worker};
 use crate::program::{folder, json_lines};
 
 /// A run of half a minute or so, which is longer than the latest fault.
@@ -61,7 +61,8 @@ fn with_fault(name: &str, mut fault: impl FnMut(&mut Room, &mut ChaCha8Rng)) {
         fault(&mut room, &mut rng);
         let hash = room.run.hash();
         assert_eq!(hash, local_hash(), "{name}, round {round}");
-        eprintln!("{name}, round {round}: {:.0} s after the fault", began.elapsed().as_secs_f32());
+        let elapsed_s = began.elapsed().as_secs_f32();
+        say(&format!("{name}, round {round}: {elapsed_s:.0} s after the fault"));
     }
 }
 

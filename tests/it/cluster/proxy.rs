@@ -53,8 +53,7 @@ fn forward(client: TcpStream, port: u16, cut: &Arc<AtomicBool>) {
 
 fn copy(mut from: TcpStream, mut to: TcpStream, cut: &AtomicBool) {
     let mut buffer = [0; 16 * 1024];
-    loop {
-        let Ok(length) = from.read(&mut buffer) else { break };
+    while let Ok(length) = from.read(&mut buffer) {
         wait_while_cut(cut);
         if length == 0 || to.write_all(&buffer[..length]).is_err() {
             break;

@@ -1,6 +1,6 @@
 //! A server, workers and coordinators as processes of their own.
 
-use std::io::Read;
+use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -38,6 +38,12 @@ pub struct Server {
     arguments: Vec<String>,
 }
 
+/// Writes a line to standard error, also of a test that passes.
+pub fn say(line: &str) {
+    // A test is no worse without the line.
+    let _ = std::io::stderr().write_all(format!("{line}\n").as_bytes());
+}
+
 /// A port that was free a moment ago.
 pub fn free_port() -> u16 {
     let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
@@ -50,7 +56,7 @@ pub fn is_there() -> bool {
     let is_required = std::env::var_os("SNAKES_CLUSTER_TESTS").is_some_and(|it| it == "required");
     assert!(found || !is_required, "nats-server is not installed");
     if !found {
-        eprintln!("skipped: nats-server is not installed");
+        say("skipped: nats-server is not installed");
     }
     found
 }

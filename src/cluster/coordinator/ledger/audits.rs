@@ -64,14 +64,14 @@ impl Audits {
         task: AuditTask,
         worker: &str,
         line: Arc<str>,
-    ) -> Option<super::Action> {
+    ) -> Option<super::LedgerAction> {
         let key = task.task.key;
         if self.0.contains_key(&key) {
             return None;
         }
         let lines = vec![(worker.to_owned(), line)];
         self.0.insert(key, Audit { task: task.clone(), lines });
-        Some(super::Action::Audit(task))
+        Some(super::LedgerAction::Audit(task))
     }
 
     /// The checker of a task answered with this outcome, or not at all.

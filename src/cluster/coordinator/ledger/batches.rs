@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::{Action, CallId, Ledger, OnItsWay};
+use super::{CallId, Ledger, LedgerAction, OnItsWay};
 use crate::cluster::wire::{MOST_TASKS, TaskText, WorkBatch};
 
 /// The time that a batch should take on a worker.
@@ -44,13 +44,13 @@ impl Ledger {
     }
 
     /// Publishes batches while the workers have room for them.
-    pub(super) fn publish(&mut self, now: Instant) -> Vec<Action> {
+    pub(super) fn publish(&mut self, now: Instant) -> Vec<LedgerAction> {
         let threads = self.staff.threads();
         let mut actions = Vec::new();
         while self.batches.len() < threads * BATCHES_PER_THREAD {
             let keys = self.next_keys(threads);
             let Some(batch) = self.batch_of(keys, now) else { break };
-            actions.push(Action::Publish(batch));
+            actions.push(LedgerAction::Publish(batch));
         }
         actions
     }
@@ -99,7 +99,7 @@ impl Ledger {
     }
 
     /// Sends tasks of late batches once more, if workers have nothing else to do: one of them may be slow, frozen or gone.
-    pub(super) fn repeat_late(&mut self, now: Instant) -> Vec<Action> {
+    pub(super) fn repeat_late(&mut self, now: Instant) -> Vec<LedgerAction> {
         let (threads, mut actions) = (self.staff.threads(), Vec::new());
         for number in self.late_batches(now, LATE_AFTER) {
             let keys = self.batches.get(&number).map_or_else(Vec::new, |batch| batch.keys.clone());
@@ -107,7 +107,7 @@ impl Ledger {
                 let may_repeat = self.tasks.get(&key).is_some_and(|of| of.copies < MOST_COPIES)
                     && !self.staff.holds(key);
                 if self.queue.is_empty() && may_repeat && self.batches.len() < threads {
-                    actions.extend(self.batch_of(vec![key], now).map(Action::Publish));
+                    actions.extend(self.batch_of(vec![key], now).map(LedgerAction::Publish));
                 }
             }
         }

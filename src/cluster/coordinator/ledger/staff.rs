@@ -6,7 +6,7 @@ use std::time::Instant;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::Action;
+use super::LedgerAction;
 use crate::cluster::hello::{WorkerNotice, own_engine};
 use crate::cluster::names::SILENCE;
 use crate::cluster::wire::TaskText;
@@ -90,7 +90,12 @@ impl Staff {
     }
 
     /// A worker told of itself.
-    pub fn on_notice(&mut self, notice: WorkerNotice, proof: &str, now: Instant) -> Vec<Action> {
+    pub fn on_notice(
+        &mut self,
+        notice: WorkerNotice,
+        proof: &str,
+        now: Instant,
+    ) -> Vec<LedgerAction> {
         let name = notice.worker.clone();
         let is_new = !self.0.contains_key(&name);
         if is_new && self.0.len() >= MOST_MEMBERS {
@@ -102,7 +107,7 @@ impl Staff {
         let mut actions = Vec::new();
         if notice.proof != proof && member.standing != Standing::Foreign {
             member.standing = Standing::Foreign;
-            actions.push(Action::Say(format!(
+            actions.push(LedgerAction::Say(format!(
                 "worker {name} on {} computes with {}, this run with {}: it gets no work",
                 notice.host,
                 notice.engine_words(),
@@ -112,11 +117,11 @@ impl Staff {
             let threads = notice.threads;
             let plural = if threads == 1 { "" } else { "s" };
             let line = format!("worker {name} on {}: {threads} thread{plural}", notice.host);
-            actions.push(Action::Say(line));
+            actions.push(LedgerAction::Say(line));
         }
         let left = notice.leaves && member.notice.as_ref().is_some_and(|before| !before.leaves);
         if left {
-            actions.push(Action::Say(format!("worker {name} on {} left", notice.host)));
+            actions.push(LedgerAction::Say(format!("worker {name} on {} left", notice.host)));
         }
         member.notice = Some(notice);
         actions

@@ -4,8 +4,8 @@ use rand::SeedableRng;
 
 use super::*;
 use crate::cluster::hello::NOTICE_FORMAT;
+use crate::engine::{ENGINE_VERSION, Processors};
 use crate::run::EvaluationResult;
-use crate::{ENGINE_VERSION, Processors};
 use std::time::Duration;
 
 const PROOF: &str = "0123456789abcdef";
@@ -79,17 +79,17 @@ impl Room {
         }
     }
 
-    fn act(&mut self, actions: Vec<Action>) {
-        let mut actions: VecDeque<Action> = actions.into();
+    fn act(&mut self, actions: Vec<LedgerAction>) {
+        let mut actions: VecDeque<LedgerAction> = actions.into();
         while let Some(action) = actions.pop_front() {
             match action {
-                Action::Publish(batch) => self.published.push(batch),
-                Action::Deliver(call, index, outcome) => {
+                LedgerAction::Publish(batch) => self.published.push(batch),
+                LedgerAction::Deliver(call, index, outcome) => {
                     self.delivered.push((call, index, outcome))
                 }
-                Action::Say(line) => self.said.push(line),
-                Action::Taint(line) => self.taints.push(line),
-                Action::Audit(audit) => {
+                LedgerAction::Say(line) => self.said.push(line),
+                LedgerAction::Taint(line) => self.taints.push(line),
+                LedgerAction::Audit(audit) => {
                     self.audits += 1;
                     let line = right(&audit.task).line();
                     let then = self.ledger.on_audit(audit.task.key, Some(line.into()), self.now);
@@ -241,7 +241,7 @@ fn a_wrong_checker_is_found_as_well() {
     while let Some(batch) = room.published.pop() {
         let actions = room.ledger.on_results(results("a", &batch, right), room.now);
         for action in actions {
-            let Action::Audit(audit) = action else {
+            let LedgerAction::Audit(audit) = action else {
                 room.act(vec![action]);
                 continue;
             };
@@ -312,7 +312,7 @@ fn a_silent_worker_is_forgotten_and_what_is_held_of_it_is_computed_again() {
     let batch = room.published.remove(0);
     // Its result arrives, but the check is never answered.
     let actions = room.ledger.on_results(results("a", &batch, right), room.now);
-    let [Action::Audit(audit)] = &actions[..] else { unreachable!("{actions:?}") };
+    let [LedgerAction::Audit(audit)] = &actions[..] else { unreachable!("{actions:?}") };
     room.now += Duration::from_secs(6);
     room.hear("b", 1);
     room.pass(Duration::ZERO);
