@@ -309,6 +309,13 @@ impl Evaluator for Coordinator {
         Ok(Arc::new(Self { inner: Arc::clone(&self.inner), is_single: workers == 1 }))
     }
 
+    fn place(&self) -> String {
+        match self.inner.options.local_threads {
+            0 => "on other computers".to_owned(),
+            threads => format!("on other computers and {threads} threads here"),
+        }
+    }
+
     fn fault(&self) -> Option<String> {
         // The last results may still be being checked.
         let began = Instant::now();

@@ -61,6 +61,11 @@ pub trait Evaluator: Debug + Send + Sync {
     /// The workers could not be started.
     fn with_workers(&self, workers: usize) -> Result<Arc<dyn Evaluator>, WorkersError>;
 
+    /// Where it evaluates, in a few words.
+    fn place(&self) -> String {
+        format!("threads {}", self.workers())
+    }
+
     /// Why results that were reported earlier cannot be trusted any more, if they cannot. The evaluator then cancels all
     /// batches, and what they belonged to begins again with another evaluator.
     fn fault(&self) -> Option<String> {

@@ -108,10 +108,9 @@ pub fn evolve(
     let founder = founder.map(|founder| format!(", from {}", founder.name()));
     let from = founder.unwrap_or_default();
     say(&format!(
-        "preset {preset}, seed {seed}{from}: generations {generations}, population {}, threads \
-         {}{earlier}",
+        "preset {preset}, seed {seed}{from}: generations {generations}, population {}, {}{earlier}",
         settings.evolution.population,
-        evaluator.workers()
+        evaluator.place()
     ));
     if !recorder.changes().is_empty() {
         say(&format!("changed during the run: {}", list_changes(recorder.changes())));
