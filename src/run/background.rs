@@ -50,6 +50,9 @@ pub enum RunEvent {
     NotSaved(String),
     /// The simulation of an individual panicked, in a line; the run continues.
     Crashed(String),
+    /// An evaluator reported results that cannot be trusted, and why, in a line. Earlier generations, saved ones included,
+    /// may be wrong; no more events follow.
+    Untrusted(String),
     /// The run's thread ended by an error of the program; no more events follow.
     Failed,
 }
@@ -220,7 +223,10 @@ impl BackgroundRun {
     pub fn poll(&self) -> Option<RunEvent> {
         match self.events.try_recv() {
             Ok(event) => {
-                let is_last = matches!(event, RunEvent::Finished { .. } | RunEvent::Refused(_));
+                let is_last = matches!(
+                    event,
+                    RunEvent::Finished { .. } | RunEvent::Refused(_) | RunEvent::Untrusted(_)
+                );
                 self.has_ended.fetch_or(is_last, Ordering::Relaxed);
                 Some(event)
             }
@@ -273,6 +279,7 @@ impl RunWorker {
         if experiment.finished() > 0 {
             self.send(explored(&experiment));
         }
+        let mut used: Option<Arc<dyn Evaluator>> = None;
         loop {
             // Even a finished run can be made longer.
             self.serve_requests(&mut experiment, &mut recorder);
@@ -285,11 +292,23 @@ impl RunWorker {
                 Err(Cancelled) => return,
             }
             let evaluator = Arc::clone(&self.shared.evaluator());
+            // The evaluator before may still have been checking its last results.
+            let before = used.replace(Arc::clone(&evaluator));
+            let before = before.filter(|before| !Arc::ptr_eq(before, &evaluator));
+            if self.reports_fault(before.as_deref()) {
+                return;
+            }
             let record = |generation, individual, evaluation: &_| {
                 recorder.record_evaluation(generation, individual, evaluation);
             };
             let report = experiment.run_generation_recording(&*evaluator, control, record);
-            let Ok(report) = report else { return };
+            let Ok(report) = report else {
+                // An evaluator with a fault cancels its batches by itself.
+                if !control.is_cancelled() {
+                    self.reports_fault(Some(&*evaluator));
+                }
+                return;
+            };
             let crashes = loop {
                 match recorder.record_generation(&experiment, &report) {
                     Ok(crashes) => break crashes,
@@ -309,7 +328,17 @@ impl RunWorker {
             self.send(explored(&experiment));
             self.send(RunEvent::Generation(Box::new(report)));
         }
-        self.send(RunEvent::Finished { run_hash: experiment.run_hash() });
+        if !self.reports_fault(used.as_deref()) {
+            self.send(RunEvent::Finished { run_hash: experiment.run_hash() });
+        }
+    }
+
+    /// Tells that an evaluator's results cannot be trusted, if they cannot.
+    fn reports_fault(&self, evaluator: Option<&dyn Evaluator>) -> bool {
+        let fault = evaluator.and_then(Evaluator::fault);
+        let is_wrong = fault.is_some();
+        fault.into_iter().for_each(|reason| self.send(RunEvent::Untrusted(reason)));
+        is_wrong
     }
 
     /// Makes the requested changes of settings.

@@ -106,6 +106,93 @@ fn a_generation_that_cannot_be_saved_holds_the_run_and_is_saved_on_resume() {
     assert!(in_the_way.is_file());
 }
 
+/// Evaluates as threads do, but a fault may be found in it.
+#[derive(Debug)]
+struct Faulty {
+    pool: LocalPool,
+    fault: Option<&'static str>,
+    /// Whether it cancels its batches.
+    cancels: bool,
+}
+
+impl Evaluator for Faulty {
+    fn evaluate_batch(
+        &self,
+        trial: &crate::score::Trial,
+        genomes: &[&crate::genome::Genome],
+        control: &RunControl,
+        report: &(dyn Fn(usize, crate::run::EvaluationResult) + Sync),
+    ) -> Result<(), Cancelled> {
+        if self.cancels {
+            Err(Cancelled)
+        } else {
+            self.pool.evaluate_batch(trial, genomes, control, report)
+        }
+    }
+
+    fn examine_batch(
+        &self,
+        genome: &crate::genome::Genome,
+        conditions: &[crate::score::ExamCondition],
+        control: &RunControl,
+        report: &(dyn Fn(usize, crate::score::ExamEnd) + Sync),
+    ) -> Result<(), Cancelled> {
+        self.pool.examine_batch(genome, conditions, control, report)
+    }
+
+    fn workers(&self) -> usize {
+        self.pool.workers()
+    }
+
+    fn with_workers(&self, workers: usize) -> Result<Arc<dyn Evaluator>, crate::run::WorkersError> {
+        self.pool.with_workers(workers)
+    }
+
+    fn fault(&self) -> Option<String> {
+        self.fault.map(str::to_owned)
+    }
+}
+
+#[test]
+fn a_fault_of_an_evaluator_ends_the_run_whenever_it_is_found() {
+    let faulty = |fault: Option<&'static str>, cancels| -> Arc<dyn Evaluator> {
+        Arc::new(Faulty { pool: LocalPool::new(1).expect("threads"), fault, cancels })
+    };
+    let (good, found, late) =
+        (faulty(None, false), faulty(Some("w lies"), true), faulty(Some("w lies"), false));
+    // In a generation; after the evaluator was replaced; in the last generation.
+    for (evaluators, generations) in
+        [(vec![&good, &found], 1), (vec![&good, &late, &good], 2), (vec![&good, &good, &late], 3)]
+    {
+        let folder = tempfile::tempdir().expect("a folder");
+        let background = start(&folder);
+        let polled = || {
+            let events = std::iter::from_fn(|| {
+                thread::sleep(Duration::from_millis(5));
+                Some(background.poll())
+            });
+            let told = |event: &RunEvent| !matches!(event, RunEvent::Explored(_));
+            events.take(4000).flatten().find(told).expect("an event in time")
+        };
+        let mut finished = 0;
+        let end = 'run: {
+            for evaluator in evaluators {
+                background.set_evaluator(Arc::clone(evaluator));
+                background.run_single_generation();
+                match polled() {
+                    RunEvent::Generation(_) => finished += 1,
+                    other => break 'run other,
+                }
+            }
+            background.resume();
+            polled()
+        };
+        assert_eq!((end, finished), (RunEvent::Untrusted("w lies".to_owned()), generations));
+        thread::sleep(Duration::from_millis(50));
+        assert_eq!(background.poll(), None, "no other end");
+    }
+}
+
 #[test]
 fn exploration_is_sent_before_each_generation_and_after_reopening() {
     let folder = tempfile::tempdir().expect("a folder");
