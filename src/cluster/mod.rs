@@ -18,6 +18,7 @@ mod names;
 mod outcome;
 mod packing;
 mod proof;
+mod watch;
 mod wire;
 mod worker;
 
@@ -30,5 +31,6 @@ pub use hello::{RunNotice, WorkerNotice, host_name, unique_name};
 pub use machines::{Machines, RunQueue, machines, purge};
 pub use outcome::Outcome;
 pub use proof::proof;
+pub use watch::{ServerWatch, WatchNews, WatchedRun};
 pub use wire::{ResultBatch, TaskKind, TaskText, WireError, WorkBatch};
 pub use worker::{WorkerOptions, work};

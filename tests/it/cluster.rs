@@ -11,3 +11,4 @@ mod proxy;
 mod refusals;
 mod scale;
 mod server;
+mod windows;
