@@ -55,7 +55,7 @@ pub use notes::{EntryNotes, check_notes, check_run_name};
 pub use own_preset::{OwnPreset, check_own_name};
 pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
-pub use preferences::{MAX_RECENT, Preferences, PreferencesFile, UI_SCALES};
+pub use preferences::{LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, UI_SCALES};
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
 };

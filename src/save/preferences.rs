@@ -20,6 +20,8 @@ pub const UI_SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
 pub const MAX_RECENT: usize = 10;
 /// Maximum length of a file's path, in bytes.
 const LONGEST_PATH: usize = 4096;
+/// Maximum length of a server's address, in bytes.
+pub const LONGEST_ADDRESS: usize = 1000;
 /// Maximum length of the panels' layout, in bytes.
 const LONGEST_LAYOUT: usize = 100_000;
 
@@ -49,6 +51,8 @@ pub struct Preferences {
     pub recent: Vec<String>,
     /// Titles of the sections whose advanced settings are unfolded.
     pub unfolded: Vec<String>,
+    /// Address of the server that was used last, without a password; empty if there was none.
+    pub server: String,
 }
 
 impl Default for Preferences {
@@ -65,6 +69,7 @@ impl Default for Preferences {
             tour_is_over: false,
             recent: Vec::new(),
             unfolded: Vec::new(),
+            server: String::new(),
         }
     }
 }
@@ -84,6 +89,7 @@ impl Preferences {
             within("window_size.1", height, 240..=16_384)?;
         }
         within("layout", self.layout.len(), 0..=LONGEST_LAYOUT)?;
+        within("server", self.server.len(), 0..=LONGEST_ADDRESS)?;
         within("unfolded", self.unfolded.len(), 0..=100)?;
         within("overlays", self.overlays.len(), 0..=20)?;
         within("recent", self.recent.len(), 0..=MAX_RECENT)?;

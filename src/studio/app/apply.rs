@@ -19,6 +19,7 @@ use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::library::Library;
+use crate::studio::state::machines::MachinesLink;
 use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
@@ -38,7 +39,11 @@ pub(super) fn apply(
     mut history: ResMut<UndoHistory>,
     (opening, mut quit): (Res<OpeningChampions>, ResMut<QuitRequest>),
     mut workspace: ResMut<Workspace>,
-    (mut lessons, mut exams): (ResMut<Lessons>, ResMut<StairsExams>),
+    (mut lessons, mut exams, mut machines): (
+        ResMut<Lessons>,
+        ResMut<StairsExams>,
+        ResMut<MachinesLink>,
+    ),
     (mut library, mut files): (ResMut<Library>, ResMut<Files>),
     mut stage: StageParams,
     mut view: ViewParams,
@@ -115,6 +120,7 @@ pub(super) fn apply(
                 let show = exams.apply(command, stage.selected().as_ref());
                 show.map(|show| stage.present_others(show, notices))
             }
+            Command::Machines(command) => machines.apply(command, &mut run),
             // A running batch operation is not in the history yet, and an earlier step would be the wrong one.
             Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),
             Command::Undo | Command::Redo => {

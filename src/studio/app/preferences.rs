@@ -10,6 +10,7 @@ use crate::studio::scene::camera::StageCamera;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::playback::Playback;
 use crate::studio::state::files::{Files, RecentFiles};
+use crate::studio::state::machines::MachinesLink;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
 use crate::studio::workspace::Workspace;
@@ -78,6 +79,7 @@ struct Chosen<'w, 's> {
     overlays: ResMut<'w, Overlays>,
     playback: ResMut<'w, Playback>,
     files: ResMut<'w, Files>,
+    machines: ResMut<'w, MachinesLink>,
     smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
     window: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
 }
@@ -105,9 +107,11 @@ fn restore(
         smooth_edges,
         recent,
         unfolded,
+        server,
         ..
     } = remembered.stored.clone();
     chosen.files.recent = RecentFiles::from_texts(&recent);
+    chosen.machines.remember(&server);
     chosen.workspace.unfolded = unfolded.into_iter().collect();
     chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
@@ -180,6 +184,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         tour_is_over: chosen.workspace.tour_is_over,
         recent: chosen.files.recent.to_texts(),
         unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
+        server: chosen.machines.address().to_owned(),
     };
     // A closing window can have size zero; ignore that.
     if now.check().is_ok() { now } else { before.clone() }
@@ -200,6 +205,7 @@ mod tests {
             .init_resource::<Overlays>()
             .init_resource::<Playback>()
             .init_resource::<Files>()
+            .init_resource::<MachinesLink>()
             .init_resource::<Notices>()
             .init_resource::<Time<Real>>()
             .add_plugins(plugin);
@@ -220,6 +226,7 @@ mod tests {
         *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
         let recent = RecentFiles::from_texts(&["/saves/mine.ron".to_owned()]);
         first.world_mut().resource_mut::<Files>().recent = recent.clone();
+        first.world_mut().resource_mut::<MachinesLink>().remember("nats://desk:4222");
         first.world_mut().write_message(AppExit::Success);
         first.update();
         let second = app(&file);
@@ -228,6 +235,7 @@ mod tests {
         assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         assert_eq!(second.world().resource::<Files>().recent, recent);
+        assert_eq!(second.world().resource::<MachinesLink>().address(), "nats://desk:4222");
         let chosen = second.world().resource::<StoredPreferences>().chosen().clone();
         assert!(chosen.theme == "dark" && chosen.tour_is_over);
     }

@@ -273,6 +273,9 @@ pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::Panels, "Senses", &["Ctrl 7"], |_| {
         Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Senses)))
     }),
+    action(Menu::Panels, "Machines", &["Ctrl 8"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Machines)))
+    }),
     action(Menu::Panels, "Close panel", &["Ctrl W"], |_| {
         Some(Command::Window(WindowCommand::ClosePanel))
     }),

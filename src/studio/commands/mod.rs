@@ -52,6 +52,8 @@ pub(super) enum Command {
     Lesson(LessonCommand),
     /// To the exams of champions on unseen stairs.
     Exam(ExamCommand),
+    /// To the connection with other computers.
+    Machines(MachinesCommand),
     /// Undo the latest change of the next run's plan or of the saves.
     Undo,
     /// Redo the latest undone change.
@@ -270,4 +272,13 @@ pub(super) enum ExamCommand {
     },
     /// Show the snake on its own stairs again.
     BackToOwnStairs,
+}
+
+/// A command to the connection with other computers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum MachinesCommand {
+    /// Connect to the server with this address. Runs then compute on its workers, too.
+    Connect(String),
+    /// Leave the server. Runs then compute on this computer only.
+    Disconnect,
 }

@@ -21,11 +21,26 @@ pub(crate) enum PanelKind {
     Lessons,
     /// Senses and controller of the snake on the stage.
     Senses,
+    /// Other computers that compute, too.
+    Machines,
 }
 
 impl PanelKind {
     /// All panels except the stage, in the order of the menu.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
+        Self::Run,
+        Self::World,
+        Self::Charts,
+        Self::Champions,
+        Self::Library,
+        Self::Lessons,
+        Self::Senses,
+        Self::Machines,
+    ];
+
+    /// The panels of the initial layout, in the order of their tabs. Few people have several computers, so the others open
+    /// on demand.
+    pub const INITIAL: [Self; 7] = [
         Self::Run,
         Self::World,
         Self::Charts,
@@ -46,6 +61,7 @@ impl PanelKind {
             Self::Library => "Library",
             Self::Lessons => "Lessons",
             Self::Senses => "Senses",
+            Self::Machines => "Machines",
         }
     }
 
@@ -60,6 +76,7 @@ impl PanelKind {
             Self::Library => "All saved champions and runs: replay, race, export (Ctrl 5)",
             Self::Lessons => "Two-minute experiments (Ctrl 6)",
             Self::Senses => "What the snake senses, and its controller at work (Ctrl 7)",
+            Self::Machines => "Let other computers compute, too (Ctrl 8)",
         }
     }
 }

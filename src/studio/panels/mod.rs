@@ -9,6 +9,7 @@ mod click_limits;
 pub mod help;
 mod lessons;
 mod library;
+mod machines;
 mod on_stage;
 mod own_stairs_button;
 mod player;
@@ -17,6 +18,7 @@ mod senses;
 mod settings;
 mod shown;
 mod tab_names;
+mod tab_viewer;
 mod thumbnail;
 mod undo_buttons;
 mod world;
@@ -24,7 +26,7 @@ mod world;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use egui_dock::{DockArea, TabStyle, TabViewer};
+use egui_dock::DockArea;
 
 use super::commands::Command;
 use super::commands::actions::Situation;
@@ -36,6 +38,7 @@ use super::state::current_run::CurrentRun;
 use super::state::files::Files;
 use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
+use super::state::machines::MachinesLink;
 use super::state::options::OpenedComparison;
 use super::state::stairs_exams::StairsExams;
 use super::ui::theme;
@@ -53,6 +56,7 @@ use help::menu::menu;
 use help::tour::Tour;
 use lessons::lessons;
 use library::LibraryPanel;
+use machines::MachinesPanel;
 use on_stage::OnStage;
 use player::cards::{CardSituation, around_stage, lesson_card};
 use player::presented_caption::{PresentedCaption, caption_band};
@@ -60,7 +64,7 @@ use player::timeline::{TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
-use tab_names::{small_tabs, tab_name};
+use tab_names::small_tabs;
 use world::WorldPanel;
 use world::surface_readout::ReadLanes;
 
@@ -77,6 +81,7 @@ struct Panels {
     saves: LibraryPanel,
     world: WorldPanel,
     senses: SensesPanel,
+    machines: MachinesPanel,
     timeline: TimelinePanel,
     palette: CommandPalette,
     tour: Tour,
@@ -98,6 +103,7 @@ impl FromWorld for Panels {
             saves: LibraryPanel::default(),
             world: WorldPanel::default(),
             senses: SensesPanel::default(),
+            machines: MachinesPanel::default(),
             timeline: TimelinePanel::default(),
             palette: CommandPalette::default(),
             tour: Tour::default(),
@@ -123,6 +129,7 @@ struct PanelData<'w, 's> {
     theme: Res<'w, theme::Theme>,
     lessons: Res<'w, Lessons>,
     exams: Res<'w, StairsExams>,
+    machines: Res<'w, MachinesLink>,
     saves: Res<'w, Library>,
     files: Res<'w, Files>,
 }
@@ -341,61 +348,7 @@ impl Viewer<'_, '_, '_> {
                 let history = &self.data.on_stage.history;
                 panels.saves.ui(ui, &self.data.saves, history, commands);
             }
+            PanelKind::Machines => panels.machines.ui(ui, &self.data.machines, run, commands),
         }
-    }
-}
-
-impl TabViewer for Viewer<'_, '_, '_> {
-    type Tab = PanelKind;
-
-    fn id(&mut self, kind: &mut PanelKind) -> egui::Id {
-        egui::Id::new(("panel", kind.name()))
-    }
-
-    fn title(&mut self, kind: &mut PanelKind) -> egui::WidgetText {
-        tab_name(*kind, &self.small_tabs)
-    }
-
-    fn ui(&mut self, ui: &mut egui::Ui, kind: &mut PanelKind) {
-        // The tour points only at panels in the main window, because floating windows move.
-        self.panels.panel_rects.push((*kind, ui.clip_rect()));
-        if *kind == PanelKind::Stage {
-            self.stage(ui);
-        } else if [PanelKind::Champions, PanelKind::Library].contains(kind) {
-            self.panel(ui, *kind);
-        } else {
-            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| self.panel(ui, *kind));
-        }
-    }
-
-    fn on_tab_button(&mut self, kind: &mut PanelKind, response: &egui::Response) {
-        let name = format!("Panel {}", kind.name());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &name));
-        response.clone().on_hover_text(kind.hint());
-    }
-
-    fn is_closeable(&self, kind: &PanelKind) -> bool {
-        *kind != PanelKind::Stage
-    }
-
-    fn allowed_in_windows(&self, kind: &mut PanelKind) -> bool {
-        *kind != PanelKind::Stage
-    }
-
-    fn clear_background(&self, kind: &PanelKind) -> bool {
-        *kind != PanelKind::Stage
-    }
-
-    fn scroll_bars(&self, _kind: &PanelKind) -> [bool; 2] {
-        // Each panel has its own scroll area.
-        [false, false]
-    }
-
-    fn tab_style_override(&self, kind: &PanelKind, style: &TabStyle) -> Option<TabStyle> {
-        (*kind == PanelKind::Stage).then(|| {
-            let mut style = style.clone();
-            style.tab_body.inner_margin = egui::Margin::ZERO;
-            style
-        })
     }
 }

@@ -6,6 +6,7 @@ mod individuals;
 mod live_changes;
 mod next_run;
 mod run_commands;
+mod shared_run;
 mod whole_generation;
 
 use std::collections::VecDeque;
@@ -17,7 +18,7 @@ use bevy::prelude::*;
 use super::milestones::Milestones;
 use super::run_context::RunContext;
 use crate::evolve::{Champion, RunPlan, Settings};
-use crate::run::{BackgroundRun, Exploration, GenerationReport, RunSource};
+use crate::run::{BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource};
 use crate::save::{ExistingRun, RunSummary};
 
 use individuals::Ancestors;
@@ -56,6 +57,10 @@ pub(crate) struct CurrentRun {
     /// Requested changes of the current run that wait for its next generation: full dotted names and values.
     pending: Vec<(String, String)>,
     background: Option<BackgroundRun>,
+    /// Evaluates the run on other computers, too, while it may, and the number of generations that were finished before.
+    shared: Option<(Arc<dyn Evaluator>, usize)>,
+    /// Why the run before was stopped whose results cannot be trusted, until that is shown.
+    fault: Option<String>,
     /// The previous run, which may still be stopping.
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
@@ -103,6 +108,8 @@ impl CurrentRun {
             context,
             number: 0,
             background: None,
+            shared: None,
+            fault: None,
             before: None,
             reports: Vec::new(),
             milestones: Milestones::default(),
@@ -363,7 +370,7 @@ impl CurrentRun {
             Some(background) => background,
             None => {
                 let source = self.source.clone();
-                let evaluator = Arc::clone(&self.context.evaluator);
+                let evaluator = self.evaluator();
                 self.context.set_run_folder(Some(source.folder.clone()));
                 BackgroundRun::start(source, evaluator, self.before.take())
                     .map_err(|error| format!("Evolution could not be started: {error}"))?

@@ -7,6 +7,7 @@ pub mod following;
 pub mod lessons;
 pub mod library;
 pub mod lineup;
+pub mod machines;
 pub mod milestones;
 pub mod new_file;
 pub mod options;
@@ -34,5 +35,6 @@ pub(super) fn plugin(app: &mut App) {
         files::plugin,
         lessons::plugin,
         stairs_exams::plugin,
+        machines::plugin,
     ));
 }

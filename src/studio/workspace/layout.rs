@@ -33,6 +33,10 @@ const HIGH: f32 = 800.0;
 const LEFT: f32 = 384.0;
 /// Width of the right panels in a wide window, in points.
 const RIGHT: f32 = 420.0;
+/// Maximum number of panels in one place: the names of more have no room on their tabs.
+const MOST_TABS: usize = PanelKind::INITIAL.len();
+/// Share of a full place that its panels keep when another panel opens below them.
+const UPPER_SHARE: f32 = 0.45;
 
 /// Properties of the window that decide the default layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,7 +77,7 @@ impl Layout {
         let mut state = DockState::new(vec![PanelKind::Stage]);
         let surface = state.main_surface_mut();
         let SizeClass { is_wide, is_high } = class;
-        let mut left = PanelKind::ALL.to_vec();
+        let mut left = PanelKind::INITIAL.to_vec();
         let mut stage = NodeIndex::root();
         if is_wide {
             let right = vec![PanelKind::Charts, PanelKind::Library, PanelKind::Senses];
@@ -176,11 +180,7 @@ impl Layout {
         if !self.has(kind) {
             let home = self.home_of(kind);
             match home {
-                Some(path) => {
-                    if let Ok(leaf) = self.state.leaf_mut(path.node_path()) {
-                        leaf.tabs.push(kind);
-                    }
-                }
+                Some(path) => self.put_beside(path, kind),
                 None => {
                     let root = NodeIndex::root();
                     let _ = self.state.main_surface_mut().split_left(root, 0.27, vec![kind]);
@@ -196,10 +196,21 @@ impl Layout {
         }
     }
 
+    /// Adds a panel to those at a place, or below them if their tabs leave no room for its name.
+    fn put_beside(&mut self, path: TabPath, kind: PanelKind) {
+        let Ok(leaf) = self.state.leaf_mut(path.node_path()) else { return };
+        if leaf.tabs.len() < MOST_TABS || path.surface != SurfaceIndex::main() {
+            leaf.tabs.push(kind);
+        } else {
+            let surface = self.state.main_surface_mut();
+            let _ = surface.split_below(path.node, UPPER_SHARE, vec![kind]);
+        }
+    }
+
     /// The place for a restored panel: beside a related panel, or else beside any.
     fn home_of(&self, kind: PanelKind) -> Option<TabPath> {
         let usual: &[PanelKind] = match kind {
-            PanelKind::Charts | PanelKind::Library | PanelKind::Senses => {
+            PanelKind::Charts | PanelKind::Library | PanelKind::Senses | PanelKind::Machines => {
                 &[PanelKind::Charts, PanelKind::Library, PanelKind::Senses]
             }
             _ => &[PanelKind::Run, PanelKind::World, PanelKind::Lessons],

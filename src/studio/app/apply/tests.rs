@@ -43,6 +43,7 @@ fn app() -> App {
         .init_resource::<Workspace>()
         .init_resource::<Lessons>()
         .init_resource::<StairsExams>()
+        .init_resource::<MachinesLink>()
         .init_resource::<UndoHistory>()
         .init_resource::<Theme>()
         .add_systems(Update, apply);

@@ -69,6 +69,13 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
                 run.context.set_run_folder(None);
                 notices.important("The run is finished; \"New run\" starts another.".to_owned());
             }
+            RunEvent::Untrusted(reason) => {
+                notices.problem(format!(
+                    "Evolution stopped: {reason}. Earlier results may be wrong too, so the run begins again: press E."
+                ));
+                notices.problems(run.end_untrusted(reason).err());
+                return;
+            }
             RunEvent::Failed => {
                 let problem = "The run stopped because of a program error. Press E to resume from what was saved.";
                 notices.problem(problem.to_owned());

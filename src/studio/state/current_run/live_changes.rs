@@ -1,7 +1,6 @@
 //! Changes of the current run's settings, and founders of the next run.
 
 use std::borrow::Cow;
-use std::sync::Arc;
 
 use super::{CurrentRun, RunStatus};
 use crate::check::within;
@@ -100,7 +99,7 @@ impl CurrentRun {
         let evaluator = self.context.evaluator.with_workers(threads);
         self.context.evaluator = evaluator.map_err(|error| error.to_string())?;
         if let Some(background) = &self.background {
-            background.set_evaluator(Arc::clone(&self.context.evaluator));
+            background.set_evaluator(self.evaluator());
         }
         Ok(())
     }

@@ -13,7 +13,8 @@ fn laid_out(width: f32) -> Layout {
 fn the_default_layout_has_every_panel_once_at_any_width() {
     for width in [640.0, 1280.0, 2560.0] {
         let layout = laid_out(width);
-        assert!(PanelKind::ALL.iter().all(|kind| layout.has(*kind)), "{width}");
+        assert!(PanelKind::INITIAL.iter().all(|kind| layout.has(*kind)), "{width}");
+        assert!(!layout.has(PanelKind::Machines), "opens on demand");
         assert!(is_sound(&layout.state), "{width}");
     }
 }
@@ -32,6 +33,20 @@ fn closed_panels_can_be_restored_and_the_stage_cannot_be_closed() {
         assert!(layout.has(kind));
     }
     assert!(is_sound(&layout.state));
+}
+
+#[test]
+fn one_panel_more_opens_where_the_tabs_have_room_for_its_name() {
+    for (width, tabs) in [(1280.0, vec![7, 1]), (1920.0, vec![4, 3, 1])] {
+        let mut layout = laid_out(width);
+        layout.open(PanelKind::Machines);
+        assert!(layout.front_panels().contains(&PanelKind::Machines));
+        let leaves = layout.state.iter_leaves().filter(|(_, leaf)| leaf.tabs != [PanelKind::Stage]);
+        let mut found: Vec<usize> = leaves.map(|(_, leaf)| leaf.tabs.len()).collect();
+        found.sort_by_key(|count| std::cmp::Reverse(*count));
+        assert_eq!(found, tabs, "{width}");
+        assert!(is_sound(&layout.state), "{width}");
+    }
 }
 
 #[test]

@@ -1,0 +1,304 @@
+//! Machines panel: other computers that compute, too. Address of their server, state of the connection, workers, queues,
+//! and the commands to type on other computers.
+
+mod queues;
+mod workers;
+
+use bevy_egui::egui;
+
+use crate::studio::commands::{Command, MachinesCommand};
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::state::machines::{KnownServer, LinkState, MachinesLink, checked};
+use crate::studio::ui::text_rows::{explain, title};
+use crate::studio::ui::theme;
+
+use queues::queues;
+use workers::{used, workers, workers_in_words};
+
+/// The panel with its text field.
+#[derive(Debug, Default)]
+pub(super) struct MachinesPanel {
+    /// The text while it is edited; none while the field shows the address used last.
+    text: Option<String>,
+    /// Why the text is no address.
+    problem: Option<String>,
+}
+
+/// What the window's run needs from other computers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct RunPart {
+    /// Whether a run is in progress.
+    is_under_way: bool,
+    /// Whether the generation in progress is computed on other computers, too.
+    is_shared: bool,
+    /// Number of threads of this computer that compute.
+    threads: usize,
+}
+
+/// Command that starts a server.
+const SERVER: &str = "nats-server -js";
+/// Width that the button beside a command needs, in points.
+const COPY_WIDTH: f32 = 60.0;
+
+impl MachinesPanel {
+    /// Draws the panel and collects the user's commands.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        link: &MachinesLink,
+        run: &CurrentRun,
+        commands: &mut Vec<Command>,
+    ) {
+        title(ui, "Machines");
+        explain(
+            ui,
+            "Other computers can evaluate snakes of your run, too. No result depends on it.",
+        );
+        self.address(ui, link, commands);
+        let part = RunPart {
+            is_under_way: run.is_under_way(),
+            is_shared: run.is_shared_by_now(),
+            threads: run.threads(),
+        };
+        let copied = &mut |what: &str| commands.push(Command::Notify(format!("{what} copied.")));
+        match link.state() {
+            LinkState::Off => {
+                state(ui, theme::of(ui).text_weak, "Not connected");
+                first_steps(ui, copied);
+            }
+            LinkState::Connecting => {
+                ui.horizontal(|ui| {
+                    ui.spinner();
+                    ui.label(format!("Connecting to {}…", link.address()));
+                });
+            }
+            LinkState::Failed(problem) => {
+                state(ui, theme::of(ui).problem, "Not connected");
+                reason(ui, problem);
+                first_steps(ui, copied);
+            }
+            LinkState::Connected(known) => connected(ui, link, known, part, copied),
+        }
+    }
+
+    /// Draws the field for the address and the button beside it.
+    fn address(&mut self, ui: &mut egui::Ui, link: &MachinesLink, commands: &mut Vec<Command>) {
+        let is_off = matches!(link.state(), LinkState::Off | LinkState::Failed(_));
+        let mut text = self.text.clone().unwrap_or_else(|| link.address().to_owned());
+        let (mut is_asked, mut is_left) = (false, false);
+        ui.add_space(theme::GAP / 2.0);
+        ui.horizontal(|ui| {
+            let name = ui.label("Server");
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let (label, hint) = match link.state() {
+                    LinkState::Connected(_) => {
+                        ("Disconnect", "Compute on this computer only, from the next generation on")
+                    }
+                    LinkState::Connecting => ("Cancel", "Stop connecting"),
+                    _ => ("Connect", "Let the workers of this server compute, too"),
+                };
+                let palette = theme::of(ui);
+                let can_connect = !is_off || !text.trim().is_empty();
+                let button = match is_off && can_connect {
+                    true => {
+                        let text = egui::RichText::new(label).strong().color(palette.on_accent);
+                        egui::Button::new(text).fill(palette.accent)
+                    }
+                    false => egui::Button::new(label),
+                };
+                let response = ui.add_enabled(can_connect, button).on_hover_text(hint);
+                let response = response.on_disabled_hover_text("Type the server's address first");
+                is_asked = response.clicked() && is_off;
+                is_left = response.clicked() && !is_off;
+                let field = egui::TextEdit::singleline(&mut text)
+                    .hint_text("nats://HOST:4222")
+                    .desired_width(ui.available_width())
+                    .interactive(is_off)
+                    .margin(egui::Margin::symmetric(8, 4));
+                let response = ui.add(field).labelled_by(name.id);
+                let hint = "Address of the NATS server: nats://HOST:PORT, or tls://HOST:PORT";
+                let response = response.on_hover_text(hint);
+                if response.changed() {
+                    (self.text, self.problem) = (Some(text.clone()), None);
+                }
+                let is_entered =
+                    response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+                is_asked |= is_entered && can_connect;
+            });
+        });
+        if is_left {
+            commands.push(Command::Machines(MachinesCommand::Disconnect));
+        } else if is_asked {
+            match checked(&text) {
+                Ok(url) => {
+                    (self.text, self.problem) = (None, None);
+                    commands.push(Command::Machines(MachinesCommand::Connect(url)));
+                }
+                Err(problem) => self.problem = Some(problem),
+            }
+        }
+        if let Some(problem) = &self.problem {
+            ui.colored_label(theme::of(ui).problem, problem);
+        }
+    }
+}
+
+/// Draws a dot and the state of the connection.
+fn state(ui: &mut egui::Ui, color: egui::Color32, text: &str) {
+    ui.horizontal(|ui| {
+        let size = egui::Vec2::splat(theme::LANE_DOT);
+        let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        ui.painter().circle_filled(place.center(), theme::LANE_DOT / 2.0, color);
+        ui.add(egui::Label::new(egui::RichText::new(text).strong()).wrap());
+    });
+}
+
+/// Draws the lines of one worker or run close together: a name, and what belongs to it at the right end of its line; then
+/// the rest.
+fn entry(
+    ui: &mut egui::Ui,
+    name: egui::RichText,
+    right: egui::RichText,
+    rest: impl FnOnce(&mut egui::Ui),
+) {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
+        ui.spacing_mut().interact_size.y = 0.0;
+        ui.horizontal(|ui| {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.label(right);
+                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                    ui.add(egui::Label::new(name).truncate());
+                });
+            });
+        });
+        rest(ui);
+    });
+    ui.add_space(theme::GAP / 2.0);
+}
+
+/// Draws why the server cannot be used.
+fn reason(ui: &mut egui::Ui, text: &str) {
+    let text = egui::RichText::new(text).color(theme::of(ui).problem);
+    ui.add(egui::Label::new(text).wrap());
+}
+
+/// Draws what to do before the first connection.
+fn first_steps(ui: &mut egui::Ui, copied: &mut dyn FnMut(&str)) {
+    title(ui, "How to begin");
+    ui.label(
+        "1. Start a NATS server on one computer. The command comes with the package nats-server.",
+    );
+    command_line(ui, SERVER, copied);
+    ui.label("2. Type that computer's address above, and choose Connect. On this computer it is nats://127.0.0.1:4222.");
+    ui.label(
+        "3. Start workers on other computers. The command appears here once you are connected.",
+    );
+    explain(
+        ui,
+        "Whoever reaches the server can use the workers. The window connects without credentials, so start the server in a \
+         network that you trust.",
+    );
+}
+
+/// Draws the state of a connected server.
+fn connected(
+    ui: &mut egui::Ui,
+    link: &MachinesLink,
+    known: &KnownServer,
+    part: RunPart,
+    copied: &mut dyn FnMut(&str),
+) {
+    let palette = theme::of(ui);
+    match (&known.problem, &known.machines) {
+        (Some(problem), _) => {
+            state(ui, palette.problem, "The server does not answer; asking again");
+            reason(ui, problem);
+        }
+        (None, None) => state(ui, palette.accent, "Connected; looking for workers…"),
+        (None, Some(machines)) => {
+            let words = workers_in_words(machines, &known.proof);
+            state(ui, palette.accent, &format!("Connected: {words}"));
+        }
+    }
+    let used = known.machines.as_ref().map_or(0, |machines| used(machines, &known.proof).count());
+    explain(ui, &part.in_words(used));
+    if let Some(machines) = &known.machines {
+        if machines.workers.is_empty() {
+            title(ui, "No worker is there yet");
+            explain(ui, "Type this on a second computer, where this program is installed:");
+            worker_command(ui, link.address(), copied);
+        } else {
+            workers(ui, machines, &known.proof);
+            title(ui, "Add a worker");
+            explain(ui, "Type this on one more computer, where this program is installed:");
+            worker_command(ui, link.address(), copied);
+        }
+        queues(ui, link.address(), known, machines, copied);
+    }
+}
+
+impl RunPart {
+    /// Who computes the run of this window, in a sentence.
+    fn in_words(self, workers: usize) -> String {
+        let threads = match self.threads {
+            1 => "1 thread of this computer".to_owned(),
+            threads => format!("{threads} threads of this computer"),
+        };
+        match (self.is_under_way, self.is_shared) {
+            (false, _) => format!("Workers and {threads} compute your next run."),
+            (true, _) if workers == 0 => {
+                format!("As long as no worker is there, your run has only {threads}.")
+            }
+            (true, false) => {
+                format!("Workers join your run with its next generation, beside {threads}.")
+            }
+            (true, true) => format!("The workers and {threads} compute your run."),
+        }
+    }
+}
+
+/// Draws the command that starts a worker.
+fn worker_command(ui: &mut egui::Ui, address: &str, copied: &mut dyn FnMut(&str)) {
+    command_line(ui, &format!("snakes worker --nats {address}"), copied);
+    let is_own =
+        |part: &str| ["//127.", "//localhost", "//[::1]"].iter().any(|own| part.contains(own));
+    if address.split(',').all(is_own) {
+        explain(
+            ui,
+            "This address works on this computer only. On another one, type this computer's name or number in the network \
+             in its place.",
+        );
+    }
+}
+
+/// Draws a command to type, with a button that copies it.
+fn command_line(ui: &mut egui::Ui, command: &str, copied: &mut dyn FnMut(&str)) {
+    let frame = egui::Frame::new()
+        .fill(theme::of(ui).field)
+        .corner_radius(4)
+        .inner_margin(egui::Margin::symmetric(8, 4));
+    frame.show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            let width = ui.available_width() - COPY_WIDTH;
+            ui.vertical(|ui| {
+                ui.set_width(width);
+                ui.add(egui::Label::new(egui::RichText::new(command).monospace()).wrap());
+            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
+                let response = ui.small_button("Copy").on_hover_text("Copy this command");
+                let name = format!("Copy: {command}");
+                response.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &name)
+                });
+                if response.clicked() {
+                    ui.ctx().copy_text(command.to_owned());
+                    copied("Command");
+                }
+            });
+        });
+    });
+}
+
+#[cfg(test)]
+mod tests;

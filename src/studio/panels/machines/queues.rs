@@ -1,0 +1,61 @@
+//! The runs on a server, and what waits there for each.
+
+use std::collections::BTreeSet;
+
+use bevy_egui::egui;
+
+use super::{command_line, entry};
+use crate::cluster::Machines;
+use crate::studio::state::machines::KnownServer;
+use crate::studio::ui::text_rows::{explain, title};
+use crate::studio::ui::theme;
+
+/// Draws the runs, the one of this window first.
+pub(super) fn queues(
+    ui: &mut egui::Ui,
+    address: &str,
+    known: &KnownServer,
+    machines: &Machines,
+    copied: &mut dyn FnMut(&str),
+) {
+    title(ui, "Runs on the server");
+    let names: BTreeSet<&String> = machines.runs.keys().chain(machines.queues.keys()).collect();
+    let is_own = |name: &&&String| known.own_run.as_ref() == Some(**name);
+    let (own, others): (Vec<&String>, Vec<&String>) =
+        names.iter().copied().partition(|name| is_own(&name));
+    if names.is_empty() {
+        explain(ui, "None.");
+    }
+    for name in own.iter().chain(&others) {
+        queue(ui, name, own.contains(name), machines);
+        if !machines.runs.contains_key(*name) {
+            explain(ui, "No program waits for it any more. This removes what is left of it:");
+            command_line(ui, &format!("snakes machines --nats {address} --purge {name}"), copied);
+        }
+    }
+}
+
+/// Draws what waits for a run.
+fn queue(ui: &mut egui::Ui, name: &str, is_own: bool, machines: &Machines) {
+    let palette = theme::of(ui);
+    let (run, queue) = (machines.runs.get(name), machines.queues.get(name));
+    let place = match run {
+        _ if is_own => "this window".to_owned(),
+        Some(run) => format!("on {}", run.host),
+        None => String::new(),
+    };
+    let pending = run.map(|run| format!("{} evaluations pending, ", run.pending));
+    let (batches, results) = queue.map_or((0, 0), |queue| (queue.batches, queue.results));
+    let words =
+        format!("{}{batches} batches and {results} results waiting", pending.unwrap_or_default());
+    let set_aside = run.map_or(&[][..], |run| &run.set_aside);
+    let (name, place) = (egui::RichText::new(name).strong(), egui::RichText::new(place));
+    entry(ui, name, place.color(palette.text_weak), |ui| {
+        explain(ui, &words);
+        if !set_aside.is_empty() {
+            let names = set_aside.join(", ");
+            let words = format!("Set aside, because their results were wrong: {names}");
+            ui.colored_label(palette.problem, words);
+        }
+    });
+}

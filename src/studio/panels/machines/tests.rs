@@ -1,0 +1,194 @@
+//! The machines panel in each state of the connection.
+
+use super::*;
+use crate::cluster::{Machines, RunNotice, RunQueue, WorkerNotice};
+use crate::studio::state::current_run::prepared_run;
+use crate::{ENGINE_VERSION, Processors};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+const URL: &str = "nats://192.168.1.5:4222";
+const PROOF: &str = "0123456789abcdef";
+
+/// The panel of a link, and the commands that it sent.
+type State = (MachinesPanel, Vec<Command>);
+
+fn panel(link: MachinesLink, width: f32) -> Harness<'static, State> {
+    let run = prepared_run();
+    let draw = move |ui: &mut egui::Ui, (panel, commands): &mut State| {
+        panel.ui(ui, &link, &run, commands);
+    };
+    let builder = Harness::builder().with_size(egui::vec2(width, 1200.0));
+    let mut harness = builder.build_ui_state(draw, State::default());
+    // A spinner never rests.
+    harness.run_steps(3);
+    harness
+}
+
+fn narrow(link: MachinesLink) -> Harness<'static, State> {
+    panel(link, theme::PANEL_WIDTH)
+}
+
+fn shows(panel: &Harness<'_, State>, part: &str) -> bool {
+    panel.query_all_by_label_contains(part).next().is_some()
+}
+
+/// A worker with this name and this proof.
+fn worker(name: &str, proof: &str) -> (String, WorkerNotice) {
+    let notice = WorkerNotice {
+        format: 1,
+        worker: name.to_owned(),
+        host: "desk".to_owned(),
+        engine: ENGINE_VERSION,
+        processors: Processors::THIS,
+        proof: proof.to_owned(),
+        threads: 2,
+        evaluations: 345,
+        per_s: 6.25,
+        redelivered: 7,
+        leaves: false,
+    };
+    (name.to_owned(), notice)
+}
+
+fn connected_to(machines: Option<Machines>, problem: Option<&str>) -> MachinesLink {
+    MachinesLink::of_test(
+        URL,
+        LinkState::Connected(Box::new(KnownServer {
+            proof: PROOF.to_owned(),
+            machines,
+            problem: problem.map(str::to_owned),
+            own_run: Some("own-1".to_owned()),
+        })),
+    )
+}
+
+#[test]
+fn without_a_connection_it_explains_the_first_steps_and_connects() {
+    let mut panel = narrow(MachinesLink::default());
+    for part in ["Not connected", "1. Start a NATS server", SERVER, "3. Start workers"] {
+        assert!(shows(&panel, part), "{part}");
+    }
+    panel.get_by_label("Connect").click();
+    panel.run();
+    assert_eq!(panel.state().1, [], "there is no address yet");
+    panel.get_by_label("Server").click();
+    panel.run();
+    panel.get_by_label("Server").type_text("192.168.1.5:4222");
+    panel.run();
+    panel.get_by_label("Connect").click();
+    panel.run();
+    let connect = MachinesCommand::Connect(URL.to_owned());
+    assert_eq!(panel.state().1, [Command::Machines(connect)]);
+}
+
+#[test]
+fn the_last_address_is_offered_and_enter_connects() {
+    let mut panel = narrow(MachinesLink::of_test(URL, LinkState::Off));
+    panel.get_by_label("Server").click();
+    panel.run();
+    panel.key_press(egui::Key::Enter);
+    panel.run();
+    let connect = MachinesCommand::Connect(URL.to_owned());
+    assert_eq!(panel.state().1, [Command::Machines(connect)]);
+}
+
+#[test]
+fn an_address_with_a_password_is_refused_and_the_password_is_in_no_message() {
+    let mut panel = narrow(MachinesLink::default());
+    panel.get_by_label("Server").click();
+    panel.run();
+    panel.get_by_label("Server").type_text("nats://ann:secret@a");
+    panel.run();
+    panel.get_by_label("Connect").click();
+    panel.run();
+    assert_eq!(panel.state().1, []);
+    assert!(shows(&panel, "without user name and password"));
+    assert!(panel.query_all_by_label_contains("secret").next().is_none());
+}
+
+#[test]
+fn connecting_can_be_cancelled() {
+    let mut panel = narrow(MachinesLink::of_test(URL, LinkState::Connecting));
+    assert!(shows(&panel, "Connecting to nats://192.168.1.5:4222"));
+    panel.get_by_label("Cancel").click();
+    panel.run_steps(3);
+    assert_eq!(panel.state().1, [Command::Machines(MachinesCommand::Disconnect)]);
+}
+
+#[test]
+fn an_error_is_shown_with_the_first_steps() {
+    let problem = "nats://a: cannot connect: connection refused";
+    let panel = narrow(MachinesLink::of_test(URL, LinkState::Failed(problem.to_owned())));
+    for part in ["Not connected", problem, "1. Start a NATS server", "Connect"] {
+        assert!(shows(&panel, part), "{part}");
+    }
+}
+
+#[test]
+fn without_workers_it_shows_the_command_to_type_and_copies_it() {
+    let mut panel = narrow(connected_to(Some(Machines::default()), None));
+    let command = format!("snakes worker --nats {URL}");
+    for part in ["Connected: no workers", "No worker is there yet", &command, "Disconnect"] {
+        assert!(shows(&panel, part), "{part}");
+    }
+    panel.get_by_label(&format!("Copy: {command}")).click();
+    panel.run();
+    assert_eq!(panel.state().1, [Command::Notify("Command copied.".to_owned())]);
+    assert!(!shows(&panel, "works on this computer only"));
+}
+
+#[test]
+fn an_address_of_this_computer_is_explained() {
+    let known = KnownServer { machines: Some(Machines::default()), ..KnownServer::default() };
+    let link =
+        MachinesLink::of_test("nats://127.0.0.1:4222", LinkState::Connected(Box::new(known)));
+    assert!(shows(&narrow(link), "works on this computer only"));
+}
+
+#[test]
+fn workers_and_queues_are_listed_and_one_with_another_proof_is_marked() {
+    let run = RunNotice {
+        format: 1,
+        run: "own-1".to_owned(),
+        host: "desk".to_owned(),
+        engine: ENGINE_VERSION,
+        processors: Processors::THIS,
+        proof: PROOF.to_owned(),
+        pending: 40,
+        results: 100,
+        set_aside: vec!["liar-1".to_owned()],
+    };
+    let mut machines = Machines::default();
+    machines.workers.extend([worker("desk-1", PROOF), worker("old-2", "fedcba9876543210")]);
+    machines.runs.insert("own-1".to_owned(), run);
+    machines.queues.insert("own-1".to_owned(), RunQueue { batches: 3, results: 2 });
+    machines.queues.insert("left-2".to_owned(), RunQueue { batches: 5, results: 0 });
+    for width in [theme::PANEL_WIDTH, 900.0] {
+        let panel = panel(connected_to(Some(machines.clone()), None), width);
+        for part in [
+            "Connected: 1 worker, 2 threads, 6.2 per second",
+            "desk-1",
+            "345",
+            "fedcba9876543210",
+            "Not used: it computes other bits",
+            "this window",
+            "40 evaluations pending, 3 batches and 2 results waiting",
+            "Set aside, because their results were wrong: liar-1",
+            "left-2",
+            "--purge left-2",
+        ] {
+            assert!(shows(&panel, part), "{part} in {width}");
+        }
+    }
+}
+
+#[test]
+fn a_server_that_does_not_answer_is_shown_above_what_was_known() {
+    let mut machines = Machines::default();
+    machines.workers.extend([worker("desk-1", PROOF)]);
+    let panel = narrow(connected_to(Some(machines), Some("the list of queues failed: timed out")));
+    for part in ["does not answer; asking again", "timed out", "desk-1"] {
+        assert!(shows(&panel, part), "{part}");
+    }
+}

@@ -1,0 +1,117 @@
+//! The workers on a server: a table where the panel has room for one, or else a few lines for each.
+
+use bevy_egui::egui;
+
+use super::entry;
+use crate::cluster::{Machines, WorkerNotice};
+use crate::studio::ui::text_rows::{explain, title};
+use crate::studio::ui::theme;
+
+/// Minimum width of the table, in points.
+const TABLE_WIDTH: f32 = 620.0;
+/// Why a worker is not used.
+const OTHER_PROOF: &str = "Not used: it computes other bits than this computer. Use the same version of the program on both.";
+
+/// The workers whose engine computes the same bits as this computer's.
+pub(super) fn used<'m>(
+    machines: &'m Machines,
+    proof: &'m str,
+) -> impl Iterator<Item = &'m WorkerNotice> {
+    machines.workers.values().filter(move |worker| worker.proof == proof)
+}
+
+/// The workers that are used, in words.
+pub(super) fn workers_in_words(machines: &Machines, proof: &str) -> String {
+    let all = || used(machines, proof);
+    let (count, threads) = (all().count(), all().map(|worker| worker.threads).sum::<u32>());
+    let per_s: f32 = all().map(|worker| worker.per_s).sum();
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    match count {
+        0 if machines.workers.is_empty() => "no workers".to_owned(),
+        0 => "no worker that can be used".to_owned(),
+        _ => format!(
+            "{count} worker{}, {threads} thread{}, {per_s:.1} per second",
+            plural(count),
+            plural(threads as usize)
+        ),
+    }
+}
+
+/// Draws the workers.
+pub(super) fn workers(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
+    title(ui, "Workers");
+    if ui.available_width() < TABLE_WIDTH {
+        for worker in machines.workers.values() {
+            worker_entry(ui, worker, proof);
+        }
+    } else {
+        table(ui, machines, proof);
+    }
+    let is_other = |worker: &WorkerNotice| worker.proof != proof;
+    if machines.workers.values().any(is_other) && ui.available_width() >= TABLE_WIDTH {
+        ui.colored_label(theme::of(ui).problem, OTHER_PROOF);
+    }
+}
+
+/// Draws a worker on a few lines.
+fn worker_entry(ui: &mut egui::Ui, worker: &WorkerNotice, proof: &str) {
+    let palette = theme::of(ui);
+    let is_used = worker.proof == proof;
+    let color = if is_used { palette.text } else { palette.text_weak };
+    let name = egui::RichText::new(&worker.worker).strong().color(color);
+    let pace = egui::RichText::new(format!("{:.1} per s", worker.per_s)).color(color);
+    entry(ui, name, pace, |ui| {
+        let plural = if worker.threads == 1 { "" } else { "s" };
+        let words = format!(
+            "on {}: {} thread{plural}, {} evaluations, {} redelivered",
+            worker.host, worker.threads, worker.evaluations, worker.redelivered
+        );
+        explain(ui, &words);
+        explain(ui, &worker.engine_words());
+        if !is_used {
+            ui.colored_label(palette.problem, OTHER_PROOF);
+        }
+    });
+}
+
+/// Draws the workers as a table.
+fn table(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
+    let spacing = [theme::GAP * 2.0, theme::GAP / 2.0];
+    egui::Grid::new("workers").num_columns(7).spacing(spacing).show(ui, |ui| {
+        for (head, hint) in [
+            ("Worker", "Its name, which no other worker has"),
+            ("Computer", "Name of its computer"),
+            ("Threads", "Number of evaluations at the same time"),
+            ("Per s", "Evaluations per second, over the last ten seconds"),
+            ("Evaluations", "Since it started"),
+            ("Redelivered", "Batches that another worker had before, and did not finish"),
+            ("Engine", "Version, processor and proof: the hash of its bits in some short cases"),
+        ] {
+            ui.label(egui::RichText::new(head).color(theme::of(ui).text_weak)).on_hover_text(hint);
+        }
+        ui.end_row();
+        for worker in machines.workers.values() {
+            let is_used = worker.proof == proof;
+            ui.label(&worker.worker);
+            ui.label(&worker.host);
+            for number in [
+                worker.threads.to_string(),
+                format!("{:.1}", worker.per_s),
+                worker.evaluations.to_string(),
+                worker.redelivered.to_string(),
+            ] {
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    ui.label(number);
+                });
+            }
+            match is_used {
+                true => ui.label(worker.engine_words()),
+                false => {
+                    let words = format!("{}: not used", worker.engine_words());
+                    ui.colored_label(theme::of(ui).problem, words)
+                }
+            };
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,145 @@
+//! The states of the connection, and the run that follows them.
+
+use super::*;
+use crate::cluster::RunQueue;
+use crate::evolve::{RunPlan, Settings};
+use crate::run::{LocalPool, RunSource};
+use crate::save::{ExistingRun, SavesFolder};
+use crate::studio::state::options::Options;
+use crate::studio::state::run_context::RunContext;
+use std::sync::Arc;
+
+/// A run that is held before its first generation, and the folder of its saves.
+fn held_run() -> (tempfile::TempDir, CurrentRun) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let saves = SavesFolder::find(Some(folder.path()));
+    let mut settings = Settings::default();
+    settings.evolution.population = 6;
+    settings.trial.duration_s = 0.5;
+    let run = RunSource::in_saves(&saves, RunPlan::new("test", 1, settings), ExistingRun::Keep);
+    let mut run = CurrentRun::new(RunContext::new(&Options::of_test(run, saves)));
+    run.start().and_then(|()| run.pause()).expect("started");
+    (folder, run)
+}
+
+/// A link that waits for a server that never answers.
+fn connecting() -> MachinesLink {
+    let mut link = MachinesLink::of_test("nats://127.0.0.1:1", LinkState::Connecting);
+    // Nothing listens there, but that news is never read.
+    let server = BrokerOptions { url: "nats://127.0.0.1:1".to_owned(), ..Default::default() };
+    link.watch = Some(ServerWatch::start(server).expect("a thread"));
+    link
+}
+
+fn known(link: &MachinesLink) -> &KnownServer {
+    let LinkState::Connected(known) = link.state() else { panic!("{:?}", link.state()) };
+    known
+}
+
+#[test]
+fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
+    let (_folder, mut run) = held_run();
+    let (mut link, mut notices) = (connecting(), Notices::default());
+    link.follow(&mut run);
+    assert_eq!(link.asked, None, "not before it is connected");
+    link.take_in_news(WatchNews::Connected { proof: "p".to_owned() }, &mut run, &mut notices);
+    link.follow(&mut run);
+    let (number, asked) = link.asked.clone().expect("asked");
+    assert_eq!((number, asked.local_threads), (run.number(), 1));
+    assert!(asked.name.starts_with("test-seed1-") && !run.is_shared());
+
+    let evaluator = || Arc::new(LocalPool::new(2).expect("threads"));
+    let coordinates = |run: &WatchedRun| WatchNews::Coordinates {
+        run: run.clone(),
+        name: "n".to_owned(),
+        evaluator: evaluator(),
+    };
+    let other = WatchedRun { name: "other".to_owned(), local_threads: 1 };
+    link.take_in_news(coordinates(&other), &mut run, &mut notices);
+    assert!(!run.is_shared(), "another run was asked for");
+    link.take_in_news(coordinates(&asked), &mut run, &mut notices);
+    assert!(run.is_shared());
+    assert_eq!(known(&link).own_run.as_deref(), Some("n"));
+
+    // Another number of threads needs another coordinator; until it is there, this computer computes alone.
+    run.set_threads(2).expect("allowed");
+    link.follow(&mut run);
+    assert!(!run.is_shared());
+    assert_eq!(link.asked.as_ref().map(|(_, run)| run.local_threads), Some(2));
+    link.take_in_news(coordinates(&link.asked.clone().expect("asked").1), &mut run, &mut notices);
+    assert!(run.is_shared());
+
+    // So does another run.
+    run.reset().expect("allowed");
+    assert!(!run.is_shared());
+    link.follow(&mut run);
+    assert_eq!(link.asked, None, "it has not begun");
+
+    link.apply(&MachinesCommand::Disconnect, &mut run).expect("allowed");
+    assert_eq!((link.state(), link.address()), (&LinkState::Off, "nats://127.0.0.1:1"));
+    assert_eq!(notices.len(), 0);
+}
+
+#[test]
+fn a_list_replaces_a_problem_and_a_problem_keeps_the_list() {
+    let (_folder, mut run) = held_run();
+    let (mut link, mut notices) = (connecting(), Notices::default());
+    let mut machines = Machines::default();
+    machines.queues.insert("run".to_owned(), RunQueue { batches: 2, results: 1 });
+    for news in [
+        WatchNews::Connected { proof: "p".to_owned() },
+        WatchNews::Listed(machines.clone()),
+        WatchNews::NoAnswer("lost".to_owned()),
+    ] {
+        link.take_in_news(news, &mut run, &mut notices);
+    }
+    assert_eq!(known(&link).machines.as_ref(), Some(&machines));
+    assert_eq!(known(&link).problem.as_deref(), Some("lost"));
+    link.take_in_news(WatchNews::Listed(machines), &mut run, &mut notices);
+    assert_eq!(known(&link).problem, None);
+}
+
+#[test]
+fn a_server_that_cannot_be_used_is_reported_and_its_address_stays() {
+    let (_folder, mut run) = held_run();
+    let (mut link, mut notices) = (connecting(), Notices::default());
+    link.take_in_news(WatchNews::Failed("no server".to_owned()), &mut run, &mut notices);
+    assert_eq!(link.state(), &LinkState::Failed("no server".to_owned()));
+    assert_eq!(notices.last(), Some("Other computers are not connected: no server"));
+    assert_eq!(link.address(), "nats://127.0.0.1:1");
+    assert!(link.watch.is_none());
+}
+
+#[test]
+fn wrong_results_end_the_connection() {
+    let (_folder, mut run) = held_run();
+    run.share(Some(Arc::new(LocalPool::new(1).expect("threads"))));
+    run.end_untrusted("w lies".to_owned()).expect("held again");
+    let mut app = App::new();
+    app.insert_resource(connecting())
+        .insert_resource(run)
+        .init_resource::<Notices>()
+        .add_systems(Update, take_in);
+    app.update();
+    let link = app.world().resource::<MachinesLink>();
+    assert_eq!(link.state(), &LinkState::Failed("w lies".to_owned()));
+    assert!(!app.world().resource::<CurrentRun>().is_shared());
+}
+
+#[test]
+fn an_address_is_completed_and_one_with_a_password_is_refused_without_repeating_it() {
+    for (typed, used) in [
+        (" 192.168.1.5:4222 ", "nats://192.168.1.5:4222"),
+        ("nats://a:4222, tls://b", "nats://a:4222,tls://b"),
+    ] {
+        assert_eq!(checked(typed).as_deref(), Ok(used));
+    }
+    let long = "a".repeat(2000);
+    for typed in ["", "ann:secret@a", "nats://ann:secret@a:4222", "http://a", "a b", &long] {
+        let problem = checked(typed).expect_err("refused");
+        assert!(!problem.contains("secret") && problem.contains("nats://HOST:PORT"), "{problem}");
+    }
+    let mut link = MachinesLink::default();
+    link.remember("nats://ann:secret@a:4222");
+    assert_eq!(link.address(), "");
+}
