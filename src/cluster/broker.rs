@@ -174,7 +174,9 @@ async fn connect(options: &BrokerOptions, name: &str) -> Result<(Client, Context
     }
     if let Some(path) = &options.tls_ca {
         // The client's own error does not name the file.
-        load_text(path)?;
+        if !load_text(path)?.contains("-----BEGIN CERTIFICATE-----") {
+            return Err(ClusterError::NoCertificate(path.clone()));
+        }
         connect = connect.add_root_certificates(path.clone()).require_tls(true);
     }
     let lost = Arc::new(AtomicBool::new(false));
@@ -198,10 +200,20 @@ async fn connect(options: &BrokerOptions, name: &str) -> Result<(Client, Context
     let addresses: Vec<&str> = options.url.split(',').collect();
     let client = connect.connect(addresses).await.map_err(|error| ClusterError::Unreachable {
         url: options.url.clone(),
-        problem: one_line(&error),
+        problem: with_advice(one_line(&error)),
     })?;
     let jetstream = jetstream::new(client.clone());
     Ok((client, jetstream))
+}
+
+/// A problem of a connection with advice, where the client's words do not say what to do.
+fn with_advice(problem: String) -> String {
+    let advice = [
+        ("UnknownIssuer", "--tls-ca FILE names the authority that signed the server's certificate"),
+        ("InvalidContentType", "the server does not use TLS"),
+    ];
+    let fitting = advice.into_iter().find(|(word, _)| problem.contains(word));
+    fitting.map_or(problem.clone(), |(_, advice)| format!("{problem}; {advice}"))
 }
 
 /// A line about the connection, when it is lost and when it is there again.

@@ -22,6 +22,9 @@ pub enum ClusterError {
         /// The reason.
         problem: String,
     },
+    /// A file has no certificate.
+    #[error("{}: has no certificate in PEM format", .0.display())]
+    NoCertificate(PathBuf),
     /// No connection to the server.
     #[error("{url}: cannot connect: {problem}")]
     Unreachable {

@@ -86,6 +86,49 @@ fn without_the_right_credentials_there_is_no_connection() {
 }
 
 #[test]
+fn a_certificate_that_does_not_fit_is_refused() {
+    // Made for this test: an authority, another one, and a server's certificate that the first one signed.
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/it/cluster/tls");
+    let file = |name: &str| format!("{folder}/{name}");
+    let (certificate, key) = (file("server.pem"), file("server.key"));
+    let tls = ["-js", "--tls", "--tlscert", &certificate, "--tlskey", &key];
+    let Some(server) = Server::start_with(&tls) else { return };
+    let (place, url) = (folder(), server.url());
+    for flags in [format!("--nats {url}"), format!("--nats {url} --tls-ca {}", file("other.pem"))] {
+        for line in refusals(place.path(), &flags) {
+            assert!(line.contains("cannot connect") && line.contains("UnknownIssuer"), "{line}");
+            assert!(line.contains("--tls-ca FILE names the authority"), "{line}");
+        }
+    }
+    for line in refusals(place.path(), &format!("--nats {url} --tls-ca {key}")) {
+        assert!(line.ends_with("server.key: has no certificate in PEM format"), "{line}");
+    }
+    let listed = run(place.path(), &format!("machines --nats {url} --tls-ca {}", file("ca.pem")));
+    assert!(listed.status.success(), "{}", String::from_utf8_lossy(&listed.stderr));
+    drop(server);
+    let Some(server) = Server::start() else { return };
+    let flags = format!("--nats {} --tls-ca {}", server.url(), file("ca.pem"));
+    for line in refusals(place.path(), &flags) {
+        assert!(line.ends_with("the server does not use TLS"), "{line}");
+    }
+}
+
+#[test]
+fn a_worker_whose_engine_no_run_uses_ends_and_names_both() {
+    let Some(server) = Server::start() else { return };
+    let place = folder();
+    let mut command = snakes(place.path(), &format!("worker --threads 1 --nats {}", server.url()));
+    let worker = command.stderr(std::process::Stdio::piped()).spawn().expect("it starts");
+    super::server::tell_of_another_engine(&server);
+    let output = worker.wait_with_output().expect("it ends");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let last = said.lines().last().expect("a line");
+    assert!(last.starts_with("error: run old on computer needs engine 2 on x86-64"), "{last}");
+    assert!(last.contains("and this program computes with engine"), "{last}");
+}
+
+#[test]
 fn hostile_messages_neither_stop_nor_fill_a_worker_or_a_coordinator() {
     let Some(server) = Server::start() else { return };
     let _worker = worker(&server.url());

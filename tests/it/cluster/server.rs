@@ -278,3 +278,16 @@ pub fn attack(server: &Server, messages: usize) {
         client.flush().await.expect("sent");
     });
 }
+
+/// Tells for some seconds of a run that computes with another engine.
+pub fn tell_of_another_engine(server: &Server) {
+    let notice = "{\"format\":1,\"run\":\"old\",\"host\":\"computer\",\"engine\":2,\"processors\":\"x86-64\",\
+                  \"proof\":\"00000000000000aa\",\"pending\":1,\"results\":0,\"set_aside\":[]}";
+    with_server(server, async |client| {
+        for _ in 0..16 {
+            client.publish("snakes.run", notice.into()).await.expect("sent");
+            client.flush().await.expect("sent");
+            tokio::time::sleep(Duration::from_millis(500)).await;
+        }
+    });
+}
