@@ -88,8 +88,8 @@ fn without_the_right_credentials_there_is_no_connection() {
 #[test]
 fn a_certificate_that_does_not_fit_is_refused() {
     // Made for this test: an authority, another one, and a server's certificate that the first one signed.
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/it/cluster/tls");
-    let file = |name: &str| format!("{folder}/{name}");
+    let keys = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/it/cluster/tls");
+    let file = |name: &str| format!("{keys}/{name}");
     let (certificate, key) = (file("server.pem"), file("server.key"));
     let tls = ["-js", "--tls", "--tlscert", &certificate, "--tlskey", &key];
     let Some(server) = Server::start_with(&tls) else { return };
