@@ -28,11 +28,12 @@ const DECISIVE: [&str; 17] = [
     "wide",
 ];
 
-/// Features that only the window asks for. None alters a computation: debug lines, conversions, serialisation.
+/// Features that only the window and the connection to other machines ask for. None alters a computation: debug lines,
+/// conversions, serialisation, more generators of random numbers.
 const HARMLESS: [(&str, &[&str]); 4] = [
     ("glam", &["bytemuck", "encase", "rand", "serde"]),
     ("nalgebra", &["default"]),
-    ("rand", &["alloc", "std"]),
+    ("rand", &["alloc", "default", "std", "std_rng", "sys_rng", "thread_rng"]),
     ("rapier3d", &["debug-render"]),
 ];
 
