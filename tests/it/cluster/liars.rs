@@ -85,7 +85,6 @@ fn a_worker_that_flips_a_bit_is_found_before_any_of_its_results_counts() {
 }
 
 #[test]
-#[ignore = "takes about five minutes: SNAKES_CLUSTER_TESTS=required cargo test --test it liars -- --ignored"]
 fn a_worker_that_begins_to_flip_bits_later_is_found_and_everything_begins_again() {
     let run = "--no-render --preset climb --seed 5 --population 200 --generations 6 --duration 4";
     let Some(server) = Server::start() else { return };
