@@ -53,6 +53,24 @@ pub fn name(field: &str, value: &str) -> Result<(), Invalid> {
     Err(Invalid::new(field, quoted(value), "1 to 40 characters, each a-z, 0-9 or -"))
 }
 
+/// Refuses a file's name that Windows keeps for a device, with any extension and in any case: no file can have it there, and
+/// files are shared between systems. [Naming Files](https://learn.microsoft.com/windows/win32/fileio/naming-a-file) lists them.
+pub fn no_device(field: &str, value: &str) -> Result<(), Invalid> {
+    let stem = value.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
+    let number = stem.strip_prefix("com").or_else(|| stem.strip_prefix("lpt"));
+    let numbers = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "¹", "²", "³"];
+    let is_device = ["con", "prn", "aux", "nul"].contains(&stem.as_str())
+        || number.is_some_and(|number| numbers.contains(&number));
+    if is_device {
+        return Err(Invalid::new(
+            field,
+            quoted(value),
+            "a name that Windows does not keep for a device",
+        ));
+    }
+    Ok(())
+}
+
 /// A text from outside in an error: quoted, at most 60 characters, without control characters.
 pub fn quoted(text: &str) -> String {
     format!("{:?}", text.chars().take(60).collect::<String>())
@@ -61,6 +79,16 @@ pub fn quoted(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_devices_are_refused_in_any_case_and_with_any_extension() {
+        for device in ["con", "PRN", "Aux.best", "nul .x", "com1", "COM¹", "lpt³.ron", "Lpt9"] {
+            assert!(no_device("name", device).is_err(), "{device}");
+        }
+        for name in ["conic", "com", "com0", "com10", "lpt12", "a.con", "null", ""] {
+            assert_eq!(no_device("name", name), Ok(()), "{name}");
+        }
+    }
 
     #[test]
     fn a_message_has_the_field_the_value_and_the_range() {

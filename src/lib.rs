@@ -61,6 +61,7 @@ pub mod evolve;
 pub mod save;
 
 /// Experiments on worker threads, and the headless mode.
+#[cfg(not(target_family = "wasm"))]
 pub mod run;
 
 /// One run on many machines, through a NATS server.
@@ -68,13 +69,19 @@ pub mod run;
 pub mod cluster;
 
 /// Plots as image files.
+#[cfg(not(target_family = "wasm"))]
 pub mod plot;
+
+/// Champions in the formats of other programs.
+#[cfg(not(target_family = "wasm"))]
+pub mod export;
 
 /// The window.
 #[cfg(feature = "studio")]
 pub mod studio;
 
 /// The command line.
+#[cfg(not(target_family = "wasm"))]
 pub mod cli;
 
 /// The version of the engine, and the processors on which it computes the same bits.

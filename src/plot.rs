@@ -3,6 +3,7 @@
 
 mod families;
 mod figure;
+mod film_text;
 mod labels;
 mod paint;
 mod ticks;
@@ -25,6 +26,7 @@ use crate::score::Rollout;
 
 pub use families::families;
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
+pub use film_text::{FilmBand, FilmTitle, film_band, film_title};
 pub use labels::beside_line;
 pub use paint::{BAND_OPACITY, figure, ink_on, ramp, role_color};
 pub use ticks::tick_step;

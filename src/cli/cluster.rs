@@ -1,5 +1,6 @@
 //! `snakes worker`, `snakes machines`, and the flag `--nats`.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,8 +11,8 @@ use super::args::Args;
 use super::error::CliError;
 use super::output::{cancel_on_interrupt, print};
 use crate::cluster::{
-    Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, Simulator, WorkerOptions,
-    host_name, machines, proof, purge, unique_name, work,
+    Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, RunNotice, Simulator,
+    WorkerOptions, host_name, machines, proof, purge, unique_name, work,
 };
 use crate::run::Evaluator;
 use crate::run::headless::say;
@@ -54,8 +55,11 @@ pub fn worker(args: &Args) -> Result<(), CliError> {
         "worker {name}: {threads} thread{plural} for the runs on {}; Ctrl-C stops it",
         broker.url()
     ));
-    let options = WorkerOptions { name, threads, proof, compute: Arc::new(Simulator) };
-    Ok(work(broker, options, &cancel_on_interrupt())?)
+    let options =
+        WorkerOptions { name: name.clone(), threads, proof, compute: Arc::new(Simulator) };
+    let evaluations = work(broker, options, &cancel_on_interrupt())?;
+    say(&format!("worker {name}: stopped; {evaluations} evaluations"));
+    Ok(())
 }
 
 /// Lists what is on a server, or removes what waits for a run.
@@ -84,6 +88,15 @@ fn as_json(machines: &Machines) -> String {
     workers.chain(runs).chain(queues).map(|line| format!("{line}\n")).collect()
 }
 
+/// The legend below the table of [`as_text`].
+const LEGEND: &str = "\
+per s: evaluations per second over the last five seconds
+redelivered: batches that another worker had before and did not finish
+engine: version, processors and a hash of test results, which must be the same on all computers
+done, to do: evaluations with a result, and those that wait for one
+queued: batches that no worker has finished; unread: results that the run has not fetched yet
+";
+
 fn as_text(machines: &Machines) -> String {
     let mut text = format!(
         "{:<28} {:<16} {:>7} {:>12} {:>7} {:>11}  engine\n",
@@ -105,19 +118,22 @@ fn as_text(machines: &Machines) -> String {
         text += "none\n";
     }
     text += &format!(
-        "\n{:<50} {:>8} {:>8} {:>8}  coordinator\n",
-        "run", "pending", "batches", "results"
+        "\n{:<50} {:>9} {:>7} {:>7} {:>7}  computer\n",
+        "run", "done", "to do", "queued", "unread"
     );
-    let names: std::collections::BTreeSet<&String> =
-        machines.runs.keys().chain(machines.queues.keys()).collect();
+    let names: BTreeSet<&String> = machines.runs.keys().chain(machines.queues.keys()).collect();
     for name in &names {
         let queue = machines.queues.get(*name).cloned().unwrap_or_default();
         let run = machines.runs.get(*name);
-        let pending = run.map_or("–".to_owned(), |run| run.pending.to_string());
-        let host =
-            run.map_or("none; snakes machines --purge removes what is left", |run| &run.host);
-        text +=
-            &format!("{name:<50} {pending:>8} {:>8} {:>8}  {host}\n", queue.batches, queue.results);
+        let count = |of: fn(&RunNotice) -> u64| {
+            run.map_or("–".to_owned(), |notice| of(notice).to_string())
+        };
+        let (done, to_do) = (count(|run| run.results), count(|run| run.pending));
+        let host = run.map_or("stopped; --purge RUN removes what is left of it", |run| &run.host);
+        text += &format!(
+            "{name:<50} {done:>9} {to_do:>7} {:>7} {:>7}  {host}\n",
+            queue.batches, queue.results
+        );
         for worker in run.iter().flat_map(|run| &run.set_aside) {
             text += &format!("    set aside: {worker}\n");
         }
@@ -125,5 +141,5 @@ fn as_text(machines: &Machines) -> String {
     if names.is_empty() {
         text += "none\n";
     }
-    text
+    text + "\n" + LEGEND
 }

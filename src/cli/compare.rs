@@ -135,8 +135,7 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     let bar = bar_of(u64::from(compared.evaluations) * plans.len() as u64, "evaluations");
     let control = cancel_on_interrupt();
     let spent = |evaluations: u32| bar.inc(evaluations.into());
-    let place = std::path::absolute(&ron).unwrap_or_else(|_| ron.clone());
-    let evaluator = evaluator(args, "compare", &place)?;
+    let evaluator = evaluator(args, "compare", &ron)?;
     let result = run_all(&plans, &*evaluator, &control, spent, |run| {
         comparison.add(run);
         // After each run, so that a kill loses none that is finished.

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use crate::check::Invalid;
+use crate::export::ExportError;
 use crate::run::headless::HeadlessError;
+use crate::run::mujoco::MujocoError;
 use crate::run::verify::VerifyError;
 use crate::save::SaveError;
 
@@ -30,7 +32,7 @@ pub enum CliError {
     /// The workers on other machines could not be used.
     #[cfg(feature = "cluster")]
     #[error(transparent)]
-    Cluster(#[from] crate::cluster::ClusterError),
+    Cluster(crate::cluster::ClusterError),
     /// This build knows no other machines.
     #[cfg(not(feature = "cluster"))]
     #[error(
@@ -56,6 +58,16 @@ pub enum CliError {
         /// The fingerprint of the reference.
         reference: String,
     },
+    /// A champion could not be exported.
+    #[error(transparent)]
+    Export(ExportError),
+    /// MuJoCo could not be used.
+    #[error(transparent)]
+    Mujoco(#[from] MujocoError),
+    /// A film could not be made.
+    #[cfg(feature = "studio")]
+    #[error(transparent)]
+    Film(crate::studio::film::FilmError),
     /// A plot could not be drawn.
     #[error(transparent)]
     Plot(#[from] crate::plot::PlotError),
@@ -87,6 +99,35 @@ impl CliError {
 impl From<Invalid> for CliError {
     fn from(invalid: Invalid) -> Self {
         Self::Usage(invalid.to_string())
+    }
+}
+
+impl From<ExportError> for CliError {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Invalid(invalid) => invalid.into(),
+            other => Self::Export(other),
+        }
+    }
+}
+
+#[cfg(feature = "studio")]
+impl From<crate::studio::film::FilmError> for CliError {
+    fn from(error: crate::studio::film::FilmError) -> Self {
+        match error {
+            crate::studio::film::FilmError::Export(error) => error.into(),
+            other => Self::Film(other),
+        }
+    }
+}
+
+#[cfg(feature = "cluster")]
+impl From<crate::cluster::ClusterError> for CliError {
+    fn from(error: crate::cluster::ClusterError) -> Self {
+        match error {
+            crate::cluster::ClusterError::Invalid(invalid) => invalid.into(),
+            other => Self::Cluster(other),
+        }
     }
 }
 

@@ -14,7 +14,10 @@ pub fn evaluator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evalu
         return args.local_evaluator();
     }
     #[cfg(feature = "cluster")]
-    return super::cluster::coordinator(args, words, place);
+    {
+        let place = std::path::absolute(place).unwrap_or_else(|_| place.to_owned());
+        super::cluster::coordinator(args, words, &place)
+    }
     #[cfg(not(feature = "cluster"))]
     {
         let _ = (words, place);

@@ -10,14 +10,18 @@ use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
+use crate::check::Invalid;
+use crate::export::mjcf;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::HeadlessError;
 use crate::run::markdown::markdown_table;
+use crate::run::mujoco::{CLIMBED_STEPS, MUJOCO, Mujoco, MujocoError, MujocoResult, mujoco_trials};
 use crate::run::progress_bar::with_bar;
-use crate::run::short;
+use crate::run::{Evaluator, RunControl, short};
 use crate::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
 use crate::schema::Choices;
 use crate::score::{ExamSuite, SuiteResult};
+use crate::world::WorldPlan;
 
 /// Examines champions and prints the results; if `writes`, also into their files.
 pub fn exam(
@@ -26,7 +30,11 @@ pub fn exam(
     suites: &[String],
     writes: bool,
 ) -> Result<(), CliError> {
-    let suites = chosen(suites, ExamSuite::OPTIONS)?;
+    let (suites, asks_mujoco) = asked(suites)?;
+    if asks_mujoco && writes {
+        let allowed = format!("other suites; the results of {MUJOCO} are not stored");
+        return Err(Invalid::new("--write", "set", allowed).into());
+    }
     let load = |file: &PathBuf| {
         let loaded = load_champion(file)?;
         if writes {
@@ -35,8 +43,11 @@ pub fn exam(
         Ok(loaded)
     };
     let champions = files.iter().map(load).collect::<Result<Vec<_>, SaveError>>()?;
-    let evaluator = evaluator(args, "exam", &place_of(files))?;
+    // The first file stands for all.
+    let first = files.first().map_or(Path::new(""), PathBuf::as_path);
+    let evaluator = evaluator(args, "exam", first)?;
     let control = cancel_on_interrupt();
+    let mut mujoco = if asks_mujoco { Some(Mujoco::start()?) } else { None };
     let mut rows = Vec::new();
     let mut examine_one = |file: &PathBuf, loaded: LoadedChampion| -> Result<(), CliError> {
         let matches = equals_record(file, &loaded)?;
@@ -48,10 +59,17 @@ pub fn exam(
         if writes {
             store_exam(file, &loaded, &results)?;
         }
+        let in_mujoco = match &mut mujoco {
+            Some(mujoco) => Some(in_mujoco(mujoco, &loaded, &*evaluator, &control)?),
+            None => None,
+        };
         if args.json {
             results.iter().try_for_each(|result| print(&json_line(file, result, matches)))?;
+            if let Some((result, mujoco)) = in_mujoco.as_ref().zip(mujoco.as_ref()) {
+                print(&mujoco_line(file, result, mujoco.version(), matches))?;
+            }
         } else {
-            rows.push((name(file), results));
+            rows.push(ExamRow { name: name(file), results, in_mujoco });
         }
         Ok(())
     };
@@ -70,14 +88,19 @@ pub fn exam(
     print(&table(&suites, &rows))
 }
 
-/// The place of the first file, which stands for all.
-pub(super) fn place_of(files: &[PathBuf]) -> PathBuf {
-    let first = files.first().cloned().unwrap_or_default();
-    std::path::absolute(&first).unwrap_or(first)
+/// The suites that the user names, all of this program's own if none; and whether the one in MuJoCo is among them.
+fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, bool), Invalid> {
+    let own: Vec<String> = names.iter().filter(|name| *name != MUJOCO).cloned().collect();
+    let default: &[ExamSuite] = if names.is_empty() { ExamSuite::OPTIONS } else { &[] };
+    let with_mujoco = |mut invalid: Invalid| {
+        invalid.allowed += &format!(", {MUJOCO}");
+        invalid
+    };
+    Ok((chosen(&own, default).map_err(with_mujoco)?, own.len() < names.len()))
 }
 
 /// The suites that the user names; the default ones, if none.
-pub(super) fn chosen(names: &[String], default: &[ExamSuite]) -> Result<Vec<ExamSuite>, CliError> {
+pub(super) fn chosen(names: &[String], default: &[ExamSuite]) -> Result<Vec<ExamSuite>, Invalid> {
     if names.is_empty() {
         return Ok(default.to_vec());
     }
@@ -86,6 +109,29 @@ pub(super) fn chosen(names: &[String], default: &[ExamSuite]) -> Result<Vec<Exam
     suites.sort_unstable();
     suites.dedup();
     Ok(suites)
+}
+
+/// Plays a champion in MuJoCo, with a progress bar.
+fn in_mujoco(
+    mujoco: &mut Mujoco,
+    loaded: &LoadedChampion,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<MujocoResult, CliError> {
+    let bar = ProgressBar::new(mujoco_trials().into());
+    let model = |plan: &WorldPlan| mjcf("snake", plan, &[]);
+    let examined = || mujoco.examine(&loaded.champion, &model, evaluator, control);
+    match with_bar(&bar, control, examined) {
+        Err(MujocoError::Cancelled) => Err(HeadlessError::Cancelled { kept: None }.into()),
+        other => trusted(evaluator, other),
+    }
+}
+
+/// The results of a champion.
+struct ExamRow {
+    name: String,
+    results: Vec<SuiteResult>,
+    in_mujoco: Option<MujocoResult>,
 }
 
 fn name(file: &Path) -> String {
@@ -109,14 +155,35 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
     format!("{line}\n")
 }
 
+fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool) -> String {
+    let of = |engine: usize| {
+        json!({
+            "climbed": result.climbed[engine],
+            "landed": result.landed[engine],
+            "way": short(result.way[engine]),
+        })
+    };
+    let line = json!({
+        "file": file.display().to_string(),
+        "suite": MUJOCO,
+        "version": version,
+        "trials": result.trials,
+        "here": of(0),
+        "there": of(1),
+        "kept": short(result.kept),
+        "matches": matches,
+    });
+    format!("{line}\n")
+}
+
 /// A Markdown table with a row for each champion: in each suite the landings of all trials, and of the step rates the
 /// share of the way that it keeps in each.
-fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> String {
+fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
     let mut head = vec!["champion".to_owned()];
     for suite in suites {
         match (suite, champions.first()) {
-            (ExamSuite::StepRate, Some((_, results))) => {
-                let of_rates = results.iter().filter(|result| result.suite == *suite);
+            (ExamSuite::StepRate, Some(first)) => {
+                let of_rates = first.results.iter().filter(|result| result.suite == *suite);
                 head.extend(
                     of_rates.flat_map(|result| &result.each).map(|(label, _)| label.clone()),
                 );
@@ -124,7 +191,13 @@ fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> Stri
             _ => head.push(suite.choice().name.to_owned()),
         }
     }
-    let row = |(name, results): &(String, Vec<SuiteResult>)| {
+    if champions.iter().any(|row| row.in_mujoco.is_some()) {
+        let steps = format!("{CLIMBED_STEPS} steps");
+        head.push(format!("{steps} here"));
+        head.push(format!("{steps} in MuJoCo"));
+        head.extend(["way here", "way in MuJoCo", "kept in MuJoCo"].map(str::to_owned));
+    }
+    let row = |ExamRow { name, results, in_mujoco }: &ExamRow| {
         let mut cells = vec![name.clone()];
         for suite in suites {
             match results.iter().find(|result| result.suite == *suite) {
@@ -137,6 +210,10 @@ fn table(suites: &[ExamSuite], champions: &[(String, Vec<SuiteResult>)]) -> Stri
                     cells.extend(result.each.iter().map(|(_, kept)| format!("{kept:.2}")));
                 }
             }
+        }
+        if let Some(MujocoResult { trials, climbed, way, kept, .. }) = in_mujoco {
+            cells.extend(climbed.map(|climbed| format!("{climbed} of {trials}")));
+            cells.extend([way[0], way[1], *kept].map(|share| format!("{share:.2}")));
         }
         cells
     };
@@ -167,8 +244,7 @@ mod tests {
             let rates = [("60 Hz", 1.0), ("240 Hz", 0.7)];
             vec![result(ExamSuite::Trials, &[]), result(ExamSuite::StepRate, &rates)]
         };
-        let text =
-            table(&suites, &[("climber".to_owned(), results()), ("b".to_owned(), results())]);
+        let text = table(&suites, &["climber", "b"].map(|name| row(name, results(), None)));
         let expected = "\
 | champion |    trials | 60 Hz | 240 Hz |
 |:---------|----------:|------:|-------:|
@@ -176,6 +252,39 @@ mod tests {
 | b        | 97 of 100 |  1.00 |   0.70 |
 ";
         assert_eq!(text, expected);
+    }
+
+    fn row(name: &str, results: Vec<SuiteResult>, in_mujoco: Option<MujocoResult>) -> ExamRow {
+        ExamRow { name: name.to_owned(), results, in_mujoco }
+    }
+
+    #[test]
+    fn mujoco_adds_columns_for_both_engines() {
+        let result = MujocoResult {
+            trials: 20,
+            climbed: [20, 7],
+            landed: [19, 0],
+            way: [1.0, 0.45],
+            kept: 0.5,
+        };
+        let text = table(&[], &[row("climber", Vec::new(), Some(result))]);
+        let expected = "\
+| champion | 3 steps here | 3 steps in MuJoCo | way here | way in MuJoCo | kept in MuJoCo |
+|:---------|-------------:|------------------:|---------:|--------------:|---------------:|
+| climber  |     20 of 20 |           7 of 20 |     1.00 |          0.45 |           0.50 |
+";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn mujoco_is_examined_only_if_it_is_named() {
+        let names =
+            |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        assert_eq!(asked(&[]), Ok((ExamSuite::OPTIONS.to_vec(), false)));
+        assert_eq!(asked(&names(&["mujoco"])), Ok((Vec::new(), true)));
+        assert_eq!(asked(&names(&["mujoco", "shove"])), Ok((vec![ExamSuite::Shove], true)));
+        let error = asked(&names(&["stars"])).expect_err("unknown").to_string();
+        assert!(error.ends_with(", mujoco"), "{error}");
     }
 
     #[test]

@@ -63,8 +63,7 @@ pub fn families(args: &Args, wanted: &FamiliesArgs) -> Result<(), CliError> {
     let planned = plans(args, wanted, &families)?;
     within("runs", planned.len(), 1..=MAX_FAMILY_RUNS)?;
     let files = ResultFiles::prepare(&args.results_folder())?;
-    let place = std::path::absolute(&files.ron).unwrap_or_else(|_| files.ron.clone());
-    let evaluator = evaluator(args, "families", &place)?;
+    let evaluator = evaluator(args, "families", &files.ron)?;
     let mut finished = earlier_runs(&files.ron, &planned, &families, args.restart)?;
     let has_file = |family, seed| files.champion(family, seed).exists();
     let left = missing(&planned, &finished, has_file);

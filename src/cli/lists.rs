@@ -11,12 +11,14 @@ use crate::schema::markdown;
 /// Prints the presets that come with the program.
 pub fn print_presets(json: bool) -> Result<(), CliError> {
     let mut text = String::new();
-    for preset in shipped_presets()? {
+    let presets = shipped_presets()?;
+    let width = presets.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
+    for preset in presets {
         if json {
             let line = serde_json::json!({"name": preset.name, "about": preset.about});
             text += &format!("{line}\n");
         } else {
-            text += &format!("{:<14}{}\n", preset.name, preset.about);
+            text += &format!("{:<width$}  {}\n", preset.name, preset.about);
         }
     }
     print(&text)

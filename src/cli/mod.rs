@@ -10,10 +10,14 @@ mod compare;
 mod error;
 mod evaluators;
 mod exam;
+mod export;
 mod families;
 #[cfg(feature = "studio")]
 mod figures;
+#[cfg(feature = "studio")]
+mod film;
 mod lists;
+mod manual;
 mod output;
 #[cfg(feature = "studio")]
 mod render;
@@ -68,6 +72,8 @@ fn dispatch(mut args: Args) -> Result<(), CliError> {
 
 fn perform(args: &Args) -> Result<(), CliError> {
     match &args.command {
+        Some(Subcommand::Completions { shell }) => print(&args::completions(*shell)),
+        Some(Subcommand::Man) => manual::manual(args),
         Some(Subcommand::Presets) => lists::print_presets(args.json),
         Some(Subcommand::Settings { markdown }) => lists::print_settings(args, *markdown),
         Some(Subcommand::Bench) => bench::print_bench(args),
@@ -91,6 +97,7 @@ fn perform(args: &Args) -> Result<(), CliError> {
         }
         #[cfg(not(feature = "studio"))]
         Some(Subcommand::Figures { .. } | Subcommand::Render(_)) => Err(CliError::NoStudio),
+        Some(Subcommand::Export(wanted)) => export::export(args, wanted),
         #[cfg(feature = "cluster")]
         Some(Subcommand::Worker) => cluster::worker(args),
         #[cfg(feature = "cluster")]
@@ -106,8 +113,7 @@ fn perform(args: &Args) -> Result<(), CliError> {
 /// The headless experiment.
 fn evolve(args: &Args) -> Result<(), CliError> {
     let source = args.run_source()?;
-    let place = std::path::absolute(&source.folder).unwrap_or_else(|_| source.folder.clone());
-    let evaluator = evaluators::evaluator(args, &run_name(&source.plan), &place)?;
+    let evaluator = evaluators::evaluator(args, &run_name(&source.plan), &source.folder)?;
     let control = cancel_on_interrupt();
     let mut out = io::stdout();
     let result = headless::evolve(source, &*evaluator, args.json, &control, &mut out);
@@ -128,6 +134,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         Some(Subcommand::Replay { files }) => &files[..],
         _ => &[],
     };
+    let replay::Opened { champions, problems } = replay::opened(files, args.desktop)?;
     let comparison = args.comparison.as_deref().map(crate::save::load_comparison).transpose();
     let (run, saves) = (args.run_source()?, args.saves_folder());
     // Each start of the program begins another run, and offers the stopped one, unless the user names a run.
@@ -137,7 +144,8 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         offers_stopped_run: !names_run,
         evaluator: args.studio_evaluator()?,
         saves,
-        champions: replay::named_champions(files)?,
+        champions,
+        problems,
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         theme: args.theme()?,

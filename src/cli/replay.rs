@@ -33,12 +33,58 @@ pub fn equals_record(file: &Path, loaded: &LoadedChampion) -> Result<bool, CliEr
     Ok(difference.is_none())
 }
 
+/// A saved champion, with the name of its file.
+#[cfg(feature = "studio")]
+fn named_champion(file: &Path) -> Result<(String, LoadedChampion), CliError> {
+    let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok((name, load_champion(file)?))
+}
+
 /// Saved champions, each with the name of its file.
 #[cfg(feature = "studio")]
 pub fn named_champions(files: &[PathBuf]) -> Result<Vec<(String, LoadedChampion)>, CliError> {
-    let load = |file: &PathBuf| {
-        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok((name, load_champion(file)?))
-    };
-    files.iter().map(load).collect()
+    files.iter().map(|file| named_champion(file)).collect()
+}
+
+/// Champions and problems with which the window opens.
+#[cfg(feature = "studio")]
+pub struct Opened {
+    /// Champions, each with the name of its file.
+    pub champions: Vec<(String, LoadedChampion)>,
+    /// Problems with the other files.
+    pub problems: Vec<String>,
+}
+
+/// Reads the champions with which the window opens. From the desktop, where nobody reads what a program prints, a file that
+/// cannot be read is a problem to show.
+#[cfg(feature = "studio")]
+pub fn opened(files: &[PathBuf], is_from_desktop: bool) -> Result<Opened, CliError> {
+    let mut opened = Opened { champions: Vec::new(), problems: Vec::new() };
+    for file in files {
+        match named_champion(file) {
+            Ok(champion) => opened.champions.push(champion),
+            Err(error) if is_from_desktop => opened.problems.push(error.to_string()),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(opened)
+}
+
+#[cfg(test)]
+mod tests {
+    #[cfg(feature = "studio")]
+    #[test]
+    fn from_the_desktop_a_damaged_champion_is_a_problem_beside_the_others() {
+        use super::*;
+        let folder = tempfile::tempdir().expect("a folder");
+        let damaged = folder.path().join("damaged.ron");
+        std::fs::write(&damaged, "(kind: \"snakes-and-stairs champion\"").expect("written");
+        let good = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron"));
+        let files = [damaged, good];
+        assert!(opened(&files, false).is_err());
+        let Opened { champions, problems } = opened(&files, true).expect("opened");
+        assert_eq!(champions.len(), 1);
+        assert_eq!(champions[0].0, "climber");
+        assert!(problems[0].contains("damaged.ron") && problems.len() == 1, "{problems:?}");
+    }
 }

@@ -29,8 +29,7 @@ pub fn robust(
     let loaded = load_champion(file)?;
     let matches = equals_record(file, &loaded)?;
     let champion = loaded.champion;
-    let place = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-    let evaluator = evaluator(args, "robust", &place)?;
+    let evaluator = evaluator(args, "robust", file)?;
     let (control, seed) = (cancel_on_interrupt(), args.seed()?);
     let bar = ProgressBar::new(trials.into());
     let measure = || robustness(&champion, range, trials, seed, &*evaluator, &control);

@@ -23,8 +23,7 @@ pub fn table1(args: &Args, first_seed: u64, count: u64) -> Result<(), CliError> 
     check_fitness(&settings).map_err(|invalid| args.of_its_flag(invalid))?;
     let folder = args.results_folder();
     folder.prepare()?;
-    let place = std::path::absolute(folder.path()).unwrap_or_else(|_| folder.path().to_owned());
-    let evaluator = evaluator(args, "table1", &place)?;
+    let evaluator = evaluator(args, "table1", folder.path())?;
     let control = cancel_on_interrupt();
     let plan = |seed| RunPlan::new(&preset, seed, settings.clone());
     let run = run_name(&plan(*seeds.start()));

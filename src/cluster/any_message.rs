@@ -40,8 +40,7 @@ pub fn kinds_of_message(bytes: &[u8]) -> Result<Vec<&'static str>, WireError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cluster::hello::NOTICE_FORMAT;
-    use crate::cluster::wire::{TaskText, line_of, shared_hash, task_key};
+    use crate::cluster::wire::{TaskText, WIRE_FORMAT, line_of, shared_hash, task_key};
     use crate::engine::{ENGINE_VERSION, Processors};
     use crate::rng::{Purpose, stream};
     use crate::run::evaluate_caught;
@@ -77,7 +76,7 @@ mod tests {
             examples.push((format!("condition-{preset}"), line_of(&condition).into_bytes()));
         }
         let run = RunNotice {
-            format: NOTICE_FORMAT,
+            format: WIRE_FORMAT,
             run: "climb-seed1".to_owned(),
             host: "computer".to_owned(),
             engine: ENGINE_VERSION,

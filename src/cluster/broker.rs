@@ -1,46 +1,43 @@
 //! The connection to a NATS server, and the streams on it.
 
-use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-use std::sync::atomic::Ordering::SeqCst;
 use std::time::Duration;
 
 use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
+use async_nats::jetstream::context::ConsumerInfoErrorKind;
 use async_nats::jetstream::stream::{Config, DiscardPolicy, RetentionPolicy, StorageType, Stream};
 use async_nats::jetstream::{self, Context};
-use async_nats::{Client, ConnectOptions, Event};
+use async_nats::{Client, ConnectOptions};
 use tokio::runtime::{Builder, Handle, Runtime};
 
+use super::address::BrokerOptions;
+use super::connection::{ServerConnection, Trouble};
 use super::error::ClusterError;
 use super::names::{
     ACKNOWLEDGEMENT_WAIT, MESSAGE_AGE, RESULT_STREAM, RESULT_SUBJECTS, WORK_STREAM, WORK_SUBJECTS,
     result_subject, worker_consumer,
 };
-use crate::check::Invalid;
-use crate::run::headless::say;
 use crate::save::load_text;
-
-/// How to reach a server.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct BrokerOptions {
-    /// Its addresses, such as `nats://192.168.1.5:4222`; of a cluster several, separated by commas.
-    pub url: String,
-    /// A file with credentials: what `nsc` writes (`.creds`), or the seed of an NKey.
-    pub creds: Option<PathBuf>,
-    /// A file with the certificate of the authority that signed the server's.
-    pub tls_ca: Option<PathBuf>,
-}
 
 /// A connection. It is made again whenever it is lost.
 #[derive(Debug)]
 pub struct Broker {
-    url: String,
+    options: BrokerOptions,
+    connection: Arc<ServerConnection>,
     runtime: Handle,
     /// Present until this is dropped.
     owned_runtime: Option<Runtime>,
     client: Client,
     jetstream: Context,
+}
+
+/// The messages that are fetched.
+#[derive(Debug, Clone)]
+pub enum PullSource {
+    /// Batches for workers with this proof.
+    Work(String),
+    /// Results of this run.
+    Results(String),
 }
 
 /// How long a server may take to answer.
@@ -49,37 +46,6 @@ const ANSWER_WAIT: Duration = Duration::from_secs(5);
 const MOST_WAITING: i64 = 20_000;
 /// Maximum number of batches that workers have at the same time.
 const MOST_OUTSTANDING: i64 = 20_000;
-
-impl BrokerOptions {
-    /// Refuses an address with a password: others can read the command line.
-    ///
-    /// # Errors
-    /// The address is none, or has a password.
-    pub fn check(&self) -> Result<(), Invalid> {
-        let allowed =
-            "nats://HOST:PORT or tls://HOST:PORT, without user and password (use --creds FILE)";
-        for address in self.url.split(',') {
-            let refused = |shown: &str| Invalid::new("--nats", format!("{shown:?}"), allowed);
-            let host = address.strip_prefix("nats://").or(address.strip_prefix("tls://"));
-            let Some(host) = host.filter(|host| !host.is_empty()) else {
-                return Err(refused(without_user(address).as_str()));
-            };
-            if host.contains('@') {
-                // The password stands in no message.
-                return Err(refused(&without_user(address)));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// The address without what stands before its @.
-fn without_user(address: &str) -> String {
-    match address.rsplit_once('@') {
-        Some((_, host)) => format!("…@{host}"),
-        None => address.to_owned(),
-    }
-}
 
 impl Broker {
     /// Connects, and makes the streams that are not there yet.
@@ -93,26 +59,44 @@ impl Broker {
             .thread_name("cluster")
             .enable_all()
             .build()?;
-        let (client, jetstream) = runtime.block_on(connect(options, name))?;
+        let connection = Arc::new(ServerConnection::new(&options.url));
+        let (client, jetstream) = runtime.block_on(connect(options, name, &connection))?;
         let handle = runtime.handle().clone();
         let broker = Self {
-            url: options.url.clone(),
+            options: options.clone(),
+            connection,
             runtime: handle,
             owned_runtime: Some(runtime),
             client,
             jetstream,
         };
         broker.check_jetstream()?;
-        broker.runtime.block_on(broker.make_streams())?;
+        let streams = broker.runtime.block_on(broker.make_streams());
+        streams.map_err(|trouble| broker.refused("a stream", &trouble))?;
         Ok(broker)
     }
 
     /// The address.
     pub fn url(&self) -> &str {
-        &self.url
+        &self.options.url
     }
 
-    /// What the connection runs on.
+    /// The command that starts a worker for this server.
+    pub(super) fn worker_command(&self) -> String {
+        format!("snakes worker {}", self.options.flags())
+    }
+
+    /// The flags that name this server on a command line.
+    pub(super) fn flags(&self) -> String {
+        self.options.flags()
+    }
+
+    /// The state of the connection.
+    pub(super) fn connection(&self) -> &ServerConnection {
+        &self.connection
+    }
+
+    /// The runtime of the connection.
     pub(super) fn runtime(&self) -> &Handle {
         &self.runtime
     }
@@ -134,19 +118,52 @@ impl Broker {
     fn check_jetstream(&self) -> Result<(), ClusterError> {
         match self.client.server_info().jetstream {
             true => Ok(()),
-            false => Err(ClusterError::NoJetStream { url: self.url.clone() }),
+            false => Err(ClusterError::NoJetStream { url: self.url().to_owned() }),
         }
     }
 
     /// Makes the streams that are not there.
-    async fn make_streams(&self) -> Result<(), ClusterError> {
-        work_stream(&self.jetstream).await.map_err(|problem| self.refused("a stream", problem))?;
-        let results = result_stream(&self.jetstream).await;
-        results.map(drop).map_err(|problem| self.refused("a stream", problem))
+    pub(super) async fn make_streams(&self) -> Result<(), Trouble> {
+        self.work_stream().await?;
+        self.result_stream().await.map(drop)
     }
 
-    pub(super) fn refused(&self, task: &'static str, problem: String) -> ClusterError {
-        ClusterError::Refused { url: self.url.clone(), task, problem }
+    /// The stream of batches, which is made if it is not there.
+    pub(super) async fn work_stream(&self) -> Result<Stream, Trouble> {
+        let config = stream_config(WORK_STREAM, WORK_SUBJECTS);
+        let stream = self.jetstream.get_or_create_stream(config).await;
+        stream.map_err(|error| Trouble::of(&error))
+    }
+
+    /// The stream of results, which is made if it is not there.
+    pub(super) async fn result_stream(&self) -> Result<Stream, Trouble> {
+        let config = stream_config(RESULT_STREAM, RESULT_SUBJECTS);
+        let stream = self.jetstream.get_or_create_stream(config).await;
+        stream.map_err(|error| Trouble::of(&error))
+    }
+
+    /// A consumer, and whether it had to be made because it was not there. All workers with the same proof share one, and
+    /// each run has its own.
+    pub(super) async fn consumer(
+        &self,
+        source: &PullSource,
+    ) -> Result<(PullConsumer, bool), Trouble> {
+        let (stream, config) = match source {
+            PullSource::Work(proof) => (self.work_stream().await?, work_config(proof)),
+            PullSource::Results(run) => (self.result_stream().await?, result_config(run)),
+        };
+        let name = config.durable_name.clone().unwrap_or_default();
+        let is_missing = match stream.consumer_info(&name).await {
+            Ok(_) => false,
+            Err(error) if error.kind() == ConsumerInfoErrorKind::NotFound => true,
+            Err(error) => return Err(Trouble::of(&error)),
+        };
+        let consumer = stream.get_or_create_consumer(&name, config).await;
+        Ok((consumer.map_err(|error| Trouble::of(&error))?, is_missing))
+    }
+
+    pub(super) fn refused(&self, task: &'static str, trouble: &Trouble) -> ClusterError {
+        ClusterError::Refused { url: self.url().to_owned(), task, problem: trouble.to_string() }
     }
 }
 
@@ -159,7 +176,11 @@ impl Drop for Broker {
     }
 }
 
-async fn connect(options: &BrokerOptions, name: &str) -> Result<(Client, Context), ClusterError> {
+async fn connect(
+    options: &BrokerOptions,
+    name: &str,
+    connection: &Arc<ServerConnection>,
+) -> Result<(Client, Context), ClusterError> {
     let mut connect = ConnectOptions::new();
     if let Some(path) = &options.creds {
         let text = load_text(path)?;
@@ -179,8 +200,7 @@ async fn connect(options: &BrokerOptions, name: &str) -> Result<(Client, Context
         }
         connect = connect.add_root_certificates(path.clone()).require_tls(true);
     }
-    let lost = Arc::new(AtomicBool::new(false));
-    let url = options.url.clone();
+    let connection = Arc::clone(connection);
     let connect = connect
         .name(name)
         .connection_timeout(ANSWER_WAIT)
@@ -190,55 +210,16 @@ async fn connect(options: &BrokerOptions, name: &str) -> Result<(Client, Context
             Duration::from_millis(100 * attempts.clamp(1, 10) as u64)
         })
         .event_callback(move |event| {
-            let line = connection_line(&event, &lost, &url);
-            async move {
-                if let Some(line) = line {
-                    say(&line);
-                }
-            }
+            connection.on_event(&event);
+            std::future::ready(())
         });
     let addresses: Vec<&str> = options.url.split(',').collect();
     let client = connect.connect(addresses).await.map_err(|error| ClusterError::Unreachable {
         url: options.url.clone(),
-        problem: with_advice(one_line(&error)),
+        problem: options.why_unreachable(&error),
     })?;
     let jetstream = jetstream::new(client.clone());
     Ok((client, jetstream))
-}
-
-/// A problem of a connection with advice, where the client's words do not say what to do.
-fn with_advice(problem: String) -> String {
-    let advice = [
-        ("UnknownIssuer", "--tls-ca FILE names the authority that signed the server's certificate"),
-        ("InvalidContentType", "the server does not use TLS"),
-    ];
-    let fitting = advice.into_iter().find(|(word, _)| problem.contains(word));
-    fitting.map_or(problem.clone(), |(_, advice)| format!("{problem}; {advice}"))
-}
-
-/// A line about the connection, when it is lost and when it is there again.
-fn connection_line(event: &Event, lost: &AtomicBool, url: &str) -> Option<String> {
-    match event {
-        Event::Disconnected => (!lost.swap(true, SeqCst))
-            .then(|| format!("{url}: connection lost; waiting for the server")),
-        Event::Connected => lost.swap(false, SeqCst).then(|| format!("{url}: connected again")),
-        Event::ServerError(error) => Some(format!("{url}: {error}")),
-        _ => None,
-    }
-}
-
-/// An error with its causes, on one line.
-pub(super) fn one_line(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text = format!("{text}: {cause_text}");
-        }
-        source = cause.source();
-    }
-    text.replace(char::is_control, " ")
 }
 
 fn stream_config(name: &str, subjects: &str) -> Config {
@@ -254,66 +235,27 @@ fn stream_config(name: &str, subjects: &str) -> Config {
     }
 }
 
-/// The stream of batches, which is made if it is not there.
-pub(super) async fn work_stream(jetstream: &Context) -> Result<Stream, String> {
-    let config = stream_config(WORK_STREAM, WORK_SUBJECTS);
-    jetstream.get_or_create_stream(config).await.map_err(|error| one_line(&error))
-}
-
-/// The stream of results, which is made if it is not there.
-pub(super) async fn result_stream(jetstream: &Context) -> Result<Stream, String> {
-    let config = stream_config(RESULT_STREAM, RESULT_SUBJECTS);
-    jetstream.get_or_create_stream(config).await.map_err(|error| one_line(&error))
-}
-
 /// The consumer of batches that all workers with this proof share.
-pub(super) async fn work_consumer(
-    jetstream: &Context,
-    proof: &str,
-) -> Result<PullConsumer, String> {
-    let name = worker_consumer(proof);
-    let config = pull::Config {
-        durable_name: Some(name.clone()),
+fn work_config(proof: &str) -> pull::Config {
+    pull::Config {
+        durable_name: Some(worker_consumer(proof)),
         filter_subject: format!("snakes.work.{proof}.>"),
         ack_policy: AckPolicy::Explicit,
         ack_wait: ACKNOWLEDGEMENT_WAIT,
         max_ack_pending: MOST_OUTSTANDING,
         max_waiting: MOST_WAITING,
         ..pull::Config::default()
-    };
-    let stream = work_stream(jetstream).await?;
-    stream.get_or_create_consumer(&name, config).await.map_err(|error| one_line(&error))
+    }
 }
 
 /// The consumer of a run's results.
-pub(super) async fn result_consumer(
-    jetstream: &Context,
-    run: &str,
-) -> Result<PullConsumer, String> {
-    let config = pull::Config {
+fn result_config(run: &str) -> pull::Config {
+    pull::Config {
         durable_name: Some(run.to_owned()),
         filter_subject: result_subject(run),
         ack_policy: AckPolicy::Explicit,
         ack_wait: Duration::from_secs(30),
         max_ack_pending: MOST_OUTSTANDING,
         ..pull::Config::default()
-    };
-    let stream = result_stream(jetstream).await?;
-    stream.get_or_create_consumer(run, config).await.map_err(|error| one_line(&error))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_address_with_a_password_is_refused_without_repeating_it() {
-        let check = |url: &str| BrokerOptions { url: url.to_owned(), ..Default::default() }.check();
-        assert_eq!(check("nats://127.0.0.1:4222"), Ok(()));
-        assert_eq!(check("tls://a:4222,nats://b"), Ok(()));
-        for url in ["nats://ann:secret@a:4222", "ann:secret@a", "http://a", "nats://", ""] {
-            let error = check(url).expect_err("refused").to_string();
-            assert!(error.starts_with("--nats is \"") && !error.contains("secret"), "{error}");
-        }
     }
 }

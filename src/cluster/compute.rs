@@ -9,7 +9,7 @@ use crate::genome::Genome;
 use crate::run::{evaluate_caught, examine_caught};
 use crate::score::{ExamCondition, Trial};
 
-/// What the tasks of a batch share, read and checked.
+/// The trial or the genome that all tasks of a batch have in common, read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shared {
     /// The trial in which genomes are scored.

@@ -39,7 +39,7 @@ pub struct CoordinatorOptions {
     pub expect_workers: usize,
     /// Number of its own threads that compute, too.
     pub local_threads: usize,
-    /// What computes the outcomes here.
+    /// Computes outcomes on this computer.
     pub compute: Arc<dyn Compute>,
 }
 
@@ -60,9 +60,13 @@ struct Inner {
     actor: Mutex<Option<thread::JoinHandle<()>>>,
     local: Mutex<Vec<thread::JoinHandle<()>>>,
     options: CoordinatorOptions,
+    /// The command that starts a worker.
+    worker_command: String,
+    /// The flags that name the server.
+    flags: String,
 }
 
-/// What the coordinator tells of itself.
+/// State of the coordinator, for the calls that wait.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Status {
     workers: usize,
@@ -116,6 +120,7 @@ impl Coordinator {
         let (commands, received) = tokio::sync::mpsc::unbounded_channel();
         let status = Arc::new(Mutex::new(Status::default()));
         let shared = Arc::new(SharedTexts::default());
+        let (worker_command, flags) = (broker.worker_command(), broker.flags());
         let broker = Arc::new(broker);
         let actor = actor::Actor::start(
             Arc::clone(&broker),
@@ -144,6 +149,8 @@ impl Coordinator {
             actor: Mutex::new(Some(running)),
             local: Mutex::new(local),
             options,
+            worker_command,
+            flags,
         };
         Ok(Self { inner: Arc::new(inner), is_single: false })
     }
@@ -152,23 +159,24 @@ impl Coordinator {
         self.inner.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Waits until there are as many workers as the run expects. Says so, if that takes long.
+    /// Waits until there are as many workers as the run expects. Says how many there are, if that takes long.
     ///
     /// # Errors
     /// [`Cancelled`], if `control` was.
     fn wait_for_workers(&self, control: &RunControl) -> Result<(), Cancelled> {
         let expected = self.inner.options.expect_workers;
-        let (began, mut has_said) = (Instant::now(), false);
+        let (began, mut told) = (Instant::now(), None);
         loop {
             control.wait_while_paused()?;
             let Status { workers, .. } = self.status();
             if workers >= expected {
                 return Ok(());
             }
-            if !has_said && began.elapsed() > PATIENCE {
-                has_said = true;
+            if told != Some(workers) && began.elapsed() > PATIENCE {
+                told = Some(workers);
                 say(&format!(
-                    "{workers} of {expected} workers; waiting (start one with: snakes worker --nats URL)"
+                    "{workers} of {expected} workers; waiting (start one with: {})",
+                    self.inner.worker_command
                 ));
             }
             thread::sleep(CONTROL_INTERVAL);
@@ -235,9 +243,10 @@ impl Coordinator {
                     let is_alone = workers == 0 && self.inner.options.local_threads == 0;
                     if is_alone && !is_paused && !has_said && waits_since.elapsed() > PATIENCE {
                         has_said = true;
-                        say(
-                            "no worker is there; waiting (start one with: snakes worker --nats URL)",
-                        );
+                        say(&format!(
+                            "no worker is there; waiting (start one with: {})",
+                            self.inner.worker_command
+                        ));
                     }
                 }
             }
@@ -312,8 +321,17 @@ impl Evaluator for Coordinator {
     fn place(&self) -> String {
         match self.inner.options.local_threads {
             0 => "on other computers".to_owned(),
+            1 => "on other computers and 1 thread here".to_owned(),
             threads => format!("on other computers and {threads} threads here"),
         }
+    }
+
+    fn flags(&self) -> String {
+        let local = match self.inner.options.local_threads {
+            0 => String::new(),
+            threads => format!(" --local-threads {threads}"),
+        };
+        format!(" {}{local}", self.inner.flags)
     }
 
     fn fault(&self) -> Option<String> {

@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::names::check_name;
-use super::wire::{WIRE_FORMAT, WireError, hash_of, parse_line};
+use super::wire::{WireError, parse_line};
 use crate::check::within;
 use crate::engine::{ENGINE_VERSION, Processors};
+use crate::save::hash_of;
 use crate::schema::Choices;
 
 /// The largest notice, in bytes.
@@ -31,7 +32,7 @@ pub struct WorkerNotice {
     pub threads: u32,
     /// Number of its evaluations since it started.
     pub evaluations: u64,
-    /// Evaluations per second, over the last ten seconds or so.
+    /// Evaluations per second, over the last five seconds.
     pub per_s: f32,
     /// Number of batches that it received after another worker had had them.
     pub redelivered: u64,
@@ -142,18 +143,15 @@ fn text_of(bytes: &[u8]) -> Result<&str, WireError> {
     std::str::from_utf8(bytes).map_err(|error| WireError::Damaged(error.to_string()))
 }
 
-/// The format of the notices of this program.
-pub const NOTICE_FORMAT: u32 = WIRE_FORMAT;
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cluster::wire::line_of;
+    use crate::cluster::wire::{WIRE_FORMAT, line_of};
 
     /// A notice of a worker with the engine of this program.
     fn notice() -> WorkerNotice {
         WorkerNotice {
-            format: NOTICE_FORMAT,
+            format: WIRE_FORMAT,
             worker: "w-1".to_owned(),
             host: host_name(),
             engine: ENGINE_VERSION,

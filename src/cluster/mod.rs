@@ -7,9 +7,11 @@
 //! A task is named by the hash of its content. What is delivered twice, computed twice, or left by a coordinator that was
 //! killed therefore counts once, and for the same task only.
 
+mod address;
 mod any_message;
 mod broker;
 mod compute;
+mod connection;
 mod coordinator;
 mod error;
 mod hello;
@@ -18,12 +20,15 @@ mod names;
 mod outcome;
 mod packing;
 mod proof;
+mod puller;
+mod store;
 mod watch;
 mod wire;
 mod worker;
 
+pub use address::BrokerOptions;
 pub use any_message::kinds_of_message;
-pub use broker::{Broker, BrokerOptions};
+pub use broker::Broker;
 pub use compute::{Compute, Shared, Simulator};
 pub use coordinator::{Coordinator, CoordinatorOptions};
 pub use error::ClusterError;

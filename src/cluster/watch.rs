@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded, unbounded};
 
-use super::broker::{Broker, BrokerOptions};
+use super::address::BrokerOptions;
+use super::broker::Broker;
 use super::compute::Simulator;
 use super::coordinator::{Coordinator, CoordinatorOptions};
 use super::error::ClusterError;

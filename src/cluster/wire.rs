@@ -9,6 +9,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::names::check_name;
 use super::packing::{pack, unpack};
 use crate::check::{Invalid, within};
+use crate::save::hash_of;
 
 /// The number of the messages' format. A worker of another format does not receive them: see [`super::proof`].
 pub const WIRE_FORMAT: u32 = 1;
@@ -119,13 +120,6 @@ pub fn task_key(shared: u64, text: &str) -> u64 {
 /// A hash as 16 hexadecimal digits.
 pub fn hex(hash: u64) -> String {
     format!("{hash:016x}")
-}
-
-/// Reads 16 hexadecimal digits.
-pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
-    let is_hash = text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let hash = is_hash.then(|| u64::from_str_radix(text, 16).ok()).flatten();
-    hash.ok_or_else(|| Invalid::new(field, crate::check::quoted(text), "16 hexadecimal digits"))
 }
 
 /// A value as a line of JSON. Only a map whose keys are no text could fail, and there is none.

@@ -1,5 +1,6 @@
 //! A worker: pulls batches, computes them, stores the results, and only then acknowledges the batches.
 
+mod activity;
 mod notices;
 mod shared_cache;
 
@@ -9,20 +10,19 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use async_nats::jetstream::consumer::PullConsumer;
-use async_nats::jetstream::context::PublishErrorKind;
-use async_nats::jetstream::message::PublishMessage;
 use async_nats::jetstream::{AckKind, Message};
-use futures_util::StreamExt;
 
-use super::broker::{Broker, one_line, result_stream, work_consumer};
+use super::broker::{Broker, PullSource};
 use super::compute::Compute;
 use super::error::ClusterError;
-use super::names::{PROGRESS_INTERVAL, PULL_WAIT, result_subject};
+use super::names::{PROGRESS_INTERVAL, result_subject};
 use super::outcome::Outcome;
+use super::puller::{Pulled, Puller};
+use super::store::{RETRY_PAUSE, publish_until_stored};
 use super::wire::{ResultBatch, TaskText, WorkBatch};
 use crate::run::RunControl;
 use crate::run::headless::say;
+use activity::WorkerActivity;
 use notices::answer_audits;
 use notices::tell_and_listen;
 use shared_cache::SharedCache;
@@ -49,12 +49,19 @@ struct Workplace {
     cache: SharedCache,
     evaluations: AtomicU64,
     redelivered: AtomicU64,
+    activity: WorkerActivity,
 }
 
-/// Pause before the server is asked again after it refused a request.
-const RETRY_PAUSE: Duration = Duration::from_millis(500);
+/// How long a stopped worker waits for its threads: then their batches are left to the server, which delivers them again.
+const LONGEST_END: Duration = Duration::from_millis(1200);
+/// How long a stopped worker tries to tell the server something.
+const LAST_WORDS: Duration = Duration::from_millis(300);
+/// Interval at which it is looked whether the worker was stopped.
+const STOP_INTERVAL: Duration = Duration::from_millis(30);
 
-/// Works until `control` is cancelled. A batch in progress is then returned to the queue after its current evaluation.
+/// Works until `control` is cancelled. A batch in progress is then returned to the queue after its current evaluation. A
+/// worker that is stopped ends within two seconds, also if its server does not answer. Returns the number of its
+/// evaluations.
 ///
 /// # Errors
 /// The first request for work is refused, or all coordinators on the server compute with another engine.
@@ -62,11 +69,9 @@ pub fn work(
     broker: Broker,
     options: WorkerOptions,
     control: &Arc<RunControl>,
-) -> Result<(), ClusterError> {
+) -> Result<u64, ClusterError> {
     super::names::check_name("worker", &options.name)?;
     let broker = Arc::new(broker);
-    let consumer = broker.runtime().block_on(work_consumer(broker.jetstream(), &options.proof));
-    consumer.map_err(|problem| broker.refused("the request for work", problem))?;
     let threads = options.threads;
     let place = Arc::new(Workplace {
         cache: SharedCache::default(),
@@ -75,8 +80,15 @@ pub fn work(
         control: Arc::clone(control),
         evaluations: AtomicU64::new(0),
         redelivered: AtomicU64::new(0),
+        activity: WorkerActivity::default(),
     });
     let runtime = place.broker.runtime();
+    let source = PullSource::Work(place.options.proof.clone());
+    let Some(consumer) = place.unless_stopped(Duration::ZERO, place.broker.consumer(&source))
+    else {
+        return Ok(0);
+    };
+    consumer.map_err(|trouble| place.broker.refused("the request for work", &trouble))?;
     let notices = runtime.spawn(tell_and_listen(Arc::clone(&place)));
     let audits = runtime.spawn(answer_audits(Arc::clone(&place)));
     let mut workers = Vec::new();
@@ -85,64 +97,88 @@ pub fn work(
         let name = format!("worker-{number}");
         workers.push(thread::Builder::new().name(name).spawn(move || work_loop(&place))?);
     }
-    let ended = workers.into_iter().map(thread::JoinHandle::join).filter(Result::is_err).count();
+    let ended = joined(workers, control);
     audits.abort();
     // The notices end with the last one, which says that this worker leaves.
-    let foreign = runtime.block_on(notices);
-    let _ = runtime.block_on(place.broker.client().flush());
+    let foreign = runtime.block_on(async {
+        let foreign = tokio::time::timeout(LAST_WORDS, notices).await;
+        let _ = tokio::time::timeout(LAST_WORDS, place.broker.client().flush()).await;
+        foreign
+    });
     match foreign {
-        Ok(Some(error)) => Err(error),
+        Ok(Ok(Some(error))) => Err(error),
         _ if ended > 0 => Err(ClusterError::ThreadEnded),
-        _ => Ok(()),
+        _ => Ok(place.evaluations.load(Relaxed)),
     }
+}
+
+/// Waits until all threads have ended; after the worker was stopped, not for long. Returns the number of those that
+/// panicked.
+fn joined(mut threads: Vec<thread::JoinHandle<()>>, control: &RunControl) -> usize {
+    let (mut panicked, mut stopped) = (0, None);
+    while !threads.is_empty() {
+        if control.is_cancelled() {
+            let stopped = *stopped.get_or_insert_with(Instant::now);
+            if stopped.elapsed() > LONGEST_END {
+                break;
+            }
+        }
+        let (ended, running) = threads.into_iter().partition(|thread| thread.is_finished());
+        threads = running;
+        let ended: Vec<thread::JoinHandle<()>> = ended;
+        panicked += ended.into_iter().map(thread::JoinHandle::join).filter(Result::is_err).count();
+        thread::sleep(STOP_INTERVAL);
+    }
+    panicked
+}
+
+impl Workplace {
+    /// The output of a future; none if the worker was stopped, and the future does not end within `grace` after that.
+    fn unless_stopped<T>(&self, grace: Duration, future: impl Future<Output = T>) -> Option<T> {
+        self.broker.runtime().block_on(async {
+            tokio::select! {
+                biased;
+                value = future => Some(value),
+                () = stopped(&self.control, grace) => None,
+            }
+        })
+    }
+}
+
+/// Ends so long after the worker was stopped.
+async fn stopped(control: &RunControl, grace: Duration) {
+    while !control.is_cancelled() {
+        tokio::time::sleep(STOP_INTERVAL).await;
+    }
+    tokio::time::sleep(grace).await;
 }
 
 /// One thread of a worker.
 fn work_loop(place: &Workplace) {
-    let runtime = place.broker.runtime();
-    let mut complaint = String::new();
-    let mut consumer: Option<PullConsumer> = None;
+    const TASK: &str = "no work can be fetched";
+    let connection = place.broker.connection();
+    let source = PullSource::Work(place.options.proof.clone());
+    let mut puller = Puller::new(&place.broker, source, 1);
     while !place.control.is_cancelled() {
-        let pulled = runtime.block_on(async {
-            if consumer.is_none() {
-                let found = work_consumer(place.broker.jetstream(), &place.options.proof).await;
-                consumer = Some(found?);
+        match place.unless_stopped(Duration::ZERO, puller.next()) {
+            Some(Ok(Pulled::Message(message))) => {
+                connection.succeeded(TASK);
+                do_batch(place, &message);
             }
-            match &consumer {
-                Some(consumer) => pull_one(consumer).await,
-                None => Ok(None),
+            Some(Ok(Pulled::Nothing | Pulled::StoreLost)) => connection.succeeded(TASK),
+            Some(Err(trouble)) => {
+                connection.failed(TASK, &trouble);
+                place.unless_stopped(Duration::ZERO, async {
+                    tokio::time::sleep(RETRY_PAUSE).await
+                });
             }
-        });
-        match pulled {
-            Ok(Some(message)) => do_batch(place, &message),
-            Ok(None) => complaint.clear(),
-            Err(problem) => {
-                // A server that lost its files has no consumer any more.
-                consumer = None;
-                if problem != complaint {
-                    say(&format!("{}: no work: {problem}; asking again", place.broker.url()));
-                    complaint = problem;
-                }
-                thread::sleep(RETRY_PAUSE);
-            }
+            None => {}
         }
-    }
-}
-
-/// The next batch, if one comes soon.
-async fn pull_one(consumer: &PullConsumer) -> Result<Option<Message>, String> {
-    let request = consumer.batch().max_messages(1).expires(PULL_WAIT).messages();
-    let mut messages = request.await.map_err(|error| one_line(&error))?;
-    match messages.next().await {
-        None => Ok(None),
-        Some(Ok(message)) => Ok(Some(message)),
-        Some(Err(error)) => Err(error.to_string()),
     }
 }
 
 /// Computes a batch, stores its results, and acknowledges it.
 fn do_batch(place: &Workplace, message: &Message) {
-    let runtime = place.broker.runtime();
     let work = match WorkBatch::decode(&message.payload) {
         Ok(work) => work,
         Err(error) => {
@@ -156,7 +192,7 @@ fn do_batch(place: &Workplace, message: &Message) {
     }
     let reporter = {
         let message = message.clone();
-        runtime.spawn(async move {
+        place.broker.runtime().spawn(async move {
             loop {
                 tokio::time::sleep(PROGRESS_INTERVAL).await;
                 // A lost report is followed by another one.
@@ -164,11 +200,10 @@ fn do_batch(place: &Workplace, message: &Message) {
             }
         })
     };
+    place.activity.begin(&work.run);
     let results = compute(place, &work);
-    let stored = match results {
-        Some(results) => store(place, &results),
-        None => false,
-    };
+    place.activity.end();
+    let stored = results.is_some_and(|results| store(place, &results));
     reporter.abort();
     // A batch that is returned soon reaches another worker.
     let pause = (!place.control.is_cancelled()).then_some(RETRY_PAUSE);
@@ -177,12 +212,15 @@ fn do_batch(place: &Workplace, message: &Message) {
 
 fn acknowledge(place: &Workplace, message: &Message, kind: AckKind) {
     // Without an acknowledgement the batch is delivered again, which costs time but changes nothing.
-    let _ = place.broker.runtime().block_on(message.ack_with(kind));
+    let _ = place.unless_stopped(LAST_WORDS, message.ack_with(kind));
 }
 
 /// The results of a batch; none if the worker was stopped, or the coordinator cannot be reached.
 fn compute(place: &Workplace, work: &WorkBatch) -> Option<ResultBatch> {
-    let shared = place.cache.get(&place.broker, work)?;
+    let shared = match place.cache.known(work.shared) {
+        Some(known) => known,
+        None => place.unless_stopped(Duration::ZERO, place.cache.fetch(&place.broker, work))??,
+    };
     let began = Instant::now();
     let mut outcomes = Vec::with_capacity(work.tasks.len());
     for task in &work.tasks {
@@ -228,27 +266,7 @@ fn store(place: &Workplace, results: &ResultBatch) -> bool {
     }
     let first = results.outcomes.first().map_or(0, |outcome| outcome.key);
     let id = format!("{}.{}.{first:x}.{}", results.run, results.batch, results.worker);
-    let mut complaint = String::new();
-    loop {
-        let message = PublishMessage::build().payload(bytes.clone().into()).message_id(&id);
-        let jetstream = place.broker.jetstream();
-        let published = place.broker.runtime().block_on(async {
-            let sent = jetstream.send_publish(subject.clone(), message).await?;
-            sent.await
-        });
-        let Err(error) = published else { return true };
-        if error.kind() == PublishErrorKind::StreamNotFound {
-            let _ = place.broker.runtime().block_on(result_stream(jetstream));
-        }
-        let problem = one_line(&error);
-        if problem != complaint {
-            let url = place.broker.url();
-            say(&format!("{url}: a result cannot be stored: {problem}; trying again"));
-            complaint = problem;
-        }
-        if place.control.is_cancelled() {
-            return false;
-        }
-        thread::sleep(RETRY_PAUSE);
-    }
+    let task = "a result cannot be stored";
+    let stored = publish_until_stored(&place.broker, task, &subject, &id, &bytes);
+    place.unless_stopped(LAST_WORDS, stored).is_some()
 }

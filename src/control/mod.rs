@@ -9,6 +9,7 @@ mod ctrnn;
 mod decision_activity;
 mod decision_clock;
 mod decisions;
+mod external;
 mod gait;
 mod grown;
 mod joint_decisions;
@@ -37,6 +38,7 @@ pub use activity::{
 };
 pub use controller::Controller;
 pub use decision_activity::{ActiveRule, DecisionActivity, PostureWorth};
+pub use external::ExternalControl;
 pub use limb_activity::{ActiveLimb, LimbActivity};
 pub use observation::{Observation, Senses};
 pub use perception::{JointSenses, LimbSenses, Perception, SnakeSenses};

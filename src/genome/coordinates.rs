@@ -7,6 +7,19 @@ use super::gene::{GeneRange, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
 
+/// A coordinate of a point: the gene that it stands for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Coordinate {
+    /// The gene's dotted path in saves: `joints[0].bend.offset`.
+    pub field: String,
+    /// Its name, for people.
+    pub name: String,
+    /// Its unit; empty for a pure number.
+    pub unit: &'static str,
+    /// The values that it may have, in words.
+    pub allowed: String,
+}
+
 impl GenomeSpace {
     /// Genes of zeros, in the layout of this space.
     pub(super) fn zeroed(&self, shape: GenomeShape) -> Genome {
@@ -27,6 +40,22 @@ impl GenomeSpace {
         let mut count = 0;
         self.search_genes(self.zeroed(shape), |_, _| count += 1);
         count
+    }
+
+    /// The genes with a coordinate, in the order of the coordinates.
+    pub fn coordinates(&self, shape: GenomeShape) -> Vec<Coordinate> {
+        let mut coordinates = Vec::new();
+        self.zeroed(shape).genes(self, &mut |gene, _| {
+            if !gene.range.is_point() {
+                coordinates.push(Coordinate {
+                    field: gene.field.to_string(),
+                    name: gene.name.to_string(),
+                    unit: gene.unit,
+                    allowed: gene.range.words(),
+                });
+            }
+        });
+        coordinates
     }
 
     /// The genome at a point of the unit cube: a coordinate from 0 to 1 per gene that has a choice.
@@ -158,6 +187,11 @@ mod tests {
         narrow.twist_limits_rad = vec![0.0];
         assert_eq!(narrow.dimension(SHAPE), 2 + 4 * 3, "no twist, no genes of twist");
         narrow.twist_limits_rad = vec![1.0];
+        let coordinates = narrow.coordinates(SHAPE);
+        assert_eq!(coordinates.len(), 26);
+        let Coordinate { field, name, unit, allowed } = &coordinates[0];
+        let expected = ["stiffness_nm_per_rad", "stiffness", "N·m/rad", "50 to 1000"];
+        assert_eq!([field, name, *unit, allowed], expected);
         let genome = narrow.genome_at(&[0.5; 26], SHAPE);
         assert_eq!((genome.body.bend_limit_rad, genome.body.density_kg_m3), (1.0, 2.0));
     }

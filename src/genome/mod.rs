@@ -17,6 +17,7 @@ mod wave_space;
 
 pub use body::BodyGenes;
 pub use controllers::{ControllerGenes, JointCommands};
+pub use coordinates::Coordinate;
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;
 pub use kind::ControllerKind;

@@ -66,6 +66,11 @@ pub trait Evaluator: Debug + Send + Sync {
         format!("threads {}", self.workers())
     }
 
+    /// The flags with which the same command uses it again, each after a space; none for threads of this computer.
+    fn flags(&self) -> String {
+        String::new()
+    }
+
     /// Why results that were reported earlier cannot be trusted any more, if they cannot. The evaluator then cancels all
     /// batches, and what they belonged to begins again with another evaluator.
     fn fault(&self) -> Option<String> {

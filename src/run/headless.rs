@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::evaluator::{Evaluator, WorkersError};
 use super::json::{short, with_short_numbers};
-use super::progress_bar::run_generation_with_bar;
+use super::progress_bar::{beside_bar, run_generation_with_bar};
 use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
@@ -28,7 +28,7 @@ pub enum HeadlessError {
     Output(#[from] io::Error),
     /// The interrupt key stopped a run.
     #[error(
-        "cancelled after generation {finished} of {generations}; continue it with --resume {}",
+        "cancelled after generation {finished} of {generations}; continue it with: snakes --no-render --resume {}{flags}",
         folder.display()
     )]
     Stopped {
@@ -38,10 +38,12 @@ pub enum HeadlessError {
         generations: u32,
         /// The run's folder.
         folder: PathBuf,
+        /// The flags that name its evaluator: see [`Evaluator::flags`].
+        flags: String,
     },
     /// A generation could not be saved.
     #[error(
-        "{source}; generations up to {saved} are saved; continue the run with --resume {}",
+        "{source}; generations up to {saved} are saved; continue the run with: snakes --no-render --resume {}{flags}",
         folder.display()
     )]
     NotSaved {
@@ -51,6 +53,8 @@ pub enum HeadlessError {
         saved: u32,
         /// The run's folder.
         folder: PathBuf,
+        /// The flags that name its evaluator: see [`Evaluator::flags`].
+        flags: String,
     },
     /// The simulation of a saved genome panicked.
     #[error("{}: simulating its genome failed: {message}", path.display())]
@@ -63,7 +67,7 @@ pub enum HeadlessError {
     /// The interrupt key was pressed.
     #[error("cancelled; {}", match kept {
         Some(path) => format!("the best so far is saved to {}", path.display()),
-        None => "the first seed was not finished, so nothing is saved".to_owned(),
+        None => "nothing was finished, so nothing is saved".to_owned(),
     })]
     Cancelled {
         /// The file of the best so far.
@@ -137,12 +141,14 @@ pub fn evolve(
             finished,
             generations,
             folder: folder.clone(),
+            flags: evaluator.flags(),
         })?;
         let crashes = recorder.record_generation(&experiment, &report).map_err(|source| {
             HeadlessError::NotSaved {
                 source: Box::new(source),
                 saved: experiment.finished() - 1,
                 folder: folder.clone(),
+                flags: evaluator.flags(),
             }
         })?;
         crashes.iter().for_each(|crash| say(crash));
@@ -206,7 +212,7 @@ impl Landing {
 /// Writes a line for the user to standard error; standard output is for results.
 pub fn say(line: &str) {
     // If standard error is closed, there is no other place to report to.
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = beside_bar(|| writeln!(io::stderr(), "{line}"));
 }
 
 const TABLE_HEAD: &str =

@@ -15,6 +15,7 @@ mod library_reader;
 mod lineage;
 mod lookahead;
 pub mod markdown;
+pub mod mujoco;
 mod panics;
 mod parallel_runs;
 pub mod progress_bar;

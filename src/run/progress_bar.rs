@@ -1,5 +1,6 @@
 //! Progress bars on the terminal; where standard error is no terminal, none is drawn.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use crossbeam_channel::RecvTimeoutError;
@@ -40,8 +41,25 @@ pub fn bar_of(count: u64, things: &str) -> ProgressBar {
     bar
 }
 
+/// The bar on the terminal, if one is drawn.
+static DRAWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+fn set_drawn(bar: Option<ProgressBar>) {
+    *DRAWN.lock().unwrap_or_else(PoisonError::into_inner) = bar;
+}
+
+/// Writes to the terminal while no bar stands in the line.
+pub fn beside_bar<T>(write: impl FnOnce() -> T) -> T {
+    let bar = DRAWN.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    match bar {
+        Some(bar) => bar.suspend(write),
+        None => write(),
+    }
+}
+
 /// Does `work` while a bar shows the number of evaluations that `control` has counted.
 pub fn with_bar<T>(bar: &ProgressBar, control: &RunControl, work: impl FnOnce() -> T) -> T {
+    set_drawn(Some(bar.clone()));
     let result = std::thread::scope(|scope| {
         let (finished, is_finished) = crossbeam_channel::bounded::<()>(0);
         scope.spawn(move || {
@@ -56,6 +74,7 @@ pub fn with_bar<T>(bar: &ProgressBar, control: &RunControl, work: impl FnOnce() 
         drop(finished);
         result
     });
+    set_drawn(None);
     bar.finish_and_clear();
     result
 }

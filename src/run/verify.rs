@@ -73,6 +73,14 @@ pub enum VerifyError {
     Cancelled(#[from] Cancelled),
 }
 
+/// The runs whose bits are compared, with their descriptions.
+///
+/// # Errors
+/// An embedded preset or a case is broken, which a test rules out.
+pub fn golden_plans() -> Result<Vec<(String, RunPlan)>, VerifyError> {
+    cases()
+}
+
 impl Trajectories {
     /// One hash over all, in 16 hexadecimal digits.
     pub fn fingerprint(&self) -> String {

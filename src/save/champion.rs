@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::SaveError;
-use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, write_whole};
+use super::champion_exam::exam_in_words;
+use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text};
 use super::v5::{ChampionV5, FORMAT, KIND};
+use super::whole_file::write_whole;
 use crate::Engine;
-use crate::check::Invalid;
 use crate::evolve::Champion;
-use crate::schema::Choices;
 use crate::score::{Recording, SuiteResult};
 
 /// A champion read from a file.
@@ -48,63 +48,36 @@ pub fn store_champion(
     write_champion(path, "", champion, recording, &[])
 }
 
-/// Writes the results of an exam into a champion's file, atomically. Results of other suites and what the user wrote
-/// above the champion are kept.
+/// A champion's file as text: its recorded poses are left out if the file would become too large to be read again.
 ///
 /// # Errors
-/// Another engine recorded the champion, the file now holds another champion, or it cannot be read or written.
-pub fn store_exam(
-    path: &Path,
-    loaded: &LoadedChampion,
+/// The file would be too large even without them.
+pub fn champion_text(
+    champion: &Champion,
+    recording: Option<&Recording>,
     exam: &[SuiteResult],
-) -> Result<(), SaveError> {
-    check_examinable(path, loaded)?;
-    let text = read_text(path)?;
-    // A long exam leaves time to rename files.
-    let present = parse_champion(path, &text)?;
-    if present.champion != loaded.champion {
-        let allowed = "the champion that was examined";
-        let source = Invalid::new("champion", "another one by now", allowed);
-        return Err(SaveError::Invalid { path: path.to_owned(), source });
-    }
-    let above = text.lines().take_while(|line| !line.starts_with('('));
-    let own = above.filter(|line| !is_programs_comment(line));
-    let own: String = own.map(|line| format!("{line}\n")).collect();
-    let is_new = |earlier: &SuiteResult| exam.iter().any(|result| result.suite == earlier.suite);
-    let mut all = present.exam;
-    all.retain(|earlier| !is_new(earlier));
-    all.extend_from_slice(exam);
-    all.sort_by_key(|result| result.suite);
-    write_champion(path, &own, &present.champion, present.recording.as_ref(), &all)
+) -> Result<String, SaveError> {
+    text_with_comments(Path::new("champion.ron"), "", champion, recording, exam)
 }
 
-/// Checks that results of an exam may stand in a champion's file, beside its record.
-///
-/// # Errors
-/// Another engine recorded the champion.
-pub fn check_examinable(path: &Path, loaded: &LoadedChampion) -> Result<(), SaveError> {
-    if loaded.is_of_this_engine() {
-        return Ok(());
-    }
-    let allowed = format!("{}, to write results of an exam beside its record", Engine::THIS);
-    let source = Invalid::new("engine", loaded.engine.to_string(), allowed);
-    Err(SaveError::Invalid { path: path.to_owned(), source })
-}
-
-/// Whether the program writes comments that begin like this line at the top of a champion's file.
-pub(super) fn is_programs_comment(line: &str) -> bool {
-    ["// A champion of Snakes & Stairs", "// Fitness (", "// Exam:", "// Replay it exactly"]
-        .iter()
-        .any(|start| line.starts_with(start))
-}
-
-fn write_champion(
+pub(super) fn write_champion(
     path: &Path,
     comments: &str,
     champion: &Champion,
     recording: Option<&Recording>,
     exam: &[SuiteResult],
 ) -> Result<(), SaveError> {
+    let text = text_with_comments(path, comments, champion, recording, exam)?;
+    write_whole(path, text.as_bytes())
+}
+
+fn text_with_comments(
+    path: &Path,
+    comments: &str,
+    champion: &Champion,
+    recording: Option<&Recording>,
+    exam: &[SuiteResult],
+) -> Result<String, SaveError> {
     let text_with = |recording| pretty(path, &ChampionV5::new(champion.clone(), recording, exam));
     let is_readable = |text: &String| text.len() as u64 <= LARGEST_FILE_MIB * 1024 * 1024 - HEADER;
     let mut text = text_with(recording)?;
@@ -127,20 +100,7 @@ fn write_champion(
         champion.reached(),
         exam_in_words(exam).map_or_else(String::new, |words| format!("// Exam: {words}.\n")),
     );
-    write_whole(path, format!("{comments}{header}{text}").as_bytes())
-}
-
-/// The results of an exam in one line; none of none.
-pub fn exam_in_words(exam: &[SuiteResult]) -> Option<String> {
-    let words = exam.iter().map(|result| {
-        let name = result.suite.choice().title.to_lowercase();
-        if result.each.is_empty() {
-            return format!("{name} {} of {} landed", result.landed, result.trials);
-        }
-        let each = result.each.iter().map(|(label, kept)| format!("{label} {kept:.2}"));
-        format!("way kept at {}", each.collect::<Vec<_>>().join(", "))
-    });
-    (!exam.is_empty()).then(|| words.collect::<Vec<_>>().join("; "))
+    Ok(format!("{comments}{header}{text}"))
 }
 
 /// The champion that the studio shows at its start.
@@ -173,6 +133,7 @@ impl LoadedChampion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::save::store_exam;
     use crate::score::{Behaviour, ExamSuite};
     use std::fs;
 

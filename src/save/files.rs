@@ -1,14 +1,14 @@
-//! Reading bounded text and writing whole files.
+//! Reading bounded text, and writing RON.
 
 use std::fs::{self, File};
-use std::io::{ErrorKind, Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, UNIX_EPOCH};
 
 use ron::ser::PrettyConfig;
 use serde::{Deserialize, Serialize};
-use tempfile::{NamedTempFile, PersistError};
 
+use super::whole_file::write_whole;
 use crate::check::{Invalid, quoted};
 
 /// An error with a file. Each message is one line that starts with the file's name.
@@ -233,51 +233,6 @@ pub fn check_format(path: &Path, found: u32, supported: u32) -> Result<(), SaveE
     if found == supported { Ok(()) } else { Err(SaveError::OtherFormat { path, found, supported }) }
 }
 
-/// Writes a file atomically: at every instant either the old or the complete new one exists. The contents go into a
-/// temporary file in the same folder, are flushed to the disk, and then renamed.
-pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
-    write_and(path, contents, |file| file.persist(path))
-}
-
-/// Writes a new file atomically; fails if a file of this name exists by then.
-pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
-    write_and(path, contents, |file| file.persist_noclobber(path))
-}
-
-fn write_and(
-    path: &Path,
-    contents: &[u8],
-    put: impl FnOnce(NamedTempFile) -> Result<File, PersistError>,
-) -> Result<(), SaveError> {
-    let write = || -> std::io::Result<()> {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new("."));
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(UNFINISHED);
-        // Readable by others as far as the user's umask allows; the library's default is private.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder.tempfile_in(folder)?;
-        // Through the inner file: errors of the temporary file itself would name that file.
-        file.as_file_mut().write_all(contents)?;
-        file.as_file().sync_all()?;
-        put(file).map_err(|error| error.error)?;
-        // The file exists by now. Flushing the folder, so that its name survives a power cut, is best effort.
-        #[cfg(unix)]
-        let _ = File::open(folder).and_then(|folder| folder.sync_all());
-        Ok(())
-    };
-    write().map_err(|error| unwritable(path, error))
-}
-
-/// The error that a file or folder cannot be written.
-fn unwritable(path: &Path, error: std::io::Error) -> SaveError {
-    // An error of the temporary file names that file, which the user does not know; keep only its kind.
-    let names_another = error.raw_os_error().is_none() && error.kind() != ErrorKind::Other;
-    let source = if names_another { error.kind().into() } else { error };
-    SaveError::Unwritable { path: path.to_owned(), source }
-}
-
 /// The numbers N for which a folder has a file `<prefix>N.ron`, in no particular order.
 pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
     let unreadable = SaveError::unreadable(folder);
@@ -306,33 +261,6 @@ pub fn pretty(path: &Path, file: &impl Serialize) -> Result<String, SaveError> {
 /// Writes readable RON atomically.
 pub fn store_ron(path: &Path, file: &impl Serialize) -> Result<(), SaveError> {
     write_whole(path, pretty(path, file)?.as_bytes())
-}
-
-/// Prefix of the names of files that are not complete yet.
-pub const UNFINISHED: &str = ".unfinished-";
-
-/// Removes the incomplete files that a kill left in a folder; the caller holds the folder's lock.
-pub fn remove_unfinished(folder: &Path) {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(UNFINISHED))
-    {
-        // A file that cannot be removed does no harm.
-        let _ = fs::remove_file(entry.path());
-    }
-}
-
-/// Makes sure that files can be written into `folder`, and creates it if it does not exist.
-pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
-    let unwritable = |error| unwritable(folder, error);
-    let is_new = !folder.exists();
-    fs::create_dir_all(folder).map_err(unwritable)?;
-    if is_new {
-        // Best effort, so that the folder's name survives a power cut.
-        #[cfg(unix)]
-        let _ = folder.parent().map(File::open).map(|parent| parent.and_then(|p| p.sync_all()));
-    }
-    // Permissions alone do not tell (read-only mounts, quotas), so try it. The file is removed when dropped.
-    tempfile::tempfile_in(folder).map(drop).map_err(unwritable)
 }
 
 /// The names of all entries of a folder, hidden ones included, sorted.

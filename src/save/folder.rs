@@ -7,10 +7,11 @@ use std::time::Duration;
 use directories::ProjectDirs;
 
 use super::change::load_changed_plan;
-use super::files::{modified, numbered, prepare_folder, refuse_link};
+use super::files::{modified, numbered, refuse_link};
 use super::notes::{EntryNotes, notes_in_run};
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
+use super::whole_file::prepare_folder;
 use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
 use crate::evolve::RunPlan;
 
@@ -177,11 +178,10 @@ pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion,
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[cfg(unix)]
     #[test]
     fn links_in_a_runs_folder_are_not_followed() {
+        use super::*;
         use std::os::unix::fs::symlink;
         let folder = tempfile::tempdir().expect("a folder");
         let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");

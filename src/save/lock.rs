@@ -1,7 +1,7 @@
 //! A lock that lets only one program at a time write into a run's folder.
 
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, Write};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::Read;
 use std::path::Path;
 
 use super::SaveError;
@@ -14,8 +14,12 @@ pub struct Lock {
     _file: File,
 }
 
-/// Name of the lock's file, which contains the process number and name of its owner.
+/// Name of the lock's file.
 pub const LOCK_FILE: &str = "lock";
+
+/// Name of the file with the process number and name of the lock's owner. It is another one, because Windows lets no other
+/// program read a locked file.
+pub const OWNER_FILE: &str = "lock-owner";
 
 impl Lock {
     /// Takes the lock of a folder. `owner` is the name that other programs report, such as "the studio".
@@ -25,38 +29,35 @@ impl Lock {
     pub fn take(folder: &Path, owner: &str) -> Result<Self, SaveError> {
         let path = folder.join(LOCK_FILE);
         let unwritable = SaveError::unwritable(&path);
+        let owner_path = folder.join(OWNER_FILE);
         refuse_link(&path).map_err(unwritable)?;
+        refuse_link(&owner_path).map_err(SaveError::unwritable(&owner_path))?;
         let mut options = OpenOptions::new();
         // Not truncated: a program that does not get the lock must not erase the owner's name.
         options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(&path).map_err(unwritable)?;
+        let file = options.open(&path).map_err(unwritable)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 return Err(SaveError::InUse {
                     path: folder.to_owned(),
-                    owner: read_owner(&mut file),
+                    owner: read_owner(&owner_path),
                 });
             }
             Err(TryLockError::Error(source)) => return Err(unwritable(source)),
         }
         let owner = format!("process {} ({owner})\n", std::process::id());
-        let write = |file: &mut File| {
-            file.set_len(0)?;
-            file.rewind()?;
-            file.write_all(owner.as_bytes())
-        };
         // On a full disk the lock still works; only the owner's name is missing.
-        let _ = write(&mut file);
+        let _ = fs::write(&owner_path, owner);
         Ok(Self { _file: file })
     }
 }
 
-/// The owner's name from the lock's file.
-fn read_owner(file: &mut File) -> String {
+/// The owner's name from its file.
+fn read_owner(path: &Path) -> String {
     let mut bytes = Vec::new();
-    // On some systems others cannot read a locked file; then the text is empty.
-    let _ = file.take(100).read_to_end(&mut bytes);
+    // Without the name the lock is still held.
+    let _ = File::open(path).and_then(|file| file.take(100).read_to_end(&mut bytes));
     let text = String::from_utf8_lossy(&bytes);
     let text: String = text.trim().chars().filter(|c| !c.is_control()).collect();
     if text.is_empty() { "another program".to_owned() } else { text }

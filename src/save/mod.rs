@@ -7,9 +7,11 @@
 //! Whatever is read is checked before it is used; an error names the file, the field, the value and what is allowed.
 
 mod champion;
+mod champion_exam;
 mod change;
 mod checkpoint;
 mod comparison;
+mod copies;
 mod engine_2;
 mod families;
 mod file_structs;
@@ -31,39 +33,47 @@ mod record;
 mod run;
 mod run_name;
 mod v5;
+mod whole_file;
+mod whole_folder;
 
 pub use champion::{
-    LoadedChampion, check_examinable, exam_in_words, load_champion, parse_champion,
-    shipped_champion, store_champion, store_exam,
+    LoadedChampion, champion_text, load_champion, parse_champion, shipped_champion, store_champion,
 };
+pub use champion_exam::{check_examinable, exam_in_words, store_exam};
 pub use change::parse_changes;
 pub use checkpoint::{SearchState, parse_checkpoint};
 pub use comparison::{
     CURVE_POINTS, ComparedBest, ComparedRun, Comparison, MAX_COMPARED_RUNS, load_comparison,
     store_comparison,
 };
+pub use copies::ChampionCopies;
 pub use families::{
     FamilyChampion, FamilyProtocol, FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, RuleUse, TrainedFamily,
     load_families, store_families,
 };
 #[cfg(test)]
 pub use files::names_in;
-pub use files::{SaveError, load_text};
+pub use files::{SaveError, hash_of, load_text};
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
 pub use own_preset::{OwnPreset, check_own_name};
 pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
-pub use preferences::{LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, UI_SCALES};
+pub use preferences::{
+    LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, THEMES, UI_SCALES,
+};
 pub use preset::{
-    DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_presets, store_preset,
+    DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_preset_names, shipped_presets,
+    store_preset,
 };
 pub use preset_list::PresetList;
 pub use record::{
-    GenerationRecord, MOST_SPECIES_RECORDED, SpeciesCount, StatisticsRecord, load_log,
-    parse_evaluations, parse_records,
+    GenerationRecord, MOST_SPECIES_RECORDED, SpeciesCount, StatisticsRecord, generations_hash,
+    load_log, parse_evaluations, parse_records,
 };
 pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};
 pub use v5::RecordedV5;
+pub use whole_file::UnfinishedFile;
+pub use whole_folder::UnfinishedFolder;

@@ -4,8 +4,9 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::files::{prepare_folder, read_bytes, refuse_link, text_of};
-use super::preset::{Preset, parse_preset, shipped_presets, store_new_preset};
+use super::files::{read_bytes, refuse_link, text_of};
+use super::preset::{Preset, parse_preset, shipped_preset_names, store_new_preset};
+use super::whole_file::prepare_folder;
 use super::{SaveError, SavesFolder};
 use crate::check::{self, Invalid};
 
@@ -76,11 +77,11 @@ impl SavesFolder {
 /// Checks the name of an own preset.
 ///
 /// # Errors
-/// The name has a character that is not allowed, or a shipped preset has it.
+/// The name has a character that is not allowed, no file on Windows can have it, or a shipped preset has it.
 pub fn check_own_name(name: &str) -> Result<(), Invalid> {
     check::name("name", name)?;
-    let shipped = shipped_presets().unwrap_or_default();
-    if shipped.iter().any(|preset| preset.name == name) {
+    check::no_device("name", name)?;
+    if shipped_preset_names().contains(&name) {
         let allowed = "a name that no built-in preset has";
         return Err(Invalid::new("name", format!("{name:?}"), allowed));
     }
@@ -121,6 +122,8 @@ mod tests {
         assert_eq!(listed[0].preset.as_ref().expect("well formed"), &own("my-ice"));
         let taken = saves.store_own_preset(&own("my-ice")).expect_err("taken").to_string();
         assert!(taken.contains("a preset of this name already exists"), "{taken}");
+        let device = saves.store_own_preset(&own("com1")).expect_err("refused").to_string();
+        assert!(device.contains("a name that Windows does not keep for a device"), "{device}");
     }
 
     #[test]

@@ -4,7 +4,8 @@ use std::io::Cursor;
 use std::path::Path;
 
 use super::SaveError;
-use super::files::{read_bytes, write_whole};
+use super::files::read_bytes;
+use super::whole_file::write_whole;
 
 /// Maximum size of a picture that is read, in MiB: more than the largest window's.
 const LARGEST_PICTURE_MIB: u64 = 256;
@@ -32,6 +33,11 @@ impl Picture {
 /// # Errors
 /// The file cannot be written.
 pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
+    write_whole(path, &encoded(picture).map_err(SaveError::unwritable(path))?)
+}
+
+/// A picture as the bytes of a PNG file.
+pub(super) fn encoded(picture: &Picture) -> std::io::Result<Vec<u8>> {
     let encode = || -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
@@ -39,8 +45,7 @@ pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
         encoder.write_header()?.write_image_data(&picture.rgb)?;
         Ok(bytes)
     };
-    let bytes = encode().map_err(std::io::Error::other).map_err(SaveError::unwritable(path))?;
-    write_whole(path, &bytes)
+    encode().map_err(std::io::Error::other)
 }
 
 /// Reads a picture that [`store_picture`] wrote.

@@ -9,7 +9,8 @@ use directories::ProjectDirs;
 use serde::{Deserialize, Serialize};
 
 use super::SaveError;
-use super::files::{Header, parse, prepare_folder, read_text, store_ron};
+use super::files::{Header, parse, read_text, store_ron};
+use super::whole_file::prepare_folder;
 use crate::check::{Invalid, quoted, within};
 
 const KIND: &str = "snakes-and-stairs preferences";
@@ -74,13 +75,16 @@ impl Default for Preferences {
     }
 }
 
+/// The names of the colour themes.
+pub const THEMES: [&str; 2] = ["light", "dark"];
+
 impl Preferences {
     /// Checks every field against its range.
     ///
     /// # Errors
     /// A field is out of its range.
     pub fn check(&self) -> Result<(), Invalid> {
-        if !["light", "dark"].contains(&self.theme.as_str()) {
+        if !THEMES.contains(&self.theme.as_str()) {
             return Err(Invalid::new("theme", quoted(&self.theme), "light, dark"));
         }
         within("ui_scale", self.ui_scale, UI_SCALES[0]..=UI_SCALES[UI_SCALES.len() - 1])?;

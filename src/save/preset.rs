@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-use super::files::{check_format, parse, pretty, read_text, store_ron, write_new};
+use super::files::{check_format, parse, pretty, read_text, store_ron};
+use super::whole_file::write_new;
 use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
 use crate::evolve::Settings;
@@ -73,6 +74,11 @@ const SHIPPED: &[(&str, &str)] = shipped![
 /// An embedded preset is broken; a test prevents this.
 pub fn shipped_presets() -> Result<Vec<Preset>, SaveError> {
     SHIPPED.iter().map(|(file, text)| parse_preset(Path::new(file), text)).collect()
+}
+
+/// The names of the shipped presets, the default first.
+pub fn shipped_preset_names() -> Vec<&'static str> {
+    SHIPPED.iter().map(|(file, _)| file.trim_end_matches(".ron")).collect()
 }
 
 /// Loads a preset by the name of a shipped one, or by the path of a file.

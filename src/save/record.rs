@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
 
 use super::SaveError;
 use super::change::load_changed_plan;
@@ -114,6 +115,16 @@ impl GenerationRecord {
     pub fn generation_hash(&self) -> Result<u64, Invalid> {
         hash_of("hash", &self.hash)
     }
+}
+
+/// Hash over the hashes of all generations: that of a run.
+pub fn generations_hash(records: &[GenerationRecord]) -> u64 {
+    let mut hash = Xxh3Default::new();
+    for record in records {
+        // Reading the log has checked it.
+        hash.update(&record.generation_hash().unwrap_or(0).to_le_bytes());
+    }
+    hash.digest()
 }
 
 /// Counts the finished generations of a run's folder: the complete lines of its log, without parsing them.

@@ -10,7 +10,8 @@
 //! | `lineage.jsonl` | the individuals' parents, a line per finished generation | appended, before the log's line |
 //! | `evaluations.jsonl` | the evaluations of the current generation | appended; emptied after each generation |
 //! | `crashed-N-I.ron` | a genome on which the program panicked | atomically |
-//! | `lock` | the program that writes into the folder | while it does |
+//! | `lock` | nothing; locked by the program that writes into the folder | while it does |
+//! | `lock-owner` | that program's process number and name | when it takes the lock |
 //!
 //! So a kill at any instant leaves a log whose last complete line has its checkpoint. Lost evaluations are computed
 //! again, with the same bits.
@@ -25,7 +26,7 @@ use super::change::{CHANGES_FILE, ChangeRecord, read_changes};
 use super::checkpoint::{
     SearchState, checkpoints, load_checkpoint, remove_old_checkpoints, store_checkpoint,
 };
-use super::files::{prepare_folder, refuse_link, remove_unfinished};
+use super::files::refuse_link;
 use super::folder::champion_file_name;
 use super::lineage::{LINEAGE_FILE, LineageRecord, read_lineage};
 use super::lock::Lock;
@@ -33,6 +34,7 @@ use super::log::Log;
 use super::plan::{RUN_FILE, load_plan, store_plan};
 use super::record::{EVALUATIONS_FILE, EvaluationRecord, LOG_FILE, read_evaluations, read_records};
 use super::run_name::fingerprint;
+use super::whole_file::{prepare_folder, remove_unfinished};
 use super::{GenerationRecord, SaveError};
 use crate::evolve::{Champion, RunPlan, SettingChange};
 use crate::score::{Evaluation, Recording};

@@ -150,19 +150,35 @@ impl ExamEnd {
         };
         Self {
             steps,
-            way: if is_disqualified { 0.0 } else { way(evaluation, steps, stairs, start_y_m) },
+            way: if is_disqualified {
+                0.0
+            } else {
+                way(evaluation.centre_y_m, steps, stairs, start_y_m)
+            },
             landed_s,
             has_landed: evaluation.is_on_landing(stairs),
             is_disqualified,
         }
     }
+
+    /// The end of a healthy trial in which the middle limb came to lie at `middle_m`, in metres.
+    pub(super) fn at(middle_m: [f32; 3], stairs: &Stairs, start_y_m: f32) -> Self {
+        let steps = stairs.steps_under(middle_m);
+        Self {
+            steps,
+            way: way(middle_m[1], steps, stairs, start_y_m),
+            landed_s: None,
+            has_landed: stairs.steps > 0 && steps == stairs.steps,
+            is_disqualified: false,
+        }
+    }
 }
 
 /// Share of the way from the start to the landing at the end of a trial, 0 to 1.
-fn way(evaluation: &Evaluation, steps: u32, stairs: &Stairs, start_y_m: f32) -> f32 {
+fn way(centre_y_m: f32, steps: u32, stairs: &Stairs, start_y_m: f32) -> f32 {
     let goal_y_m = stairs.landing_y_m();
     let most_y_m = if steps > 0 { goal_y_m } else { stairs.first_riser_y_m };
-    let share = (evaluation.centre_y_m.min(most_y_m) - start_y_m) / (goal_y_m - start_y_m);
+    let share = (centre_y_m.min(most_y_m) - start_y_m) / (goal_y_m - start_y_m);
     // A start beyond the landing has no way.
     if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
 }
@@ -211,7 +227,7 @@ impl SuiteResult {
 }
 
 /// Median; of an even number, the mean of the two middle ones; 0 of none.
-fn median(mut values: Vec<f32>) -> f32 {
+pub fn median(mut values: Vec<f32>) -> f32 {
     values.sort_by(f32::total_cmp);
     let Some(last) = values.len().checked_sub(1) else { return 0.0 };
     (values[last / 2] + values[values.len() / 2]) / 2.0

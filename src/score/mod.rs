@@ -9,6 +9,7 @@ mod behaviour;
 mod exam;
 mod fitness;
 mod history;
+mod mirrored;
 mod perturbation;
 mod recording;
 mod repeats;
@@ -18,9 +19,12 @@ mod trial;
 
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
-pub use exam::{ExamCondition, ExamEnd, ExamSuite, StairsCell, StairsGrid, SuiteResult, varied};
+pub use exam::{
+    ExamCondition, ExamEnd, ExamSuite, StairsCell, StairsGrid, SuiteResult, median, varied,
+};
 pub use fitness::{FITNESS_RANGE, Fitness};
 pub use history::KeyframeHistory;
+pub use mirrored::MirroredRollout;
 pub use perturbation::{Perturbation, PerturbationRange};
 pub use recording::Recording;
 pub use repeats::{PerturbationList, RepeatAggregate, Repeats};

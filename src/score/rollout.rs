@@ -148,12 +148,36 @@ impl Rollout {
         if self.is_over() {
             return false;
         }
+        self.enter_step();
+        self.control.act(self.step, &self.simulation, &mut self.torques);
+        self.take_step()
+    }
+
+    /// The same with torques from outside instead of the genome's controller, one per joint from the head; a joint without
+    /// one is not driven. The evaluation then describes the controller outside.
+    pub fn advance_with(&mut self, torques: &[JointTorque]) -> bool {
+        if self.is_over() {
+            return false;
+        }
+        self.enter_step();
+        self.torques.fill(JointTorque::default());
+        for (kept, torque) in self.torques.iter_mut().zip(torques) {
+            *kept = *torque;
+        }
+        self.take_step()
+    }
+
+    /// Brings about what happens to the world before this step.
+    fn enter_step(&mut self) {
         self.enter_change();
         let now_s = self.time_s();
         if let Some(shove) = self.shove.take_if(|shove| shove.at_s <= now_s) {
             self.simulation.shove(&shove);
         }
-        self.control.act(self.step, &self.simulation, &mut self.torques);
+    }
+
+    /// Steps the world with the torques of this step, and takes in the result.
+    fn take_step(&mut self) -> bool {
         if let Err(reason) = self.simulation.step(&self.torques) {
             self.disqualified = Some(reason);
             return false;
@@ -222,8 +246,8 @@ impl Rollout {
         }
     }
 
-    /// The score of the present state alone.
-    fn score(&self) -> f32 {
+    /// The score of the present state alone, by the trial's measure of fitness and without the cost of energy.
+    pub fn score(&self) -> f32 {
         let state = FinalState {
             body: self.body(),
             poses: &self.poses,
@@ -329,6 +353,21 @@ mod tests {
             let genome = random_genome(individual, &trial);
             assert_eq!(evaluate(&genome, &trial), evaluate(&genome, &trial));
         }
+    }
+
+    #[test]
+    fn torques_from_outside_lead_to_the_same_evaluation() {
+        let trial = Trial::default();
+        let genome = random_genome(2, &trial);
+        let (mut inside, mut outside) =
+            (Rollout::new(&genome, &trial), Rollout::new(&genome, &trial));
+        while inside.advance() {
+            assert!(outside.advance_with(&inside.torques));
+            assert_eq!(outside.score(), inside.score());
+        }
+        // A joint without a torque is not driven.
+        assert!(!outside.advance_with(&[]) && outside.is_over());
+        assert_eq!(outside.evaluation(), inside.evaluation());
     }
 
     #[test]

@@ -38,13 +38,15 @@ use stage::opening::{NamedChampion, OpeningChampions};
 use state::following::Following;
 use state::options::OpenedComparison;
 use state::run_context::RunContext;
+use state::turns::Turns;
+use ui::notifications::Notices;
 use workspace::Workspace;
 
 pub use commands::camera_mode::CameraMode;
 pub use commands::overlay::Overlay;
 pub use error::StudioError;
 pub use failure::runtime_folder::name_runtime_folder;
-pub use pictures::{figures, render};
+pub use pictures::{figures, film, render};
 pub use stage::MAX_LANES;
 pub use state::options::Options;
 pub use ui::theme::Theme;
@@ -76,6 +78,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     let engine = RunContext::new(&options);
     let run_folder = engine.run_folder();
     let exit_after = options.exit_after_frames;
+    let problems = options.problems.clone();
     let failure = Failure::default();
     let failed = failure.clone();
     let exit = failure::panic_guard::guarded(&run_folder, move || {
@@ -94,6 +97,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(OpeningChampions(saved))
         // Champions that the studio was opened with stay on the stage.
         .insert_resource(if has_champions { Following::default() } else { Following::from_start() })
+        .insert_resource(Turns::new(has_champions))
         .insert_resource(OpenedComparison(options.comparison.clone()))
         .insert_resource(engine)
         .insert_resource(failure)
@@ -112,6 +116,8 @@ pub fn run(options: Options) -> Result<(), StudioError> {
             ui::plugin,
             workspace::plugin,
         ));
+        let mut notices = app.world_mut().resource_mut::<Notices>();
+        problems.into_iter().for_each(|problem| notices.problem(problem));
         if let Some(frames) = exit_after {
             app::frame_times::plugin(&mut app, frames);
         }

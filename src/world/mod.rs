@@ -28,6 +28,7 @@ pub use physics::{PhysicsSettings, STEP_RATES_HZ};
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
+pub use simulation::mirror::LimbState;
 pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::sensing::{LimbReading, SnakeReading};

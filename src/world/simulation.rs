@@ -10,6 +10,7 @@ mod climb;
 mod continued;
 mod damping;
 mod health_check;
+pub(super) mod mirror;
 pub(super) mod observe;
 pub(super) mod patches;
 pub(super) mod sensing;
@@ -91,6 +92,8 @@ pub struct Simulation {
     /// The user's pull on a limb, and whether there was one in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
+    /// Forces on the limbs in another engine, if this world mirrors one; empty if not.
+    mirrored: Vec<Option<Vector>>,
 }
 
 /// Torque at a joint in a step.
@@ -176,6 +179,7 @@ impl Simulation {
             balance: EnergyBalance::default(),
             pull: None,
             was_pulled: false,
+            mirrored: Vec::new(),
             limbs,
             body: plan.body.clone(),
             health: plan.health.clone(),
@@ -380,6 +384,7 @@ impl Clone for Simulation {
             balance: self.balance,
             pull: self.pull,
             was_pulled: self.was_pulled,
+            mirrored: self.mirrored.clone(),
         }
     }
 }

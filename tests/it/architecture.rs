@@ -104,9 +104,9 @@ fn test_modules_are_removed_and_the_rest_of_a_file_is_scanned() {
 }
 
 /// The modules in the order of the pipeline: each may use only those before it.
-const PIPELINE: [&str; 16] = [
+const PIPELINE: [&str; 17] = [
     "check", "rng", "learn", "schema", "engine", "world", "genome", "control", "score", "evolve",
-    "save", "run", "cluster", "plot", "studio", "cli",
+    "save", "run", "cluster", "plot", "export", "studio", "cli",
 ];
 
 /// Lines without those that are only comments.

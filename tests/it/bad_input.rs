@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::program::{folder, json_lines, run};
+use super::program::{folder, json_lines, run, with_slashes};
 
 /// Runs the program, which must fail with `code` and one line, and returns the line.
 fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
@@ -171,7 +171,7 @@ fn an_output_folder_that_cannot_be_written_is_refused() {
         let output = run(folder.path(), "--no-render --json --out taken");
         assert_eq!(output.status.code(), Some(1));
         assert!(output.stdout.is_empty());
-        String::from_utf8(output.stderr).expect("UTF-8")
+        with_slashes(&String::from_utf8(output.stderr).expect("UTF-8"))
     };
     let last = message.lines().last().expect("a line");
     assert!(

@@ -12,3 +12,4 @@ mod refusals;
 mod scale;
 mod server;
 mod windows;
+mod words;

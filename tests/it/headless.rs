@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::program::{folder, json_lines, run, stdout_of};
+use super::program::{folder, json_lines, run, stdout_of, with_slashes};
 
 const SMALL: &str =
     "--no-render --set newborns=0 --population 8 --generations 3 --duration 1 --seed 4";
@@ -85,10 +85,13 @@ fn saves_go_to_the_working_directorys_saves_folder_or_else_to_the_data_folder() 
     let folder = folder();
     let champion = |folder| {
         let lines = json_lines(folder, &format!("{SMALL} --json"));
-        lines[3]["champion"].as_str().expect("a path").to_owned()
+        with_slashes(lines[3]["champion"].as_str().expect("a path"))
     };
-    let elsewhere = champion(folder.path());
-    assert!(elsewhere.contains("data/snakes-and-stairs/saves"), "{elsewhere}");
+    // Windows leads no program to another data folder, and a test must not write into the user's.
+    if cfg!(not(windows)) {
+        let elsewhere = champion(folder.path());
+        assert!(elsewhere.contains("data/snakes-and-stairs/saves"), "{elsewhere}");
+    }
     std::fs::create_dir(folder.path().join("saves")).expect("created");
     let here = champion(folder.path());
     assert!(here.starts_with("saves/"), "{here}");
@@ -113,7 +116,7 @@ fn a_run_from_a_champion_is_at_least_as_good_and_can_be_resumed() {
     let replay = json_lines(folder.path(), &format!("replay {CLIMBER} --no-render --json"));
     let reached = replay[0]["fitness"].as_f64().expect("a number");
     assert!(lines[0]["best"].as_f64().expect("a number") >= reached, "{lines:?}");
-    let champion = lines[2]["champion"].as_str().expect("a path");
+    let champion = with_slashes(lines[2]["champion"].as_str().expect("a path"));
     let its_folder = champion.rsplit_once('/').expect("a folder").0;
     // As a kill after the first generation would have left it.
     let log = folder.path().join(its_folder).join("log.jsonl");
@@ -308,7 +311,7 @@ fn the_interrupt_key_ends_a_run_and_keeps_its_finished_generations() {
     assert_eq!(child.wait().expect("ended").code(), Some(1), "{stderr}");
     assert!(
         stderr.contains("cancelled after generation ")
-            && stderr.contains("continue it with --resume out/climb-seed1-"),
+            && stderr.contains("continue it with: snakes --no-render --resume out/climb-seed1-"),
         "{stderr}"
     );
     assert!(std::fs::read_dir(folder.path().join("out")).expect("a folder").count() >= 1);

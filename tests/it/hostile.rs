@@ -2,7 +2,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+#[cfg(unix)]
+use std::process::Command;
+use std::process::Output;
 
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
@@ -444,6 +446,7 @@ fn founders(all: &mut Collection, plan: &str) {
 }
 
 /// Runs the program with at most 200 MiB of memory besides its own code.
+#[cfg(unix)]
 fn in_little_memory(folder: &Path, arguments: &str) -> Output {
     let program = env!("CARGO_BIN_EXE_snakes");
     let code_kib = fs::metadata(program).expect("the program").len() / 1024;
@@ -453,6 +456,12 @@ fn in_little_memory(folder: &Path, arguments: &str) -> Output {
     command.args(["-c", &script]).current_dir(folder).env("MALLOC_ARENA_MAX", "1");
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env("HOME", folder);
     command.output().expect("sh starts")
+}
+
+/// Runs the program. Windows limits no memory from a command line.
+#[cfg(not(unix))]
+fn in_little_memory(folder: &Path, arguments: &str) -> Output {
+    super::program::run(folder, arguments)
 }
 
 fn copy(from: &Path, to: &Path) {
@@ -604,6 +613,7 @@ fn links_folders_and_pipes_in_place_of_files_are_refused() {
         "evaluations.jsonl",
         "changes.jsonl",
         "lock",
+        "lock-owner",
     ];
     let mut number = 0;
     for file in files {

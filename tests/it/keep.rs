@@ -3,7 +3,9 @@
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+#[cfg(unix)]
+use std::process::Command;
+use std::process::Stdio;
 use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
@@ -15,7 +17,7 @@ use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::run::{LocalPool, RecordedRun, RunControl, RunSource};
 use snakes_and_stairs::save::{ExistingRun, SavesFolder};
 
-use super::program::{folder, json_lines, run, snakes};
+use super::program::{folder, json_lines, run, snakes, with_slashes};
 
 /// So short that most of the time goes into writing.
 const TINY: &str = "--no-render --json --preset report --population 4 --generations 40 --duration 0.2 \
@@ -233,7 +235,7 @@ fn a_second_program_on_the_same_run_is_refused_with_the_owners_name() {
         RunSource::in_saves(&out, plan, ExistingRun::Keep).open("the studio").expect("opened");
     let output = run(saves.path(), arguments);
     assert_eq!(output.status.code(), Some(1));
-    let message = String::from_utf8_lossy(&output.stderr);
+    let message = with_slashes(&String::from_utf8_lossy(&output.stderr));
     let owner = format!("in use by process {} (the studio)", std::process::id());
     assert!(
         message.starts_with("error: out/report-seed3-") && message.contains(&owner),
@@ -245,6 +247,7 @@ fn a_second_program_on_the_same_run_is_refused_with_the_owners_name() {
 }
 
 /// The last line of standard error, which must be an error.
+#[cfg(unix)]
 fn error_of(output: &std::process::Output) -> String {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{stderr}");
@@ -254,6 +257,7 @@ fn error_of(output: &std::process::Output) -> String {
 }
 
 /// Resumes a run, which must end like an undisturbed one.
+#[cfg(unix)]
 fn resumes_to_the_same_end(saves: &Path, run: &Path) {
     assert!((1..40).contains(&finished(run)), "it was stopped before its end: {}", finished(run));
     let resumed = json_lines(saves, &format!("--no-render --json --resume {}", run.display()));
@@ -279,7 +283,8 @@ fn a_log_that_cannot_grow_ends_the_run_with_an_error_and_the_run_can_be_resumed(
     assert!(error.contains("log.jsonl: cannot be written: File too large"), "{error}");
     let safe = format!("generations up to {} are saved", finished(&run));
     assert!(
-        error.contains(&safe) && error.contains("continue the run with --resume out/"),
+        error.contains(&safe)
+            && error.contains("continue the run with: snakes --no-render --resume out/"),
         "{error}"
     );
     resumes_to_the_same_end(saves.path(), &run);
@@ -310,7 +315,10 @@ fn a_full_disk_ends_the_run_with_an_error_and_the_run_can_be_resumed() {
     };
     let error = error_of(&output);
     assert!(error.contains("No space left on device"), "{error}");
-    assert!(error.contains("are saved; continue the run with --resume small/out/"), "{error}");
+    assert!(
+        error.contains("are saved; continue the run with: snakes --no-render --resume small/out/"),
+        "{error}"
+    );
     let run = run_in(&saves.path().join("kept")).expect("a run");
     resumes_to_the_same_end(saves.path(), &run);
 }
@@ -328,7 +336,7 @@ fn a_runs_folder_contains_its_plan_logs_checkpoints_and_champions() {
     files.sort();
     let kept = [1, 16, 2, 32, 39, 4, 40, 8].map(|number| format!("checkpoint-{number}.ron"));
     assert_eq!(files[..8], kept, "{files:?}");
-    assert_eq!(files[8..], ["lineage.jsonl", "lock", "log.jsonl", "run.ron"]);
+    assert_eq!(files[8..], ["lineage.jsonl", "lock", "lock-owner", "log.jsonl", "run.ron"]);
     let log = fs::read_to_string(run.join("log.jsonl")).expect("read");
     for (line, printed) in log.lines().zip(&lines) {
         let line: Value = serde_json::from_str(line).expect("JSON");

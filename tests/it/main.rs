@@ -8,6 +8,7 @@ mod champions;
 mod cluster;
 mod determinism;
 mod docs;
+mod exports;
 mod families;
 #[cfg(feature = "studio")]
 mod features;

@@ -34,6 +34,11 @@ pub fn json_lines(folder: &Path, arguments: &str) -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
 }
 
+/// A text in which paths of Windows have slashes, too.
+pub fn with_slashes(text: &str) -> String {
+    text.replace('\\', "/")
+}
+
 /// A new folder, which is removed when dropped.
 pub fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")

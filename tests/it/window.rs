@@ -326,3 +326,16 @@ fn a_stopped_run_can_be_resumed_from_the_list() {
     studio.wait_for_title("seed 7 - 4 of 4 generations, finished");
     assert_eq!(std::fs::read_to_string(&log).expect("a log").lines().count(), 4);
 }
+
+#[test]
+fn a_damaged_champion_opened_from_the_desktop_is_named_in_the_window() {
+    let folder = folder();
+    let damaged = folder.path().join("damaged.ron");
+    std::fs::write(&damaged, "(kind: \"snakes-and-stairs champion\"").expect("written");
+    let arguments = format!("replay --desktop --preset quick {}", damaged.display());
+    let Some(studio) = Studio::open("damaged", &arguments) else { return };
+    studio.place_with("damaged.ron: ");
+    studio.wait_for_title("quick, seed 1");
+    let refused = run(folder.path(), &format!("replay {}", damaged.display()));
+    assert_eq!(refused.status.code(), Some(1), "in a terminal it is an error");
+}

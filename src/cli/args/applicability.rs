@@ -1,7 +1,8 @@
 //! Which flags have an effect in which task of the program. A flag without effect is refused.
 
+use clap::builder::Resettable;
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Command, ValueEnum};
+use clap::{Arg, ArgMatches, Command, ValueEnum};
 
 use super::flags::{Args, Subcommand};
 use crate::cli::error::CliError;
@@ -16,9 +17,12 @@ enum Task {
     Bench,
     Verify,
     Exam,
+    Export,
     Robust,
     Compare,
+    Completions,
     Families,
+    Manual,
     Table1,
     Figures,
     Render,
@@ -30,8 +34,9 @@ enum Task {
 }
 
 use Task::{
-    Bench, CheckReplay, Compare, Exam, Families, Figures, Machines, Presets, Render,
-    ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown, Table1, Verify, Window, Worker,
+    Bench, CheckReplay, Compare, Completions, Exam, Export, Families, Figures, Machines, Manual,
+    Presets, Render, ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown, Table1, Verify,
+    Window, Worker,
 };
 
 /// The tasks that compute on other machines.
@@ -39,8 +44,27 @@ const SPREAD: &[Task] = &[Run, Exam, Robust, Compare, Families, Table1];
 /// These, and the tasks that need a server.
 const WITH_SERVER: &[Task] = &[Run, Exam, Robust, Compare, Families, Table1, Worker, Machines];
 
+/// The flags that have no effect without `--nats`.
+const OF_SERVER: [&str; 4] = ["creds", "tls_ca", "expect_workers", "local_threads"];
+
+/// The help of flags that mean something else in some subcommands: subcommand, flag, help.
+const OTHER_HELP: [(&str, &str, &str); 4] = [
+    (
+        "worker",
+        "nats",
+        "Address of the NATS server whose runs this computer helps, such as nats://192.168.1.5:4222",
+    ),
+    ("worker", "threads", "Number of threads that compute [default: all cores]"),
+    (
+        "man",
+        "out",
+        "Folder for the manual pages of all commands [default: none, and the program's page is printed]",
+    ),
+    ("machines", "nats", "Address of the NATS server, such as nats://192.168.1.5:4222"),
+];
+
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
-const FLAGS: [(&str, &[Task]); 28] = [
+const FLAGS: [(&str, &[Task]); 29] = [
     ("no_render", &[Run, CheckReplay]),
     (
         "json",
@@ -50,6 +74,7 @@ const FLAGS: [(&str, &[Task]); 28] = [
             Bench,
             Verify,
             Exam,
+            Export,
             Robust,
             Compare,
             Families,
@@ -107,12 +132,13 @@ const FLAGS: [(&str, &[Task]); 28] = [
     ("expect_workers", SPREAD),
     ("local_threads", SPREAD),
     ("evaluator", &[Window, Run, ReplayInWindow, Verify, Compare, Table1]),
-    ("out", &[Window, Run, ReplayInWindow, Compare, Families, Table1, Figures]),
+    ("out", &[Window, Run, ReplayInWindow, Compare, Families, Table1, Figures, Manual]),
     ("saves", &[Window, Run, ReplayInWindow]),
     ("comparison", &[Window, ReplayInWindow]),
     ("window_size", &[Window, ReplayInWindow]),
-    ("theme", &[Window, ReplayInWindow, Render]),
+    ("theme", &[Window, ReplayInWindow, Render, Export]),
     ("preferences", &[Window, ReplayInWindow]),
+    ("desktop", &[ReplayInWindow]),
     ("present", &[Window, ReplayInWindow]),
     ("places", &[Window, ReplayInWindow]),
     ("exit_after_frames", &[Window, ReplayInWindow]),
@@ -128,14 +154,17 @@ impl Task {
             Some(Subcommand::Bench) => Bench,
             Some(Subcommand::Verify) => Verify,
             Some(Subcommand::Exam { .. }) => Exam,
+            Some(Subcommand::Export(_)) => Export,
             Some(Subcommand::Robust { .. }) => Robust,
             Some(Subcommand::Compare(_)) => Compare,
+            Some(Subcommand::Completions { .. }) => Completions,
             Some(Subcommand::Families(_)) => Families,
             Some(Subcommand::Table1 { .. }) => Table1,
             Some(Subcommand::Figures { .. }) => Figures,
             Some(Subcommand::Render(_)) => Render,
             Some(Subcommand::Worker) => Worker,
             Some(Subcommand::Machines { .. }) => Machines,
+            Some(Subcommand::Man) => Manual,
             Some(Subcommand::Presets) => Presets,
             Some(Subcommand::Settings { markdown: false }) => Settings,
             Some(Subcommand::Settings { markdown: true }) => SettingsAsMarkdown,
@@ -152,14 +181,17 @@ impl Task {
             Bench => "snakes bench",
             Verify => "snakes verify",
             Exam => "snakes exam",
+            Export => "snakes export",
             Robust => "snakes robust",
             Compare => "snakes compare",
+            Completions => "snakes completions",
             Families => "snakes families",
             Table1 => "snakes table1",
             Figures => "snakes figures",
             Render => "snakes render",
             Worker => "snakes worker",
             Machines => "snakes machines",
+            Manual => "snakes man",
             Presets => "snakes presets",
             Settings => "snakes settings",
             SettingsAsMarkdown => "snakes settings --markdown",
@@ -178,25 +210,56 @@ impl Task {
     }
 }
 
-/// Hides the flags that a subcommand refuses from its help.
-pub(super) fn without_refused_flags(command: Command) -> Command {
-    let flags: Vec<_> =
-        command.get_arguments().filter(|flag| flag.is_global_set()).cloned().collect();
+/// Gives each subcommand a help of its own: without the flags that it refuses, and with the meaning that the others have there.
+pub(super) fn with_own_help(command: Command) -> Command {
+    let flags: Vec<Arg> = global_flags(&command).cloned().collect();
     command.mut_subcommands(|subcommand| {
-        let start = format!("snakes {}", subcommand.get_name());
-        let is_its_own = |task: &&Task| {
-            let rest = task.words().strip_prefix(start.as_str());
-            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
-        };
-        let tasks: Vec<&Task> = Task::value_variants().iter().filter(is_its_own).collect();
-        let is_refused = |flag: &&clap::Arg| {
-            let row = FLAGS.iter().find(|(id, _)| *id == flag.get_id().as_str());
-            row.is_some_and(|(_, of)| !of.iter().any(|task| tasks.contains(&task)))
-        };
+        let (accepted, refused) = sorted_flags(&subcommand, &flags);
         // A subcommand's own definition of a global flag takes the place of the inherited one.
-        let hidden = flags.iter().filter(is_refused).map(|flag| flag.clone().hide(true));
-        subcommand.args(hidden)
+        let refused = refused.into_iter().map(|flag| flag.hide(true));
+        subcommand.args(refused).args(accepted)
     })
+}
+
+/// Gives each subcommand exactly the flags that have an effect in it, for completions and manual pages, which cannot hide
+/// inherited ones.
+pub(super) fn with_own_flags(command: Command) -> Command {
+    // The subcommand may lack the flags with which this one conflicts.
+    let alone = |flag: &Arg| flag.clone().global(false).conflicts_with(Resettable::Reset);
+    let flags: Vec<Arg> = global_flags(&command).map(alone).collect();
+    let command = command.mut_args(|flag| flag.global(false));
+    command.mut_subcommands(|subcommand| {
+        let (accepted, _) = sorted_flags(&subcommand, &flags);
+        subcommand.args(accepted)
+    })
+}
+
+fn global_flags(command: &Command) -> impl Iterator<Item = &Arg> {
+    command.get_arguments().filter(|flag| flag.is_global_set())
+}
+
+/// The flags that have an effect in a subcommand, with the help that they have there, and those that it refuses.
+fn sorted_flags(subcommand: &Command, flags: &[Arg]) -> (Vec<Arg>, Vec<Arg>) {
+    let name = subcommand.get_name();
+    let start = format!("snakes {name}");
+    let is_its_own = |task: &&Task| {
+        let rest = task.words().strip_prefix(start.as_str());
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+    };
+    let tasks: Vec<&Task> = Task::value_variants().iter().filter(is_its_own).collect();
+    let has_effect = |flag: &Arg| {
+        let row = FLAGS.iter().find(|(id, _)| *id == flag.get_id().as_str());
+        row.is_none_or(|(_, of)| of.iter().any(|task| tasks.contains(&task)))
+    };
+    let with_its_help = |flag: Arg| {
+        let is_it = |(of, id, _): &&(&str, &str, &str)| *of == name && flag.get_id() == *id;
+        match OTHER_HELP.iter().find(is_it) {
+            Some((_, _, help)) => flag.help(*help),
+            None => flag,
+        }
+    };
+    let (accepted, refused): (Vec<Arg>, Vec<Arg>) = flags.iter().cloned().partition(has_effect);
+    (accepted.into_iter().map(with_its_help).collect(), refused)
 }
 
 /// Refuses the first given flag that has no effect in the task that the arguments name.
@@ -225,8 +288,7 @@ fn check_server(task: Task, is_given: impl Fn(&str) -> bool) -> Result<(), CliEr
                 format!("{words} needs --nats URL, the address of a server (see {words} --help)");
             return Err(CliError::Usage(problem));
         }
-        let of_server = ["creds", "tls_ca", "expect_workers", "local_threads"];
-        let given = of_server.into_iter().find(|id| is_given(id));
+        let given = OF_SERVER.into_iter().find(|id| is_given(id));
         return given.map_or(Ok(()), |id| {
             let problem =
                 format!("--{} has no effect without --nats (see snakes --help)", name(id));
@@ -242,156 +304,4 @@ fn check_server(task: Task, is_given: impl Fn(&str) -> bool) -> Result<(), CliEr
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cli::args::{Parsed, parse};
-    use clap::CommandFactory;
-    use std::ffi::OsString;
-
-    /// Every task, as words of the command line.
-    const TASKS: [(Task, &str); 18] = [
-        (Window, ""),
-        (Run, "--no-render"),
-        (ReplayInWindow, "replay a.ron"),
-        (CheckReplay, "replay a.ron --no-render"),
-        (Bench, "bench"),
-        (Verify, "verify"),
-        (Exam, "exam a.ron"),
-        (Robust, "robust a.ron"),
-        (Compare, "compare"),
-        (Families, "families"),
-        (Table1, "table1"),
-        (Figures, "figures run"),
-        (Render, "render a.ron"),
-        (Worker, "worker --nats nats://a"),
-        (Machines, "machines --nats nats://a"),
-        (Presets, "presets"),
-        (Settings, "settings"),
-        (SettingsAsMarkdown, "settings --markdown"),
-    ];
-
-    fn parsed(words: &str) -> Result<Box<Args>, String> {
-        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
-        match parse(arguments.map(OsString::from)) {
-            Ok(Parsed::Run(args)) => Ok(args),
-            Ok(Parsed::Print(_)) => unreachable!("no help was asked for"),
-            Err(error) => Err(error.to_string()),
-        }
-    }
-
-    /// The flag with a value, if it takes one.
-    fn flag(id: &str) -> String {
-        let command = Args::command();
-        let argument = command.get_arguments().find(|argument| argument.get_id() == id);
-        let takes_value = argument.expect("a flag").get_action().takes_values();
-        format!("--{}{}", id.replace('_', "-"), if takes_value { " 1" } else { "" })
-    }
-
-    #[test]
-    fn every_flag_has_its_tasks() {
-        let command = Args::command();
-        let mut ids: Vec<&str> =
-            command.get_arguments().map(|argument| argument.get_id().as_str()).collect();
-        ids.retain(|id| !["help", "version"].contains(id));
-        let mut listed: Vec<&str> = FLAGS.iter().map(|(id, _)| *id).collect();
-        ids.sort_unstable();
-        listed.sort_unstable();
-        assert_eq!(listed, ids);
-        assert!(FLAGS.iter().all(|(_, tasks)| !tasks.is_empty()));
-    }
-
-    #[test]
-    fn every_pair_of_a_flag_and_a_task_is_accepted_or_refused_by_name() {
-        assert_eq!(TASKS.len(), Task::value_variants().len());
-        for (task, words) in TASKS {
-            assert_eq!(Task::of(&parsed(words).expect("allowed")), task, "{words}");
-            for (id, tasks) in FLAGS {
-                if id == "no_render" || (id == "nats" && words.contains("--nats")) {
-                    continue;
-                }
-                // Before the subcommand, where all flags are known.
-                let needs_server = ["creds", "tls_ca", "expect_workers", "local_threads"];
-                let is_one = needs_server.contains(&id) && tasks.contains(&task);
-                let server =
-                    if is_one && !words.contains("--nats") { "--nats nats://a" } else { "" };
-                let line = format!("{server} {} {words}", flag(id));
-                match parsed(&line) {
-                    Ok(_) => assert!(tasks.contains(&task), "{line}"),
-                    Err(message) => {
-                        assert!(!tasks.contains(&task), "{line}: {message}");
-                        let name = id.replace('_', "-");
-                        let start = format!("--{name} has no effect with {}", task.words());
-                        assert!(message.starts_with(&start), "{line}: {message}");
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn flags_of_a_server_are_refused_without_one_and_threads_with_one() {
-        for (words, problem) in [
-            ("--no-render --expect-workers 2", "--expect-workers has no effect without --nats"),
-            ("compare --tls-ca a.pem", "--tls-ca has no effect without --nats"),
-            ("worker", "snakes worker needs --nats URL"),
-            ("machines", "snakes machines needs --nats URL"),
-            (
-                "exam a.ron --nats nats://a --threads 2",
-                "--threads has no effect with --nats; use --local-threads",
-            ),
-            (
-                "--no-render --nats nats://a --evaluator threads",
-                "--evaluator has no effect with --nats",
-            ),
-        ] {
-            let message = parsed(words).expect_err("refused");
-            assert!(message.starts_with(problem), "{words}: {message}");
-        }
-        assert!(parsed("worker --nats nats://a --threads 2").is_ok());
-    }
-
-    #[test]
-    fn no_render_is_refused_where_no_window_opens() {
-        for words in ["bench", "verify", "robust a.ron", "compare", "table1", "presets"] {
-            let message = parsed(&format!("{words} --no-render")).expect_err("refused");
-            assert!(message.starts_with("--no-render has no effect with snakes"), "{message}");
-        }
-    }
-
-    #[test]
-    fn the_help_of_a_task_lists_exactly_the_flags_that_the_task_accepts() {
-        for (subcommand, tasks) in [
-            ("compare", &[Compare][..]),
-            ("families", &[Families]),
-            ("robust", &[Robust]),
-            ("bench", &[Bench]),
-            ("verify", &[Verify]),
-            ("table1", &[Table1]),
-            ("figures", &[Figures]),
-            ("render", &[Render]),
-            ("worker", &[Worker]),
-            ("machines", &[Machines]),
-            ("presets", &[Presets]),
-            ("settings", &[Settings, SettingsAsMarkdown]),
-            ("replay", &[ReplayInWindow, CheckReplay]),
-        ] {
-            let arguments = ["snakes", subcommand, "--help"].map(OsString::from);
-            let Ok(Parsed::Print(help)) = parse(arguments) else { panic!("{subcommand} has help") };
-            for (id, of) in FLAGS.iter().filter(|(id, _)| !["from", "evaluator"].contains(id)) {
-                let flag = format!("--{}", id.replace('_', "-"));
-                let is_listed = help.split_whitespace().any(|word| word == flag);
-                let is_accepted = of.iter().any(|task| tasks.contains(task));
-                assert_eq!(is_listed, is_accepted, "{flag} in the help of {subcommand}:\n{help}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_flag_of_a_run_is_refused_by_the_check_of_a_replay() {
-        let message = parsed("replay a.ron --no-render --set physics.steps_per_s=240");
-        assert_eq!(
-            message.expect_err("refused"),
-            "--set has no effect with snakes replay --no-render; leave out --no-render (see snakes --help)"
-        );
-    }
-}
+mod tests;

@@ -3,12 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Parser;
+use clap_complete::Shell;
 
 use super::compare::CompareArgs;
+use super::export::ExportArgs;
 use super::families::FamiliesArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
 use crate::run::evaluators::EVALUATORS;
+use crate::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
 use crate::schema::Choices;
 use crate::score::{ExamSuite, Fitness};
 
@@ -108,9 +111,12 @@ pub struct Args {
     /// Colour theme: light or dark [default: the last one used; light at first]
     #[arg(long, global = true, value_name = "NAME", help_heading = WINDOW)]
     pub(super) theme: Option<String>,
-    /// Present on the full screen: the stage alone, with a large caption; Escape returns to the window
+    /// Present on the full screen: champions in turn, with a large caption; any key but a clicker's returns to the window
     #[arg(long, global = true, help_heading = WINDOW)]
     pub present: bool,
+    /// Show problems with the files in the window instead of ending, for starts without a terminal (a double click)
+    #[arg(long, global = true, hide_short_help = true, help_heading = WINDOW)]
+    pub desktop: bool,
     /// File for window preferences, or "none" [default: a file in the platform's settings folder]
     #[arg(long, global = true, value_name = "FILE", help_heading = WINDOW)]
     pub(super) preferences: Option<PathBuf>,
@@ -148,7 +154,7 @@ pub enum Subcommand {
         /// Saved champions
         #[arg(required = true)]
         files: Vec<PathBuf>,
-        #[arg(long, value_name = "NAME", help = suite_help())]
+        #[arg(long, value_name = "NAME", help = exam_suite_help())]
         suite: Vec<String>,
         /// Write the results into the files
         #[arg(long)]
@@ -185,6 +191,8 @@ pub enum Subcommand {
     },
     /// Draw one moment of saved champions side by side as a PNG file; opens no window
     Render(RenderArgs),
+    /// Write saved champions in the formats of other programs
+    Export(ExportArgs),
     /// Compute for runs on other computers, through the server that --nats names, until stopped
     Worker,
     /// List the workers and runs on the server that --nats names, and what waits there
@@ -193,6 +201,13 @@ pub enum Subcommand {
         #[arg(long, value_name = "RUN")]
         purge: Option<String>,
     },
+    /// Print completions for a shell: bash, elvish, fish, powershell or zsh
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page of this program, or write the pages of all commands into the folder that --out names
+    Man,
     /// List the presets
     Presets,
     /// List every setting with its value, in the form that --set takes
@@ -214,6 +229,14 @@ pub(super) fn suite_help() -> String {
     let rows: Vec<String> =
         choices.map(|choice| format!("{}: {}", choice.name, choice.sentence)).collect();
     format!("Suite of the exam; may be repeated [default: all]. {}", rows.join(" "))
+}
+
+/// Lists every suite of `snakes exam`.
+fn exam_suite_help() -> String {
+    format!(
+        "{} {MUJOCO}: {MUJOCO_SENTENCE}",
+        suite_help().replace("[default: all]", "[default: all but mujoco]")
+    )
 }
 
 /// Lists every evaluator.

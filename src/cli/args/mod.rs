@@ -2,8 +2,12 @@
 
 mod applicability;
 mod compare;
+mod completions;
+mod export;
 mod families;
+mod film;
 mod flags;
+mod manual;
 mod parse;
 mod render;
 mod robust;
@@ -11,8 +15,13 @@ mod run;
 mod values;
 
 pub use compare::CompareArgs;
+pub use completions::completions;
+pub use export::ExportArgs;
 pub use families::FamiliesArgs;
+#[cfg(feature = "studio")]
+pub use film::FilmArgs;
 pub use flags::{Args, Subcommand};
+pub use manual::manual;
 pub use parse::{Parsed, parse};
 #[cfg(feature = "studio")]
 pub use render::RenderArgs;

@@ -20,7 +20,7 @@ pub enum Parsed {
 
 /// Parses the arguments, shortens clap's errors to one line, and refuses flags without effect.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, CliError> {
-    let command = applicability::without_refused_flags(Args::command());
+    let command = applicability::with_own_help(Args::command());
     let matches = command.try_get_matches_from(arguments);
     let parsed = matches.and_then(|matches| Ok((Args::from_arg_matches(&matches)?, matches)));
     match parsed {

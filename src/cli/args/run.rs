@@ -34,7 +34,6 @@ impl Args {
     }
 
     /// The folder that is named for results.
-    #[cfg(feature = "studio")]
     pub fn out_folder(&self) -> Option<&Path> {
         self.out.as_deref()
     }

@@ -116,6 +116,11 @@ impl Args {
         Ok(named.map_err(of_flag("--theme"))?)
     }
 
+    /// Whether a colour theme is given.
+    pub fn has_theme(&self) -> bool {
+        self.theme.is_some()
+    }
+
     /// The file for window preferences.
     #[cfg(feature = "studio")]
     pub fn preferences(&self) -> PreferencesFile {

@@ -11,22 +11,24 @@ use tokio::sync::mpsc::{Receiver, UnboundedReceiver, UnboundedSender, channel};
 use tokio::task::JoinHandle;
 
 use super::ledger::{AuditTask, CallId, Checker, Ledger, LedgerAction};
-use super::traffic::{News, answer_shared, fetch_results, hear_workers, publish};
+use super::traffic::{News, answer_shared, fetch_results, hear_notices};
 use super::{CoordinatorOptions, SharedTexts, Status};
-use crate::cluster::broker::{Broker, one_line, result_consumer, result_stream, work_stream};
+use crate::cluster::broker::{Broker, PullSource};
 use crate::cluster::compute::{Compute, outcome_of_texts};
+use crate::cluster::connection::Trouble;
 use crate::cluster::error::ClusterError;
-use crate::cluster::hello::{NOTICE_FORMAT, RunNotice, host_name, random_number};
+use crate::cluster::hello::{RunNotice, host_name, random_number};
 use crate::cluster::names::{
     NOTICE_INTERVAL, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_subject, result_subject,
     work_subject,
 };
 use crate::cluster::outcome::Outcome;
-use crate::cluster::wire::{ResultBatch, TaskKind, WorkBatch, line_of};
+use crate::cluster::store::publish_until_stored;
+use crate::cluster::wire::{ResultBatch, TaskKind, WIRE_FORMAT, WorkBatch, line_of};
 use crate::engine::{ENGINE_VERSION, Processors};
 use crate::run::headless::say;
 
-/// What the actor is told.
+/// A message to the coordinator's thread.
 #[derive(Debug)]
 pub enum CoordinatorCommand {
     /// A call of the evaluator begins.
@@ -69,11 +71,16 @@ pub struct Actor {
     status: Arc<Mutex<Status>>,
     commands: UnboundedSender<CoordinatorCommand>,
     news: Receiver<News>,
+    /// When a message last came from the server.
+    heard: Instant,
     tasks: Vec<JoinHandle<()>>,
 }
 
 /// Interval at which late batches and silent workers are looked for.
 const TICK: Duration = Duration::from_millis(250);
+/// If nothing was heard from the server for this long, the silence of the workers is not theirs. This run's own notices
+/// come back each second.
+const DEAFNESS: Duration = NOTICE_INTERVAL.saturating_mul(3);
 /// How long a worker may take to answer a check, besides the time of its evaluation.
 const AUDIT_WAIT: Duration = Duration::from_secs(20);
 /// Maximum number of messages that wait for the ledger.
@@ -91,17 +98,20 @@ impl Actor {
         status: Arc<Mutex<Status>>,
         commands: UnboundedSender<CoordinatorCommand>,
     ) -> Result<Self, ClusterError> {
-        let jetstream = broker.jetstream();
         let prepared = broker.runtime().block_on(async {
-            let stream = work_stream(jetstream).await?;
+            let stream = broker.work_stream().await?;
             let left = stream.purge().filter(work_subject(&options.proof, &options.run)).await;
-            left.map_err(|error| one_line(&error))?;
-            result_consumer(jetstream, &options.run).await?;
+            left.map_err(|error| Trouble::of(&error))?;
+            broker.consumer(&PullSource::Results(options.run.clone())).await?;
             // Before this run tells of itself: workers answer.
-            let notices = broker.client().subscribe(WORKER_NOTICES).await;
-            notices.map_err(|error| one_line(&error))
+            let heard = async |subject| {
+                let heard = broker.client().subscribe(subject).await;
+                heard.map_err(|error| Trouble::of(&error))
+            };
+            Ok((heard(WORKER_NOTICES).await?, heard(RUN_NOTICES).await?))
         });
-        let notices = prepared.map_err(|problem| broker.refused("the run", problem))?;
+        let (workers, runs) =
+            prepared.map_err(|trouble: Trouble| broker.refused("the run", &trouble))?;
         // The numbers of a predecessor's batches are far away. Neither number can change a result.
         let seed = random_number();
         let rng = ChaCha8Rng::seed_from_u64(seed);
@@ -116,7 +126,7 @@ impl Actor {
         let runtime = broker.runtime();
         let tasks = vec![
             runtime.spawn(fetch_results(Arc::clone(&broker), options.run.clone(), sender.clone())),
-            runtime.spawn(hear_workers(notices, sender)),
+            runtime.spawn(hear_notices(workers, runs, sender)),
             runtime.spawn(answer_shared(
                 Arc::clone(&broker),
                 options.run.clone(),
@@ -125,7 +135,8 @@ impl Actor {
         ];
         let calls = BTreeMap::new();
         let options = options.clone();
-        Ok(Self { broker, options, ledger, calls, shared, status, commands, news, tasks })
+        let heard = Instant::now();
+        Ok(Self { broker, options, ledger, calls, shared, status, commands, news, heard, tasks })
     }
 
     fn act(&mut self, actions: Vec<LedgerAction>) {
@@ -157,7 +168,9 @@ impl Actor {
         let subject = work_subject(&self.options.proof, &batch.run);
         let broker = Arc::clone(&self.broker);
         self.tasks.retain(|task| !task.is_finished());
-        self.tasks.push(self.broker.runtime().spawn(publish(broker, subject, id, bytes)));
+        self.tasks.push(self.broker.runtime().spawn(async move {
+            publish_until_stored(&broker, "work cannot be stored", &subject, &id, &bytes).await;
+        }));
     }
 
     fn audit(&mut self, audit: AuditTask) {
@@ -237,23 +250,30 @@ impl Actor {
 
     fn on_news(&mut self, news: News) {
         let now = Instant::now();
+        self.heard = now;
         let actions = match news {
             News::Results(results) => self.ledger.on_results(results, now),
             News::Notice(notice) => self.ledger.on_notice(notice, now),
+            News::ServerIsHeard => Vec::new(),
+            News::StoreLost => self.ledger.on_store_lost(now),
         };
         self.act(actions);
         self.update_status();
     }
 
     fn on_tick(&mut self) {
-        let actions = self.ledger.on_tick(Instant::now());
+        let now = Instant::now();
+        if now.duration_since(self.heard) > DEAFNESS {
+            self.ledger.excuse_silence(now);
+        }
+        let actions = self.ledger.on_tick(now);
         self.act(actions);
         self.update_status();
     }
 
     async fn tell(&self) {
         let notice = RunNotice {
-            format: NOTICE_FORMAT,
+            format: WIRE_FORMAT,
             run: self.options.run.clone(),
             host: host_name(),
             engine: ENGINE_VERSION,
@@ -290,18 +310,19 @@ pub fn run_actor(
             }
         }
         actor.tasks.iter().for_each(JoinHandle::abort);
-        let _ = tokio::time::timeout(SILENCE, clean_up(&actor)).await;
+        if !actor.broker.connection().is_lost() {
+            let _ = tokio::time::timeout(SILENCE, clean_up(&actor)).await;
+        }
     });
 }
 
 /// Removes what the run leaves on the server.
 async fn clean_up(actor: &Actor) {
-    let jetstream = actor.broker.jetstream();
-    if let Ok(stream) = work_stream(jetstream).await {
+    if let Ok(stream) = actor.broker.work_stream().await {
         let subject = work_subject(&actor.options.proof, &actor.options.run);
         let _ = stream.purge().filter(subject).await;
     }
-    if let Ok(stream) = result_stream(jetstream).await {
+    if let Ok(stream) = actor.broker.result_stream().await {
         let _ = stream.purge().filter(result_subject(&actor.options.run)).await;
         let _ = stream.delete_consumer(&actor.options.run).await;
     }

@@ -1,4 +1,4 @@
-//! What a coordinator knows: tasks without a result, batches on their way, workers, and checks of their results.
+//! The state of a coordinator: tasks without a result, batches on their way, workers, and checks of their results.
 //!
 //! The ledger does no input and no output. It is told what happened, and says what is to be done.
 
@@ -30,7 +30,7 @@ const MOST_EARLY: usize = 4096;
 /// The number of a call of the evaluator.
 pub type CallId = u64;
 
-/// What is to be done.
+/// A step that the ledger asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LedgerAction {
     /// Publish a batch.
@@ -155,7 +155,7 @@ impl Ledger {
             self.queue.push_back(key);
         }
         let mut actions = Vec::new();
-        // What a predecessor asked for, and what came in the meantime.
+        // Results that were made for a coordinator that was killed.
         let early: Vec<u64> =
             self.early.keys().filter(|key| self.tasks.contains_key(key)).copied().collect();
         for key in early {
@@ -212,17 +212,36 @@ impl Ledger {
         actions
     }
 
+    /// The server has lost what it stored: the batches on their way are sent again.
+    pub fn on_store_lost(&mut self, now: Instant) -> Vec<LedgerAction> {
+        let lost = std::mem::take(&mut self.batches);
+        let line =
+            format!("the server has lost what it stored: {} batches are sent again", lost.len());
+        // Each is put in front of the others.
+        self.release(lost.into_values().rev().flat_map(|batch| batch.keys.into_iter().rev()));
+        let mut actions = vec![LedgerAction::Say(line)];
+        actions.extend(self.publish(now));
+        actions
+    }
+
+    /// No worker could be heard until now.
+    pub fn excuse_silence(&mut self, now: Instant) {
+        self.staff.excuse_silence(now);
+    }
+
     /// Time passed: late batches are sent again, silent workers forgotten.
     pub fn on_tick(&mut self, now: Instant) -> Vec<LedgerAction> {
-        for key in self.staff.forget_silent(now) {
-            self.requeue(key);
+        let mut actions = Vec::new();
+        for (line, keys) in self.staff.forget_silent(now) {
+            actions.extend(line.map(LedgerAction::Say));
+            keys.into_iter().for_each(|key| self.requeue(key));
         }
         for number in self.late_batches(now, LOST_AFTER) {
             if let Some(batch) = self.batches.remove(&number) {
                 self.release(batch.keys.into_iter());
             }
         }
-        let mut actions = self.start_first_audits();
+        actions.extend(self.start_first_audits());
         actions.extend(self.publish(now));
         actions.extend(self.repeat_late(now));
         actions

@@ -1,24 +1,22 @@
-//! What a coordinator exchanges with the server: batches, results, notices, and what tasks share.
+//! Traffic with the server: results, notices, and requests for trials and genomes.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use async_nats::Subscriber;
-use async_nats::jetstream::context::PublishErrorKind;
-use async_nats::jetstream::message::PublishMessage;
 use futures_util::StreamExt;
 use tokio::sync::mpsc::Sender;
 
 use super::SharedTexts;
-use crate::cluster::broker::{Broker, one_line, result_consumer, work_stream};
+use crate::cluster::broker::{Broker, PullSource};
 use crate::cluster::hello::WorkerNotice;
-use crate::cluster::names::{PULL_WAIT, shared_subject};
+use crate::cluster::names::shared_subject;
 use crate::cluster::packing::pack;
-use crate::cluster::wire::{ResultBatch, hash_of};
+use crate::cluster::puller::{Pulled, Puller};
+use crate::cluster::store::RETRY_PAUSE;
+use crate::cluster::wire::ResultBatch;
 use crate::run::headless::say;
+use crate::save::hash_of;
 
-/// Pause before the server is asked again after it refused a request.
-const RETRY_PAUSE: Duration = Duration::from_millis(500);
 /// Maximum number of results that are fetched at once.
 const MOST_FETCHED: usize = 256;
 
@@ -28,69 +26,59 @@ pub enum News {
     Results(ResultBatch),
     /// A worker told of itself.
     Notice(WorkerNotice),
-}
-
-/// Publishes a batch, however long that takes.
-pub async fn publish(broker: Arc<Broker>, subject: String, id: String, bytes: Vec<u8>) {
-    let mut complaint = String::new();
-    loop {
-        let message = PublishMessage::build().payload(bytes.clone().into()).message_id(&id);
-        let published = async {
-            let sent = broker.jetstream().send_publish(subject.clone(), message).await?;
-            sent.await
-        };
-        let Err(error) = published.await else { return };
-        if error.kind() == PublishErrorKind::StreamNotFound {
-            let _ = work_stream(broker.jetstream()).await;
-        }
-        let problem = one_line(&error);
-        if problem != complaint {
-            say(&format!("{}: work cannot be stored: {problem}; trying again", broker.url()));
-            complaint = problem;
-        }
-        tokio::time::sleep(RETRY_PAUSE).await;
-    }
+    /// A notice of a run: the connection works.
+    ServerIsHeard,
+    /// The server has lost what it stored.
+    StoreLost,
 }
 
 /// Fetches the results of a run.
 pub async fn fetch_results(broker: Arc<Broker>, run: String, news: Sender<News>) {
-    let mut complaint = String::new();
+    const TASK: &str = "no results arrive";
+    let mut puller = Puller::new(&broker, PullSource::Results(run.clone()), MOST_FETCHED);
     loop {
-        let fetched = async {
-            let consumer = result_consumer(broker.jetstream(), &run).await?;
-            loop {
-                let request = consumer.batch().max_messages(MOST_FETCHED).expires(PULL_WAIT);
-                let mut messages = request.messages().await.map_err(|error| one_line(&error))?;
-                while let Some(message) = messages.next().await {
-                    let message = message.map_err(|error| error.to_string())?;
-                    match ResultBatch::decode(&message.payload) {
-                        Ok(results) if results.run == run => {
-                            if news.send(News::Results(results)).await.is_err() {
-                                return Ok::<(), String>(());
-                            }
+        match puller.next().await {
+            Ok(Pulled::Message(message)) => {
+                broker.connection().succeeded(TASK);
+                match ResultBatch::decode(&message.payload) {
+                    Ok(results) if results.run == run => {
+                        if news.send(News::Results(results)).await.is_err() {
+                            return;
                         }
-                        Ok(_) => {}
-                        Err(error) => say(&format!("a result is ignored: {error}")),
                     }
-                    // Without an acknowledgement the results arrive again, and count once.
-                    let _ = message.ack().await;
+                    Ok(_) => {}
+                    Err(error) => say(&format!("a result is ignored: {error}")),
+                }
+                // Without an acknowledgement the results arrive again, and count once.
+                let _ = message.ack().await;
+            }
+            Ok(Pulled::Nothing) => broker.connection().succeeded(TASK),
+            Ok(Pulled::StoreLost) => {
+                if news.send(News::StoreLost).await.is_err() {
+                    return;
                 }
             }
-        };
-        let Err(problem) = fetched.await else { return };
-        if problem != complaint {
-            say(&format!("{}: no results: {problem}; asking again", broker.url()));
-            complaint = problem;
+            Err(trouble) => {
+                broker.connection().failed(TASK, &trouble);
+                tokio::time::sleep(RETRY_PAUSE).await;
+            }
         }
-        tokio::time::sleep(RETRY_PAUSE).await;
     }
 }
 
-/// Hears what workers tell of themselves.
-pub async fn hear_workers(mut notices: Subscriber, news: Sender<News>) {
-    while let Some(message) = notices.next().await {
-        let Ok(notice) = WorkerNotice::read(&message.payload) else { continue };
-        if news.send(News::Notice(notice)).await.is_err() {
+/// Hears what workers tell of themselves, and the notices of runs. This run's own come back, too, so that they show each
+/// second whether the server can be heard.
+pub async fn hear_notices(mut workers: Subscriber, mut runs: Subscriber, news: Sender<News>) {
+    loop {
+        let heard = tokio::select! {
+            Some(message) = workers.next() => match WorkerNotice::read(&message.payload) {
+                Ok(notice) => News::Notice(notice),
+                Err(_) => continue,
+            },
+            Some(_) = runs.next() => News::ServerIsHeard,
+            else => return,
+        };
+        if news.send(heard).await.is_err() {
             return;
         }
     }

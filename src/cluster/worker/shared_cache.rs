@@ -20,14 +20,11 @@ const ANSWER_WAIT: Duration = Duration::from_secs(3);
 pub struct SharedCache(Mutex<Vec<(u64, Arc<Shared>)>>);
 
 impl SharedCache {
-    /// What the tasks of a batch share; none if the coordinator does not answer, or sends something else.
-    pub fn get(&self, broker: &Broker, work: &WorkBatch) -> Option<Arc<Shared>> {
-        if let Some(known) = self.known(work.shared) {
-            return Some(known);
-        }
+    /// The trial or the genome that the tasks of a batch share, from its coordinator; none if that does not answer, or sends something else.
+    pub async fn fetch(&self, broker: &Broker, work: &WorkBatch) -> Option<Arc<Shared>> {
         let subject = shared_subject(&work.run, &hex(work.shared));
         let request = async_nats::Request::new().timeout(Some(ANSWER_WAIT));
-        let answer = broker.runtime().block_on(broker.client().send_request(subject, request));
+        let answer = broker.client().send_request(subject, request).await;
         let bytes = answer.ok()?.payload;
         let read = unpack(&bytes).and_then(|text| {
             // The coordinator's hash is of its own text, so equal hashes mean an equal trial.
@@ -49,7 +46,8 @@ impl SharedCache {
         }
     }
 
-    fn known(&self, hash: u64) -> Option<Arc<Shared>> {
+    /// The text with this hash.
+    pub fn known(&self, hash: u64) -> Option<Arc<Shared>> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let at = kept.iter().position(|(of, _)| *of == hash)?;
         let found = kept.remove(at);

@@ -10,8 +10,8 @@ use super::moving::{move_entry, taken};
 use super::name::{ENDING, check_entry_name, free_path, notes_beside, shortened};
 use super::notes::{copy_notes, name_run, set_notes};
 use crate::check::Invalid;
-use crate::save::files::{prepare_folder, write_new};
 use crate::save::lock::Lock;
+use crate::save::whole_file::{prepare_folder, write_new};
 use crate::save::{EntryNotes, SaveError, SavesFolder};
 
 /// Folder for deleted entries within a folder of saves.
@@ -240,7 +240,7 @@ mod tests {
             refusal(&"x".repeat(300))
                 .ends_with("name is 300 characters long; allowed: 1 to 100 characters")
         );
-        assert!(refusal("a/b").contains("without slashes"));
+        assert!(refusal("a/b").contains("without the characters"));
         assert!(refusal("../out").contains("dot"));
         assert_eq!(champions(&saves), ["first", "second"]);
         let kept = fs::read_to_string(folder.path().join("second.ron")).expect("there");

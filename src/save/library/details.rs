@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use super::list::SavePlace;
-use super::shipped::shipped_text;
+use super::shipped::{SHIPPED, shipped_text};
 use super::thumbnail::Thumbnail;
 use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::{Origin, StrategyKind};
 use crate::genome::ControllerKind;
-use crate::save::champion::is_programs_comment;
+use crate::save::champion_exam::is_programs_comment;
 use crate::save::files::{numbered, read_text, refuse_link, single_line};
 use crate::save::folder::has_generations_left;
 use crate::save::plan::load_plan;
@@ -121,6 +121,15 @@ pub fn load_entry(place: &SavePlace) -> Result<(LoadedChampion, Option<u32>), Sa
             Ok((load_generation(folder, generation)?, Some(generation)))
         }
     }
+}
+
+/// The names and champions that are part of the program.
+pub fn shipped_champions() -> Vec<(&'static str, LoadedChampion)> {
+    // A test checks that all are whole.
+    let parsed = |(name, text): &(&'static str, &str)| {
+        Some((*name, parse_champion(Path::new(name), text).ok()?))
+    };
+    SHIPPED.iter().filter_map(parsed).collect()
 }
 
 fn no_champion(folder: &Path) -> SaveError {
@@ -251,7 +260,6 @@ mod tests {
     use crate::ENGINE_VERSION;
     use crate::save::library::fixtures::{champion_in, run_in, saves};
     use crate::save::library::list;
-    use crate::save::library::shipped::SHIPPED;
     use std::fs;
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::check::Invalid;
+use crate::check::{self, Invalid};
 
 /// Maximum length of a name, in characters.
 pub const MAX_NAME_CHARS: usize = 100;
@@ -19,10 +19,15 @@ pub fn notes_beside(champion: &Path) -> PathBuf {
     champion.with_extension(NOTES_ENDING)
 }
 
-/// Checks a name: it must neither lead out of its folder nor hide in it.
+/// Characters that cannot be in a file's name: those of paths, and those that Windows does not allow. Champions are shared
+/// between systems, so the same names are allowed on all of them.
+const NOT_IN_NAMES: &str = "/\\<>:\"|?*";
+
+/// Checks a name: it must neither lead out of its folder nor hide in it, and a file on every system can have it.
 ///
 /// # Errors
-/// The name is empty or too long, begins with a dot, or has a slash or a control character in it.
+/// The name is empty or too long, begins or ends with a dot, has a slash, another forbidden character or a control character in it,
+/// or is the name of a device of Windows.
 pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     let invalid = |value: String, allowed: &str| Err(Invalid::new("name", value, allowed));
     let characters = name.chars().count();
@@ -38,8 +43,9 @@ pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     if name.starts_with('.') {
         return invalid(format!("{start:?}"), "a name that does not begin with a dot");
     }
-    if name.contains(['/', '\\']) {
-        return invalid(format!("{start:?}"), "a name without slashes");
+    if name.contains(|c| NOT_IN_NAMES.contains(c)) {
+        let allowed = "a name without the characters / \\ < > : \" | ? *";
+        return invalid(format!("{start:?}"), allowed);
     }
     if name.chars().any(char::is_control) {
         return invalid(format!("{start:?}"), "a name without line breaks and control characters");
@@ -47,14 +53,25 @@ pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     if name.trim() != name {
         return invalid(format!("{start:?}"), "a name without spaces at its ends");
     }
-    Ok(())
+    if name.ends_with('.') {
+        return invalid(format!("{start:?}"), "a name that does not end with a dot");
+    }
+    check::no_device("name", name)
 }
 
 /// An allowed name that is as close as possible to any given name.
 pub fn plain_name(name: &str) -> String {
-    let plain: String = name.chars().filter(|c| !c.is_control() && !"/\\".contains(*c)).collect();
-    let short = shortened(plain.trim().trim_start_matches('.').trim_start(), "");
-    if short.is_empty() { "imported".to_owned() } else { short }
+    let is_allowed = |c: &char| !c.is_control() && !NOT_IN_NAMES.contains(*c);
+    let plain: String = name.chars().filter(is_allowed).collect();
+    let short = shortened(plain.trim_start_matches(|c: char| c == '.' || c.is_whitespace()), "");
+    match short.split_once('.') {
+        _ if short.is_empty() => "imported".to_owned(),
+        Some((device, rest)) if check::no_device("name", device).is_err() => {
+            shortened(&format!("{device}_.{rest}"), "")
+        }
+        None if check::no_device("name", &short).is_err() => short + "_",
+        _ => short,
+    }
 }
 
 /// A name with `added` appended; its own end is cut off if it would become too long.
@@ -67,7 +84,7 @@ pub fn shortened(name: &str, added: &str) -> String {
     while let Some((last, _)) = kept.char_indices().next_back().filter(|_| !fits(kept)) {
         kept = &kept[..last];
     }
-    kept.trim_end().to_owned() + added
+    kept.trim_end_matches(|c: char| c == '.' || c.is_whitespace()).to_owned() + added
 }
 
 /// The first free path in a folder: the name, then the name with 2, 3 and so on.
@@ -90,7 +107,15 @@ mod tests {
 
     #[test]
     fn a_name_that_is_a_path_hidden_or_too_long_is_refused_with_the_reason() {
-        for good in ["climber", "My best one, no. 2", "Schlange ü", "x.y", &"é".repeat(100)] {
+        for good in [
+            "climber",
+            "My best one, no. 2",
+            "Schlange ü",
+            "x.y",
+            "com10",
+            "conic",
+            &"é".repeat(100),
+        ] {
             assert_eq!(check_entry_name(good), Ok(()), "{good}");
         }
         for (bad, message) in [
@@ -98,8 +123,26 @@ mod tests {
             (&"x".repeat(300), "name is 300 characters long; allowed: 1 to 100 characters"),
             (&"龍".repeat(90), "name is 270 bytes long; allowed: up to 200 bytes"),
             ("../up", "name is \"../up\"; allowed: a name that does not begin with a dot"),
-            ("a/b", "name is \"a/b\"; allowed: a name without slashes"),
-            ("a\\b", "name is \"a\\\\b\"; allowed: a name without slashes"),
+            ("a/b", "name is \"a/b\"; allowed: a name without the characters / \\ < > : \" | ? *"),
+            (
+                "a\\b",
+                "name is \"a\\\\b\"; allowed: a name without the characters / \\ < > : \" | ? *",
+            ),
+            (
+                "a: b",
+                "name is \"a: b\"; allowed: a name without the characters / \\ < > : \" | ? *",
+            ),
+            (
+                "what?",
+                "name is \"what?\"; allowed: a name without the characters / \\ < > : \" | ? *",
+            ),
+            ("end.", "name is \"end.\"; allowed: a name that does not end with a dot"),
+            ("con", "name is \"con\"; allowed: a name that Windows does not keep for a device"),
+            (
+                "Nul.best",
+                "name is \"Nul.best\"; allowed: a name that Windows does not keep for a device",
+            ),
+            ("COM1", "name is \"COM1\"; allowed: a name that Windows does not keep for a device"),
             (".hidden", "name is \".hidden\"; allowed: a name that does not begin with a dot"),
             ("a\nb", "name is \"ab\"; allowed: a name without line breaks and control characters"),
             (" a", "name is \" a\"; allowed: a name without spaces at its ends"),
@@ -110,11 +153,29 @@ mod tests {
 
     #[test]
     fn any_name_is_turned_into_an_allowed_one() {
-        for odd in ["", "...", "a/../b", " .x ", "a\u{7}b", &"龍".repeat(300), &"x".repeat(300)] {
+        let (long, wide) = ("x".repeat(300), "龍".repeat(300));
+        let dots = format!("{}{}", "y".repeat(99), "...");
+        for odd in [
+            "",
+            "...",
+            "a/../b",
+            " .x ",
+            "a\u{7}b",
+            "x. .",
+            "con",
+            "nul.ron",
+            "aux .b",
+            "LPT9.",
+            "a<b>c:d\"|?*",
+            &wide,
+            &long,
+            &dots,
+        ] {
             let plain = plain_name(odd);
             assert_eq!(check_entry_name(&plain), Ok(()), "{odd:?} became {plain:?}");
             assert_eq!(check_entry_name(&shortened(&plain, " copy 12")), Ok(()));
         }
         assert_eq!(plain_name("my champion"), "my champion");
+        assert_eq!(plain_name("con.x"), "con_.x");
     }
 }

@@ -9,9 +9,10 @@ use super::list::SavePlace;
 use super::moving::{move_new, taken};
 use super::name::{ENDING, free_path, plain_name};
 use super::notes::copy_notes;
-use crate::save::files::{UNFINISHED, prepare_folder, read_bytes, write_new};
-use crate::save::lock::{LOCK_FILE, Lock};
+use crate::save::files::read_bytes;
+use crate::save::lock::{LOCK_FILE, Lock, OWNER_FILE};
 use crate::save::plan::{RUN_FILE, load_plan};
+use crate::save::whole_file::{UNFINISHED, prepare_folder, write_new};
 use crate::save::{SaveError, SavedProgress, SavesFolder, parse_champion, run_name};
 
 /// Folder for exported copies within a folder of saves, unless another is given.
@@ -144,7 +145,8 @@ fn copy_files(from: &Path, to: &Path, deeper: u32) -> Result<(), SaveError> {
         let (kind, name) = (found.file_type().map_err(unreadable)?, found.file_name());
         let copy: PathBuf = to.join(&name);
         let unwritable = SaveError::unwritable(&copy);
-        if name == LOCK_FILE || name.as_encoded_bytes().starts_with(b".") {
+        let is_of_lock = name == LOCK_FILE || name == OWNER_FILE;
+        if is_of_lock || name.as_encoded_bytes().starts_with(b".") {
             continue;
         }
         if kind.is_file() {

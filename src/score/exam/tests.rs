@@ -73,10 +73,7 @@ fn a_shoved_snake_recovers_if_it_lands_at_most_five_seconds_later() {
 #[test]
 fn the_way_counts_up_to_the_landing_and_beside_the_stairs_to_the_first_riser() {
     let stairs = Stairs::default();
-    let at = |y_m: f32, steps| {
-        let evaluation = Evaluation { centre_y_m: y_m, ..Evaluation::of_fitness(0.0) };
-        way(&evaluation, steps, &stairs, -7.0)
-    };
+    let at = |y_m: f32, steps| way(y_m, steps, &stairs, -7.0);
     assert_eq!(at(7.0, 2), 0.5);
     assert_eq!(at(30.0, 10), 1.0);
     assert!((at(30.0, 0) - 10.0 / 28.0).abs() < 1e-6, "behind the stairs");

@@ -2,14 +2,18 @@
 
 pub mod stage;
 
+use std::path::PathBuf;
+
 use bevy::prelude::*;
 
 use super::quit::QuitRequest;
-use crate::studio::commands::files::FileCommand;
+use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::share::ShareCommand;
 use crate::studio::commands::{
-    Command, ExamCommand, LessonCommand, PlanCommand, PlayerCommand, RunCommand, WindowCommand,
+    Command, ExamCommand, LessonCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand,
+    WindowCommand,
 };
 use crate::studio::panels::help::tour::highlighted_panel;
 use crate::studio::scene::view_commands::ViewParams;
@@ -20,6 +24,7 @@ use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::library::Library;
 use crate::studio::state::machines::MachinesLink;
+use crate::studio::state::shares::Shares;
 use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
@@ -39,10 +44,11 @@ pub(super) fn apply(
     mut history: ResMut<UndoHistory>,
     (opening, mut quit): (Res<OpeningChampions>, ResMut<QuitRequest>),
     mut workspace: ResMut<Workspace>,
-    (mut lessons, mut exams, mut machines): (
+    (mut lessons, mut exams, mut machines, mut shares): (
         ResMut<Lessons>,
         ResMut<StairsExams>,
         ResMut<MachinesLink>,
+        ResMut<Shares>,
     ),
     (mut library, mut files): (ResMut<Library>, ResMut<Files>),
     mut stage: StageParams,
@@ -69,7 +75,12 @@ pub(super) fn apply(
             Command::Plan(command) => {
                 stage.apply_to_plan(command, &mut run, (&library, &opening), &history, notices)
             }
-            Command::Stage(command) => stage.apply(command, &run, &opening, notices),
+            Command::Stage(command) => {
+                if matches!(command, StageCommand::TakeTurn(_)) {
+                    workspace.end_black();
+                }
+                stage.apply(command, &run, &opening, notices)
+            }
             Command::Player(command) => {
                 stage.apply_to_player(command);
                 Ok(())
@@ -91,6 +102,18 @@ pub(super) fn apply(
             Command::Library(command) => library
                 .apply(command, &mut history, notices)
                 .map(|show| stage.present_others(show, notices)),
+            Command::Share(ShareCommand::Ask(format)) => {
+                let question = FileQuestion::Share(*format, stage.name_for_file());
+                let ask = FileCommand::Ask(question);
+                files.apply(&ask, &mut library, &mut history, notices).map(drop)
+            }
+            Command::Share(ShareCommand::Cancel) => shares.cancel(),
+            Command::File(FileCommand::Answer(FileQuestion::Share(format, _), paths)) => {
+                let path = paths.first().map(PathBuf::as_path);
+                let begin =
+                    |path| shares.begin(*format, path, &stage.champions_to_share(), &view.look());
+                path.map_or(Ok(()), begin)
+            }
             Command::File(command) => {
                 if *command == FileCommand::AskExport {
                     workspace.open(PanelKind::Library);

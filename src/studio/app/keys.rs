@@ -4,8 +4,9 @@ use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::prelude::*;
 use bevy_egui::input::EguiWantsInput;
 
-use crate::studio::commands::Command;
 use crate::studio::commands::actions::{Situation, of_keys};
+use crate::studio::commands::turn::Turn;
+use crate::studio::commands::{Command, PlayerCommand, StageCommand, WindowCommand};
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::viewport::StageArea;
 use crate::studio::workspace::situation::CurrentSituation;
@@ -36,6 +37,10 @@ fn read(
             continue;
         }
         let situation = now.situation();
+        if situation.is_presenting {
+            send.write_batch(of_presenter(&press.logical_key));
+            continue;
+        }
         let leaves = press.logical_key == Key::Escape && situation.is_covered;
         let (is_typing, is_steering) = (area.takes_letters(), egui.wants_any_keyboard_input());
         let is_taken = held.is_for_panel(&press.logical_key, is_typing, is_steering);
@@ -58,7 +63,7 @@ impl Held {
     /// everywhere, characters wherever they are not typed.
     fn is_for_panel(self, key: &Key, is_typing: bool, is_steering: bool) -> bool {
         match key {
-            Key::F1 | Key::F11 => false,
+            Key::F1 | Key::F5 | Key::F11 => false,
             // With Ctrl it types no character.
             key if is_typing => !self.is_command(key),
             // Lists, sliders and buttons with the focus use arrows, Enter, Space and the like, but no characters.
@@ -75,6 +80,53 @@ impl Held {
     }
 }
 
+/// The command of a key in the presenting mode: those that a presenter's clicker sends lead through the champions, and
+/// every other key returns to the window.
+fn of_presenter(key: &Key) -> Option<Command> {
+    let turn = |turn: Turn| Some(Command::Stage(StageCommand::TakeTurn(turn)));
+    match key {
+        Key::PageDown | Key::ArrowRight | Key::ArrowDown | Key::Enter => turn(Turn::Next),
+        Key::PageUp | Key::ArrowLeft | Key::ArrowUp | Key::Backspace => turn(Turn::Previous),
+        // A clicker's button begins a presentation with F5; a key with it begins one again.
+        Key::F5 | Key::Home => turn(Turn::First),
+        Key::Space => Some(Command::Player(PlayerCommand::Toggle)),
+        Key::Character(text) if matches!(text.as_str(), "b" | "B" | ".") => {
+            Some(Command::Window(WindowCommand::ToggleBlack))
+        }
+        key if is_of_keyboard_itself(key) => None,
+        _ => Some(Command::Window(WindowCommand::TogglePresenting)),
+    }
+}
+
+/// Whether a key only changes others, or the machine: sound, light, pictures of the screen.
+fn is_of_keyboard_itself(key: &Key) -> bool {
+    matches!(
+        key,
+        Key::Shift
+            | Key::Control
+            | Key::Alt
+            | Key::AltGraph
+            | Key::Super
+            | Key::Meta
+            | Key::Hyper
+            | Key::Symbol
+            | Key::SymbolLock
+            | Key::Fn
+            | Key::FnLock
+            | Key::CapsLock
+            | Key::NumLock
+            | Key::ScrollLock
+            | Key::PrintScreen
+            | Key::AudioVolumeUp
+            | Key::AudioVolumeDown
+            | Key::AudioVolumeMute
+            | Key::BrightnessUp
+            | Key::BrightnessDown
+            | Key::Unidentified(_)
+            | Key::Dead(_)
+    )
+}
+
 /// Name of the shortcut, such as `Ctrl Shift Z`.
 fn name_of(key: &Key, held: Held) -> Option<String> {
     let (name, is_letter) = match key {
@@ -85,6 +137,7 @@ fn name_of(key: &Key, held: Held) -> Option<String> {
         Key::ArrowRight => ("Right".to_owned(), true),
         Key::Escape => ("Esc".to_owned(), true),
         Key::F1 => ("F1".to_owned(), true),
+        Key::F5 => ("F5".to_owned(), true),
         Key::F11 => ("F11".to_owned(), true),
         Key::Character(text) => (text.to_uppercase(), text.chars().all(char::is_alphabetic)),
         _ => return None,
@@ -99,17 +152,15 @@ fn name_of(key: &Key, held: Held) -> Option<String> {
 fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
     let name = name_of(key, held)?;
     let digit = name.parse().ok().filter(|digit| *digit > 0);
-    (of_keys(&name)?.asks)(Situation { digit, ..situation })
+    of_keys(&name)?.command(Situation { digit, ..situation })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::commands::actions::ACTIONS;
+    use crate::studio::commands::actions::actions;
     use crate::studio::commands::pick::Pick;
-    use crate::studio::commands::{
-        PlanCommand, PlayerCommand, RunCommand, StageCommand, WindowCommand,
-    };
+    use crate::studio::commands::{PlanCommand, RunCommand};
 
     const NONE: Held = Held { control: false, shift: false };
     const CONTROL: Held = Held { control: true, shift: false };
@@ -132,6 +183,7 @@ mod tests {
             "Right" => Key::ArrowRight,
             "Esc" => Key::Escape,
             "F1" => Key::F1,
+            "F5" => Key::F5,
             "F11" => Key::F11,
             text => character(&text.to_lowercase()),
         };
@@ -142,7 +194,7 @@ mod tests {
     fn every_shortcut_triggers_its_action() {
         let situation =
             Situation { is_race: true, can_undo: true, can_redo: true, ..Situation::default() };
-        for action in ACTIONS {
+        for action in actions() {
             for name in action.keys {
                 let (key, held) = pressed(name);
                 assert_eq!(name_of(&key, held).as_deref(), Some(*name));
@@ -178,6 +230,30 @@ mod tests {
         assert_eq!(command(&character("e"), NONE, calm), Some(Command::Run(RunCommand::Start)));
         let third = Command::Stage(StageCommand::Show(Pick::Generation(3)));
         assert_eq!(command(&character("3"), NONE, calm), Some(third));
+    }
+
+    #[test]
+    fn a_clicker_leads_through_a_presentation_and_any_other_key_ends_it() {
+        let turn = |turn: Turn| Some(Command::Stage(StageCommand::TakeTurn(turn)));
+        let black = Some(Command::Window(WindowCommand::ToggleBlack));
+        for (key, expected) in [
+            (Key::PageDown, turn(Turn::Next)),
+            (Key::PageUp, turn(Turn::Previous)),
+            (Key::ArrowRight, turn(Turn::Next)),
+            (Key::ArrowLeft, turn(Turn::Previous)),
+            (Key::F5, turn(Turn::First)),
+            (character("b"), black.clone()),
+            (character("."), black),
+            (Key::Space, Some(Command::Player(PlayerCommand::Toggle))),
+            (Key::Shift, None),
+            (Key::AudioVolumeUp, None),
+        ] {
+            assert_eq!(of_presenter(&key), expected, "{key:?}");
+        }
+        for key in [Key::Escape, Key::F11, Key::Tab, Key::F1, character("x"), character("n")] {
+            let leave = Command::Window(WindowCommand::TogglePresenting);
+            assert_eq!(of_presenter(&key), Some(leave), "{key:?}");
+        }
     }
 
     #[test]

@@ -13,6 +13,7 @@ use crate::studio::scene::camera::setup::CameraSetup;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::playback::Playback;
 use crate::studio::state::following::Following;
+use crate::studio::state::turns::Turns;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
@@ -30,7 +31,7 @@ struct BeforePresenting {
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
         Update,
-        (present, hide_resting_pointer).chain().in_set(FrameSet::Apply).after(apply),
+        (present, sway, hide_resting_pointer).chain().in_set(FrameSet::Apply).after(apply),
     );
 }
 
@@ -41,13 +42,16 @@ fn present(
     mut window: Single<&mut Window, With<PrimaryWindow>>,
     mut rig: ResMut<CameraRig>,
     (mut playback, mut following): (ResMut<Playback>, ResMut<Following>),
+    mut turns: ResMut<Turns>,
     mut notices: ResMut<Notices>,
 ) {
+    turns.set_held(workspace.is_black());
     let is_presenting = workspace.is_presenting();
     if is_presenting == before.is_some() {
         return;
     }
     following.set_repeats(is_presenting);
+    turns.set_on(is_presenting);
     notices.set_quiet(is_presenting);
     if let Some(BeforePresenting { window_mode, camera, loops }) = before.take() {
         window.mode = window_mode;
@@ -67,6 +71,35 @@ fn present(
     if !playback.loops() {
         playback.toggle_loop();
     }
+}
+
+/// Greatest turn of the slow camera to each side, in radians. Further round, the stairs would hide the snake.
+const SWAY_RAD: f32 = 0.4;
+/// Time in which the slow camera goes to both sides and back, in seconds.
+const SWAY_S: f32 = 48.0;
+
+/// Lets the camera go slowly around the snake, from side to side, while it moves.
+fn sway(
+    workspace: Res<Workspace>,
+    playback: Res<Playback>,
+    mut rig: ResMut<CameraRig>,
+    time: Res<Time<Real>>,
+    mut swayed_s: Local<f32>,
+) {
+    if !workspace.is_presenting() {
+        *swayed_s = 0.0;
+        return;
+    }
+    if playback.is_playing() && rig.camera_mode() == CameraMode::Follow {
+        let from_s = *swayed_s;
+        *swayed_s = (from_s + time.delta_secs()) % SWAY_S;
+        rig.turn_by(sway_rad(*swayed_s) - sway_rad(from_s));
+    }
+}
+
+/// Turn of the slow camera at a time, in radians.
+fn sway_rad(time_s: f32) -> f32 {
+    SWAY_RAD * libm::sinf(time_s / SWAY_S * std::f32::consts::TAU)
 }
 
 /// Position of the pointer at its last move, and the time since then.
@@ -110,6 +143,7 @@ mod tests {
             .init_resource::<CameraRig>()
             .init_resource::<Playback>()
             .init_resource::<Following>()
+            .init_resource::<Turns>()
             .init_resource::<Notices>()
             .add_systems(Update, present);
         app.world_mut().spawn((Window::default(), PrimaryWindow));
@@ -145,6 +179,18 @@ mod tests {
         assert_eq!(state(&mut app).1, CameraMode::Top, "another camera may be chosen meanwhile");
         toggle(&mut app);
         assert_eq!(state(&mut app), before);
+    }
+
+    #[test]
+    fn the_camera_sways_slowly_to_both_sides_and_comes_back() {
+        let times = (0..=480).map(|tenth| tenth as f32 / 10.0);
+        let turns: Vec<f32> = times.map(sway_rad).collect();
+        let most = turns.iter().copied().fold(0.0, f32::max);
+        let least = turns.iter().copied().fold(0.0, f32::min);
+        assert!((most - SWAY_RAD).abs() < 1.0e-3 && (least + SWAY_RAD).abs() < 1.0e-3);
+        let fastest = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs() * 10.0);
+        assert!(fastest.fold(0.0, f32::max) < 0.06, "rad/s");
+        assert!(turns[480].abs() < 1.0e-4, "no jump where it begins again");
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! The list of all named actions. Menus, keys, the command palette and the list of shortcuts all read this one list, so
 //! they cannot disagree.
 
+use std::sync::LazyLock;
+
 use super::camera_mode::CameraMode;
 use super::files::{FileCommand, FileQuestion};
 use super::modal::Modal;
@@ -8,16 +10,20 @@ use super::overlay::Overlay;
 use super::panel::PanelKind;
 use super::pick::Pick;
 use super::screenshot_area::ScreenshotArea;
+use super::share::ShareCommand;
 use super::{
     Command, ExamCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand,
     WindowCommand,
 };
+use crate::export::ExportFormat;
 
 /// A menu, and a group in the list of shortcuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Menu {
     /// Files, pictures, and the end of the program.
     File,
+    /// Files of other formats, from the champions on the stage.
+    Share,
     /// Evolution, and the choice of champions.
     Run,
     /// Undo and redo.
@@ -34,13 +40,22 @@ pub(crate) enum Menu {
 
 impl Menu {
     /// All menus, in the order of the menu bar.
-    pub const ALL: [Self; 7] =
-        [Self::File, Self::Run, Self::Edit, Self::Stage, Self::View, Self::Panels, Self::Help];
+    pub const ALL: [Self; 8] = [
+        Self::File,
+        Self::Share,
+        Self::Run,
+        Self::Edit,
+        Self::Stage,
+        Self::View,
+        Self::Panels,
+        Self::Help,
+    ];
 
     /// Label.
     pub fn name(self) -> &'static str {
         match self {
             Self::File => "File",
+            Self::Share => "Share",
             Self::Run => "Run",
             Self::Edit => "Edit",
             Self::Stage => "Stage",
@@ -64,6 +79,10 @@ pub(crate) struct Situation {
     pub is_race: bool,
     /// A modal view is open, the panels are hidden, or the stage is presented on the full screen.
     pub is_covered: bool,
+    /// The stage is presented on the full screen, with nothing over it.
+    pub is_presenting: bool,
+    /// A file is being written from the stage.
+    pub is_sharing: bool,
     /// There is a change to undo.
     pub can_undo: bool,
     /// There is a change to redo.
@@ -73,6 +92,7 @@ pub(crate) struct Situation {
 }
 
 /// A named action.
+#[derive(Clone, Copy)]
 pub(crate) struct Action {
     /// Menu that lists the action.
     pub menu: Menu,
@@ -80,8 +100,16 @@ pub(crate) struct Action {
     pub name: &'static str,
     /// Keyboard shortcuts, such as `Ctrl Z`. The first is the one that is displayed.
     pub keys: &'static [&'static str],
-    /// The command in this situation; `None` if there is nothing to do.
-    pub asks: fn(Situation) -> Option<Command>,
+    asks: ActionCommand,
+}
+
+/// The way from a situation to an action's command.
+#[derive(Clone, Copy)]
+enum ActionCommand {
+    /// The action in this situation.
+    Of(fn(Situation) -> Option<Command>),
+    /// A file of this format.
+    File(ExportFormat),
 }
 
 const fn action(
@@ -90,10 +118,27 @@ const fn action(
     keys: &'static [&'static str],
     asks: fn(Situation) -> Option<Command>,
 ) -> Action {
-    Action { menu, name, keys, asks }
+    Action { menu, name, keys, asks: ActionCommand::Of(asks) }
 }
 
 impl Action {
+    /// The command in this situation; `None` if there is nothing to do.
+    pub fn command(&self, now: Situation) -> Option<Command> {
+        match &self.asks {
+            ActionCommand::Of(asks) => asks(now),
+            ActionCommand::File(_) if now.is_sharing => None,
+            ActionCommand::File(format) => Some(Command::Share(ShareCommand::Ask(*format))),
+        }
+    }
+
+    /// Explanation for the mouse; may be empty.
+    pub fn hint(&self) -> &'static str {
+        match &self.asks {
+            ActionCommand::Of(_) => "",
+            ActionCommand::File(format) => format.info().sentence,
+        }
+    }
+
     /// The displayed shortcut, or an empty text.
     pub fn key(&self) -> &'static str {
         match self.keys {
@@ -106,12 +151,30 @@ impl Action {
 
 /// The action of a shortcut. Without an exact match, Shift is ignored.
 pub(crate) fn of_keys(keys: &str) -> Option<&'static Action> {
-    let exact = |keys: &str| ACTIONS.iter().find(|action| action.keys.contains(&keys));
+    let exact = |keys: &str| actions().iter().find(|action| action.keys.contains(&keys));
     exact(keys).or_else(|| exact(keys.strip_prefix("Shift ")?))
 }
 
 /// All actions, grouped by menu.
-pub(crate) const ACTIONS: &[Action] = &[
+pub(crate) fn actions() -> &'static [Action] {
+    static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
+        let of_files = FIXED.iter().take_while(|action| action.menu == Menu::File).count();
+        let (files, rest) = FIXED.split_at(of_files);
+        [files, &ExportFormat::ALL.map(file_of), rest].concat()
+    });
+    &ALL
+}
+
+/// The action that writes a file of a format.
+fn file_of(format: ExportFormat) -> Action {
+    let info = format.info();
+    // The list of actions is made once, and its names last as long as the program.
+    let name = format!("{} (.{})…", info.title, info.ending).leak();
+    Action { menu: Menu::Share, name, keys: &[], asks: ActionCommand::File(format) }
+}
+
+/// The actions that do not depend on other lists.
+const FIXED: &[Action] = &[
     action(Menu::File, "New run…", &["Ctrl N"], |_| {
         Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Run)))
     }),
@@ -130,6 +193,9 @@ pub(crate) const ACTIONS: &[Action] = &[
         Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Window)))
     }),
     action(Menu::File, "Quit", &["Ctrl Q"], |_| Some(Command::Quit)),
+    action(Menu::Share, "Cancel writing the file", &[], |now| {
+        now.is_sharing.then_some(Command::Share(ShareCommand::Cancel))
+    }),
     action(Menu::Run, "Start or pause evolution", &["E"], |now| {
         Some(if now.is_running {
             Command::Run(RunCommand::Pause)
@@ -249,7 +315,7 @@ pub(crate) const ACTIONS: &[Action] = &[
     action(Menu::View, "Show only the stage", &["H"], |_| {
         Some(Command::Window(WindowCommand::TogglePanels))
     }),
-    action(Menu::View, "Present on the full screen", &["F11"], |_| {
+    action(Menu::View, "Present on the full screen", &["F11", "F5"], |_| {
         Some(Command::Window(WindowCommand::TogglePresenting))
     }),
     action(Menu::Panels, "Run", &["Ctrl 1"], |_| {
@@ -302,7 +368,7 @@ mod tests {
     fn names_and_keys_are_unique() {
         let mut names = BTreeSet::new();
         let mut keys = BTreeSet::new();
-        for action in ACTIONS {
+        for action in actions() {
             assert!(names.insert(action.name), "{} twice", action.name);
             for key in action.keys {
                 assert!(keys.insert(*key), "{key} twice");
@@ -312,7 +378,7 @@ mod tests {
 
     #[test]
     fn actions_are_grouped_by_menu_and_no_menu_is_empty() {
-        let mut menus: Vec<Menu> = ACTIONS.iter().map(|action| action.menu).collect();
+        let mut menus: Vec<Menu> = actions().iter().map(|action| action.menu).collect();
         menus.dedup();
         assert_eq!(menus, Menu::ALL);
     }

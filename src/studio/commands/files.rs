@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::export::ExportFormat;
 use crate::save::library::SavePlace;
 
 /// A command to the system.
@@ -32,4 +33,6 @@ pub(crate) enum FileQuestion {
     Import,
     /// Into which folder to copy these entries.
     Export(Vec<SavePlace>),
+    /// Into which file of this format to write the champions on the stage; the name is a suggestion, without its ending.
+    Share(ExportFormat, String),
 }

@@ -11,6 +11,8 @@ pub mod overlay;
 pub mod panel;
 pub mod pick;
 pub mod screenshot_area;
+pub mod share;
+pub mod turn;
 
 use std::path::PathBuf;
 
@@ -28,6 +30,8 @@ use overlay::Overlay;
 use panel::PanelKind;
 use pick::Pick;
 use screenshot_area::ScreenshotArea;
+use share::ShareCommand;
+use turn::Turn;
 
 /// A command from a panel, a menu or a key.
 #[derive(Message, Debug, Clone, PartialEq)]
@@ -48,6 +52,8 @@ pub(super) enum Command {
     Library(LibraryCommand),
     /// To the system's dialogs for files, its file manager and its clipboard.
     File(FileCommand),
+    /// To the files of other formats that are written from the stage.
+    Share(ShareCommand),
     /// To the lessons.
     Lesson(LessonCommand),
     /// To the exams of champions on unseen stairs.
@@ -146,6 +152,8 @@ pub(super) enum StageCommand {
     KeepChange,
     /// Leave the changed lane of a what-if as it is: the next change makes another lane beside it.
     TryAnother,
+    /// Show the next, the previous or the first champion of a presentation.
+    TakeTurn(Turn),
     /// Keep only the selected lane.
     Single,
     /// Show the snake in the world in which it was found.
@@ -219,6 +227,8 @@ pub(super) enum WindowCommand {
     TogglePanels,
     /// Fill the screen with the stage and a large caption, or return to the window.
     TogglePresenting,
+    /// Make the presented screen black, or show the stage again.
+    ToggleBlack,
     /// Select the next larger or smaller UI scale.
     ChangeScale {
         /// Larger, or else smaller.

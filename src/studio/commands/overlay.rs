@@ -36,6 +36,17 @@ impl Overlay {
         }
     }
 
+    /// The name that [`Self::named`] knows, if pictures can have the overlay.
+    pub fn short_name(self) -> Option<&'static str> {
+        match self {
+            Self::Contacts => Some("contacts"),
+            Self::Torques => Some("torques"),
+            Self::Trail => Some("trail"),
+            Self::FitnessLine => Some("line"),
+            Self::Wireframe => None,
+        }
+    }
+
     /// Label of the button, and its tooltip.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {

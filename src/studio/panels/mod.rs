@@ -40,6 +40,7 @@ use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
 use super::state::machines::MachinesLink;
 use super::state::options::OpenedComparison;
+use super::state::shares::Shares;
 use super::state::stairs_exams::StairsExams;
 use super::ui::theme;
 use super::ui::viewport::StageArea;
@@ -132,6 +133,7 @@ struct PanelData<'w, 's> {
     machines: Res<'w, MachinesLink>,
     saves: Res<'w, Library>,
     files: Res<'w, Files>,
+    shares: Res<'w, Shares>,
 }
 
 fn draw(
@@ -165,6 +167,7 @@ fn draw(
     let mut commands = Vec::new();
     let situation =
         Situation::of(&data.run, &data.on_stage.mode, &workspace, &data.on_stage.history);
+    let situation = Situation { is_sharing: data.shares.busy().is_some(), ..situation };
     let mut root = egui::Ui::new(
         context.clone(),
         "root".into(),
@@ -191,6 +194,9 @@ fn draw(
         // In the first frame the saved layout would be measured at the wrong scale.
     } else if is_presenting {
         viewer.presented_stage(&mut root);
+        if workspace.is_black() {
+            black_screen(&context);
+        }
     } else if workspace.is_bare {
         viewer.stage(&mut root);
     } else {
@@ -203,7 +209,8 @@ fn draw(
                 let is_on = |command: &Command| data.on_stage.is_on(command, *data.theme);
                 let about = format!("{preset}, seed {seed}");
                 let recent = &data.files.recent;
-                menu(ui, situation, &is_on, recent, &about, viewer.commands);
+                let share = data.shares.progress();
+                menu(ui, situation, &is_on, recent, (&about, share.as_ref()), viewer.commands);
             },
         );
         let style = style(&root);
@@ -255,6 +262,12 @@ fn draw(
     }
     send.write_batch(commands);
     Ok(())
+}
+
+/// Covers the whole screen, so that the audience looks at the presenter.
+fn black_screen(context: &egui::Context) {
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("black screen"));
+    context.layer_painter(layer).rect_filled(context.content_rect(), 0.0, egui::Color32::BLACK);
 }
 
 /// The lane whose numbers are shown.

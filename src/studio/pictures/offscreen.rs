@@ -1,17 +1,26 @@
 //! Renders the studio's scene to a picture, without a window.
 
-use std::sync::{Mutex, PoisonError};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
+use bevy::app::{SubApp, TaskPoolOptions, TaskPoolPlugin};
 use bevy::camera::RenderTarget;
+use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
 use bevy::image::Image;
-use bevy::log::{Level, LogPlugin};
+use bevy::log::{DEFAULT_FILTER, Level, LogPlugin};
 use bevy::prelude::*;
-use bevy::render::RenderPlugin;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
-use bevy::render::render_resource::TextureFormat;
-use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use bevy::render::render_resource::{PipelineCache, TextureFormat};
+use bevy::render::renderer::RenderDevice;
+use bevy::render::view::NoIndirectDrawing;
+use bevy::render::view::screenshot::{
+    Captured, CapturedScreenshots, Screenshot, ScreenshotCaptured,
+};
+use bevy::render::{RenderApp, RenderPlugin};
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
+use wgpu_types::PollType;
 
 use super::screenshot::picture_of;
 use crate::save::Picture;
@@ -26,16 +35,22 @@ pub(crate) struct Offscreen {
     /// The app. The caller adds the content of the scene.
     pub app: App,
     target: Handle<Image>,
+    /// Number of pictures that were asked for.
+    shots: u64,
 }
 
-/// The picture that the renderer returned.
+/// The pictures that the renderer returned, by their numbers.
 #[derive(Resource, Default)]
-struct FinishedPicture(Mutex<Option<Picture>>);
+struct FinishedPictures(Mutex<BTreeMap<u64, Option<Picture>>>);
 
 /// Frames until uploads have finished and a picture is complete.
 const FRAMES: u32 = 4;
-/// Maximum number of frames to wait for a picture.
+/// Maximum number of frames to wait for what is drawn later.
 const MAX_FRAMES: u32 = 200;
+/// Time between two looks at what the renderer has returned.
+const GLANCE: Duration = Duration::from_millis(20);
+/// Maximum time to wait for a picture.
+const LONGEST_WAIT: Duration = Duration::from_secs(120);
 
 impl Offscreen {
     /// Runs `work`, which fills the scene and takes pictures of `size` pixels.
@@ -72,7 +87,8 @@ impl Offscreen {
                     })
                     // Wait until all pipelines are compiled.
                     .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
-                    .set(LogPlugin { level: Level::ERROR, ..default() })
+                    .set(TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) })
+                    .set(LogPlugin { level: Level::ERROR, filter: log_filter(), ..default() })
                     .disable::<WinitPlugin>()
                     .disable::<PipelinedRenderingPlugin>(),
             )
@@ -80,20 +96,24 @@ impl Offscreen {
                 Update,
                 (FrameSet::TakeIn, FrameSet::Apply, FrameSet::Advance, FrameSet::Draw).chain(),
             )
-            .init_resource::<FinishedPicture>()
+            .init_resource::<FinishedPictures>()
             .add_plugins(scene::drawing);
         while app.plugins_state() == bevy::app::PluginsState::Adding {
             bevy::tasks::tick_global_task_pools_on_main_thread();
         }
         app.finish();
         app.cleanup();
+        run_systems_in_order(app.main_mut());
+        app.get_sub_app_mut(RenderApp).into_iter().for_each(run_systems_in_order);
         let texture = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(texture);
         // Anti-alias on every machine, because there are only a few pictures.
         let eye = camera::camera_components(Msaa::Sample4, theme.palette());
-        app.world_mut().spawn((eye, RenderTarget::Image(target.clone().into())));
+        // Indirect drawing lets the graphics card's threads decide the order of instances, on which pixels may depend
+        // where surfaces touch. The same moment has to give the same picture.
+        app.world_mut().spawn((eye, RenderTarget::Image(target.clone().into()), NoIndirectDrawing));
         app.update();
-        Self { app, target }
+        Self { app, target, shots: 0 }
     }
 
     /// Places the camera.
@@ -108,19 +128,80 @@ impl Offscreen {
     /// # Errors
     /// The renderer returned no picture.
     pub fn picture(&mut self) -> Result<Picture, StudioError> {
-        (0..FRAMES).for_each(|_| self.app.update());
+        self.settle();
+        let number = self.shoot();
+        self.await_shot(number)
+    }
+
+    /// Draws some frames, until new parts of the scene are complete: shaders are read by other threads, which may be
+    /// late on a busy machine.
+    pub fn settle(&mut self) {
+        let mut complete = 0;
+        for _ in 0..MAX_FRAMES {
+            self.app.update();
+            complete = if self.awaits_pipelines() { 0 } else { complete + 1 };
+            if complete >= FRAMES {
+                return;
+            }
+        }
+    }
+
+    /// Whether a way to draw something is not ready yet.
+    fn awaits_pipelines(&self) -> bool {
+        let renderer = self.app.get_sub_app(RenderApp);
+        let pipelines = renderer.and_then(|of| of.world().get_resource::<PipelineCache>());
+        pipelines.is_some_and(|pipelines| pipelines.waiting_pipelines().next().is_some())
+    }
+
+    /// Draws the scene as it is now, once, and asks for its picture, which is there some frames later. Returns the
+    /// number of the picture; the first is 0.
+    pub fn shoot(&mut self) -> u64 {
+        let number = self.shots;
+        self.shots += 1;
         self.app.world_mut().spawn(Screenshot::image(self.target.clone())).observe(
-            |captured: On<ScreenshotCaptured>, finished: Res<FinishedPicture>| {
-                *finished.0.lock().unwrap_or_else(PoisonError::into_inner) =
-                    picture_of(&captured.image);
+            move |captured: On<ScreenshotCaptured>, finished: Res<FinishedPictures>| {
+                let mut finished = finished.0.lock().unwrap_or_else(PoisonError::into_inner);
+                finished.insert(number, picture_of(&captured.image));
             },
         );
-        let picture = (0..MAX_FRAMES).find_map(|_| {
-            self.app.update();
-            let finished = self.app.world().resource::<FinishedPicture>();
-            finished.0.lock().unwrap_or_else(PoisonError::into_inner).take()
-        });
-        picture.ok_or_else(|| StudioError::NoPicture("the renderer returned no picture".to_owned()))
+        self.app.update();
+        number
+    }
+
+    /// The picture with this number, if it is there; only once.
+    ///
+    /// # Errors
+    /// The renderer returned no picture.
+    pub fn taken(&mut self, number: u64) -> Result<Option<Picture>, StudioError> {
+        let finished = self.app.world().resource::<FinishedPictures>();
+        let taken = finished.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&number);
+        taken.map(|picture| picture.ok_or_else(no_picture)).transpose()
+    }
+
+    /// Waits for the picture with this number. Draws nothing meanwhile: a software driver would have to draw that, too.
+    ///
+    /// # Errors
+    /// The renderer returned no picture.
+    pub fn await_shot(&mut self, number: u64) -> Result<Picture, StudioError> {
+        let begin = Instant::now();
+        loop {
+            if let Some(picture) = self.taken(number)? {
+                return Ok(picture);
+            }
+            if begin.elapsed() > LONGEST_WAIT {
+                return Err(no_picture());
+            }
+            let world = self.app.world_mut();
+            let waited = world.resource::<RenderDevice>().poll(PollType::wait_indefinitely());
+            waited.map_err(|error| StudioError::NoPicture(error.to_string()))?;
+            // Bevy hands out finished pictures once in each frame, which would have to be drawn.
+            let captured = Arc::clone(&world.resource::<CapturedScreenshots>().0);
+            let received = captured.lock().ok().and_then(|from| from.recv_timeout(GLANCE).ok());
+            if let Some((entity, image)) = received {
+                world.entity_mut(entity).insert(Captured);
+                world.trigger(ScreenshotCaptured { entity, image });
+            }
+        }
     }
 
     /// Pixel positions of world points, from the top left of the picture; `None` behind the camera. Take the picture
@@ -133,4 +214,24 @@ impl Offscreen {
             |point| camera.and_then(|(camera, at)| camera.world_to_viewport(at, point).ok());
         points.into_iter().map(place).collect()
     }
+}
+
+/// Runs the systems of all schedules one after the other. Where several threads run them, their order depends on how
+/// busy the machine is, and so does the order in which things are drawn, on which pixels depend where surfaces touch:
+/// the same moment has to give the same picture.
+fn run_systems_in_order(app: &mut SubApp) {
+    let Some(mut schedules) = app.world_mut().get_resource_mut::<Schedules>() else { return };
+    for (_, schedule) in schedules.iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
+}
+
+/// Leaves out what Bevy says about pictures that were on their way when the work ended. A picture that is missing is an
+/// error of its own.
+fn log_filter() -> String {
+    format!("{DEFAULT_FILTER},bevy_render::view::window::screenshot=off")
+}
+
+fn no_picture() -> StudioError {
+    StudioError::NoPicture("the renderer returned no picture".to_owned())
 }

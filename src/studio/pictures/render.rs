@@ -63,15 +63,7 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     }
     let (width, height) = scene.size;
     let place = overview(&lanes, scene.camera, width as f32 / height.max(1) as f32);
-    let heads: Vec<(Vec3, String)> = lanes
-        .iter()
-        .filter(|_| lanes.len() > 1)
-        .filter_map(|lane| {
-            let head = lane.drawn_poses().next()?.translation + lane.offset();
-            let text = format!("{}  {:.1} m", lane.staged().label(), lane.drawn_middle().y);
-            Some((head + Vec3::Z * OVER_HEAD_M, text))
-        })
-        .collect();
+    let heads = over_heads(&lanes.iter().collect::<Vec<_>>());
     Offscreen::draw(scene.size, scene.theme, |studio| {
         let world = studio.app.world_mut();
         let mut overlays = world.resource_mut::<Overlays>();
@@ -91,8 +83,27 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     })
 }
 
+/// For several lanes the texts above their heads, each with the point at which it stands, in metres.
+pub(super) fn over_heads(lanes: &[&Lane]) -> Vec<(Vec3, String)> {
+    let text = |lane: &&Lane| {
+        let head = lane.drawn_poses().next()?.translation + lane.offset();
+        let text = format!("{}  {:.1} m", lane.staged().label(), lane.drawn_middle().y);
+        Some((head + Vec3::Z * OVER_HEAD_M, text))
+    };
+    if lanes.len() > 1 { lanes.iter().filter_map(text).collect() } else { Vec::new() }
+}
+
 /// Camera transform with all snakes and some of the stairs in view.
 fn overview(lanes: &[Lane], camera_mode: CameraMode, aspect: f32) -> Transform {
+    let points = in_view(lanes);
+    let target = middle_of(&points);
+    let mut view = CameraView::of(camera_mode, lanes.len());
+    view.distance_m = view.distance_to_see(target, points, aspect);
+    view.looking_at(target)
+}
+
+/// The points that a picture shows: the snakes, some of their lanes, and the lanes' width.
+pub(super) fn in_view<'l>(lanes: impl IntoIterator<Item = &'l Lane>) -> Vec<Vec3> {
     /// Visible length of the lane ahead of and behind a snake, in metres.
     const AROUND_M: f32 = 3.0;
     let mut points = Vec::new();
@@ -106,11 +117,13 @@ fn overview(lanes: &[Lane], camera_mode: CameraMode, aspect: f32) -> Transform {
         let middle = lane.drawn_middle() + lane.offset();
         points.extend([middle - half_width, middle + half_width]);
     }
+    points
+}
+
+/// The middle of the box around points.
+pub(super) fn middle_of(points: &[Vec3]) -> Vec3 {
     let (least, most) = points
         .iter()
         .fold((Vec3::MAX, Vec3::MIN), |(least, most), point| (least.min(*point), most.max(*point)));
-    let target = (least + most) / 2.0;
-    let mut view = CameraView::of(camera_mode, lanes.len());
-    view.distance_m = view.distance_to_see(target, points, aspect);
-    view.looking_at(target)
+    (least + most) / 2.0
 }

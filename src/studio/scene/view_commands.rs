@@ -8,7 +8,9 @@ use super::camera::rig::CameraRig;
 use super::overlays::Overlays;
 use crate::studio::commands::ViewCommand;
 use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::state::shares::ShareLook;
 use crate::studio::ui::theme::Theme;
 
 /// State of the view.
@@ -22,6 +24,16 @@ pub(crate) struct ViewParams<'w, 's> {
 }
 
 impl ViewParams<'_, '_> {
+    /// The look of the stage, for a film.
+    pub fn look(&self) -> ShareLook {
+        let shown = |overlay: &Overlay| self.overlays.shows(*overlay);
+        ShareLook {
+            camera: self.rig.camera_mode(),
+            theme: *self.theme,
+            overlays: Overlay::ALL.into_iter().filter(shown).collect(),
+        }
+    }
+
     /// Executes a command.
     pub fn apply(&mut self, command: &ViewCommand) {
         match command {

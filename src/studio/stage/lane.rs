@@ -3,6 +3,7 @@
 //! A replay has one lane, a what-if two to five, a race several. The rollout takes whole constant steps; the clock only
 //! decides how many. The limbs are drawn between the last two steps.
 
+mod progress;
 mod renewed;
 
 use std::sync::Arc;

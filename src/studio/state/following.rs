@@ -25,7 +25,7 @@ pub(crate) struct Following {
     holds: bool,
     /// Number of the run that is followed.
     run: u32,
-    /// Whether a story begins again after its end, and follows the first landing.
+    /// Whether a story begins again after its end.
     repeats: bool,
     /// Whether the first landing ends it. If the user asks for it later, evolution is followed on and on.
     until_landing: bool,
@@ -94,8 +94,7 @@ impl Following {
         (self.plan, self.holds) = (FollowPlan::Nothing, false);
     }
 
-    /// Repeats the story for as long as this is set, also after evolution has reached the landing. What the user
-    /// chose stays.
+    /// Repeats the story for as long as this is set. What the user chose stays.
     pub fn set_repeats(&mut self, repeats: bool) {
         self.repeats = repeats;
     }
@@ -119,11 +118,7 @@ impl Following {
     /// ended.
     fn due(&mut self, run: &CurrentRun, is_over: bool) -> Option<u32> {
         match &mut self.plan {
-            FollowPlan::Nothing => None,
-            FollowPlan::Landed => {
-                let goes_on = self.repeats && is_over && self.tell_story(run).is_ok();
-                if goes_on { self.due(run, is_over) } else { None }
-            }
+            FollowPlan::Nothing | FollowPlan::Landed => None,
             FollowPlan::Evolution => {
                 let milestones = run.milestones();
                 let next = match self.shown {
@@ -356,11 +351,11 @@ mod tests {
         let told: Vec<_> = (0..2 * parts).map(|_| following.due(&run, true)).collect();
         assert!(told[0].is_some());
         assert_eq!(told[..parts], told[parts..]);
-        following.plan = FollowPlan::Landed;
-        assert_eq!(following.due(&run, false), None, "the landing is watched to its end");
-        assert_eq!(following.due(&run, true), told[0]);
         following.set_repeats(false);
+        let left: Vec<_> = (0..=parts).map(|_| following.due(&run, true)).collect();
+        assert_eq!(left.last(), Some(&None), "it ends");
+        following.set_repeats(true);
         following.plan = FollowPlan::Landed;
-        assert_eq!(following.due(&run, true), None);
+        assert_eq!(following.due(&run, true), None, "the landing stays");
     }
 }

@@ -13,9 +13,11 @@ pub mod new_file;
 pub mod options;
 pub mod plan_commands;
 pub mod run_context;
+pub mod shares;
 pub mod stairs_exams;
 mod stopped_run;
 pub mod sweep;
+pub mod turns;
 pub mod undo;
 pub mod what_if;
 pub mod wording;
@@ -34,7 +36,9 @@ pub(super) fn plugin(app: &mut App) {
         library::plugin,
         files::plugin,
         lessons::plugin,
+        shares::plugin,
         stairs_exams::plugin,
         machines::plugin,
+        turns::plugin,
     ));
 }

@@ -24,6 +24,8 @@ pub struct Options {
     pub saves: SavesFolder,
     /// Champions to open with, and their names; several race. If empty, the built-in champion.
     pub champions: Vec<(String, LoadedChampion)>,
+    /// Problems with the files that the user opened, to show in the window.
+    pub problems: Vec<String>,
     /// A comparison of methods to show.
     pub comparison: Option<Comparison>,
     /// Size of the window, in logical pixels; `None`: as last time.
@@ -50,6 +52,7 @@ impl Options {
             evaluator: Arc::new(LocalPool::new(1).expect("threads")),
             saves,
             champions: Vec::new(),
+            problems: Vec::new(),
             comparison: None,
             window_size: None,
             theme: None,

@@ -33,6 +33,8 @@ pub(super) struct Workspace {
     pub unfolded: BTreeSet<String>,
     /// Whether the stage is presented on the full screen.
     is_presenting: bool,
+    /// Whether the presented screen is black.
+    is_black: bool,
     /// Label of the setting to scroll to, until the settings panel has handled it.
     pub sought: Option<&'static str>,
     modal: Option<Modal>,
@@ -47,6 +49,7 @@ impl Default for Workspace {
             tour_is_over: true,
             unfolded: BTreeSet::new(),
             is_presenting: false,
+            is_black: false,
             sought: None,
             modal: None,
         }
@@ -69,6 +72,16 @@ impl Workspace {
         self.is_presenting
     }
 
+    /// Whether the stage is presented, but the screen is black meanwhile.
+    pub fn is_black(&self) -> bool {
+        self.is_presenting && self.is_black
+    }
+
+    /// Shows the stage again, if the screen is black.
+    pub fn end_black(&mut self) {
+        self.is_black = false;
+    }
+
     /// Executes a command. Returns a message if there is nothing to do.
     pub fn apply(&mut self, command: &WindowCommand) -> Option<&'static str> {
         match command {
@@ -82,7 +95,10 @@ impl Workspace {
             // The presenting mode shows no panel anyway, and its end brings back what was visible before it.
             WindowCommand::TogglePanels if self.is_presenting => {}
             WindowCommand::TogglePanels => self.is_bare = !self.is_bare,
-            WindowCommand::TogglePresenting => self.is_presenting = !self.is_presenting,
+            WindowCommand::TogglePresenting => {
+                (self.is_presenting, self.is_black) = (!self.is_presenting, false);
+            }
+            WindowCommand::ToggleBlack => self.is_black = !self.is_black,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
             WindowCommand::ResetScale => self.scale.choose(1.0),
             WindowCommand::FoldAdvanced { section, is_open: true } => {
@@ -93,7 +109,9 @@ impl Workspace {
             }
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
             WindowCommand::CloseModal if self.modal().is_some() => self.close_modal(),
-            WindowCommand::CloseModal if self.is_presenting => self.is_presenting = false,
+            WindowCommand::CloseModal if self.is_presenting => {
+                (self.is_presenting, self.is_black) = (false, false);
+            }
             WindowCommand::CloseModal => self.is_bare = false,
         }
         None

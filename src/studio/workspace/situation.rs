@@ -7,6 +7,7 @@ use super::Workspace;
 use crate::studio::commands::actions::Situation;
 use crate::studio::stage::StageMode;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::state::shares::Shares;
 use crate::studio::state::undo::{UndoDirection, UndoHistory};
 
 /// Resources that make up the current situation.
@@ -16,12 +17,15 @@ pub(crate) struct CurrentSituation<'w> {
     run: Res<'w, CurrentRun>,
     workspace: Res<'w, Workspace>,
     history: Res<'w, UndoHistory>,
+    shares: Res<'w, Shares>,
 }
 
 impl CurrentSituation<'_> {
     /// The current situation.
     pub fn situation(&self) -> Situation {
-        Situation::of(&self.run, &self.mode, &self.workspace, &self.history)
+        let is_sharing = self.shares.busy().is_some();
+        let situation = Situation::of(&self.run, &self.mode, &self.workspace, &self.history);
+        Situation { is_sharing, ..situation }
     }
 }
 
@@ -41,6 +45,8 @@ impl Situation {
             is_covered: workspace.modal().is_some()
                 || workspace.is_bare
                 || workspace.is_presenting(),
+            is_presenting: workspace.is_presenting() && workspace.modal().is_none(),
+            is_sharing: false,
             can_undo: history.next(UndoDirection::Back).is_some(),
             can_redo: history.next(UndoDirection::Forth).is_some(),
             digit: None,

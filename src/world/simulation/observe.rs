@@ -41,6 +41,14 @@ impl Simulation {
         self.limbs.iter().map(|&limb| self.physics.bodies[limb].linvel().length())
     }
 
+    /// Velocity of each limb's centre in m/s, and its angular velocity in rad/s, both in the world, head first.
+    pub fn velocities(&self) -> impl ExactSizeIterator<Item = [Vector; 2]> + '_ {
+        self.limbs.iter().map(|&limb| {
+            let body = &self.physics.bodies[limb];
+            [body.linvel(), body.angvel()]
+        })
+    }
+
     /// Angles and rates of the joints, in the order of the plan. [`universal_joint`] defines the angles.
     pub fn joint_states(&self) -> impl ExactSizeIterator<Item = JointState> + '_ {
         self.body.joints.iter().map(|joint| {

@@ -70,7 +70,7 @@ impl Simulation {
         let lowest_z_m = centre.z - reach_m.map(|(part, half)| part.abs() * half).sum::<f32>();
         let front = centre + forward * half_m[1];
         let next = self.profile.next_step(front.x, front.y);
-        let (is_touching, force_n) = self.contact_force(body.colliders()[0]);
+        let (is_touching, force_n) = self.sensed_contact(limb);
         LimbReading {
             is_touching,
             load_n: force_n.z.max(0.0),
@@ -84,7 +84,7 @@ impl Simulation {
 
     /// Whether a limb's collider touches ground or stairs, and the force of these contacts on it in the last substep, in
     /// N: the sum of [`Self::contact_forces`], without their list.
-    fn contact_force(&self, collider: ColliderHandle) -> (bool, Vector) {
+    pub(super) fn contact_force(&self, collider: ColliderHandle) -> (bool, Vector) {
         let substep_s =
             self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
         let (mut is_touching, mut impulse) = (false, Vector::ZERO);

@@ -118,6 +118,18 @@ fn the_server_is_killed_and_started_again() {
 }
 
 #[test]
+fn the_server_loses_its_store() {
+    with_fault("store lost", |room, rng| {
+        for _ in 0..2 {
+            room.server.lose_store();
+            sleep(Duration::from_millis(rng.random_range(100..5_000)));
+            room.server.restart();
+            sleep(Duration::from_millis(rng.random_range(100..3_000)));
+        }
+    });
+}
+
+#[test]
 fn the_network_between_a_worker_and_the_server_is_cut() {
     with_fault("worker cut off", |room, _| {
         room.worker_proxy.cut(true);

@@ -1,4 +1,4 @@
-//! Servers and machines that cannot be used: one line each, exit code 1, nothing lost.
+//! Servers and machines that cannot be used: one line each, exit code 1, or 2 if the address is none; nothing lost.
 
 use std::path::Path;
 
@@ -27,10 +27,16 @@ fn an_address_without_a_server_and_one_with_a_password_are_refused() {
     let folder = folder();
     let url = format!("nats://127.0.0.1:{}", free_port());
     for line in refusals(folder.path(), &format!("--nats {url}")) {
-        assert!(line.starts_with(&format!("error: {url}: cannot connect")), "{line}");
+        let place = url.trim_start_matches("nats://");
+        let words = format!(
+            "error: {url}: cannot connect: no server answers at {place}; start one with nats-server -js, and check \
+             address and firewall"
+        );
+        assert_eq!(line, words);
     }
     let output = run(folder.path(), "worker --nats nats://ann:secret@127.0.0.1");
     let line = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{line}");
     assert!(line.starts_with("error: --nats is ") && !line.contains("secret"), "{line}");
 }
 
@@ -60,13 +66,19 @@ fn without_the_right_credentials_there_is_no_connection() {
     let Some(server) = Server::start_with(&["-c", path]) else { return };
     let flags = format!("--nats {}", server.url());
     for line in refusals(place.path(), &flags) {
-        assert!(line.contains("cannot connect: authorization violation"), "{line}");
+        assert!(
+            line.contains("cannot connect: the server refuses the credentials (--creds FILE)"),
+            "{line}"
+        );
     }
     let seed = place.path().join("other.nk");
     std::fs::write(&seed, "SUAGUNQAWACRUD3BFTKXSZAGF6E6NLCPZ54QQ42O77J3QGRS42LSZXPIQE\n")
         .expect("written");
     for line in refusals(place.path(), &format!("{flags} --creds {}", seed.display())) {
-        assert!(line.contains("cannot connect: authorization violation"), "{line}");
+        assert!(
+            line.contains("cannot connect: the server refuses the credentials (--creds FILE)"),
+            "{line}"
+        );
         assert!(!line.contains("SUAGUNQA"), "{line}");
     }
     let own = place.path().join("own.nk");

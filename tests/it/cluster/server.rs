@@ -21,6 +21,14 @@ impl Process {
         let status = Command::new("kill").args([signal, &id]).status();
         assert!(status.expect("kill starts").success(), "kill {signal} {id}");
     }
+
+    /// Its whole output, after its end.
+    pub fn said(&mut self) -> String {
+        let mut said = String::new();
+        let stderr = self.0.stderr.as_mut().expect("piped");
+        stderr.read_to_string(&mut said).expect("UTF-8");
+        said
+    }
 }
 
 impl Drop for Process {
@@ -113,6 +121,26 @@ impl Server {
         self.process = None;
     }
 
+    /// Kills the server and removes what it stored, as when its folder lies in a file system that a restart empties.
+    pub fn lose_store(&mut self) {
+        self.kill();
+        std::fs::remove_dir_all(self.folder.path().join("jetstream")).expect("removed");
+    }
+
+    /// Ends the server as its user would.
+    pub fn stop(&mut self) {
+        if let Some(mut process) = self.process.take() {
+            process.signal("-TERM");
+            process.0.wait().expect("it ends");
+        }
+    }
+
+    /// Stops the server for a while, or lets it go on: it keeps its connections and does not answer.
+    pub fn freeze(&self, is_frozen: bool) {
+        let process = self.process.as_ref().expect("it runs");
+        process.signal(if is_frozen { "-STOP" } else { "-CONT" });
+    }
+
     pub fn url(&self) -> String {
         format!("nats://127.0.0.1:{}", self.port)
     }
@@ -124,6 +152,14 @@ pub fn worker(url: &str) -> Process {
     let mut command = snakes(&folder, &format!("worker --nats {url} --threads 1"));
     let quiet = command.stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null());
     Process(quiet.spawn().expect("the worker starts"))
+}
+
+/// Starts a worker with one thread whose words can be read after its end.
+pub fn worker_that_tells(url: &str) -> Process {
+    let folder = std::env::temp_dir();
+    let mut command = snakes(&folder, &format!("worker --nats {url} --threads 1"));
+    let piped = command.stdout(Stdio::null()).stderr(Stdio::piped()).stdin(Stdio::null());
+    Process(piped.spawn().expect("the worker starts"))
 }
 
 /// A coordinator in a folder of its own.
@@ -151,6 +187,15 @@ impl Run {
         self.process.0.kill().expect("it can be killed");
         self.process.0.wait().expect("it ends");
         self.process = spawned(&self.folder, &self.arguments);
+    }
+
+    /// Stops it with the interrupt key, and returns what it said.
+    pub fn stopped(self) -> String {
+        self.process.signal("-INT");
+        let output = self.output();
+        let said = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        said
     }
 
     /// Waits for the end.

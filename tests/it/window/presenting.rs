@@ -1,6 +1,7 @@
 //! The presenting mode: the stage alone on the full screen, with a large caption.
 
 use super::display::Studio;
+use super::picture::Picture;
 use super::places::Place;
 
 /// A tab of the panels, which the presenting mode hides.
@@ -20,7 +21,7 @@ fn is_large(studio: &Studio, place: &Place) -> bool {
 #[test]
 fn f11_presents_the_stage_with_a_large_caption_and_escape_restores_the_window() {
     let Some(studio) = Studio::open("presenting", "--preset quick") else { return };
-    studio.pause_evolution();
+    studio.wait_for_title("4 of 4 generations, finished");
     let before = studio.stage();
     assert!(has(&studio, TAB) && has(&studio, PLAYER));
     studio.key("F11");
@@ -31,16 +32,23 @@ fn f11_presents_the_stage_with_a_large_caption_and_escape_restores_the_window() 
     let stage = studio.stage();
     assert_eq!((stage.left, stage.right, stage.top), (0, studio.size().0, 0));
     assert!(stage.bottom <= caption.area.top, "nothing lies behind the caption");
-    // The keys of the player and of the view work.
     studio.key("space");
     studio.wait_for_title(", stopped at ");
     studio.key("space");
     studio.wait_for_title_without(", stopped at ");
-    studio.key("question");
-    studio.place("Keyboard and mouse");
-    studio.key("Escape");
-    studio.wait_for_no("Keyboard and mouse");
-    assert!(!has(&studio, TAB), "Escape closes the topmost view first");
+    // A clicker's keys lead through the champions of the generations.
+    studio.key("Next");
+    studio.place_with("Generation 1: ");
+    studio.key("Next");
+    studio.place_with("Generation 2: ");
+    studio.key("Prior");
+    studio.place_with("Generation 1: ");
+    let is_black = |picture: &Picture| picture.count(|pixel| *pixel == [0; 3]) > 100_000;
+    studio.key("b");
+    studio.picture_with(is_black);
+    studio.key("b");
+    studio.picture_with(|picture| !is_black(picture));
+    assert!(!has(&studio, TAB), "it still presents");
     studio.key("Escape");
     studio.place(TAB);
     studio.place(PLAYER);
@@ -55,9 +63,13 @@ fn the_flag_presents_from_the_start_and_the_caption_follows_the_stage() {
     assert!(is_large(&studio, &caption), "{caption:?}");
     assert!(!has(&studio, TAB));
     studio.wait_for_title("4 of 4 generations, finished");
+    // Any key that a clicker has not ends it, and does nothing else.
+    studio.key("n");
+    studio.place(TAB);
+    assert!(!studio.title().contains("showing a race of "), "{}", studio.title());
     studio.key("n");
     studio.wait_for_title("showing a race of ");
-    studio.place_with(" leads: ");
     studio.key("F11");
-    studio.place(TAB);
+    studio.wait_for_no(TAB);
+    studio.place_with(" leads: ");
 }

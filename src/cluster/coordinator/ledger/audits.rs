@@ -30,7 +30,7 @@ pub struct AuditTask {
     pub checker: Checker,
 }
 
-/// What a check showed.
+/// The finding of a check.
 #[derive(Debug, PartialEq)]
 pub enum Finding {
     /// The outcomes are equal: this worker is as it should be.
@@ -44,7 +44,7 @@ pub enum Finding {
 #[derive(Debug)]
 struct Audit {
     task: AuditTask,
-    /// What each worker sent, the suspect first.
+    /// The workers' outcomes, the suspect's first.
     lines: Vec<(String, Arc<str>)>,
 }
 

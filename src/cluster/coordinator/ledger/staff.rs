@@ -32,7 +32,7 @@ pub enum Standing {
 /// A worker.
 #[derive(Debug, Clone)]
 pub struct StaffMember {
-    /// What it told of itself last.
+    /// Its latest notice.
     pub notice: Option<WorkerNotice>,
     /// Whether its results count.
     pub standing: Standing,
@@ -42,6 +42,8 @@ pub struct StaffMember {
     pub results: u64,
     seen: Instant,
     is_being_proven: bool,
+    /// Whether its arrival was told to the user.
+    is_told: bool,
 }
 
 /// All workers, by name.
@@ -57,6 +59,7 @@ impl StaffMember {
             results: 0,
             seen: now,
             is_being_proven: false,
+            is_told: false,
         }
     }
 
@@ -118,6 +121,7 @@ impl Staff {
             let plural = if threads == 1 { "" } else { "s" };
             let line = format!("worker {name} on {}: {threads} thread{plural}", notice.host);
             actions.push(LedgerAction::Say(line));
+            member.is_told = true;
         }
         let left = notice.leaves && member.notice.as_ref().is_some_and(|before| !before.leaves);
         if left {
@@ -127,21 +131,29 @@ impl Staff {
         actions
     }
 
-    /// Forgets workers that have been silent for long, but not those that were set aside. Returns the tasks of which
-    /// results of them were held.
-    pub fn forget_silent(&mut self, now: Instant) -> Vec<u64> {
-        let is_silent = |member: &StaffMember| {
+    /// Forgets workers that have been silent for long, but not those that were set aside. Returns for each a line about its
+    /// loss, if its arrival was told and it did not leave, and the tasks of which results of it were held.
+    pub fn forget_silent(&mut self, now: Instant) -> Vec<(Option<String>, Vec<u64>)> {
+        let is_silent = |_: &String, member: &mut StaffMember| {
             now.duration_since(member.seen) > SILENCE && member.standing != Standing::SetAside
         };
-        let mut dropped = Vec::new();
-        self.0.retain(|_, member| {
-            let stays = !is_silent(member);
-            if !stays {
-                dropped.extend(member.held.iter().map(|outcome| outcome.key));
-            }
-            stays
+        let forgotten: BTreeMap<String, StaffMember> = self.0.extract_if(.., is_silent).collect();
+        let lines = forgotten.into_iter().map(|(name, member)| {
+            let line = (member.is_told && member.works()).then(|| {
+                format!(
+                    "worker {name} on {} lost: no sign of it for {} s; others compute what it had",
+                    member.host(),
+                    SILENCE.as_secs()
+                )
+            });
+            (line, member.held.iter().map(|outcome| outcome.key).collect())
         });
-        dropped
+        lines.collect()
+    }
+
+    /// No worker could be heard until now: their silence counts from now on.
+    pub fn excuse_silence(&mut self, now: Instant) {
+        self.0.values_mut().for_each(|member| member.seen = now);
     }
 
     /// Whether results of a worker count. One that nobody has heard of is new.

@@ -3,7 +3,8 @@
 use rand::SeedableRng;
 
 use super::*;
-use crate::cluster::hello::NOTICE_FORMAT;
+use crate::cluster::names::SILENCE;
+use crate::cluster::wire::WIRE_FORMAT;
 use crate::engine::{ENGINE_VERSION, Processors};
 use crate::run::EvaluationResult;
 use std::time::Duration;
@@ -16,7 +17,7 @@ fn ledger() -> Ledger {
 
 fn notice(worker: &str, threads: u32, proof: &str) -> WorkerNotice {
     WorkerNotice {
-        format: NOTICE_FORMAT,
+        format: WIRE_FORMAT,
         worker: worker.to_owned(),
         host: "computer".to_owned(),
         engine: ENGINE_VERSION,
@@ -302,6 +303,58 @@ fn a_late_batch_is_repeated_when_workers_are_idle_and_a_lost_one_returns_to_the_
     }
     room.work("a", right);
     assert_eq!(room.right_indices(1), [0, 1, 2, 3]);
+}
+
+#[test]
+fn batches_that_the_server_has_lost_are_sent_again_at_once() {
+    let mut room = Room::new();
+    room.open(1, 20);
+    room.hear("a", 2);
+    let lost: Vec<WorkBatch> = room.published.drain(..).collect();
+    let actions = room.ledger.on_store_lost(room.now);
+    room.act(actions);
+    assert_eq!(
+        room.said.last().expect("a line"),
+        "the server has lost what it stored: 4 batches are sent again"
+    );
+    let texts = |batches: &[WorkBatch]| {
+        let tasks = batches.iter().flat_map(|batch| &batch.tasks);
+        tasks.map(|task| task.text.to_string()).collect::<Vec<String>>()
+    };
+    assert_eq!(texts(&room.published), texts(&lost), "the same tasks in the same order");
+    assert!(lost.iter().all(|batch| room.published.iter().all(|new| new.batch != batch.batch)));
+    // A worker may still have one of them.
+    room.answer(results("a", &lost[0], right));
+    room.work("a", right);
+    assert_eq!(room.right_indices(1), (0..20).collect::<Vec<usize>>());
+}
+
+#[test]
+fn a_worker_that_falls_silent_is_told_once_unless_the_server_is_silent_too() {
+    let mut room = Room::new();
+    room.hear("stays", 1);
+    room.hear("dies", 1);
+    for _ in 0..4 {
+        room.pass(SILENCE / 2);
+        room.ledger.excuse_silence(room.now);
+    }
+    assert_eq!(room.ledger.staff().workers(), 2);
+    for _ in 0..8 {
+        room.pass(SILENCE / 2);
+        room.hear("stays", 1);
+    }
+    let lost: Vec<&String> = room.said.iter().filter(|line| line.contains("lost")).collect();
+    let words = "worker dies on computer lost: no sign of it for 5 s; others compute what it had";
+    assert_eq!(lost, [words]);
+    room.hear("dies", 1);
+    assert_eq!(room.said.last().expect("a line"), "worker dies on computer: 1 thread");
+    // One that leaves is not lost.
+    let leaving = WorkerNotice { leaves: true, ..notice("dies", 1, PROOF) };
+    let actions = room.ledger.on_notice(leaving, room.now);
+    room.act(actions);
+    let told = room.said.len();
+    room.pass(2 * SILENCE);
+    assert_eq!(room.said.len(), told + 1, "only the other one: {:?}", room.said);
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod changes;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
+use crate::save::library::plain_name;
 use crate::studio::commands::{Command, PlanCommand, PlayerCommand, StageCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::opening::OpeningChampions;
@@ -16,6 +17,7 @@ use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
 use crate::studio::state::sweep::sweep;
+use crate::studio::state::turns::Turns;
 use crate::studio::state::what_if::{another_beside, kept};
 use crate::studio::ui::notifications::Notices;
 
@@ -28,12 +30,30 @@ pub(crate) struct StageParams<'w, 's> {
     playback: ResMut<'w, Playback>,
     selection: ResMut<'w, Selection>,
     following: ResMut<'w, Following>,
+    turns: ResMut<'w, Turns>,
 }
 
 /// Shown when the user leaves a what-if without discarding the change.
 const CHANGE_STAYS: &str = "The next run keeps the change: see the World panel.";
 
 impl StageParams<'_, '_> {
+    /// A name for a file with the champions on the stage, without its ending.
+    pub fn name_for_file(&self) -> String {
+        match self.champions_to_share().as_slice() {
+            [only] => plain_name(only.label()),
+            _ => "race".to_owned(),
+        }
+    }
+
+    /// The champions on the stage that a file gets: all, but of a whole generation its best.
+    pub fn champions_to_share(&self) -> Vec<StagedChampion> {
+        let mut champions = self.champions();
+        if matches!(*self.mode, StageMode::Generation { .. }) {
+            champions.truncate(1);
+        }
+        champions
+    }
+
     /// The champions on the stage, by lane.
     fn champions(&self) -> Vec<StagedChampion> {
         let mut lanes: Vec<&Lane> = self.lanes.iter().collect();
@@ -157,6 +177,10 @@ impl StageParams<'_, '_> {
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),
+            StageCommand::TakeTurn(turn) => {
+                self.turns.take(*turn);
+                None
+            }
             StageCommand::Single
                 if matches!(*self.mode, StageMode::Solo | StageMode::WhatIf { .. }) =>
             {

@@ -16,6 +16,7 @@ use crate::studio::stage::selection::Selection;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::following::Following;
+use crate::studio::state::turns::Turns;
 use crate::studio::ui::theme::Theme;
 
 /// An app that executes commands, with an empty stage.
@@ -43,6 +44,8 @@ fn app() -> App {
         .init_resource::<Workspace>()
         .init_resource::<Lessons>()
         .init_resource::<StairsExams>()
+        .init_resource::<Shares>()
+        .init_resource::<Turns>()
         .init_resource::<MachinesLink>()
         .init_resource::<UndoHistory>()
         .init_resource::<Theme>()

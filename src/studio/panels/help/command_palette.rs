@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 
 use crate::save::shipped_presets;
-use crate::studio::commands::actions::{ACTIONS, Situation};
+use crate::studio::commands::actions::{Situation, actions};
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, WindowCommand};
 use crate::studio::panels::settings::every_setting;
 use crate::studio::ui::theme;
@@ -109,7 +109,7 @@ impl CommandPalette {
     fn entries(&self, situation: Situation, lessons: &[&str]) -> Vec<PaletteEntry> {
         let of_action = |action: &crate::studio::commands::actions::Action| {
             let is_itself = action.name == "Find a command";
-            let command = (action.asks)(situation).filter(|_| !is_itself)?;
+            let command = action.command(situation).filter(|_| !is_itself)?;
             let (group, name) = (action.menu.name().to_owned(), action.name.to_owned());
             Some(PaletteEntry { group, name, key: action.key(), command })
         };
@@ -130,7 +130,7 @@ impl CommandPalette {
             key: "",
             command: Command::Window(WindowCommand::FindSetting(listed.setting.label)),
         });
-        let actions = ACTIONS.iter().filter_map(of_action);
+        let actions = actions().iter().filter_map(of_action);
         actions.chain(presets).chain(lessons).chain(settings).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use crate::studio::commands::actions::{ACTIONS, Menu};
+use crate::studio::commands::actions::{Menu, actions};
 use crate::studio::commands::{Command, WindowCommand};
 use crate::studio::ui::theme;
 
@@ -56,30 +56,30 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
     }
 }
 
-/// Group of shortcuts: keys with their effects.
-struct Group {
+/// KeyGroup of shortcuts: keys with their effects.
+struct KeyGroup {
     name: &'static str,
     keys: Vec<(&'static str, &'static str)>,
 }
 
 /// All groups in menu order, followed by the mouse.
-fn groups() -> Vec<Group> {
+fn groups() -> Vec<KeyGroup> {
     let of = |menu: Menu| {
         let with_key = |action: &&crate::studio::commands::actions::Action| {
             action.menu == menu && !action.keys.is_empty()
         };
-        let keys = ACTIONS.iter().filter(with_key).map(|action| (action.key(), action.name));
-        Group { name: menu.name(), keys: keys.collect() }
+        let keys = actions().iter().filter(with_key).map(|action| (action.key(), action.name));
+        KeyGroup { name: menu.name(), keys: keys.collect() }
     };
-    let mut groups: Vec<Group> = Menu::ALL.map(of).into_iter().collect();
-    groups.push(Group { name: "Mouse", keys: MOUSE.to_vec() });
+    let mut groups: Vec<KeyGroup> = Menu::ALL.map(of).into_iter().collect();
+    groups.push(KeyGroup { name: "Mouse", keys: MOUSE.to_vec() });
     groups
 }
 
 /// Distributes the groups over columns of about equal length, in order.
-fn in_columns(groups: &[Group], columns: usize) -> Vec<&[Group]> {
+fn in_columns(groups: &[KeyGroup], columns: usize) -> Vec<&[KeyGroup]> {
     // A heading is as high as two rows.
-    let length = |group: &Group| group.keys.len() + 2;
+    let length = |group: &KeyGroup| group.keys.len() + 2;
     let all: usize = groups.iter().map(length).sum();
     let mut found = Vec::new();
     let mut rest = groups;
@@ -99,7 +99,7 @@ fn in_columns(groups: &[Group], columns: usize) -> Vec<&[Group]> {
     found
 }
 
-fn draw(ui: &mut egui::Ui, group: &Group) {
+fn draw(ui: &mut egui::Ui, group: &KeyGroup) {
     let palette = theme::of(ui);
     ui.label(egui::RichText::new(group.name).size(theme::TITLE_SIZE).strong());
     let spacing = [theme::GAP * 1.5, theme::GAP / 2.0];
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn every_shortcut_is_listed_for_any_number_of_columns() {
-        let with_keys = ACTIONS.iter().filter(|action| !action.keys.is_empty()).count();
+        let with_keys = actions().iter().filter(|action| !action.keys.is_empty()).count();
         let groups = groups();
         for columns in 1..=3 {
             let in_columns = in_columns(&groups, columns);

@@ -7,9 +7,11 @@ use bevy_egui::egui::containers::menu::MenuBar;
 
 use crate::save::library::run_of_plan;
 use crate::studio::commands::Command;
-use crate::studio::commands::actions::{ACTIONS, Action, Menu, Situation};
+use crate::studio::commands::actions::{Action, Menu, Situation, actions};
 use crate::studio::commands::files::{FileCommand, FileQuestion};
+use crate::studio::commands::share::ShareCommand;
 use crate::studio::state::files::RecentFiles;
+use crate::studio::state::shares::ShareProgress;
 use crate::studio::ui::check_box::{CHECK_BOX_SIDE, paint_check_box};
 use crate::studio::ui::theme;
 
@@ -23,7 +25,7 @@ pub(crate) fn menu(
     situation: Situation,
     is_on: IsOn<'_>,
     recent: &RecentFiles,
-    about: &str,
+    (about, share): (&str, Option<&ShareProgress>),
     commands: &mut Vec<Command>,
 ) {
     MenuBar::new().ui(ui, |ui| {
@@ -33,16 +35,17 @@ pub(crate) fn menu(
         for menu in Menu::ALL {
             ui.menu_button(menu.name(), |ui| {
                 ui.set_min_width(theme::MENU_WIDTH);
-                let actions = || ACTIONS.iter().filter(|action| action.menu == menu);
-                let is_toggle = |action: &Action| (action.asks)(situation).as_ref().and_then(is_on);
-                let has_toggles = actions().any(|action| is_toggle(action).is_some());
+                let listed = || actions().iter().filter(|action| action.menu == menu);
+                let is_toggle =
+                    |action: &Action| action.command(situation).as_ref().and_then(is_on);
+                let has_toggles = listed().any(|action| is_toggle(action).is_some());
                 // In a low window a menu would reach below its end.
                 let height = ui.ctx().content_rect().height() - theme::GAP * 6.0;
                 // egui gives a menu at most 400 points of height.
                 ui.set_max_height(height);
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
-                    for action in actions() {
+                    for action in listed() {
                         entry(ui, action, situation, (has_toggles, is_on), commands);
                         if action.name == BEFORE_RECENT {
                             open_recent(ui, recent, commands);
@@ -52,10 +55,27 @@ pub(crate) fn menu(
             });
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(share) = share {
+                share_progress(ui, share, commands);
+            }
             let text = egui::RichText::new(about).color(theme::of(ui).text_weak);
             ui.add(egui::Label::new(text).truncate()).on_hover_text(about);
         });
     });
+}
+
+/// Draws the progress of the file that is being written, and a button that cancels it.
+fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<Command>) {
+    let cancel = egui::Button::new("Cancel").frame(true).small();
+    if ui.add(cancel).on_hover_text("Cancel writing the file").clicked() {
+        commands.push(Command::Share(ShareCommand::Cancel));
+    }
+    let ShareProgress { name, share } = share;
+    let text = format!("{name}  {:.0} %", share * 100.0);
+    let bar = egui::ProgressBar::new(*share).desired_width(theme::COLUMN_WIDTHS[2]);
+    ui.add(bar.desired_height(ui.spacing().interact_size.y * 0.5));
+    ui.add(egui::Label::new(text).truncate());
+    ui.add_space(theme::GAP);
 }
 
 /// The action after which the files that were opened lately are listed.
@@ -95,7 +115,7 @@ fn entry(
     if action.key().contains("...") {
         return;
     }
-    let command = (action.asks)(situation);
+    let command = action.command(situation);
     let place = egui::Id::new("check box of an entry");
     let button = if has_toggles {
         let side = egui::Vec2::splat(CHECK_BOX_SIDE);
@@ -118,7 +138,11 @@ fn entry(
         }
         shown.response
     });
-    if shown.inner.clicked() {
+    let shown = match action.hint() {
+        "" => shown.inner,
+        hint => shown.inner.on_hover_text(hint),
+    };
+    if shown.clicked() {
         commands.extend(command);
         ui.close();
     }
@@ -136,7 +160,14 @@ mod tests {
         let mut harness = Harness::new_ui_state(
             |ui, commands| {
                 let recent = RecentFiles::default();
-                menu(ui, Situation::default(), &|_| None, &recent, "climb, seed 1", commands);
+                menu(
+                    ui,
+                    Situation::default(),
+                    &|_| None,
+                    &recent,
+                    ("climb, seed 1", None),
+                    commands,
+                );
             },
             Vec::new(),
         );
@@ -157,7 +188,7 @@ mod tests {
         let texts = ["/saves/mine.ron", "/runs/climb-seed1-be07eab1/run.ron"];
         let recent = RecentFiles::from_texts(&texts.map(str::to_owned));
         let mut harness = Harness::new_ui_state(
-            |ui, commands| menu(ui, Situation::default(), &|_| None, &recent, "", commands),
+            |ui, commands| menu(ui, Situation::default(), &|_| None, &recent, ("", None), commands),
             Vec::new(),
         );
         for (entry, command) in [
@@ -191,11 +222,11 @@ mod tests {
                 let recent = RecentFiles::default();
                 let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
                     theme::apply(ui.ctx());
-                    menu(ui, Situation::default(), &|_| None, &recent, "", &mut Vec::new());
+                    menu(ui, Situation::default(), &|_| None, &recent, ("", None), &mut Vec::new());
                 });
                 harness.get_by_label(of.name()).click();
                 harness.run();
-                let mut entries = ACTIONS.iter().filter(|action| action.menu == of);
+                let mut entries = actions().iter().filter(|action| action.menu == of);
                 let last = entries.rfind(|action| !action.key().contains("...")).expect("one");
                 let entry = harness.get_by_label_contains(last.name).rect();
                 let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
@@ -205,6 +236,43 @@ mod tests {
                 assert!(menu_rect.is_some_and(|rect| rect.contains_rect(entry)), "{}", last.name);
             }
         }
+    }
+
+    #[test]
+    fn the_share_menu_has_every_format_until_a_file_is_being_written() {
+        use crate::export::ExportFormat;
+        type State = (Situation, Option<ShareProgress>, Vec<Command>);
+        let mut harness = Harness::new_ui_state(
+            |ui, (now, share, commands): &mut State| {
+                let recent = RecentFiles::default();
+                menu(ui, *now, &|_| None, &recent, ("climb, seed 1", share.as_ref()), commands);
+            },
+            State::default(),
+        );
+        for format in ExportFormat::ALL {
+            harness.get_by_label("Share").click();
+            harness.run();
+            let ending = format!("(.{})", format.info().ending);
+            harness.get_by_label_contains(&ending).click();
+            harness.run();
+            let asked = Command::Share(ShareCommand::Ask(format));
+            assert_eq!(harness.state_mut().2.pop(), Some(asked), "{ending}");
+        }
+        assert!(harness.query_by_label_contains("climb.mp4").is_none());
+        let (now, share, _) = harness.state_mut();
+        now.is_sharing = true;
+        *share = Some(ShareProgress { name: "climb.mp4".to_owned(), share: 0.42 });
+        harness.run();
+        harness.get_by_label("climb.mp4  42 %");
+        harness.get_by_label("Cancel").click();
+        harness.run();
+        let cancel = Command::Share(ShareCommand::Cancel);
+        assert_eq!(harness.state_mut().2.pop(), Some(cancel));
+        harness.get_by_label("Share").click();
+        harness.run();
+        harness.get_by_label_contains("(.csv)").click();
+        harness.run();
+        assert_eq!(harness.state().2, [], "one file at a time");
     }
 
     #[test]
@@ -224,7 +292,7 @@ mod tests {
                     Situation::default(),
                     &is_on,
                     &RecentFiles::default(),
-                    "climb, seed 1",
+                    ("climb, seed 1", None),
                     commands,
                 )
             },

@@ -182,6 +182,7 @@ impl LibraryPanel {
         let (label, hint) = match question {
             FileQuestion::Open => ("Open", "Path of a champion file or a run folder"),
             FileQuestion::Import => ("Import from", "Path of a champion file or a run folder"),
+            FileQuestion::Share(..) => ("Save as", "Path of the file to write"),
             FileQuestion::Export(_) => {
                 ("Export to", "Path of a folder; it is created if necessary")
             }

@@ -144,8 +144,14 @@ impl LibraryPanel {
         if let Some((question, reason)) = unanswered.filter(|_| count != self.unanswered) {
             self.unanswered = count;
             let exports = || library.folder().join(EXPORTS).to_string_lossy().into_owned();
-            let is_export = matches!(question, FileQuestion::Export(_));
-            let suggestion = if is_export { exports() } else { String::new() };
+            let suggestion = match question {
+                FileQuestion::Export(_) => exports(),
+                FileQuestion::Share(format, name) => {
+                    let name = format!("{name}.{}", format.info().ending);
+                    library.folder().join(name).to_string_lossy().into_owned()
+                }
+                FileQuestion::Open | FileQuestion::Import => String::new(),
+            };
             self.ask_for_path(question.clone(), suggestion, Some(reason.clone()));
         }
         if library.export_requests() != self.export_requests {

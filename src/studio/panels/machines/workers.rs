@@ -82,7 +82,7 @@ fn table(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
             ("Worker", "Its name, which no other worker has"),
             ("Computer", "Name of its computer"),
             ("Threads", "Number of evaluations at the same time"),
-            ("Per s", "Evaluations per second, over the last ten seconds"),
+            ("Per s", "Evaluations per second, over the last five seconds"),
             ("Evaluations", "Since it started"),
             ("Redelivered", "Batches that another worker had before, and did not finish"),
             ("Engine", "Version, processor and proof: the hash of its bits in some short cases"),

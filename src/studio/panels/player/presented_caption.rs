@@ -89,7 +89,7 @@ impl PresentedCaption {
         let name = lane.staged().label();
         let title = match lane.landed_s(time_s) {
             Some(_) if is_first_landing => format!("First landing! {name} has reached the top"),
-            _ => format!("{name}: {}", progress(lane, time_s)),
+            _ => format!("{name}: {}", lane.progress_in_words(time_s)),
         };
         Self { title: CaptionPart::plain(title), details: Vec::new() }
     }
@@ -129,7 +129,7 @@ impl PresentedCaption {
         };
         let details = [original, changed].map(|lane| CaptionPart {
             lane: Some(lane.number()),
-            text: format!("{}: {}", lane.staged().label(), progress(lane, time_s)),
+            text: format!("{}: {}", lane.staged().label(), lane.progress_in_words(time_s)),
         });
         Self {
             title: CaptionPart {
@@ -138,23 +138,6 @@ impl PresentedCaption {
             },
             details: details.into(),
         }
-    }
-}
-
-/// How far a snake has come by now.
-fn progress(lane: &Lane, time_s: f64) -> String {
-    let stairs = &lane.trial().stairs;
-    let middle = lane.drawn_middle();
-    let is_disqualified = lane.is_over() && lane.evaluation().disqualified.is_some();
-    match (lane.landed_s(time_s), stairs.steps_under(middle.to_array())) {
-        _ if is_disqualified => "disqualified".to_owned(),
-        _ if stairs.steps == 0 => format!("at {:.1} m", middle.y),
-        (Some(landed_s), climbed) if climbed == stairs.steps => {
-            format!("at the top after {landed_s:.1} s")
-        }
-        (_, 0) if lane.is_over() => "climbed no step".to_owned(),
-        (_, 0) => "no step climbed yet".to_owned(),
-        (_, climbed) => format!("climbed {climbed} of {} steps", stairs.steps),
     }
 }
 

@@ -64,6 +64,11 @@ impl CameraRig {
         }
     }
 
+    /// Turns the view about the vertical, in radians.
+    pub fn turn_by(&mut self, yaw_rad: f32) {
+        self.view.yaw_rad += yaw_rad;
+    }
+
     /// Takes note that the view was turned by hand: then it may no longer be that from the side or from above, but one
     /// that follows at an angle.
     pub(super) fn turned_by_hand(&mut self) {

@@ -39,6 +39,13 @@ pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> 
             let files = dialog.pick_files();
             Box::pin(async { files.await.unwrap_or_default() })
         }
+        FileQuestion::Share(format, name) => {
+            let info = format.info();
+            let named =
+                dialog.set_title(info.title).set_file_name(format!("{name}.{}", info.ending));
+            let file = named.add_filter(info.title, &[info.ending]).save_file();
+            Box::pin(async { file.await.into_iter().collect() })
+        }
         FileQuestion::Export(_) => {
             let folder = dialog.set_title("Export to a folder").pick_folder();
             Box::pin(async { folder.await.into_iter().collect() })

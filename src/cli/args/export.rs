@@ -1,0 +1,31 @@
+//! The flags of `snakes export`.
+
+use std::path::PathBuf;
+
+use super::film::FilmArgs;
+use crate::export::ExportFormat;
+
+/// The flags of `snakes export`.
+#[derive(Debug, clap::Args)]
+pub struct ExportArgs {
+    /// Saved champions, or the folder of one run, whose champions of all generations are meant
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    #[arg(short, long, value_name = "FILE", help = output_help())]
+    pub output: PathBuf,
+    /// The flags of films.
+    #[command(flatten)]
+    pub film: FilmArgs,
+    /// Cancel at the end of standard input, for programs that start this one
+    #[arg(long, hide = true)]
+    pub until_input_ends: bool,
+}
+
+/// Lists every format.
+fn output_help() -> String {
+    let rows = ExportFormat::ALL.map(|format| {
+        let info = format.info();
+        format!(".{}: {}", info.ending, info.sentence)
+    });
+    format!("The file to write; its ending decides the format. {}", rows.join(" "))
+}

@@ -1,0 +1,110 @@
+//! `snakes export`: saved champions in the formats of other programs.
+
+use std::cell::Cell;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use serde_json::json;
+
+use super::args::{Args, ExportArgs};
+use super::error::CliError;
+#[cfg(feature = "studio")]
+use super::film;
+use super::output::{cancel_on_interrupt, print};
+use super::replay::equals_record;
+use crate::export::{ExportFormat, ExportOrder, ExportProgress, ExportSource};
+use crate::run::headless::HeadlessError;
+use crate::run::progress_bar::bar_of;
+use crate::run::{BackgroundTask, RunControl};
+
+/// Positions of the progress bar.
+const PER_MILLE: f64 = 1000.0;
+
+/// Writes the file, and prints its path.
+pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
+    let format = ExportFormat::of_path("--output", &wanted.output)?;
+    refuse_other_flags(args, wanted, format)?;
+    #[cfg(feature = "studio")]
+    if format.is_film() {
+        let film = film::ordered(args, wanted, format)?;
+        return with_progress(args, wanted, |progress| film.carry_out(progress));
+    }
+    let order = ExportOrder::new(ExportSource::read(&wanted.files)?, wanted.output.clone())?;
+    for champion in order.champions() {
+        equals_record(&champion.file, &champion.loaded)?;
+    }
+    with_progress(args, wanted, |progress| {
+        order.carry_out(progress)?;
+        Ok(wanted.output.clone())
+    })
+}
+
+/// Refuses flags that have no effect in this format.
+fn refuse_other_flags(
+    args: &Args,
+    wanted: &ExportArgs,
+    format: ExportFormat,
+) -> Result<(), CliError> {
+    let theme = args.has_theme().then_some("--theme");
+    let given = wanted.film.given().or(theme).filter(|_| !format.is_film());
+    given.map_or(Ok(()), |flag| {
+        let ending = format.info().ending;
+        let problem = format!("{flag} has no effect with .{ending} (see snakes export --help)");
+        Err(CliError::Usage(problem))
+    })
+}
+
+/// Does `work`, shows its progress, and prints the path that it returns.
+fn with_progress(
+    args: &Args,
+    wanted: &ExportArgs,
+    work: impl FnOnce(&ExportProgress) -> Result<PathBuf, CliError>,
+) -> Result<(), CliError> {
+    let control = cancel_on_interrupt();
+    if wanted.until_input_ends {
+        cancel_at_end_of_input(&control).map_err(HeadlessError::from)?;
+    }
+    let is_cancelled = || control.is_cancelled();
+    let saved = if args.json {
+        let told = Cell::new(None);
+        let show = |share: f64| {
+            let per_mille = (share * PER_MILLE) as u32;
+            if told.replace(Some(per_mille)) != Some(per_mille) {
+                // A reader that has gone away does not end the export.
+                let _ =
+                    print(&format!("{}\n", json!({"progress": f64::from(per_mille) / PER_MILLE})));
+            }
+        };
+        work(&ExportProgress::new(&show, &is_cancelled))?
+    } else {
+        let bar = bar_of(PER_MILLE as u64, "‰");
+        bar.enable_steady_tick(Duration::from_millis(200));
+        let show = |share: f64| bar.set_position((share * PER_MILLE) as u64);
+        let result = work(&ExportProgress::new(&show, &is_cancelled));
+        bar.finish_and_clear();
+        result?
+    };
+    print(&said(args, &saved))
+}
+
+/// The line about the file that was written.
+fn said(args: &Args, saved: &Path) -> String {
+    let path = saved.display();
+    if args.json {
+        format!("{}\n", json!({"saved": path.to_string()}))
+    } else {
+        format!("saved to {path}\n")
+    }
+}
+
+/// Cancels at the end of standard input, so that a program that started this one can end it, even by its own end.
+fn cancel_at_end_of_input(control: &Arc<RunControl>) -> io::Result<()> {
+    let control = Arc::clone(control);
+    let wait = move || {
+        let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
+        control.cancel();
+    };
+    BackgroundTask::start(wait).map(drop)
+}

@@ -1,0 +1,148 @@
+//! `snakes export` to a film.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use super::args::{Args, ExportArgs, FilmArgs, size};
+use super::error::{CliError, of_flag};
+use super::replay::{equals_record, named_champions};
+use crate::check::{Invalid, within};
+use crate::export::{ExportFormat, ExportProgress};
+use crate::save::{LoadedChampion, load_run};
+use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film, frame_folder_of};
+use crate::studio::{CameraMode, Overlay};
+
+/// The largest frames that common graphics drivers draw and players show.
+const LARGEST_PIXELS: u32 = 4096;
+/// The smallest frames.
+const LEAST_PIXELS: (u32, u32) = (64, 64);
+/// Allowed frames per second, but for GIF.
+const FPS: std::ops::RangeInclusive<u32> = 1..=120;
+/// Allowed simulated seconds per second of the film.
+const SPEED: std::ops::RangeInclusive<f64> = 0.1..=16.0;
+
+/// A film that the user ordered.
+pub struct OrderedFilm {
+    order: FilmOrder,
+    format: ExportFormat,
+    path: PathBuf,
+}
+
+/// The film that the flags describe.
+pub fn ordered(
+    args: &Args,
+    wanted: &ExportArgs,
+    format: ExportFormat,
+) -> Result<OrderedFilm, CliError> {
+    let flags = &wanted.film;
+    let is_gif = format == ExportFormat::Gif;
+    let default = if is_gif { "640x360" } else { "1280x720" };
+    let text = flags.size.as_deref().unwrap_or(default);
+    let size = size("--size", text, LEAST_PIXELS, LARGEST_PIXELS)?;
+    check_film_size(format, size)?;
+    let fps = number("--fps", flags.fps.as_deref(), if is_gif { 25 } else { 30 })?;
+    within("--fps", fps, if is_gif { crate::studio::film::GIF_FPS } else { FPS })?;
+    let speed = number("--speed", flags.speed.as_deref(), 1.0)?;
+    within("--speed", speed, SPEED)?;
+    let camera = flags.camera.as_deref().unwrap_or("follow");
+    let overlays = flags.show.iter().map(|name| Overlay::named(name));
+    let order = FilmOrder {
+        parts: parts(wanted, format)?,
+        start_s: number("--start", flags.start.as_deref(), 0.0)?,
+        end_s: flags.end.as_deref().map(|text| number("--end", Some(text), 0.0)).transpose()?,
+        speed,
+        fps,
+        size,
+        camera: CameraMode::named(camera).map_err(of_flag("--camera"))?,
+        theme: args.theme()?.unwrap_or_default(),
+        overlays: overlays.collect::<Result<_, Invalid>>().map_err(of_flag("--show"))?,
+        has_captions: !flags.no_captions,
+    };
+    check_moments(flags, &order)?;
+    Ok(OrderedFilm { order, format, path: wanted.output.clone() })
+}
+
+impl OrderedFilm {
+    /// Draws and writes the film. Returns the path of its file or, for single pictures, of their folder.
+    pub fn carry_out(&self, progress: &ExportProgress) -> Result<PathBuf, CliError> {
+        crate::studio::name_runtime_folder(|_| ());
+        film(&self.order, self.format, &self.path, progress)?;
+        Ok(match self.format {
+            ExportFormat::Png => frame_folder_of(&self.path),
+            _ => self.path.clone(),
+        })
+    }
+}
+
+fn number<T: FromStr>(flag: &str, text: Option<&str>, default: T) -> Result<T, Invalid> {
+    let Some(text) = text else { return Ok(default) };
+    text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), "a number"))
+}
+
+/// Checks that the film has a beginning before its end, within the longest trial.
+fn check_moments(flags: &FilmArgs, order: &FilmOrder) -> Result<(), Invalid> {
+    let champions = order.parts.iter().flat_map(|part| &part.champions);
+    let length_s = |loaded: &LoadedChampion| {
+        let trial = &loaded.champion.trial;
+        f64::from(trial.steps()) / f64::from(trial.physics.steps_per_s)
+    };
+    let longest_s = champions.map(|(_, loaded)| length_s(loaded)).fold(0.0, f64::max);
+    within("--start", order.start_s, 0.0..=longest_s)?;
+    let Some(end_s) = order.end_s else { return Ok(()) };
+    within("--end", end_s, order.start_s..=longest_s)?;
+    if end_s > order.start_s {
+        return Ok(());
+    }
+    let given = flags.end.as_deref().unwrap_or_default();
+    Err(Invalid::new("--end", given, format!("more than --start, {}", order.start_s)))
+}
+
+/// The parts of the film: all champions side by side or, as a story, one generation after the other.
+fn parts(wanted: &ExportArgs, format: ExportFormat) -> Result<Vec<FilmPart>, CliError> {
+    if wanted.film.story {
+        return story(wanted);
+    }
+    if let Some(run) = wanted.files.iter().find(|file| file.is_dir()) {
+        let run = run.display();
+        let problem =
+            format!("{run} is a folder; add --story to film a run, or name champions in it");
+        return Err(CliError::Usage(problem));
+    }
+    within("number of champions", wanted.files.len(), 1..=format.info().most_champions)?;
+    let champions = named_champions(&wanted.files)?;
+    for (file, (_, loaded)) in wanted.files.iter().zip(&champions) {
+        // A champion of another engine is drawn from its recording.
+        if loaded.is_of_this_engine() || loaded.recording.is_none() {
+            equals_record(file, loaded)?;
+        }
+    }
+    Ok(vec![FilmPart { title: None, champions }])
+}
+
+/// The first, the middle and the last generation of a run.
+fn story(wanted: &ExportArgs) -> Result<Vec<FilmPart>, CliError> {
+    let run = match wanted.files.as_slice() {
+        [run] if run.is_dir() => run,
+        _ => {
+            let problem = "--story takes one run's folder (see snakes export --help)";
+            return Err(CliError::Usage(problem.to_owned()));
+        }
+    };
+    let mut champions = load_run(run)?;
+    let last = champions.len() - 1;
+    let mut told = vec![0, last / 2, last];
+    told.dedup();
+    let all = champions.last().map_or(0, |(generation, _)| *generation);
+    let mut index = 0;
+    champions.retain(|_| {
+        index += 1;
+        told.contains(&(index - 1))
+    });
+    let part = |(generation, loaded): (u32, LoadedChampion)| {
+        let title = format!("Generation {generation} of {all}");
+        let below = loaded.champion.reached();
+        let champions = vec![(format!("Generation {generation}"), loaded)];
+        FilmPart { title: Some((title, below)), champions }
+    };
+    Ok(champions.into_iter().map(part).collect())
+}

@@ -1,0 +1,20 @@
+//! `snakes man`.
+
+use super::args::{self, Args};
+use super::error::CliError;
+use super::output::print;
+use crate::save::{SavesFolder, store_text};
+
+/// Prints the program's manual page, or writes those of all commands into a folder.
+pub fn manual(args: &Args) -> Result<(), CliError> {
+    let pages = args::manual();
+    let Some(named) = args.out_folder() else {
+        return pages.first().map_or(Ok(()), |page| print(&page.text));
+    };
+    let folder = SavesFolder::find(Some(named));
+    folder.prepare()?;
+    for page in &pages {
+        store_text(&folder.path().join(&page.file), &page.text)?;
+    }
+    print(&format!("saved to {}\n", folder.path().display()))
+}

@@ -1,0 +1,52 @@
+//! Storing messages on the server, whatever happens to it.
+
+use std::time::Duration;
+
+use async_nats::jetstream::context::{PublishError, PublishErrorKind};
+use async_nats::jetstream::message::PublishMessage;
+
+use super::broker::Broker;
+use super::connection::Trouble;
+
+/// Pause before the server is asked again after it refused a request.
+pub const RETRY_PAUSE: Duration = Duration::from_millis(500);
+
+/// Publishes a message until the server has stored it, however long that takes. The server stores messages with the same
+/// `id` once. `task` says in a few words what fails, if it does.
+pub async fn publish_until_stored(
+    broker: &Broker,
+    task: &'static str,
+    subject: &str,
+    id: &str,
+    bytes: &[u8],
+) {
+    let mut renewals = broker.connection().renewals();
+    loop {
+        let stored = tokio::select! {
+            stored = publish_once(broker, subject, id, bytes) => stored,
+            // The answer to a message of the connection before may never come.
+            _ = renewals.changed() => continue,
+        };
+        let Err(error) = stored else {
+            broker.connection().succeeded(task);
+            return;
+        };
+        if error.kind() == PublishErrorKind::StreamNotFound {
+            // The next attempt says whether this helped.
+            let _ = broker.make_streams().await;
+        }
+        broker.connection().failed(task, &Trouble::of(&error));
+        tokio::time::sleep(RETRY_PAUSE).await;
+    }
+}
+
+async fn publish_once(
+    broker: &Broker,
+    subject: &str,
+    id: &str,
+    bytes: &[u8],
+) -> Result<(), PublishError> {
+    let message = PublishMessage::build().payload(bytes.to_vec().into()).message_id(id);
+    let sent = broker.jetstream().send_publish(subject.to_owned(), message).await?;
+    sent.await.map(drop)
+}

@@ -1,0 +1,333 @@
+//! The body and its world as a model for MuJoCo (MJCF).
+//!
+//! A universal joint becomes two hinges in the rear limb, first the bend, then the twist. Lengths, masses, inertias,
+//! limits, damping, torques, friction and stairs are the same; [`left_out`] lists what MJCF cannot say.
+
+use std::io;
+
+use super::facts::{Fact, generator};
+use super::xml_text::{XmlText, spaced};
+use crate::world::{BodyPlan, JointPlan, LimbPlan, Surface, WorldPlan};
+
+/// Limit of a hinge that must not move, in rad: MuJoCo demands a range that is not empty.
+const LOCKED_RAD: f32 = 1.0e-4;
+/// Torque of a motor without torque, in N·m, for the same reason.
+const POWERLESS_NM: f32 = 1.0e-6;
+/// MuJoCo's own coefficients of torsional and rolling friction, which contacts of three dimensions ignore.
+const OTHER_FRICTION: [f32; 2] = [0.005, 0.0001];
+
+/// Colours of the limbs in turn, and of steps in turn.
+pub(super) const LIMB_COLORS: [[f32; 3]; 2] = [[0.86, 0.13, 0.12], [0.10, 0.27, 0.84]];
+pub(super) const STEP_COLORS: [[f32; 3]; 2] = [[0.72, 0.70, 0.66], [0.62, 0.60, 0.57]];
+
+/// The model of a world: ground, stairs and snake, with facts about the champion.
+///
+/// # Errors
+/// The XML library's.
+pub fn mjcf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> {
+    XmlText::document(|xml| {
+        xml.element("mujoco", &[("model", name.to_owned())], |xml| {
+            xml.comment(&generator())?;
+            for note in left_out(plan) {
+                xml.comment(&format!("Not in this model: {note}"))?;
+            }
+            settings(xml, plan, facts)?;
+            xml.element("worldbody", &[], |xml| {
+                surroundings(xml, plan)?;
+                limbs(xml, plan)
+            })?;
+            contacts(xml, plan)?;
+            motors(xml, &plan.body)
+        })
+    })
+}
+
+/// Properties of a champion's world that a model for another engine lacks.
+pub(super) fn left_out(plan: &WorldPlan) -> Vec<String> {
+    let mut notes = Vec::new();
+    let mut note = |applies: bool, text: String| {
+        if applies {
+            notes.push(text);
+        }
+    };
+    let body = &plan.body;
+    let air = body.angular_damping_per_s;
+    note(air > 0.0, format!("the air takes the limbs' angular velocity at a rate of {air} per s"));
+    for (place, surface) in [("stairs", &plan.surface), ("ground", &plan.ground)] {
+        let Surface { bounce, soft_cfm_m_s_per_n, slip_m_s_per_n, dampen_per_s, .. } = surface;
+        note(*bounce > 0.0, format!("bounce of the {place}, {bounce}"));
+        note(
+            *soft_cfm_m_s_per_n > 0.0,
+            format!("softness of the {place}, {soft_cfm_m_s_per_n} m/s per N"),
+        );
+        note(*slip_m_s_per_n > 0.0, format!("creep on the {place}, {slip_m_s_per_n} m/s per N"));
+        note(*dampen_per_s > 0.0, format!("damping by the {place}, {dampen_per_s} per s"));
+    }
+    let skin = &plan.skin;
+    note(skin.bounce > 0.0, format!("bounce of the skin, {}", skin.bounce));
+    let soft = skin.soft_cfm_m_s_per_n;
+    note(soft > 0.0, format!("softness of the skin, {soft} m/s per N"));
+    let is_soft = |joint: &JointPlan| joint.cfm_m_s_per_n > 0.0;
+    note(body.joints.iter().any(is_soft), "softness of the joints".to_owned());
+    note(true, "limits beyond which a snake is disqualified".to_owned());
+    notes
+}
+
+fn settings(xml: &mut XmlText, plan: &WorldPlan, facts: &[Fact]) -> io::Result<()> {
+    let yes = || "true".to_owned();
+    xml.leaf(
+        "compiler",
+        &[("angle", "radian".into()), ("autolimits", yes()), ("inertiafromgeom", yes())],
+    )?;
+    xml.comment("A step of MuJoCo is a substep of the champion's world.")?;
+    xml.leaf(
+        "option",
+        &[
+            ("timestep", substep_s(plan).to_string()),
+            ("integrator", "implicitfast".into()),
+            ("cone", "elliptic".into()),
+            ("gravity", spaced([0.0, 0.0, -plan.physics.gravity_m_s2])),
+        ],
+    )?;
+    xml.element("custom", &[], |xml| {
+        let steps = [plan.physics.steps_per_s, plan.physics.substeps];
+        for (name, number) in ["controls_per_s", "steps_per_control"].into_iter().zip(steps) {
+            xml.leaf("numeric", &[("name", name.into()), ("data", number.to_string())])?;
+        }
+        facts.iter().try_for_each(|(name, value)| {
+            xml.leaf("text", &[("name", (*name).into()), ("data", value.clone())])
+        })
+    })?;
+    xml.element("visual", &[], |xml| {
+        xml.leaf("global", &[("offwidth", "1920".into()), ("offheight", "1080".into())])?;
+        xml.leaf(
+            "headlight",
+            &[("ambient", "0.35 0.35 0.35".into()), ("diffuse", "0.25 0.25 0.25".into())],
+        )
+    })?;
+    xml.element("asset", &[], |xml| {
+        xml.leaf(
+            "texture",
+            &[
+                ("type", "skybox".into()),
+                ("builtin", "gradient".into()),
+                ("rgb1", "0.75 0.83 0.9".into()),
+                ("rgb2", "0.95 0.96 0.97".into()),
+                ("width", "64".into()),
+                ("height", "384".into()),
+            ],
+        )?;
+        xml.leaf(
+            "texture",
+            &[
+                ("name", "squares".into()),
+                ("type", "2d".into()),
+                ("builtin", "checker".into()),
+                ("rgb1", "0.80 0.80 0.78".into()),
+                ("rgb2", "0.75 0.75 0.73".into()),
+                ("width", "256".into()),
+                ("height", "256".into()),
+            ],
+        )?;
+        // Two squares in each direction have two metres.
+        xml.leaf(
+            "material",
+            &[
+                ("name", "ground".into()),
+                ("texture", "squares".into()),
+                ("texrepeat", "0.5 0.5".into()),
+                ("texuniform", "true".into()),
+            ],
+        )
+    })
+}
+
+/// Length of a substep, in s.
+pub(super) fn substep_s(plan: &WorldPlan) -> f64 {
+    let physics = &plan.physics;
+    1.0 / (f64::from(physics.steps_per_s) * f64::from(physics.substeps.max(1)))
+}
+
+fn surroundings(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
+    let middle_y_m = (plan.start_y_m + plan.stairs.landing_y_m()) / 2.0;
+    let reach_m = (plan.stairs.landing_y_m() - plan.start_y_m).max(10.0);
+    xml.leaf(
+        "light",
+        &[
+            ("name", "sun".into()),
+            ("type", "directional".into()),
+            ("pos", spaced([reach_m / 2.0, middle_y_m - reach_m / 2.0, reach_m])),
+            ("dir", "-0.5 0.5 -1".into()),
+        ],
+    )?;
+    // It looks at the middle of the way, with z upwards.
+    let from = [reach_m, middle_y_m - 0.35 * reach_m, 0.55 * reach_m];
+    xml.leaf(
+        "camera",
+        &[
+            ("name", "overview".into()),
+            ("pos", spaced(from)),
+            ("xyaxes", "0.33 0.944 0 -0.4 0.14 0.905".into()),
+        ],
+    )?;
+    // MuJoCo takes the greater friction of two surfaces; the limbs have none, and the world has the product.
+    let friction = |surface: &Surface| {
+        let [torsional, rolling] = OTHER_FRICTION;
+        ("friction", spaced([surface.friction * plan.skin.friction, torsional, rolling]))
+    };
+    xml.leaf(
+        "geom",
+        &[
+            ("name", "ground".into()),
+            ("type", "plane".into()),
+            ("size", "0 0 1".into()),
+            ("material", "ground".into()),
+            friction(&plan.ground),
+        ],
+    )?;
+    for (index, stair) in plan.stairs.boxes().iter().enumerate() {
+        let ends = || stair.min_m.into_iter().zip(stair.max_m);
+        xml.leaf(
+            "geom",
+            &[
+                ("name", format!("step {}", index + 1)),
+                ("type", "box".into()),
+                ("pos", spaced(ends().map(|(min, max)| (min + max) / 2.0))),
+                ("size", spaced(ends().map(|(min, max)| (max - min) / 2.0))),
+                ("rgba", rgba(STEP_COLORS[index % 2])),
+                friction(&plan.surface),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+fn rgba([red, green, blue]: [f32; 3]) -> String {
+    spaced([red, green, blue, 1.0])
+}
+
+/// The position and rotation of the head at the start: the middle of the straight snake has the start's place.
+pub(super) fn head_start(plan: &WorldPlan) -> ([f32; 3], f32) {
+    let body = &plan.body;
+    let head_length_m = body.limbs.first().map_or(0.0, |head| head.length_m);
+    let ahead_m = (body.length_m() - head_length_m) / 2.0;
+    let (sin, cos) = libm::sincosf(plan.start_turn_rad);
+    let (x_m, y_m) = (plan.start_x_m - sin * ahead_m, plan.start_y_m + cos * ahead_m);
+    ([x_m, y_m, body.axis_height_m()], plan.start_turn_rad)
+}
+
+/// The limbs within each other, from the head.
+fn limbs(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
+    let (at_m, turn_rad) = head_start(plan);
+    let (sin, cos) = libm::sincosf(turn_rad / 2.0);
+    for (index, limb) in plan.body.limbs.iter().enumerate() {
+        let name = ("name", format!("limb {}", index + 1));
+        let joint = plan.body.joints.iter().find(|joint| joint.child == index);
+        match joint {
+            None => {
+                let quat = spaced([cos, 0.0, 0.0, sin]);
+                xml.open("body", &[name, ("pos", spaced(at_m)), ("quat", quat)])?;
+                xml.leaf("freejoint", &[("name", "free".into())])?;
+                // It follows the snake from its right-hand side.
+                xml.leaf(
+                    "camera",
+                    &[
+                        ("name", "follow".into()),
+                        ("mode", "trackcom".into()),
+                        ("pos", "13 -9 6".into()),
+                        ("xyaxes", "0.33 0.944 0 -0.4 0.14 0.905".into()),
+                    ],
+                )?;
+            }
+            Some(joint) => {
+                let front_m = plan.body.limbs[joint.parent].length_m;
+                let pos = spaced([0.0, -(front_m + limb.length_m) / 2.0, 0.0]);
+                xml.open("body", &[name, ("pos", pos)])?;
+                hinges(xml, index, joint, limb)?;
+            }
+        }
+        xml.leaf(
+            "geom",
+            &[
+                ("name", format!("limb {}", index + 1)),
+                ("type", "box".into()),
+                ("size", spaced(limb.size_m().map(|size_m| size_m / 2.0))),
+                ("density", limb.density_kg_m3.to_string()),
+                ("friction", spaced([0.0, OTHER_FRICTION[0], OTHER_FRICTION[1]])),
+                ("rgba", rgba(LIMB_COLORS[index % 2])),
+            ],
+        )?;
+    }
+    plan.body.limbs.iter().try_for_each(|_| xml.close("body"))
+}
+
+/// The hinges of a universal joint at the front face of its rear limb.
+fn hinges(xml: &mut XmlText, number: usize, joint: &JointPlan, limb: &LimbPlan) -> io::Result<()> {
+    let axes = [("bend", "1 0 0", joint.bend_limit_rad), ("twist", "0 1 0", joint.twist_limit_rad)];
+    axes.into_iter().try_for_each(|(name, axis, limit_rad)| {
+        let limit_rad = limit_rad.max(LOCKED_RAD);
+        xml.leaf(
+            "joint",
+            &[
+                ("name", format!("{name} {number}")),
+                ("type", "hinge".into()),
+                ("axis", axis.into()),
+                ("pos", spaced([0.0, limb.length_m / 2.0, 0.0])),
+                ("range", spaced([-limit_rad, limit_rad])),
+                ("damping", joint.damping_nms_per_rad.to_string()),
+            ],
+        )
+    })
+}
+
+/// Joined limbs do not touch; the others touch with the friction of skin on skin.
+fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
+    let limb = |index: usize| format!("limb {}", index + 1);
+    let are_joined = |a: usize, b: usize| {
+        plan.body.joints.iter().any(|joint| (joint.parent, joint.child) == (a, b))
+    };
+    let friction = plan.skin.friction * plan.skin.friction;
+    let [torsional, rolling] = OTHER_FRICTION;
+    xml.element("contact", &[], |xml| {
+        for joint in &plan.body.joints {
+            xml.leaf("exclude", &[("body1", limb(joint.parent)), ("body2", limb(joint.child))])?;
+        }
+        for b in 0..plan.body.limbs.len() {
+            for a in (0..b).filter(|&a| !are_joined(a, b)) {
+                xml.leaf(
+                    "pair",
+                    &[
+                        ("geom1", limb(a)),
+                        ("geom2", limb(b)),
+                        ("friction", spaced([friction, friction, torsional, rolling, rolling])),
+                    ],
+                )?;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// The motors: bend and twist of the first joint, of the second, and so on.
+fn motors(xml: &mut XmlText, body: &BodyPlan) -> io::Result<()> {
+    xml.element("actuator", &[], |xml| {
+        for (index, joint) in body.joints.iter().enumerate() {
+            let ceilings =
+                [("bend", joint.max_bend_torque_nm), ("twist", joint.max_twist_torque_nm)];
+            for (axis, torque_nm) in ceilings {
+                let name = format!("{axis} {}", index + 1);
+                let most_nm = torque_nm.max(POWERLESS_NM);
+                xml.leaf(
+                    "motor",
+                    &[
+                        ("name", name.clone()),
+                        ("joint", name),
+                        ("gear", "1".into()),
+                        ("ctrlrange", spaced([-most_nm, most_nm])),
+                    ],
+                )?;
+            }
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,39 @@
+//! Progress and cancellation of an export.
+
+use super::ExportError;
+
+/// Shows the progress of an export, and asks whether to go on.
+#[derive(Clone, Copy)]
+pub struct ExportProgress<'p> {
+    show: &'p dyn Fn(f64),
+    is_cancelled: &'p dyn Fn() -> bool,
+    /// Start and end of the present part, as shares of the whole.
+    part: [f64; 2],
+}
+
+impl<'p> ExportProgress<'p> {
+    /// Progress that is shown by `show`, as a share of the whole from 0 to 1.
+    pub fn new(show: &'p dyn Fn(f64), is_cancelled: &'p dyn Fn() -> bool) -> Self {
+        Self { show, is_cancelled, part: [0.0, 1.0] }
+    }
+
+    /// The progress of part number `index` of `count` equal parts.
+    pub fn part(&self, index: usize, count: usize) -> Self {
+        let [start, end] = self.part;
+        let at = |index: usize| start + (end - start) * index as f64 / count.max(1) as f64;
+        Self { part: [at(index), at(index + 1)], ..*self }
+    }
+
+    /// Shows that a share of this part is done.
+    ///
+    /// # Errors
+    /// [`ExportError::Cancelled`], if the user cancelled the export.
+    pub fn reach(&self, share: f64) -> Result<(), ExportError> {
+        if (self.is_cancelled)() {
+            return Err(ExportError::Cancelled);
+        }
+        let [start, end] = self.part;
+        (self.show)(start + (end - start) * share);
+        Ok(())
+    }
+}

@@ -1,0 +1,138 @@
+//! The body as a robot for ROS, Gazebo, Drake, Pinocchio and PyBullet (URDF). Stairs, friction and motors have no place
+//! in URDF.
+
+use std::io;
+
+use super::facts::{Fact, generator};
+use super::mjcf::{LIMB_COLORS, head_start, left_out};
+use super::xml_text::{XmlText, spaced};
+use crate::world::{LimbPlan, WorldPlan};
+
+/// Mass in kg, and moment of inertia in kg·m², of the link between the two hinges of a universal joint.
+const BETWEEN: f32 = 1.0e-6;
+/// The velocity limit that URDF demands of a joint, in rad/s: beyond all that a limb does.
+const FASTEST_RAD_S: f32 = 1000.0;
+
+/// The robot of a world's snake, with facts about the champion.
+///
+/// # Errors
+/// The XML library's.
+pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> {
+    XmlText::document(|xml| {
+        xml.element("robot", &[("name", name.to_owned())], |xml| {
+            xml.comment(&generator())?;
+            for (fact, value) in facts {
+                xml.comment(&format!("{fact}: {value}"))?;
+            }
+            xml.comment("Not in this model: ground, stairs and friction; export the same champion as .xml (MJCF) for them")?;
+            xml.comment("Not in this model: joined limbs do not collide, which URDF cannot say")?;
+            for note in left_out(plan) {
+                xml.comment(&format!("Not in this model: {note}"))?;
+            }
+            for (color, [red, green, blue]) in ["red", "blue"].into_iter().zip(LIMB_COLORS) {
+                xml.element("material", &[("name", color.to_owned())], |xml| {
+                    xml.leaf("color", &[("rgba", spaced([red, green, blue, 1.0]))])
+                })?;
+            }
+            xml.leaf("link", &[("name", "world".to_owned())])?;
+            let (at_m, turn_rad) = head_start(plan);
+            let joint = [("name", "free".to_owned()), ("type", "floating".to_owned())];
+            xml.element("joint", &joint, |xml| {
+                ends(xml, "world", "limb_1")?;
+                let rpy = ("rpy", spaced([0.0, 0.0, turn_rad]));
+                xml.leaf("origin", &[("xyz", spaced(at_m)), rpy])
+            })?;
+            for (index, limb) in plan.body.limbs.iter().enumerate() {
+                link(xml, index, limb)?;
+            }
+            joints(xml, plan)
+        })
+    })
+}
+
+fn ends(xml: &mut XmlText, parent: &str, child: &str) -> io::Result<()> {
+    xml.leaf("parent", &[("link", parent.to_owned())])?;
+    xml.leaf("child", &[("link", child.to_owned())])
+}
+
+/// A limb. The head's frame is in its middle, that of every other limb in the middle of its front face, at the joint.
+fn link(xml: &mut XmlText, index: usize, limb: &LimbPlan) -> io::Result<()> {
+    let back_m = if index == 0 { 0.0 } else { -limb.length_m / 2.0 };
+    let origin = |xml: &mut XmlText| xml.leaf("origin", &[("xyz", spaced([0.0, back_m, 0.0]))]);
+    let shape = |xml: &mut XmlText| {
+        xml.element("geometry", &[], |xml| xml.leaf("box", &[("size", spaced(limb.size_m()))]))
+    };
+    xml.element("link", &[("name", format!("limb_{}", index + 1))], |xml| {
+        xml.element("inertial", &[], |xml| {
+            origin(xml)?;
+            let [x, y, z] = limb.size_m().map(f64::from);
+            let mass_kg = x * y * z * f64::from(limb.density_kg_m3);
+            let about = |a: f64, b: f64| mass_kg * (a * a + b * b) / 12.0;
+            inertia(xml, mass_kg, [about(y, z), about(x, z), about(x, y)])
+        })?;
+        xml.element("visual", &[], |xml| {
+            origin(xml)?;
+            shape(xml)?;
+            let color = ["red", "blue"][index % 2];
+            xml.leaf("material", &[("name", color.to_owned())])
+        })?;
+        xml.element("collision", &[], |xml| {
+            origin(xml)?;
+            shape(xml)
+        })
+    })
+}
+
+fn inertia(xml: &mut XmlText, mass_kg: f64, about_kg_m2: [f64; 3]) -> io::Result<()> {
+    xml.leaf("mass", &[("value", mass_kg.to_string())])?;
+    let none = || "0".to_owned();
+    let [x, y, z] = about_kg_m2.map(|moment| moment.to_string());
+    let moments =
+        [("ixx", x), ("ixy", none()), ("ixz", none()), ("iyy", y), ("iyz", none()), ("izz", z)];
+    xml.leaf("inertia", &moments)
+}
+
+/// Each universal joint as two: the bend between the front limb and a link of almost no mass, and the twist behind it.
+fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
+    for (index, joint) in plan.body.joints.iter().enumerate() {
+        let number = index + 1;
+        let between = format!("joint_{number}");
+        xml.element("link", &[("name", between.clone())], |xml| {
+            xml.element("inertial", &[], |xml| {
+                inertia(xml, f64::from(BETWEEN), [f64::from(BETWEEN); 3])
+            })
+        })?;
+        let front_m = plan.body.limbs[joint.parent].length_m;
+        // From the frame of the front limb to its rear face.
+        let back_m = if joint.parent == 0 { front_m / 2.0 } else { front_m };
+        let limb = |index: usize| format!("limb_{}", index + 1);
+        let (limits, torques) = (
+            [joint.bend_limit_rad, joint.twist_limit_rad],
+            [joint.max_bend_torque_nm, joint.max_twist_torque_nm],
+        );
+        let axes = [
+            ("bend", "1 0 0", limb(joint.parent), between.clone(), -back_m),
+            ("twist", "0 1 0", between, limb(joint.child), 0.0),
+        ];
+        for ((axis, limit_rad), torque_nm) in axes.into_iter().zip(limits).zip(torques) {
+            let (name, direction, parent, child, y_m) = axis;
+            let head = [("name", format!("{name}_{number}")), ("type", "revolute".to_owned())];
+            xml.element("joint", &head, |xml| {
+                ends(xml, &parent, &child)?;
+                xml.leaf("origin", &[("xyz", spaced([0.0, y_m, 0.0]))])?;
+                xml.leaf("axis", &[("xyz", direction.to_owned())])?;
+                xml.leaf("dynamics", &[("damping", joint.damping_nms_per_rad.to_string())])?;
+                xml.leaf(
+                    "limit",
+                    &[
+                        ("lower", (-limit_rad).to_string()),
+                        ("upper", limit_rad.to_string()),
+                        ("effort", torque_nm.to_string()),
+                        ("velocity", FASTEST_RAD_S.to_string()),
+                    ],
+                )
+            })?;
+        }
+    }
+    Ok(())
+}

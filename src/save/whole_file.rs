@@ -1,0 +1,135 @@
+//! Writing whole files: at every instant either the old or the complete new one exists.
+
+use std::fs::{self, File};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{NamedTempFile, PersistError};
+
+use super::SaveError;
+
+/// Writes a file atomically: at every instant either the old or the complete new one exists. The contents go into a
+/// temporary file in the same folder, are flushed to the disk, and then renamed.
+pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
+    write_and(path, contents, |file| file.persist(path))
+}
+
+/// Writes a new file atomically; fails if a file of this name exists by then.
+pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
+    write_and(path, contents, |file| file.persist_noclobber(path))
+}
+
+fn write_and(
+    path: &Path,
+    contents: &[u8],
+    put: impl FnOnce(NamedTempFile) -> Result<File, PersistError>,
+) -> Result<(), SaveError> {
+    let mut file = UnfinishedFile::create(path)?;
+    file.write_all(contents).map_err(|error| unwritable(path, error))?;
+    file.finish_with(put)
+}
+
+/// A file that is written piece by piece and appears under its name only when it is complete. Dropped before, it leaves
+/// nothing behind.
+#[derive(Debug)]
+pub struct UnfinishedFile {
+    file: NamedTempFile,
+    path: PathBuf,
+}
+
+impl UnfinishedFile {
+    /// Begins the file that will have this path.
+    ///
+    /// # Errors
+    /// Its folder cannot be written.
+    pub fn create(path: &Path) -> Result<Self, SaveError> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(UNFINISHED);
+        // Readable by others as far as the user's umask allows; the library's default is private.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.tempfile_in(folder_of(path)).map_err(|error| unwritable(path, error))?;
+        Ok(Self { file, path: path.to_owned() })
+    }
+
+    /// The path of the temporary file, for another program that writes it.
+    pub fn temporary_path(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// Flushes the file to the disk and gives it its name, in the place of an earlier file.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(self) -> Result<(), SaveError> {
+        let path = self.path.clone();
+        self.finish_with(|file| file.persist(path))
+    }
+
+    fn finish_with(
+        self,
+        put: impl FnOnce(NamedTempFile) -> Result<File, PersistError>,
+    ) -> Result<(), SaveError> {
+        let Self { file, path } = self;
+        let finish = || -> std::io::Result<()> {
+            file.as_file().sync_all()?;
+            put(file).map_err(|error| error.error)?;
+            // The file exists by now. Flushing the folder, so that its name survives a power cut, is best effort.
+            #[cfg(unix)]
+            let _ = File::open(folder_of(&path)).and_then(|folder| folder.sync_all());
+            Ok(())
+        };
+        finish().map_err(|error| unwritable(&path, error))
+    }
+}
+
+impl Write for UnfinishedFile {
+    // Through the inner file: errors of the temporary file itself would name that file.
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.file.as_file_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.as_file_mut().flush()
+    }
+}
+
+/// The folder in which a file is.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The error that a file or folder cannot be written.
+fn unwritable(path: &Path, error: std::io::Error) -> SaveError {
+    // An error of the temporary file names that file, which the user does not know; keep only its kind.
+    let names_another = error.raw_os_error().is_none() && error.kind() != ErrorKind::Other;
+    let source = if names_another { error.kind().into() } else { error };
+    SaveError::Unwritable { path: path.to_owned(), source }
+}
+
+/// Prefix of the names of files that are not complete yet.
+pub const UNFINISHED: &str = ".unfinished-";
+
+/// Removes the incomplete files that a kill left in a folder; the caller holds the folder's lock.
+pub fn remove_unfinished(folder: &Path) {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(UNFINISHED))
+    {
+        // A file that cannot be removed does no harm.
+        let _ = fs::remove_file(entry.path());
+    }
+}
+
+/// Makes sure that files can be written into `folder`, and creates it if it does not exist.
+pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
+    let unwritable = |error| unwritable(folder, error);
+    let is_new = !folder.exists();
+    fs::create_dir_all(folder).map_err(unwritable)?;
+    if is_new {
+        // Best effort, so that the folder's name survives a power cut.
+        #[cfg(unix)]
+        let _ = folder.parent().map(File::open).map(|parent| parent.and_then(|p| p.sync_all()));
+    }
+    // Permissions alone do not tell (read-only mounts, quotas), so try it. The file is removed when dropped.
+    tempfile::tempfile_in(folder).map(drop).map_err(unwritable)
+}

@@ -1,0 +1,96 @@
+//! A rollout whose motion another engine computes: the controller feels that engine's limbs, and moves them.
+
+use super::{ExamCondition, ExamEnd};
+use crate::control::ControlLoop;
+use crate::genome::Genome;
+use crate::world::{JointTorque, LimbState, Simulation, WorldPlan};
+
+/// A champion's controller at work in another engine.
+pub struct MirroredRollout {
+    plan: WorldPlan,
+    /// Shows the state of the other engine to the senses.
+    world: Simulation,
+    control: ControlLoop,
+    torques: Vec<JointTorque>,
+    step: u32,
+    last_step: u32,
+    is_disqualified: bool,
+}
+
+impl MirroredRollout {
+    /// A genome before the first step in a condition. A shove is left out.
+    pub fn new(genome: &Genome, ExamCondition { trial, perturbation, .. }: &ExamCondition) -> Self {
+        let mut plan = trial.world_plan(genome);
+        perturbation.apply(&mut plan);
+        Self {
+            control: ControlLoop::new(&genome.controller, &plan.physics, trial.agent.senses),
+            torques: vec![JointTorque::default(); plan.body.joints.len()],
+            last_step: super::trial::steps_in(trial.duration_s, &plan.physics),
+            world: Simulation::new(&plan),
+            plan,
+            step: 0,
+            is_disqualified: false,
+        }
+    }
+
+    /// The world that the other engine has to build.
+    pub fn plan(&self) -> &WorldPlan {
+        &self.plan
+    }
+
+    /// The state of the limbs at the start, or as it was last taken over.
+    pub fn world(&self) -> &Simulation {
+        &self.world
+    }
+
+    /// Whether the trial's time is up or the snake is disqualified.
+    pub fn is_over(&self) -> bool {
+        self.step >= self.last_step || self.is_disqualified
+    }
+
+    /// The torques of the step that begins, one per joint, within the joints' limits.
+    pub fn torques(&mut self) -> &[JointTorque] {
+        self.control.act(self.step, &self.world, &mut self.torques);
+        for (torque, joint) in self.torques.iter_mut().zip(&self.plan.body.joints) {
+            let (bend, twist) = (joint.max_bend_torque_nm, joint.max_twist_torque_nm);
+            torque.bend_nm = torque.bend_nm.clamp(-bend, bend);
+            torque.twist_nm = torque.twist_nm.clamp(-twist, twist);
+        }
+        &self.torques
+    }
+
+    /// Takes over the limbs after the step, head first. A limb that is faster than the trial allows, or a number that is
+    /// not finite, disqualifies the snake; the other limits are for this program's engine.
+    pub fn take(&mut self, limbs: &[LimbState]) {
+        let fastest_m_s = self.plan.health.speed_m_s;
+        let is_healthy = |limb: &LimbState| {
+            limb.pose.translation.is_finite()
+                && limb.pose.rotation.is_finite()
+                && limb.angular_velocity_rad_s.is_finite()
+                && limb.velocity_m_s.length() <= fastest_m_s
+        };
+        if limbs.len() == self.plan.body.limbs.len() && limbs.iter().all(is_healthy) {
+            self.world.mirror(limbs);
+            self.step += 1;
+        } else {
+            self.disqualify();
+        }
+    }
+
+    /// Ends the trial, because the other engine cannot go on.
+    pub fn disqualify(&mut self) {
+        self.is_disqualified = true;
+    }
+
+    /// How it ends, if it ends now. When it landed is not recorded.
+    pub fn end(&self) -> ExamEnd {
+        let middle = self.world.poses().nth(self.plan.body.middle_limb());
+        match middle {
+            Some(middle) if !self.is_disqualified => {
+                let middle_m = middle.translation.to_array();
+                ExamEnd::at(middle_m, &self.plan.stairs, self.plan.start_y_m)
+            }
+            _ => ExamEnd::CRASHED,
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! A film as GIF: one palette for the whole film, chosen from frames of all of it, so that no colour flickers; ordered
+//! dithering, whose pattern stands still; and only the pixels that change.
+
+use std::borrow::Cow;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use color_quant::NeuQuant;
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
+
+use super::error::FilmError;
+use super::film_file::FilmFile;
+use crate::check::within;
+use crate::export::ExportError;
+use crate::save::{Picture, UnfinishedFile};
+
+/// Allowed frames per second. Browsers show a frame of less than 0.02 s for 0.1 s.
+pub const GIF_FPS: RangeInclusive<u32> = 1..=50;
+
+/// Number of frames from which the palette is chosen.
+pub const SAMPLES: usize = 12;
+/// Number of colours; one more index is for pixels that do not change.
+const COLORS: usize = 255;
+/// Index of pixels that do not change.
+const UNCHANGED: u8 = 255;
+/// Effort of the palette's choice: every this-many-th pixel teaches it.
+const SAMPLE_FACTOR: i32 = 7;
+/// Bits per channel of the table from colours to the palette's.
+const TABLE_BITS: u32 = 6;
+/// Amplitude of the dithering, in steps of a channel.
+const DITHER: i32 = 5;
+
+/// Thresholds of ordered dithering (Bayer), from 0 to 63.
+#[rustfmt::skip]
+const BAYER: [[i32; 8]; 8] = [
+    [ 0, 32,  8, 40,  2, 34, 10, 42],
+    [48, 16, 56, 24, 50, 18, 58, 26],
+    [12, 44,  4, 36, 14, 46,  6, 38],
+    [60, 28, 52, 20, 62, 30, 54, 22],
+    [ 3, 35, 11, 43,  1, 33,  9, 41],
+    [51, 19, 59, 27, 49, 17, 57, 25],
+    [15, 47,  7, 39, 13, 45,  5, 37],
+    [63, 31, 55, 23, 61, 29, 53, 21],
+];
+
+/// The colours of a film.
+pub struct GifPalette {
+    /// Red, green and blue of each colour.
+    rgb: Vec<u8>,
+    /// The palette's nearest colour for the first bits of each channel.
+    nearest: Vec<u8>,
+}
+
+impl GifPalette {
+    /// Chooses the colours of these frames.
+    pub fn of(samples: &[Picture]) -> Self {
+        let pixels = samples.iter().flat_map(|frame| frame.rgb.as_chunks::<3>().0);
+        let rgba: Vec<u8> = pixels.flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+        let network = NeuQuant::new(SAMPLE_FACTOR, COLORS, &rgba);
+        let shift = 8 - TABLE_BITS;
+        let levels = 1_u32 << TABLE_BITS;
+        // The middle of the colours that share the first bits.
+        let channel = |bits: u32| ((bits << shift) | (1 << (shift - 1))) as u8;
+        let index = |cell: u32| {
+            let [r, g, b] = [cell >> (2 * TABLE_BITS), cell >> TABLE_BITS, cell];
+            let [r, g, b] = [r, g, b].map(|bits| channel(bits % levels));
+            network.index_of(&[r, g, b, 255]) as u8
+        };
+        Self { rgb: network.color_map_rgb(), nearest: (0..levels.pow(3)).map(index).collect() }
+    }
+
+    /// The palette's colours of a frame.
+    fn indices(&self, frame: &Picture) -> Vec<u8> {
+        let rows = frame.rgb.chunks_exact(frame.width as usize * 3).zip(BAYER.iter().cycle());
+        let row = |(row, thresholds): (&[u8], &[i32; 8])| -> Vec<u8> {
+            let pixels = row.as_chunks::<3>().0.iter().zip(thresholds.iter().cycle());
+            let index = |(pixel, threshold): (&[u8; 3], &i32)| {
+                let added = (threshold * 2 - 63) * DITHER / 64;
+                let [r, g, b] = pixel.map(|channel| {
+                    let dithered = (i32::from(channel) + added).clamp(0, 255);
+                    dithered as usize >> (8 - TABLE_BITS)
+                });
+                self.nearest[((r << TABLE_BITS | g) << TABLE_BITS) | b]
+            };
+            pixels.map(index).collect()
+        };
+        rows.flat_map(row).collect()
+    }
+}
+
+/// A GIF that is being written.
+pub struct GifFile {
+    path: PathBuf,
+    size: (u16, u16),
+    fps: u32,
+    stage: GifStage,
+    /// The palette's colours of the last frame.
+    last: Vec<u8>,
+    frames: u32,
+}
+
+/// How far the file has come.
+enum GifStage {
+    /// Its palette is not known yet.
+    Begun(UnfinishedFile),
+    /// Frames are being written.
+    Open(GifPalette, Box<Encoder<UnfinishedFile>>),
+    /// Its palette could not be written.
+    Broken,
+}
+
+impl GifFile {
+    /// Begins the file.
+    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
+        within("--fps", fps, GIF_FPS)?;
+        within("--size", size.0.max(size.1), 1..=u32::from(u16::MAX))?;
+        let stage = GifStage::Begun(UnfinishedFile::create(path)?);
+        let size = (size.0 as u16, size.1 as u16);
+        Ok(Self { path: path.to_owned(), size, fps, stage, last: Vec::new(), frames: 0 })
+    }
+
+    /// Takes the colours of the film.
+    pub fn use_palette(&mut self, palette: GifPalette) -> Result<(), FilmError> {
+        let stage = std::mem::replace(&mut self.stage, GifStage::Broken);
+        let GifStage::Begun(file) = stage else { return Ok(()) };
+        let unwritable = ExportError::unwritable(&self.path);
+        let encoder = Encoder::new(file, self.size.0, self.size.1, &palette.rgb);
+        let mut encoder = encoder.map_err(&unwritable)?;
+        encoder.set_repeat(Repeat::Infinite).map_err(&unwritable)?;
+        self.stage = GifStage::Open(palette, Box::new(encoder));
+        Ok(())
+    }
+}
+
+impl FilmFile for GifFile {
+    fn add(&mut self, frame: &Picture) -> Result<(), FilmError> {
+        let GifStage::Open(palette, encoder) = &mut self.stage else { return Ok(()) };
+        let indices = palette.indices(frame);
+        let shown = changed(&indices, &self.last);
+        let (left, top, width, height, buffer) = cropped(&shown, usize::from(self.size.0));
+        let part = Frame {
+            // Rounded so that no error adds up.
+            delay: (hundredths(self.frames + 1, self.fps) - hundredths(self.frames, self.fps))
+                as u16,
+            dispose: DisposalMethod::Keep,
+            transparent: Some(UNCHANGED),
+            left,
+            top,
+            width,
+            height,
+            buffer: Cow::Owned(buffer),
+            ..Frame::default()
+        };
+        encoder.write_frame(&part).map_err(ExportError::unwritable(&self.path))?;
+        self.last = indices;
+        self.frames += 1;
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), FilmError> {
+        let GifStage::Open(_, encoder) = self.stage else { return Ok(()) };
+        let file = encoder.into_inner().map_err(ExportError::unwritable(&self.path))?;
+        Ok(file.finish()?)
+    }
+}
+
+/// Time of the beginning of a frame, in hundredths of a second.
+fn hundredths(frame: u32, fps: u32) -> u32 {
+    (u64::from(frame) * 100).saturating_add(u64::from(fps) / 2).wrapping_div(u64::from(fps)) as u32
+}
+
+/// The palette's colours of the pixels that are other than in the last frame.
+fn changed(indices: &[u8], last: &[u8]) -> Vec<u8> {
+    if last.is_empty() {
+        return indices.to_vec();
+    }
+    let pairs = indices.iter().zip(last);
+    pairs.map(|(index, last)| if index == last { UNCHANGED } else { *index }).collect()
+}
+
+/// The smallest part of a frame that has all changed pixels, at least one: left, top, width, height, pixels.
+fn cropped(shown: &[u8], width: usize) -> (u16, u16, u16, u16, Vec<u8>) {
+    let has_changed = |row: &[u8]| row.iter().any(|index| *index != UNCHANGED);
+    let rows = || shown.chunks_exact(width);
+    let top = rows().position(has_changed).unwrap_or(0);
+    let bottom = rows().rposition(has_changed).map_or(top + 1, |last| last + 1);
+    let columns = |row: &[u8]| {
+        let is_new = |index: &u8| *index != UNCHANGED;
+        Some((row.iter().position(is_new)?, row.iter().rposition(is_new)? + 1))
+    };
+    let ends = rows().filter_map(columns);
+    let widest = ends.reduce(|(left, right), (a, b)| (left.min(a), right.max(b)));
+    let (left, right) = widest.unwrap_or((0, 1));
+    let part = rows().take(bottom).skip(top).flat_map(|row| &row[left..right]);
+    let buffer = part.copied().collect();
+    (left as u16, top as u16, (right - left) as u16, (bottom - top) as u16, buffer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_delays_of_all_frames_add_up_to_the_time_of_the_film() {
+        for fps in [1, 7, 24, 25, 30, 50] {
+            let delays =
+                (0..fps * 3).map(|frame| hundredths(frame + 1, fps) - hundredths(frame, fps));
+            let delays: Vec<u32> = delays.collect();
+            assert_eq!(delays.iter().sum::<u32>(), 300, "{fps}");
+            assert!(delays.iter().all(|delay| *delay >= 2), "{fps}: {delays:?}");
+        }
+    }
+
+    #[test]
+    fn only_the_part_that_changes_is_kept() {
+        let last = vec![7; 20];
+        let mut next = last.clone();
+        (next[6], next[12]) = (1, 2);
+        let shown = changed(&next, &last);
+        let (left, top, width, height, part) = cropped(&shown, 5);
+        assert_eq!((left, top, width, height), (1, 1, 2, 2));
+        assert_eq!(part, [1, UNCHANGED, UNCHANGED, 2]);
+        let (_, _, width, height, part) = cropped(&changed(&last, &last), 5);
+        assert_eq!((width, height, part), (1, 1, vec![UNCHANGED]), "nothing changes");
+    }
+
+    #[test]
+    fn the_palette_has_the_colours_of_the_film() {
+        let mut frame = Picture::new(64, 64);
+        for (number, pixel) in frame.rgb.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+            let share = (number % 64) as u8;
+            *pixel = if number < 2048 { [230, 40, 40] } else { [share * 2, share * 3, 250] };
+        }
+        let palette = GifPalette::of(std::slice::from_ref(&frame));
+        let indices = palette.indices(&frame);
+        for (pixel, index) in frame.rgb.as_chunks::<3>().0.iter().zip(indices) {
+            assert_ne!(index, UNCHANGED);
+            let shown = &palette.rgb[usize::from(index) * 3..][..3];
+            for (channel, shown) in pixel.iter().zip(shown) {
+                assert!(channel.abs_diff(*shown) < 24, "{pixel:?} as {shown:?}");
+            }
+        }
+    }
+}

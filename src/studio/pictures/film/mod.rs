@@ -1,0 +1,90 @@
+//! Films of champions, rendered without a window at exact simulated moments, so that no clock decides what a frame
+//! shows: the same champions and wishes give the same frames on every machine, however slowly it draws.
+//!
+//! [`plan`] says which moment each frame shows, [`camera_path`] from where, [`shooting`] draws the frames, and
+//! [`gif_file`], [`video`] and [`frame_folder`] write them.
+
+mod camera_path;
+mod error;
+mod film_file;
+mod frame_folder;
+mod gif_file;
+mod order;
+mod plan;
+mod shooting;
+mod video;
+
+use std::path::Path;
+
+use crate::check::{Invalid, within};
+use crate::export::{ExportFormat, ExportProgress};
+use crate::studio::stage::evenly;
+
+pub use error::FilmError;
+pub(crate) use frame_folder::frame_folder_of;
+pub(crate) use gif_file::GIF_FPS;
+pub use order::{FilmOrder, FilmPart};
+
+use film_file::FilmFile;
+use frame_folder::FrameFolder;
+use gif_file::{GifFile, GifPalette, SAMPLES};
+use plan::FilmPlan;
+use shooting::shoot;
+use video::Video;
+
+/// Maximum number of frames of a film: almost an hour at 30 frames per second.
+const MOST_FRAMES: usize = 100_000;
+
+/// Checks that a format has films of this size.
+///
+/// # Errors
+/// It has not.
+pub(crate) fn check_film_size(format: ExportFormat, size: (u32, u32)) -> Result<(), Invalid> {
+    if format == ExportFormat::Mp4 { video::check_size(size) } else { Ok(()) }
+}
+
+/// Draws a film and writes it.
+///
+/// # Errors
+/// A champion cannot be built, no graphics driver or no ffmpeg is available, the file cannot be written, or the user
+/// cancelled. Then nothing is left under its name.
+pub fn film(
+    order: &FilmOrder,
+    format: ExportFormat,
+    path: &Path,
+    progress: &ExportProgress,
+) -> Result<(), FilmError> {
+    let plan = FilmPlan::new(order)?;
+    within("number of frames", plan.frames.len(), 1..=MOST_FRAMES)?;
+    let (size, fps) = (order.size, order.fps);
+    // A file that cannot be written is refused before the first frame is drawn.
+    let mut file: Option<Box<dyn FilmFile>> = match format {
+        ExportFormat::Mp4 => Some(Box::new(Video::begin(path, size, fps)?)),
+        ExportFormat::Png => Some(Box::new(FrameFolder::begin(path, plan.frames.len())?)),
+        _ => None,
+    };
+    let mut gif = file.is_none().then(|| GifFile::begin(path, size, fps)).transpose()?;
+    let all = plan.frames.len();
+    shoot(order, &plan, |shooting| {
+        if let Some(mut gif) = gif.take() {
+            let mut samples = Vec::new();
+            let chosen: Vec<usize> = evenly(all, SAMPLES, SAMPLES).collect();
+            shooting.play(&chosen, |_, frame| {
+                samples.push(frame);
+                Ok(progress.reach(0.0)?)
+            })?;
+            gif.use_palette(GifPalette::of(&samples))?;
+            file = Some(Box::new(gif));
+        }
+        let Some(file) = &mut file else { return Ok(()) };
+        let every: Vec<usize> = (0..all).collect();
+        shooting.play(&every, |index, frame| {
+            progress.reach(index as f64 / all as f64)?;
+            let added = file.add(&frame);
+            // A program that the interrupt key has ended, too, is no error.
+            progress.reach((index + 1) as f64 / all as f64)?;
+            added
+        })
+    })?;
+    file.map_or(Ok(()), FilmFile::finish)
+}

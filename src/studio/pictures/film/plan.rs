@@ -1,0 +1,109 @@
+//! Which moment each frame of a film shows, from where, and under which title.
+
+use bevy::prelude::*;
+
+use super::camera_path::camera_path;
+use super::error::FilmError;
+use super::order::{FilmOrder, FilmPart};
+use crate::check::within;
+use crate::plot::FilmTitle;
+use crate::studio::error::StudioError;
+use crate::studio::pictures::render::in_view;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{StageMode, end_s, lanes};
+
+/// Time for which a part with a title stands still at its beginning and at its end, in seconds of the film.
+const HOLD_S: f64 = 1.2;
+/// Time for which a title is shown, in seconds of the film.
+const TITLE_S: f64 = 2.8;
+/// Time in which it fades at the end of that, in seconds of the film.
+const FADE_S: f64 = 0.5;
+
+/// The frames of a film.
+pub struct FilmPlan {
+    /// All frames, in their order.
+    pub frames: Vec<FilmFrame>,
+}
+
+/// A frame of a film.
+#[derive(Debug, Clone)]
+pub struct FilmFrame {
+    /// Index of its part.
+    pub part: usize,
+    /// The moment that it shows, in simulated seconds.
+    pub time_s: f64,
+    /// Place of the camera.
+    pub camera: Transform,
+    /// The title over it.
+    pub title: Option<FilmTitle>,
+}
+
+impl FilmPlan {
+    /// Simulates all parts once, and plans their frames.
+    ///
+    /// # Errors
+    /// A champion cannot be built, or the film has no moment.
+    pub fn new(order: &FilmOrder) -> Result<Self, FilmError> {
+        let mut frames = Vec::new();
+        for (index, part) in order.parts.iter().enumerate() {
+            frames.extend(frames_of(order, index, part)?);
+        }
+        Ok(Self { frames })
+    }
+}
+
+fn frames_of(
+    order: &FilmOrder,
+    index: usize,
+    part: &FilmPart,
+) -> Result<Vec<FilmFrame>, FilmError> {
+    let mut lanes = lanes_of(part)?;
+    let ends_s = end_s(&lanes);
+    within("--start", order.start_s, 0.0..=ends_s)?;
+    let until_s = order.end_s.unwrap_or(ends_s).min(ends_s);
+    let fps = f64::from(order.fps);
+    let count = libm::round((until_s - order.start_s) * fps / order.speed).max(1.0) as usize;
+    let held = if part.title.is_some() { libm::round(HOLD_S * fps) as usize } else { 0 };
+    let times_s = (0..held + count + held).map(|frame| {
+        let played = frame.saturating_sub(held).min(count);
+        // Held at its end, a part shows its very end.
+        let is_last = played == count;
+        let time_s = order.start_s + played as f64 * order.speed / fps;
+        if is_last { until_s } else { time_s }
+    });
+    let times_s: Vec<f64> = times_s.collect();
+    let points = times_s.iter().map(|time_s| {
+        lanes.iter_mut().for_each(|lane| lane.skip_to(*time_s));
+        in_view(&lanes)
+    });
+    let points: Vec<Vec<Vec3>> = points.collect();
+    let aspect = order.size.0 as f32 / order.size.1.max(1) as f32;
+    let cameras = camera_path(&points, order.camera, lanes.len(), (aspect, order.fps));
+    let frames = times_s.into_iter().zip(cameras).enumerate();
+    let planned = frames.map(|(frame, (time_s, camera))| {
+        let shown_s = frame as f64 / fps;
+        let opacity = ((TITLE_S - shown_s) / FADE_S).clamp(0.0, 1.0);
+        let title = part.title.as_ref().filter(|_| opacity > 0.0);
+        let title = title.map(|(text, below)| FilmTitle {
+            text: text.clone(),
+            below: below.clone(),
+            opacity,
+        });
+        FilmFrame { part: index, time_s, camera, title }
+    });
+    Ok(planned.collect())
+}
+
+/// The lanes of a part at their start, with all that is known about their future.
+pub fn lanes_of(part: &FilmPart) -> Result<Vec<Lane>, StudioError> {
+    let saved = part.champions.iter().enumerate();
+    let champions =
+        saved.map(|(index, (name, loaded))| StagedChampion::from_file(loaded, index, name));
+    let (mut lanes, problems) = lanes(champions.collect(), &StageMode::Race);
+    if let Some(problem) = problems.into_iter().next() {
+        return Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned()));
+    }
+    lanes.iter_mut().for_each(Lane::finish_lookahead);
+    Ok(lanes)
+}

@@ -1,0 +1,240 @@
+//! Draws the frames of a film, one update of the scene for each: while the renderer returns a frame, the next one is
+//! drawn.
+
+use std::collections::VecDeque;
+
+use bevy::prelude::*;
+
+use super::error::FilmError;
+use super::order::FilmOrder;
+use super::plan::{FilmPlan, lanes_of};
+use crate::plot;
+use crate::plot::{FilmBand, FilmTitle};
+use crate::save::Picture;
+use crate::studio::pictures::offscreen::Offscreen;
+use crate::studio::pictures::render::over_heads;
+use crate::studio::scene::overlays::Overlays;
+use crate::studio::stage::lane::Lane;
+
+/// Maximum number of frames that are drawn and not returned yet.
+const IN_FLIGHT: usize = 3;
+
+/// A scene in which the frames of a film are drawn.
+pub struct Shooting<'s> {
+    order: &'s FilmOrder,
+    plan: &'s FilmPlan,
+    studio: &'s mut Offscreen,
+    /// Index of the part that is on the stage.
+    part: Option<usize>,
+    /// Simulated time of the stage, in seconds.
+    time_s: f64,
+}
+
+/// A frame that the renderer has not returned yet, with its texts.
+struct PendingFrame {
+    index: usize,
+    shot: u64,
+    band: Option<FilmBand>,
+    tags: Vec<(String, (f32, f32))>,
+    title: Option<FilmTitle>,
+}
+
+/// Runs `work`, which plays frames of the plan.
+pub fn shoot(
+    order: &FilmOrder,
+    plan: &FilmPlan,
+    work: impl FnOnce(&mut Shooting<'_>) -> Result<(), FilmError>,
+) -> Result<(), FilmError> {
+    let mut done = Ok(());
+    Offscreen::draw(order.size, order.theme, |studio| {
+        let mut overlays = studio.app.world_mut().resource_mut::<Overlays>();
+        order.overlays.iter().for_each(|overlay| overlays.toggle(*overlay));
+        done = work(&mut Shooting { order, plan, studio, part: None, time_s: 0.0 });
+        Ok(())
+    })?;
+    done
+}
+
+impl Shooting<'_> {
+    /// Draws these frames, in rising order, and gives each to `each` with its index.
+    pub fn play(
+        &mut self,
+        indices: &[usize],
+        mut each: impl FnMut(usize, Picture) -> Result<(), FilmError>,
+    ) -> Result<(), FilmError> {
+        let mut pending = VecDeque::new();
+        for index in indices {
+            pending.push_back(self.draw(*index)?);
+            while let Some(frame) = pending.pop_front() {
+                let picture = if pending.len() >= IN_FLIGHT {
+                    Some(self.studio.await_shot(frame.shot)?)
+                } else {
+                    self.studio.taken(frame.shot)?
+                };
+                let Some(picture) = picture else {
+                    pending.push_front(frame);
+                    break;
+                };
+                each(frame.index, written_on(picture, &frame)?)?;
+            }
+        }
+        for frame in pending {
+            let picture = self.studio.await_shot(frame.shot)?;
+            each(frame.index, written_on(picture, &frame)?)?;
+        }
+        Ok(())
+    }
+
+    /// Draws a frame, and keeps the texts that belong onto it.
+    fn draw(&mut self, index: usize) -> Result<PendingFrame, FilmError> {
+        let planned = &self.plan.frames[index];
+        let is_new = self.part != Some(planned.part) || planned.time_s < self.time_s;
+        if is_new {
+            self.put_on_stage(planned.part)?;
+        }
+        let world = self.studio.app.world_mut();
+        let mut lanes = world.query::<&mut Lane>();
+        lanes.iter_mut(world).for_each(|mut lane| lane.skip_to(planned.time_s));
+        self.time_s = planned.time_s;
+        self.studio.place_camera(planned.camera);
+        if is_new {
+            self.studio.settle();
+        }
+        let shot = self.studio.shoot();
+        let (band, heads) = if self.order.has_captions { self.texts() } else { (None, Vec::new()) };
+        let places = self.studio.pixels_of(heads.iter().map(|(head, _)| *head));
+        let tags = heads.into_iter().zip(places);
+        let tags = tags.filter_map(|((_, text), at)| Some((text, (at?.x, at?.y)))).collect();
+        let title = planned.title.clone().filter(|_| self.order.has_captions);
+        Ok(PendingFrame { index, shot, band, tags, title })
+    }
+
+    /// Replaces the lanes of the stage by those of a part, at their start.
+    fn put_on_stage(&mut self, part: usize) -> Result<(), FilmError> {
+        let world = self.studio.app.world_mut();
+        let mut earlier = world.query_filtered::<Entity, With<Lane>>();
+        let earlier: Vec<Entity> = earlier.iter(world).collect();
+        earlier.into_iter().for_each(|lane| world.entity_mut(lane).despawn());
+        for lane in lanes_of(&self.order.parts[part])? {
+            let place = Transform::from_translation(lane.offset());
+            world.spawn((lane, place, Visibility::default()));
+        }
+        (self.part, self.time_s) = (Some(part), 0.0);
+        Ok(())
+    }
+
+    /// The band, and the texts over heads, of the moment on the stage.
+    fn texts(&mut self) -> (Option<FilmBand>, Vec<(Vec3, String)>) {
+        let world = self.studio.app.world_mut();
+        let mut lanes = world.query::<&Lane>();
+        let mut lanes: Vec<&Lane> = lanes.iter(world).collect();
+        lanes.sort_by_key(|lane| lane.number());
+        let heads = over_heads(&lanes);
+        (band(&lanes, self.time_s), heads)
+    }
+}
+
+/// The texts of the band: about one champion how far it has come; of several, their order.
+fn band(lanes: &[&Lane], time_s: f64) -> Option<FilmBand> {
+    let first = lanes.first()?;
+    let clock = format!("{time_s:.1} s");
+    if lanes.len() == 1 {
+        let middle_m = first.drawn_middle().y;
+        let progress = first.progress_in_words(time_s);
+        let has_distance = progress.ends_with(" m");
+        let detail =
+            if has_distance { progress } else { format!("{progress}, at {middle_m:.1} m") };
+        return Some(FilmBand { name: first.staged().label().to_owned(), detail, clock });
+    }
+    let mut order = lanes.to_vec();
+    order.sort_by(|a, b| b.drawn_middle().y.total_cmp(&a.drawn_middle().y));
+    let name = format!("1. {}", order[0].staged().label());
+    let behind = (2..).zip(&order[1..]);
+    let behind = behind.map(|(place, lane)| format!("{place}. {}", lane.staged().label()));
+    Some(FilmBand { name, detail: behind.take(3).collect::<Vec<_>>().join("   "), clock })
+}
+
+/// A frame with its texts.
+fn written_on(mut picture: Picture, frame: &PendingFrame) -> Result<Picture, FilmError> {
+    let tags: Vec<(&str, (f32, f32))> =
+        frame.tags.iter().map(|(text, at)| (text.as_str(), *at)).collect();
+    plot::tags(&mut picture, &tags)?;
+    if let Some(band) = &frame.band {
+        plot::film_band(&mut picture, band)?;
+    }
+    if let Some(title) = &frame.title {
+        plot::film_title(&mut picture, title)?;
+    }
+    Ok(picture)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::commands::camera_mode::CameraMode;
+    use crate::studio::commands::overlay::Overlay;
+    use crate::studio::pictures::film::order::FilmPart;
+    use crate::studio::ui::theme::Theme;
+
+    /// Whether there is no Vulkan driver. The test is skipped then, unless it is required.
+    fn lacks_a_driver() -> bool {
+        let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
+        let has_files =
+            |folder: &&str| std::fs::read_dir(folder).is_ok_and(|mut files| files.next().is_some());
+        let is_missing = !folders.iter().any(has_files);
+        if is_missing {
+            let required =
+                std::env::var("SNAKES_PEER_TESTS").is_ok_and(|value| value == "required");
+            assert!(!required, "no Vulkan driver is installed");
+            eprintln!("skipped: frames: no Vulkan driver is installed");
+        }
+        is_missing
+    }
+
+    #[test]
+    fn a_frame_is_the_same_after_other_frames_as_when_it_is_drawn_alone() {
+        if lacks_a_driver() {
+            return;
+        }
+        let part = |title: Option<&str>| FilmPart {
+            title: title.map(|title| (title.to_owned(), String::new())),
+            champions: vec![("climber".to_owned(), shipped_champion().expect("well formed"))],
+        };
+        let order = FilmOrder {
+            parts: vec![part(None), part(Some("Generation 2"))],
+            start_s: 6.0,
+            end_s: Some(6.5),
+            speed: 1.0,
+            fps: 10,
+            size: (160, 90),
+            camera: CameraMode::Follow,
+            theme: Theme::Light,
+            overlays: vec![Overlay::Trail, Overlay::Contacts, Overlay::Torques],
+            has_captions: true,
+        };
+        let plan = FilmPlan::new(&order).expect("planned");
+        let frames = |indices: &[usize]| {
+            let mut drawn = Vec::new();
+            let shot = shoot(&order, &plan, |shooting| {
+                shooting.play(indices, |index, picture| {
+                    drawn.push((index, picture));
+                    Ok(())
+                })
+            });
+            shot.expect("drawn");
+            drawn
+        };
+        let all: Vec<usize> = (0..plan.frames.len()).collect();
+        let together = frames(&all);
+        assert_eq!(together.iter().map(|(index, _)| *index).collect::<Vec<_>>(), all);
+        // One in the middle of the first part, its last one, and one under the title of the second part.
+        for index in [2, 4, 7] {
+            let alone = frames(&[index]);
+            let pixels = alone[0].1.rgb.iter().zip(&together[index].1.rgb);
+            let differ = pixels.filter(|(alone, together)| alone != together).count();
+            assert_eq!(differ, 0, "frame {index}");
+        }
+        assert_ne!(together[2].1, together[4].1, "the snake moves");
+    }
+}

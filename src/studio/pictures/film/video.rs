@@ -1,0 +1,144 @@
+//! A film as MP4: frames go through a pipe to ffmpeg, which compresses them as H.264.
+
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+
+use super::error::FilmError;
+use super::film_file::FilmFile;
+use crate::check::Invalid;
+use crate::export::ExportError;
+use crate::run::BackgroundTask;
+use crate::save::{Picture, UnfinishedFile};
+
+/// The program that writes the film, found in PATH.
+const FFMPEG: &str = "ffmpeg";
+/// Quality of H.264: 0 is lossless, 23 the encoder's default. At 16 flat areas and letters show no blocks.
+const QUALITY: &str = "16";
+
+/// A film that ffmpeg is writing. Dropped before it is finished, it ends ffmpeg and leaves nothing behind.
+pub struct Video {
+    /// Ends first when dropped, so that ffmpeg no longer writes when the file is removed.
+    ffmpeg: RunningFfmpeg,
+    file: UnfinishedFile,
+    path: PathBuf,
+}
+
+/// A running ffmpeg.
+struct RunningFfmpeg {
+    process: Child,
+    frames: Option<BufWriter<ChildStdin>>,
+    said: BackgroundTask<String>,
+}
+
+impl Drop for RunningFfmpeg {
+    fn drop(&mut self) {
+        // It has ended already, unless the film was cancelled.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+impl Video {
+    /// Starts ffmpeg.
+    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
+        check_size(size)?;
+        let file = UnfinishedFile::create(path)?;
+        let ffmpeg =
+            RunningFfmpeg::start(file.temporary_path(), size, fps).map_err(|error| match error
+                .kind()
+            {
+                io::ErrorKind::NotFound => FilmError::NoFfmpeg,
+                _ => ExportError::unwritable(path)(error).into(),
+            })?;
+        Ok(Self { ffmpeg, file, path: path.to_owned() })
+    }
+
+    /// The reason why ffmpeg has ended early.
+    fn failure(&mut self, error: io::Error) -> FilmError {
+        let said = self.ffmpeg.last_words().unwrap_or_else(|| error.to_string());
+        ExportError::unwritable(&self.path)(io::Error::other(said)).into()
+    }
+}
+
+impl FilmFile for Video {
+    fn add(&mut self, frame: &Picture) -> Result<(), FilmError> {
+        let ended = || io::Error::from(io::ErrorKind::BrokenPipe);
+        let frames = self.ffmpeg.frames.as_mut().ok_or_else(ended);
+        let written = frames.and_then(|frames| frames.write_all(&frame.rgb));
+        written.map_err(|error| self.failure(error))
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<(), FilmError> {
+        let frames = self.ffmpeg.frames.take();
+        let flushed = frames.map_or(Ok(()), |mut frames| frames.flush());
+        let ended = flushed.and_then(|()| self.ffmpeg.process.wait());
+        let status = ended.map_err(|error| self.failure(error))?;
+        // A disk that is full when the last bytes are written makes some versions say so, and yet end with success.
+        let failed = self.ffmpeg.last_words();
+        if let Some(reason) = failed.or_else(|| (!status.success()).then(|| status.to_string())) {
+            return Err(ExportError::unwritable(&self.path)(io::Error::other(reason)).into());
+        }
+        let Self { ffmpeg, file, .. } = *self;
+        drop(ffmpeg);
+        Ok(file.finish()?)
+    }
+}
+
+impl RunningFfmpeg {
+    fn start(path: &Path, (width, height): (u32, u32), fps: u32) -> io::Result<Self> {
+        let mut command = Command::new(FFMPEG);
+        command
+            .args(["-hide_banner", "-nostdin", "-loglevel", "error"])
+            .args(["-f", "rawvideo", "-pixel_format", "rgb24"])
+            .args(["-video_size", &format!("{width}x{height}"), "-framerate", &fps.to_string()])
+            .args(["-i", "pipe:0", "-an"])
+            // The colours of high definition, said so that no player guesses.
+            .args([
+                "-vf",
+                "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,format=yuv420p",
+            ])
+            .args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"])
+            .args(["-color_range", "tv"])
+            .args(["-c:v", "libx264", "-preset", "medium", "-crf", QUALITY])
+            // Starts to play before it is loaded; the same frames give the same bytes.
+            .args(["-movflags", "+faststart", "-fflags", "+bitexact", "-f", "mp4", "-y"])
+            .arg(path)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped());
+        // The interrupt key ends the film in good order, and that ends ffmpeg.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut process = command.spawn()?;
+        let gone = || io::Error::from(io::ErrorKind::BrokenPipe);
+        let frames = process.stdin.take().ok_or_else(gone)?;
+        let mut errors = process.stderr.take().ok_or_else(gone)?;
+        let said = BackgroundTask::start(move || {
+            let mut bytes = Vec::new();
+            // If reading fails, the text that came before counts.
+            let _ = errors.read_to_end(&mut bytes);
+            String::from_utf8_lossy(&bytes).into_owned()
+        })?;
+        let frames = BufWriter::with_capacity(1 << 20, frames);
+        Ok(Self { process, frames: Some(frames), said })
+    }
+
+    /// Waits for the end of ffmpeg, and returns the first line of its errors, if it had any.
+    fn last_words(&mut self) -> Option<String> {
+        self.frames = None;
+        let _ = self.process.wait();
+        let said = self.said.wait().ok()?;
+        let lines = || said.lines().map(str::trim).filter(|line| !line.is_empty());
+        let known = "No space left on device";
+        let line = if said.contains(known) { Some(known) } else { lines().next() };
+        line.map(|line| format!("ffmpeg says: {line}"))
+    }
+}
+
+/// Checks that the size suits the colours of H.264, of which four pixels share one.
+pub fn check_size((width, height): (u32, u32)) -> Result<(), Invalid> {
+    let is_even = width.is_multiple_of(2) && height.is_multiple_of(2);
+    let allowed = "an even width and an even height for a .mp4 film";
+    if is_even { Ok(()) } else { Err(Invalid::new("--size", format!("{width}x{height}"), allowed)) }
+}

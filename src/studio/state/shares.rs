@@ -1,0 +1,237 @@
+//! Files of other formats that are being written from the champions on the stage, one at a time.
+//!
+//! A second process of the same program writes the file: drawing a film there takes no frame from the window, and a
+//! fault there cannot end the studio. It ends when its standard input does, so it never outlives the studio.
+
+mod writer;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use bevy::prelude::*;
+
+use super::new_file::offer_path;
+use crate::evolve::Champion;
+use crate::export::ExportFormat;
+use crate::run::BackgroundTask;
+use crate::score::evaluate;
+use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::overlay::Overlay;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::ui::notifications::Notices;
+use crate::studio::ui::theme::Theme;
+
+use writer::{Leash, Writer, written};
+
+/// The file that is being written.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Shares {
+    under_way: Option<ShareUnderWay>,
+}
+
+/// A file that is being written. Dropping this cancels it.
+#[derive(Debug)]
+struct ShareUnderWay {
+    path: PathBuf,
+    leash: Arc<Leash>,
+    work: BackgroundTask<Result<PathBuf, String>>,
+}
+
+/// The look of a film: that of the stage.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShareLook {
+    /// Camera mode.
+    pub camera: CameraMode,
+    /// Theme.
+    pub theme: Theme,
+    /// Overlays.
+    pub overlays: Vec<Overlay>,
+}
+
+/// Progress of the file that is being written.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ShareProgress {
+    /// Name of the file.
+    pub name: String,
+    /// Share of it that is done, from 0 to 1.
+    pub share: f32,
+}
+
+/// Notices about shared files replace each other.
+const SUBJECT: &str = "share";
+/// Parts in which progress is counted.
+const PARTS: usize = 1000;
+
+impl Drop for ShareUnderWay {
+    fn drop(&mut self) {
+        self.leash.cut();
+    }
+}
+
+impl Shares {
+    /// Begins to write the champions into a file.
+    ///
+    /// # Errors
+    /// Another file is being written, or these champions cannot be shared.
+    pub fn begin(
+        &mut self,
+        format: ExportFormat,
+        path: &Path,
+        champions: &[StagedChampion],
+        look: &ShareLook,
+    ) -> Result<(), String> {
+        if let Some(busy) = self.busy() {
+            return Err(busy);
+        }
+        let most = format.info().most_champions;
+        if champions.is_empty() {
+            return Err("There is no snake on the stage.".to_owned());
+        }
+        let shared = champions.iter().take(most).map(shared).collect::<Result<Vec<_>, _>>()?;
+        let path = with_ending(path, format);
+        let leash = Arc::new(Leash::default());
+        let writer =
+            Writer { leash: Arc::clone(&leash), arguments: arguments(format, &path, look) };
+        let failed = |error| format!("{} could not be written: {error}.", path.display());
+        let work = BackgroundTask::start_counted(PARTS, move |progress| {
+            let champions: Vec<(String, Champion)> =
+                shared.into_iter().map(SharedChampion::evaluated).collect();
+            written(&writer, &champions, |share| {
+                progress.set_done((share * PARTS as f64) as usize);
+            })
+        });
+        let work = work.map_err(failed)?;
+        self.under_way = Some(ShareUnderWay { path, leash, work });
+        Ok(())
+    }
+
+    /// Why no other file can be written now, if none can.
+    pub fn busy(&self) -> Option<String> {
+        let under_way = self.under_way.as_ref()?;
+        let name = name_of(&under_way.path);
+        Some(format!("{name} is being written: wait for it, or cancel it."))
+    }
+
+    /// Cancels what is being written.
+    ///
+    /// # Errors
+    /// Nothing is being written.
+    pub fn cancel(&mut self) -> Result<(), String> {
+        let under_way = self.under_way.as_ref().ok_or("No file is being written.")?;
+        under_way.leash.cut();
+        Ok(())
+    }
+
+    /// The progress of what is being written.
+    pub fn progress(&self) -> Option<ShareProgress> {
+        self.under_way.as_ref().map(|of| ShareProgress {
+            name: name_of(&of.path),
+            share: of.work.done() as f32 / PARTS as f32,
+        })
+    }
+
+    /// Reports what has been written.
+    fn take_in(&mut self, notices: &mut Notices) {
+        let Some(result) = self.under_way.as_ref().and_then(|of| of.work.poll()) else { return };
+        let Some(ended) = self.under_way.take() else { return };
+        match result.flatten() {
+            Ok(saved) => {
+                let text = format!("Saved to {}", saved.display());
+                offer_path(notices, SUBJECT, text, &saved);
+            }
+            Err(_) if ended.leash.is_cut() => {
+                let name = name_of(&ended.path);
+                notices.update(SUBJECT, format!("{name} was cancelled; nothing was written."));
+            }
+            Err(problem) => notices.problem(problem),
+        }
+    }
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The path with the ending of a format, which is added if it is missing.
+fn with_ending(path: &Path, format: ExportFormat) -> PathBuf {
+    let ending = format.info().ending;
+    let has_it = path.extension().is_some_and(|of| of.eq_ignore_ascii_case(ending));
+    if has_it {
+        return path.to_owned();
+    }
+    let mut name = path.as_os_str().to_owned();
+    name.push(format!(".{ending}"));
+    PathBuf::from(name)
+}
+
+/// The arguments of the program that writes the file, behind those for the champions.
+fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsString> {
+    let mut arguments: Vec<OsString> = vec!["--output".into(), path.into()];
+    if format.is_film() {
+        // A camera that stands where it was left would not see the snake go.
+        let camera = match look.camera {
+            CameraMode::Free => CameraMode::Follow,
+            following => following,
+        };
+        arguments.extend(["--camera".into(), camera.name().to_lowercase().into()]);
+        arguments.extend(["--theme".into(), look.theme.name().into()]);
+        let overlays: Vec<&str> = look.overlays.iter().filter_map(|of| of.short_name()).collect();
+        if !overlays.is_empty() {
+            arguments.extend(["--show".into(), overlays.join(",").into()]);
+        }
+    }
+    arguments
+}
+
+/// A champion as the stage shows it.
+#[derive(Debug, Clone, PartialEq)]
+struct SharedChampion {
+    name: String,
+    champion: Champion,
+    /// Whether its recorded result is from another world or engine.
+    is_to_evaluate: bool,
+}
+
+impl SharedChampion {
+    /// The champion with the result that it has in its world.
+    fn evaluated(self) -> (String, Champion) {
+        let Self { name, mut champion, is_to_evaluate } = self;
+        if is_to_evaluate {
+            champion.evaluation = evaluate(&champion.genome, &champion.trial);
+        }
+        (name, champion)
+    }
+}
+
+/// The champion of a lane, for a file.
+fn shared(staged: &StagedChampion) -> Result<SharedChampion, String> {
+    let name = staged.label().to_owned();
+    if let Some(engine) = staged.other_engine().filter(|_| staged.recording().is_some()) {
+        return Err(format!(
+            "{name} was recorded by engine {engine}; \"Simulate again\" makes it move by this one, and then it can be shared."
+        ));
+    }
+    if staged.changes_at_step().is_some() {
+        return Err(format!(
+            "{name}: its world changes while it moves, which no file can hold; try the change from the start."
+        ));
+    }
+    let champion = Champion { trial: staged.trial().clone(), ..staged.champion().clone() };
+    Ok(SharedChampion { name, champion, is_to_evaluate: !staged.must_match_record() })
+}
+
+fn take_in(mut shares: ResMut<Shares>, mut notices: ResMut<Notices>) {
+    // Without a change, the menu bar is left alone.
+    if shares.under_way.is_some() {
+        shares.take_in(&mut notices);
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Shares>().add_systems(Update, take_in.in_set(FrameSet::TakeIn));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,57 @@
+//! The champions that are shared from the stage, and the command of the process that writes their file.
+
+use super::*;
+use crate::save::shipped_champion;
+use crate::studio::stage::staged_champion::StagedChampion;
+
+fn staged() -> StagedChampion {
+    StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
+}
+
+fn look() -> ShareLook {
+    let overlays = vec![Overlay::Trail, Overlay::Wireframe, Overlay::Torques];
+    ShareLook { camera: CameraMode::Free, theme: Theme::Dark, overlays }
+}
+
+#[test]
+fn a_film_looks_like_the_stage_and_a_table_has_no_look() {
+    let words = |format: ExportFormat| -> Vec<String> {
+        let path = PathBuf::from(format!("a.{}", format.info().ending));
+        let arguments = arguments(format, &path, &look());
+        arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect()
+    };
+    let film = words(ExportFormat::Gif).join(" ");
+    assert_eq!(film, "--output a.gif --camera follow --theme dark --show trail,torques");
+    assert_eq!(words(ExportFormat::Csv).join(" "), "--output a.csv");
+}
+
+#[test]
+fn the_ending_is_added_if_it_is_missing() {
+    let named = |name: &str| with_ending(Path::new(name), ExportFormat::Mp4);
+    assert_eq!(named("/a/b"), PathBuf::from("/a/b.mp4"));
+    assert_eq!(named("/a/b.MP4"), PathBuf::from("/a/b.MP4"));
+    assert_eq!(named("/a/v1.2"), PathBuf::from("/a/v1.2.mp4"), "no ending of a format");
+}
+
+#[test]
+fn a_champion_in_a_changed_world_is_shared_with_its_result_there() {
+    let found = staged();
+    let (name, champion) = shared(&found).expect("shared").evaluated();
+    assert_eq!((name.as_str(), &champion), ("climber", found.champion()));
+    let mut icy = found.trial().clone();
+    icy.surface.friction = 0.05;
+    let changed = found.in_world(&icy, "friction 0.05".to_owned());
+    let (name, champion) = shared(&changed).expect("shared").evaluated();
+    assert_eq!((name.as_str(), &champion.trial), ("friction 0.05", &icy));
+    assert_eq!(champion.evaluation, evaluate(&champion.genome, &icy));
+    assert_ne!(champion.evaluation, found.champion().evaluation);
+}
+
+#[test]
+fn without_a_snake_or_a_file_the_commands_are_refused_in_a_sentence() {
+    let mut shares = Shares::default();
+    let none = shares.begin(ExportFormat::Csv, Path::new("a.csv"), &[], &look());
+    assert_eq!(none, Err("There is no snake on the stage.".to_owned()));
+    assert_eq!(shares.cancel(), Err("No file is being written.".to_owned()));
+    assert_eq!((shares.progress(), shares.busy()), (None, None));
+}

@@ -1,0 +1,139 @@
+//! The process that writes a file: this program as `snakes export`.
+
+use std::ffi::OsString;
+use std::io::{BufRead, BufReader, Read};
+use std::path::PathBuf;
+use std::process::{ChildStdin, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::evolve::Champion;
+use crate::save::ChampionCopies;
+
+/// Holds the standard input of the process, whose end makes it cancel.
+#[derive(Debug, Default)]
+pub struct Leash(Mutex<LeashState>);
+
+#[derive(Debug, Default)]
+struct LeashState {
+    input: Option<ChildStdin>,
+    is_cut: bool,
+}
+
+impl Leash {
+    /// Cancels what the process writes, also if it has not begun.
+    pub fn cut(&self) {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        (state.input, state.is_cut) = (None, true);
+    }
+
+    /// Whether it was cancelled.
+    pub fn is_cut(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_cut
+    }
+
+    fn hold(&self, input: Option<ChildStdin>) {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if !state.is_cut {
+            state.input = input;
+        }
+    }
+}
+
+/// The order to a process.
+#[derive(Debug)]
+pub struct Writer {
+    /// Cancels it.
+    pub leash: Arc<Leash>,
+    /// Arguments of `snakes export`, besides the champions.
+    pub arguments: Vec<OsString>,
+}
+
+/// Writes champions into a file. `show` is told the share that is done. Returns the path of what was written.
+pub fn written(
+    writer: &Writer,
+    champions: &[(String, Champion)],
+    show: impl Fn(f64),
+) -> Result<PathBuf, String> {
+    let copies = ChampionCopies::of(champions).map_err(|error| error.to_string())?;
+    let failed = |error: std::io::Error| format!("The file could not be written: {error}.");
+    let program = std::env::current_exe().map_err(failed)?;
+    let mut process = Command::new(program)
+        .arg("export")
+        .args(copies.paths())
+        .args(&writer.arguments)
+        .args(["--json", "--until-input-ends"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(failed)?;
+    writer.leash.hold(process.stdin.take());
+    let mut saved = None;
+    for line in process.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines()) {
+        match said(&line.map_err(failed)?) {
+            Some(Said::Progress(share)) => show(share),
+            Some(Said::Saved(path)) => saved = Some(path),
+            None => {}
+        }
+    }
+    let mut errors = String::new();
+    if let Some(mut from) = process.stderr.take() {
+        from.read_to_string(&mut errors).map_err(failed)?;
+    }
+    let ended = process.wait().map_err(failed)?;
+    saved.filter(|_| ended.success()).ok_or_else(|| problem(&errors))
+}
+
+/// A line of the process.
+#[derive(Debug, PartialEq)]
+enum Said {
+    /// The share that is done.
+    Progress(f64),
+    /// The path of what was written.
+    Saved(PathBuf),
+}
+
+fn said(line: &str) -> Option<Said> {
+    let value: serde_json::Value = serde_json::from_str(line).ok()?;
+    let progress = value["progress"].as_f64().map(Said::Progress);
+    progress.or_else(|| Some(Said::Saved(value["saved"].as_str()?.into())))
+}
+
+/// The error in the last line of what the process said, as a sentence.
+fn problem(errors: &str) -> String {
+    let last = errors.lines().rev().find_map(|line| line.strip_prefix("error: "));
+    let reason = last.unwrap_or("the program that writes it ended early");
+    let mut letters = reason.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string());
+    format!("Not shared. {}{}.", first.unwrap_or_default(), letters.as_str().trim_end_matches('.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_progress_and_of_the_result_are_understood_and_others_are_not() {
+        assert_eq!(said(r#"{"progress":0.25}"#), Some(Said::Progress(0.25)));
+        assert_eq!(said(r#"{"saved":"/a/b.gif"}"#), Some(Said::Saved("/a/b.gif".into())));
+        for line in ["", "saved to b.gif", r#"{"saved":3}"#, "[1]"] {
+            assert_eq!(said(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn the_last_error_is_shown_as_a_sentence() {
+        let errors = "a warning\nerror: b.mp4: cannot be written\n";
+        assert_eq!(problem(errors), "Not shared. B.mp4: cannot be written.");
+        assert!(problem("").ends_with("ended early."));
+    }
+
+    #[test]
+    fn a_cut_leash_holds_nothing() {
+        let leash = Leash::default();
+        assert!(!leash.is_cut());
+        leash.cut();
+        leash.hold(None);
+        assert!(leash.is_cut());
+    }
+}

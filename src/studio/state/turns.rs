@@ -1,0 +1,225 @@
+//! The presenting mode shows one champion after the other, without end: that of each generation of the run or, without
+//! a finished generation, the champions that are part of the program.
+//!
+//! A race, a what-if, and champions that the studio was opened with stay, played again and again, until the presenter
+//! goes on by hand. While evolution is followed, and during a story, [`Following`] decides instead.
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+
+use super::current_run::{CurrentRun, RunStatus};
+use super::following::Following;
+use crate::save::library::shipped_champions;
+use crate::studio::commands::turn::Turn;
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::playback::Playback;
+use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
+use crate::studio::stage::{Show, StageMode, end_s};
+use crate::studio::ui::notifications::Notices;
+
+/// Shows champions in turn.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Turns {
+    /// Whether the presenting mode is on.
+    is_on: bool,
+    /// Whether the stage does not go on by itself now.
+    is_held: bool,
+    /// Whether champions that the studio was opened with stay.
+    keeps_opened: bool,
+    /// Whether the presenter has gone on by hand, so that nothing stays any more.
+    is_led: bool,
+    /// The step that the presenter asked for.
+    asked: Option<Turn>,
+    /// Time for which the stage has stood at its end.
+    rested: Duration,
+    /// The champions that are part of the program, once they are needed.
+    shipped: Vec<StagedChampion>,
+}
+
+/// Time for which a champion stands at its end before the next one; shorter than the rest of a loop.
+const REST: Duration = Duration::from_millis(1200);
+
+impl Turns {
+    /// Turns of a studio that was opened with champions, or without.
+    pub fn new(keeps_opened: bool) -> Self {
+        Self { keeps_opened, ..Self::default() }
+    }
+
+    /// Begins or ends to show champions in turn.
+    pub fn set_on(&mut self, is_on: bool) {
+        (self.is_on, self.is_led, self.asked, self.rested) = (is_on, false, None, Duration::ZERO);
+    }
+
+    /// Holds the turns, for example while nothing is visible.
+    pub fn set_held(&mut self, is_held: bool) {
+        self.is_held = is_held;
+    }
+
+    /// Goes on by hand.
+    pub fn take(&mut self, turn: Turn) {
+        (self.asked, self.is_led) = (Some(turn), true);
+    }
+
+    /// The champion of this turn, if there is any but the one on the stage.
+    fn champion(
+        &mut self,
+        turn: Turn,
+        run: &CurrentRun,
+        on_stage: Option<&StagedChampion>,
+    ) -> Option<StagedChampion> {
+        let number = run.number();
+        let found = run.reports().iter().filter_map(|report| report.champion.as_ref());
+        let of_run: Vec<_> =
+            found.map(|champion| StagedChampion::from_run(champion, number)).collect();
+        if of_run.is_empty() && self.shipped.is_empty() {
+            let shipped = shipped_champions();
+            let staged = |(name, loaded): &(&str, _)| StagedChampion::from_file(loaded, 0, name);
+            self.shipped = shipped.iter().map(staged).collect();
+        }
+        let mut all = if of_run.is_empty() { self.shipped.clone() } else { of_run };
+        // A champion that stays the best for generations has one turn.
+        all.dedup_by(|later, earlier| later.champion() == earlier.champion());
+        let is_same = |other: &StagedChampion| {
+            on_stage.is_some_and(|staged| staged.champion() == other.champion())
+        };
+        let place = all.iter().position(is_same);
+        let index = match (turn, place) {
+            (Turn::First, _) | (Turn::Next, None) => 0,
+            (Turn::Next, Some(place)) => (place + 1) % all.len().max(1),
+            (Turn::Previous, place) => {
+                place.unwrap_or(0).checked_sub(1).unwrap_or(all.len().saturating_sub(1))
+            }
+        };
+        (index < all.len()).then(|| all.swap_remove(index))
+    }
+
+    /// Whether the stage goes on by itself at its end.
+    fn goes_on(
+        &self,
+        run: &CurrentRun,
+        following: &Following,
+        stage: (&StageMode, Option<&StagedChampion>),
+    ) -> bool {
+        let (mode, on_stage) = stage;
+        let is_live = following.follows_evolution() && run.status() == RunStatus::Running;
+        let is_opened = on_stage.is_some_and(|of| matches!(of.source(), ChampionSource::Opened(_)));
+        let stays = matches!(mode, StageMode::Race | StageMode::WhatIf { .. })
+            || (is_opened && self.keeps_opened);
+        let is_told = is_live || following.awaits_first() || following.story_part().is_some();
+        !is_told && !self.is_held && (self.is_led || !stays)
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Turns>().add_systems(Update, take_turns.in_set(FrameSet::TakeIn));
+}
+
+/// Shows the champion whose turn it is.
+fn take_turns(
+    mut turns: ResMut<Turns>,
+    run: Res<CurrentRun>,
+    (mut following, mut playback): (ResMut<Following>, ResMut<Playback>),
+    mode: Res<StageMode>,
+    lanes: Query<&Lane>,
+    time: Res<Time<Real>>,
+    mut show: MessageWriter<Show>,
+    mut notices: ResMut<Notices>,
+) {
+    if !turns.is_on || run.is_lent() {
+        return;
+    }
+    let first = lanes.iter().min_by_key(|lane| lane.number());
+    let on_stage = first.map(Lane::staged);
+    let end_s = end_s(lanes);
+    let is_over = playback.is_playing() && end_s > 0.0 && playback.time_s() >= end_s;
+    turns.rested = if is_over { turns.rested + time.delta() } else { Duration::ZERO };
+    let goes_on = turns.rested >= REST && turns.goes_on(&run, &following, (&mode, on_stage));
+    let asked = turns.asked.take();
+    let Some(turn) = asked.or(goes_on.then_some(Turn::Next)) else { return };
+    turns.rested = Duration::ZERO;
+    match turns.champion(turn, &run, on_stage) {
+        Some(champion) => {
+            following.stop();
+            playback.begin();
+            show.write(Show::solo(champion));
+        }
+        None => notices.problem("There is no champion to show.".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::state::current_run::{explored_run, prepared_run};
+
+    #[test]
+    fn the_champions_of_all_generations_come_in_turn_without_end() {
+        let run = explored_run();
+        let mut turns = Turns::new(false);
+        let mut on_stage = None;
+        let mut seen = Vec::new();
+        for turn in [Turn::Next, Turn::Next, Turn::Next, Turn::Previous, Turn::First] {
+            let shown = turns.champion(turn, &run, on_stage.as_ref()).expect("a champion");
+            seen.push(shown.generation());
+            on_stage = Some(shown);
+        }
+        assert_eq!(seen, [1, 2, 1, 2, 1]);
+    }
+
+    #[test]
+    fn without_a_generation_the_champions_of_the_program_come_in_turn() {
+        let mut turns = Turns::new(false);
+        let mut names: Vec<String> = Vec::new();
+        let mut on_stage = None;
+        for _ in 0..=shipped_champions().len() {
+            let shown = turns.champion(Turn::Next, &prepared_run(), on_stage.as_ref());
+            let shown = shown.expect("a champion");
+            names.push(shown.name().to_owned());
+            on_stage = Some(shown);
+        }
+        assert_eq!(names.first(), names.last(), "from the start again");
+        names.pop();
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!((names.len(), names.len() > 5), (count, true), "{names:?}");
+    }
+
+    #[test]
+    fn what_was_chosen_stays_until_the_presenter_goes_on() {
+        let loaded = shipped_champion().expect("well formed");
+        let opened = StagedChampion::from_file(&loaded, 0, "mine");
+        let (run, following) = (prepared_run(), Following::default());
+        let goes_on = |turns: &Turns, mode: &StageMode| {
+            turns.goes_on(&run, &following, (mode, Some(&opened)))
+        };
+        let mut turns = Turns::new(true);
+        turns.set_on(true);
+        assert!(!goes_on(&turns, &StageMode::Solo), "the user opened it");
+        assert!(goes_on(&Turns::new(false), &StageMode::Solo), "the program's own");
+        assert!(!goes_on(&Turns::new(false), &StageMode::Race));
+        turns.take(Turn::Next);
+        assert!(goes_on(&turns, &StageMode::Solo));
+        turns.set_held(true);
+        assert!(!goes_on(&turns, &StageMode::Solo), "nothing is visible");
+        turns.set_held(false);
+        turns.set_on(false);
+        assert!(!goes_on(&turns, &StageMode::Solo), "the next presentation begins afresh");
+    }
+
+    #[test]
+    fn while_evolution_is_awaited_or_a_story_is_told_there_are_no_turns() {
+        let run = explored_run();
+        let turns = Turns::new(false);
+        let goes_on =
+            |following: &Following| turns.goes_on(&run, following, (&StageMode::Solo, None));
+        assert!(goes_on(&Following::default()));
+        assert!(!goes_on(&Following::from_start()), "the first generation is awaited");
+        let mut following = Following::default();
+        following.tell_story(&run).expect("two better generations");
+        assert!(!goes_on(&following));
+    }
+}

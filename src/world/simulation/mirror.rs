@@ -1,0 +1,75 @@
+//! A world that shows what another engine computes.
+
+use rapier3d::prelude::*;
+
+use super::Simulation;
+
+/// The state of a limb in another engine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LimbState {
+    /// Pose of its centre in the world, in metres.
+    pub pose: Pose,
+    /// Velocity of its centre, in m/s.
+    pub velocity_m_s: Vector,
+    /// Its angular velocity in the world, in rad/s.
+    pub angular_velocity_rad_s: Vector,
+    /// Force of ground and stairs on it, in N; none if it touches neither.
+    pub contact_n: Option<Vector>,
+}
+
+impl Simulation {
+    /// Takes over the state of the limbs from another engine, head first. From then on poses, joints and senses are those of
+    /// that engine; this world must not be stepped any more.
+    pub fn mirror(&mut self, limbs: &[LimbState]) {
+        for (&limb, state) in self.limbs.iter().zip(limbs) {
+            let body = &mut self.physics.bodies[limb];
+            body.set_position(state.pose, false);
+            body.set_linvel(state.velocity_m_s, false);
+            body.set_angvel(state.angular_velocity_rad_s, false);
+        }
+        self.mirrored = limbs.iter().map(|state| state.contact_n).collect();
+    }
+
+    /// Whether a limb touches the ground or the stairs, and their force on it, in N.
+    pub(super) fn sensed_contact(&self, limb: usize) -> (bool, Vector) {
+        match self.mirrored.get(limb) {
+            Some(force_n) => (force_n.is_some(), force_n.unwrap_or(Vector::ZERO)),
+            None => self.contact_force(self.physics.bodies[self.limbs[limb]].colliders()[0]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::score::Rollout;
+
+    #[test]
+    fn a_mirror_has_the_senses_and_the_joints_of_its_original() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let mut original = Rollout::new(&champion.genome, &champion.trial);
+        let mut mirror = Simulation::new(&champion.trial.world_plan(&champion.genome));
+        let (mut of_original, mut of_mirror, mut loaded) = (Vec::new(), Vec::new(), 0);
+        for _ in 0..300 {
+            assert!(original.advance());
+            let world = original.simulation();
+            world.read_limbs(&mut of_original);
+            let limbs = world.poses().zip(world.velocities()).enumerate();
+            let states = limbs.map(|(limb, (pose, [velocity_m_s, angular_velocity_rad_s]))| {
+                let (touches, force_n) = world.sensed_contact(limb);
+                let contact_n = touches.then_some(force_n);
+                LimbState { pose, velocity_m_s, angular_velocity_rad_s, contact_n }
+            });
+            mirror.mirror(&states.collect::<Vec<_>>());
+            mirror.read_limbs(&mut of_mirror);
+            assert_eq!(of_mirror, of_original);
+            assert!(mirror.joint_states().eq(world.joint_states()));
+            assert_eq!(mirror.read_snake(), world.read_snake());
+            assert_eq!(mirror.climb(), world.climb());
+            let under_load = of_mirror.iter().filter(|limb| limb.is_touching && limb.load_n > 0.0);
+            loaded += under_load.count();
+        }
+        assert!(loaded > 100, "{loaded} readings of limbs under load");
+    }
+}

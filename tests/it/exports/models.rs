@@ -1,0 +1,358 @@
+//! Bodies as models for MuJoCo and URDF, and champions that climb there.
+
+use std::f32::consts::TAU;
+use std::fs;
+use std::path::Path;
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use serde_json::{Value, json};
+use snakes_and_stairs::Engine;
+use snakes_and_stairs::evolve::{Champion, Origin, Settings, with_fields};
+use snakes_and_stairs::export::{ExportOrder, ExportProgress, ExportSource, ExportedChampion};
+use snakes_and_stairs::rng::{Purpose, stream};
+use snakes_and_stairs::save::LoadedChampion;
+use snakes_and_stairs::score::{Trial, evaluate};
+use snakes_and_stairs::world::{JointTorque, Simulation, Vector, WorldPlan};
+
+use super::{peer_python, peer_script, succeed};
+use crate::program::{folder, snakes};
+
+/// Number of random bodies.
+const BODIES: u32 = 100;
+/// Steps here for each step of control, where free limbs are compared.
+const FINER: u32 = 4;
+/// Time after which a body rests on the ground, in s.
+const SETTLED_S: f32 = 4.0;
+
+/// A random number between two bounds, even on a logarithmic scale.
+fn log_between(rng: &mut ChaCha8Rng, [least, most]: [f32; 2]) -> f32 {
+    least * libm::powf(most / least, rng.random_range(0.0..=1.0))
+}
+
+/// Sizes of the limbs of a random snake, in m: at most 12 m long, and neighbours of at most eight times the mass.
+fn random_sizes(rng: &mut ChaCha8Rng) -> Vec<[f32; 3]> {
+    let limbs = rng.random_range(2..=12);
+    let height_m = log_between(rng, [0.4, 2.0]);
+    // Every other snake has limbs of other heights, which begin in the air.
+    let lowest = if rng.random_bool(0.5) { 0.6 } else { 1.0 };
+    loop {
+        let mut limb = || {
+            let (width, length) = (log_between(rng, [0.4, 2.0]), log_between(rng, [0.4, 4.0]));
+            [width, length, height_m * rng.random_range(lowest..=1.0)]
+        };
+        let sizes: Vec<[f32; 3]> = (0..limbs).map(|_| limb()).collect();
+        let volume = |[x, y, z]: [f32; 3]| x * y * z;
+        let is_even = sizes.windows(2).all(|pair| {
+            let ratio = volume(pair[0]) / volume(pair[1]);
+            (1.0 / 6.0..=6.0).contains(&ratio)
+        });
+        if is_even && sizes.iter().map(|[_, y, _]| y).sum::<f32>() <= 12.0 {
+            return sizes;
+        }
+    }
+}
+
+/// A random body, on random stairs, as settings.
+fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
+    let sizes = random_sizes(rng);
+    let joints = sizes.len() - 1;
+    let list = |values: Vec<f32>| format!("{values:?}");
+    let of_limbs = |axis: usize| list(sizes.iter().map(|size| size[axis]).collect());
+    // Strength and damping grow with the cross-section and its height.
+    let scales: Vec<f32> = sizes
+        .windows(2)
+        .map(|pair| {
+            let least = |of: fn([f32; 3]) -> f32| of(pair[0]).min(of(pair[1]));
+            least(|[x, _, z]| x * z) * least(|[_, _, z]| z)
+        })
+        .collect();
+    let mut drawn = |count: usize, [least, most]: [f32; 2]| -> Vec<f32> {
+        (0..count).map(|_| rng.random_range(least..=most)).collect()
+    };
+    let strengths = drawn(joints, [0.25, 1.0]);
+    let scaled = |most: f32| {
+        list(scales.iter().zip(&strengths).map(|(scale, share)| most * scale * share).collect())
+    };
+    let number = |values: Vec<f32>| values[0].to_string();
+    let fields = [
+        ("agent.limbs", sizes.len().to_string()),
+        ("limb_width_m", of_limbs(0)),
+        ("limb_length_m", of_limbs(1)),
+        ("limb_height_m", of_limbs(2)),
+        ("agent.density_kg_m3", list(drawn(sizes.len(), [2.0, 3.0]))),
+        ("agent.bend_limit_rad", list(drawn(joints, [0.2, 1.8]))),
+        ("agent.twist_limit_rad", list(drawn(joints, [0.01, 1.5]))),
+        ("max_bend_torque_nm", scaled(1000.0)),
+        ("max_twist_torque_nm", scaled(700.0)),
+        ("joint_damping_nms_per_rad", list(scales.iter().map(|scale| 30.0 * scale).collect())),
+        ("angular_damping_per_s", "0".to_owned()),
+        ("skin.friction", number(drawn(1, [0.5, 2.0]))),
+        ("surface.friction", number(drawn(1, [0.3, 2.0]))),
+        ("ground.friction", number(drawn(1, [0.3, 2.0]))),
+        ("stairs.steps", "7".to_owned()),
+        ("stairs.rise_m", list(drawn(7, [0.2, 0.8]))),
+        ("stairs.tread_m", number(drawn(1, [1.0, 3.0]))),
+        ("trial.start_y_m", number(drawn(1, [-9.0, -5.0]))),
+        ("trial.duration_s", "0.1".to_owned()),
+        ("steps_per_s", "60".to_owned()),
+        ("substeps", "4".to_owned()),
+        // Chains of twelve limbs need more than four for the accuracy of MuJoCo's joints.
+        ("iterations", "16".to_owned()),
+    ];
+    let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
+    with_fields(&Settings::default(), fields).expect("allowed").trial
+}
+
+/// Moves all limbs of a world upwards.
+fn raise(world: &mut Simulation, height_m: f32) {
+    for (_, limb) in world.physics_mut().bodies.iter_mut() {
+        let at = limb.translation() + Vector::Z * height_m;
+        limb.set_translation(at, true);
+    }
+}
+
+/// Takes this number of steps with the torques of each, and reads the world after it.
+fn steps<T>(
+    world: &mut Simulation,
+    count: u32,
+    torques: impl Fn(u32) -> Vec<JointTorque>,
+    read: impl Fn(&Simulation) -> T,
+) -> Vec<T> {
+    let mut step = |number| {
+        world.step(&torques(number)).expect("healthy");
+        read(world)
+    };
+    (0..count).map(&mut step).collect()
+}
+
+fn no_torques(plan: &WorldPlan) -> Vec<JointTorque> {
+    vec![JointTorque::default(); plan.body.joints.len()]
+}
+
+/// Height of the centre of mass, in m.
+fn centre_m(world: &Simulation) -> [f64; 3] {
+    let limbs = || world.body().limbs.iter().map(|limb| f64::from(limb.mass_kg()));
+    let mut sum = [0.0; 3];
+    for (pose, kg) in world.poses().zip(limbs()) {
+        for (sum, at_m) in sum.iter_mut().zip(pose.translation.to_array()) {
+            *sum += kg * f64::from(at_m);
+        }
+    }
+    sum.map(|sum| sum / limbs().sum::<f64>())
+}
+
+/// The bend of a limb that hangs on a clamped one, in each of 1.3 s.
+fn pendulum_rad(plan: &WorldPlan) -> Vec<f32> {
+    let mut world = Simulation::new(plan);
+    raise(&mut world, 20.0);
+    let (_, head) = world.physics_mut().bodies.iter_mut().next().expect("a head");
+    head.set_body_type(rapier3d::dynamics::RigidBodyType::Fixed, true);
+    let bend = |world: &Simulation| world.joint_states().next().expect("a joint").bend_rad;
+    steps(&mut world, 78, |_| no_torques(plan), bend)
+}
+
+/// Torques about the bend axes in each step of two seconds: a sine for each joint, weak enough for its limit.
+fn sines_nm(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Vec<Vec<f32>> {
+    let sines: Vec<[f32; 3]> = plan
+        .body
+        .joints
+        .iter()
+        .map(|joint| {
+            let (hz, phase) = (rng.random_range(0.5..1.5), rng.random_range(0.0..TAU));
+            // The damping alone would hold it within an eighth of its limit to each side.
+            let held_nm = joint.damping_nms_per_rad * joint.bend_limit_rad * TAU * hz / 8.0;
+            let strongest_nm = 40.0 / 30.0 * joint.damping_nms_per_rad;
+            [held_nm.min(strongest_nm).min(joint.max_bend_torque_nm), hz, phase]
+        })
+        .collect();
+    let at = |step: u32| {
+        let time_s = step as f32 / 60.0;
+        let torque = |[nm, hz, phase]: &[f32; 3]| nm * libm::sinf(TAU * hz * time_s + phase);
+        sines.iter().map(torque).collect()
+    };
+    (0..120).map(at).collect()
+}
+
+/// The expected model of a world, and the motion of its body in this engine.
+fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
+    let start = Simulation::new(plan);
+    let masses = start.physics().bodies.iter().map(|(_, limb)| {
+        let inertia = limb.mass_properties().local_mprops.principal_inertia();
+        (limb.mass(), inertia.to_array())
+    });
+    let limbs = plan.body.limbs.iter().zip(masses).zip(start.poses());
+    let limbs = limbs.map(|((limb, (kg, kg_m2)), pose)| {
+        let at_m = pose.translation.to_array();
+        json!({"size_m": limb.size_m(), "kg": kg, "kg_m2": kg_m2, "at_m": at_m})
+    });
+    let joints = plan.body.joints.iter().map(|joint| {
+        json!({
+            "bend_limit_rad": joint.bend_limit_rad,
+            "twist_limit_rad": joint.twist_limit_rad,
+            "bend_nm": joint.max_bend_torque_nm,
+            "twist_nm": joint.max_twist_torque_nm,
+            "damping": joint.damping_nms_per_rad,
+        })
+    });
+    let boxes = plan.stairs.boxes();
+    let boxes = boxes.iter().map(|stair| [stair.min_m, stair.max_m].concat());
+
+    let mut falling = Simulation::new(plan);
+    raise(&mut falling, 10.0);
+    let [_, _, from_m] = centre_m(&falling);
+    let heights = steps(&mut falling, 60, |_| no_torques(plan), |world| centre_m(world)[2]);
+
+    let mut weightless = plan.clone();
+    weightless.physics.gravity_m_s2 = 0.0;
+    // Light limbs with strong damping: at 60 Hz this engine's own error is as large as the bound.
+    weightless.physics.steps_per_s = 60 * FINER;
+    let mut free = Simulation::new(&weightless);
+    raise(&mut free, 20.0);
+    let sines_nm = sines_nm(plan, rng);
+    let torques = |step: u32| {
+        let bends = sines_nm[(step / FINER) as usize].iter();
+        bends.map(|&bend_nm| JointTorque { bend_nm, twist_nm: 0.0 }).collect()
+    };
+    let bends = |world: &Simulation| -> Vec<f32> {
+        world.joint_states().map(|joint| joint.bend_rad).collect()
+    };
+    let all_bends_rad = steps(&mut free, 120 * FINER, torques, bends);
+    let bends_rad: Vec<_> = all_bends_rad.chunks(FINER as usize).filter_map(<[_]>::last).collect();
+
+    let mut settling = Simulation::new(plan);
+    let settled = (SETTLED_S * 60.0) as u32;
+    steps(&mut settling, settled, |_| no_torques(plan), |_| ());
+    let settled_z_m: Vec<f32> = settling.poses().map(|pose| pose.translation.z).collect();
+    json!({
+        "substeps": plan.physics.substeps,
+        "limbs": limbs.collect::<Vec<_>>(),
+        "joints": joints.collect::<Vec<_>>(),
+        "steps": boxes.collect::<Vec<_>>(),
+        "centre_m": centre_m(&start),
+        "skin_friction": plan.skin.friction,
+        "ground_friction": plan.ground.friction * plan.skin.friction,
+        "fallen_m": heights.last().expect("steps") - from_m,
+        "pendulum_rad": pendulum_rad(pendulum),
+        "bend_torques_nm": sines_nm,
+        "bends_rad": bends_rad,
+        "settled_s": SETTLED_S,
+        "settled_z_m": settled_z_m,
+    })
+}
+
+/// Exports a genome's body in a trial.
+fn export(name: &str, champion: &Champion, path: &Path) {
+    let loaded = LoadedChampion {
+        champion: champion.clone(),
+        engine: Engine::THIS,
+        recording: None,
+        exam: Vec::new(),
+    };
+    let exported = ExportedChampion { name: name.to_owned(), file: path.to_owned(), loaded };
+    let source = ExportSource { champions: vec![exported], run: None };
+    let order = ExportOrder::new(source, path.to_owned()).expect("a known ending");
+    order.carry_out(&ExportProgress::new(&|_| (), &|| false)).expect("written");
+}
+
+/// A random snake that nothing has found.
+fn champion(trial: Trial, rng: &mut ChaCha8Rng) -> Champion {
+    let genome = Settings::default().genome.random_genome(trial.genome_shape(), rng);
+    let evaluation = evaluate(&genome, &trial);
+    let origin = Origin { preset: "test".to_owned(), seed: 1, generation: 1, individual: 0 };
+    Champion { genome, trial, evaluation, chosen_by: None, origin }
+}
+
+/// The front two limbs of a trial's snake, without damping, for a pendulum.
+fn pendulum_trial(trial: &Trial) -> Trial {
+    let agent = &trial.agent;
+    let first = |of: &dyn Fn(usize) -> f32| format!("[{}, {}]", of(0), of(1));
+    let density = |limb| agent.density_kg_m3.as_ref().map_or(2.5, |density| density.at(limb));
+    let bend = |joint| agent.bend_limit_rad.as_ref().map_or(1.0, |limit| limit.at(joint));
+    let fields = [
+        ("agent.limbs", "2".to_owned()),
+        ("limb_width_m", first(&|limb| agent.limb_width_m.at(limb))),
+        ("limb_length_m", first(&|limb| agent.limb_length_m.at(limb))),
+        ("limb_height_m", first(&|limb| agent.limb_height_m.at(limb))),
+        ("agent.density_kg_m3", first(&density)),
+        ("agent.bend_limit_rad", bend(0).to_string()),
+        ("agent.twist_limit_rad", "0.5".to_owned()),
+        ("joint_damping_nms_per_rad", "0".to_owned()),
+        ("max_bend_torque_nm", "1000".to_owned()),
+        ("max_twist_torque_nm", "1000".to_owned()),
+        ("angular_damping_per_s", "0".to_owned()),
+        ("stairs.steps", "0".to_owned()),
+        ("stairs.rise_m", "0.5".to_owned()),
+        ("steps_per_s", "60".to_owned()),
+        ("substeps", "4".to_owned()),
+        ("trial.duration_s", "0.1".to_owned()),
+    ];
+    let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
+    with_fields(&Settings::default(), fields).expect("allowed").trial
+}
+
+#[test]
+fn a_hundred_random_bodies_move_in_mujoco_as_here() {
+    let test = "a_hundred_random_bodies_move_in_mujoco_as_here";
+    let Some(mut python) = peer_python("mujoco, numpy", test) else { return };
+    let folder = folder();
+    for body in 0..BODIES {
+        let mut rng = stream(1, 1, body, Purpose::Birth);
+        let champion = champion(random_trial(&mut rng), &mut rng);
+        let pendulum = self::champion(pendulum_trial(&champion.trial), &mut rng);
+        let plan = |champion: &Champion| champion.trial.world_plan(&champion.genome);
+        let name = format!("body {body}");
+        let path = |ending: &str| folder.path().join(format!("{name}{ending}"));
+        export(&name, &champion, &path(".xml"));
+        export(&name, &champion, &path(".urdf"));
+        export(&name, &pendulum, &path("-pendulum.xml"));
+        let expected = description(&plan(&champion), &plan(&pendulum), &mut rng);
+        fs::write(path(".json"), expected.to_string()).expect("written");
+    }
+    let said = succeed(python.arg(peer_script("models.py")).arg(folder.path()));
+    println!("{said}");
+    assert!(said.contains(&format!("{BODIES} bodies")), "{said}");
+}
+
+#[test]
+fn champions_with_and_without_senses_climb_in_mujoco() {
+    let test = "champions_with_and_without_senses_climb_in_mujoco";
+    let Some(_) = peer_python("mujoco, numpy", test) else { return };
+    let folder = folder();
+    let saves = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves");
+    let mut exam = snakes(folder.path(), "exam --json --suite mujoco");
+    if let Some(python) = std::env::var_os("SNAKES_PEER_PYTHON") {
+        exam.env("SNAKES_PEER_PYTHON", python);
+    }
+    let said = succeed(exam.args(["rigid.ron", "feeler.ron"].map(|name| saves.join(name))));
+    let lines: Vec<Value> =
+        said.lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    assert_eq!(lines.len(), 3, "{said}");
+    for line in &lines[..2] {
+        assert_eq!((&line["suite"], &line["trials"]), (&json!("mujoco"), &json!(20)), "{line}");
+        // No threshold; but a snake whose torques or senses were wrong would stay before the stairs.
+        assert!(line["there"]["climbed"].as_u64() > Some(0), "{line}");
+    }
+}
+
+#[test]
+fn without_python_the_suite_says_so_in_one_line_and_the_default_exam_does_not_need_it() {
+    let folder = folder();
+    let champion = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves/first-climber.ron");
+    let run = |arguments: &str| {
+        let mut exam = snakes(folder.path(), arguments);
+        exam.env("SNAKES_PEER_PYTHON", "no-such-python").arg(&champion);
+        exam.output().expect("the program starts")
+    };
+    let output = run("exam --suite mujoco");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!((output.status.code(), said.lines().count()), (Some(1), 1), "{said}");
+    for word in ["no-such-python", "pip install \"mujoco>=3,<5\"", "SNAKES_PEER_PYTHON"] {
+        assert!(said.contains(word), "{said}");
+    }
+    let output = run("exam --suite mujoco --write");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("--write is set; allowed: "), "{said}");
+    assert!(run("exam --suite step-rate").status.success());
+}

@@ -1,0 +1,241 @@
+"""Compares exported models with the bodies from which they were made: `models.py FOLDER`.
+
+For each NAME.json, which the test `exports::models` of Snakes & Stairs writes, it loads NAME.xml and NAME.urdf in MuJoCo
+and makes five checks. The bounds are in the code. It prints the greatest differences, and every failure with its number.
+"""
+
+import json
+import math
+import pathlib
+import sys
+
+# Beside this file lies a script with the name of the package.
+sys.path = [entry for entry in sys.path if entry != str(pathlib.Path(__file__).resolve().parent)]
+
+import mujoco  # noqa: E402
+import numpy  # noqa: E402
+
+
+# Places along the snake add up numbers of 32 bits, which are a micrometre apart at ten metres.
+PLACE_M = 5e-6
+
+
+class Checks:
+    """Failures, and the greatest difference of each kind."""
+
+    def __init__(self):
+        self.failures, self.worst, self.name = [], {}, ""
+
+    def equal(self, what, found, expected):
+        if found != expected:
+            self.failures.append(f"{self.name}: {what} is {found}; expected: {expected}")
+
+    def near(self, what, found, expected, bound):
+        found, expected = numpy.asarray(found, float), numpy.asarray(expected, float)
+        if found.shape != expected.shape:
+            self.failures.append(f"{self.name}: {what} has shape {found.shape}; expected: {expected.shape}")
+            return
+        off = float(numpy.max(numpy.abs(found - expected))) if found.size else 0.0
+        self.worst[what] = max(self.worst.get(what, 0.0), off)
+        if not off <= bound:
+            self.failures.append(f"{self.name}: {what} is off by {off:.6g}; allowed: {bound:g}")
+
+    def relative(self, what, found, expected, bound):
+        self.near(what, numpy.asarray(found) / numpy.asarray(expected), numpy.ones_like(expected), bound)
+
+
+def names(items, count):
+    return [items(index).name for index in range(count)]
+
+
+def principal(model, body):
+    """The inertia of a body about its own axes; MuJoCo sorts the moments and turns the frame accordingly."""
+    turn = numpy.zeros(9)
+    mujoco.mju_quat2Mat(turn, model.body_iquat[body])
+    turn = turn.reshape(3, 3)
+    return numpy.diag(turn @ numpy.diag(model.body_inertia[body]) @ turn.T)
+
+
+def structure(checks, model, expected):
+    """Check 1: counts and names in order, masses, inertias, centre of mass, limits, stairs."""
+    limbs, joints = len(expected["limbs"]), len(expected["joints"])
+    axes = [f"{axis} {joint + 1}" for joint in range(joints) for axis in ("bend", "twist")]
+    checks.equal("bodies", names(model.body, model.nbody), ["world"] + [f"limb {limb + 1}" for limb in range(limbs)])
+    checks.equal("joints", names(model.joint, model.njnt), ["free", *axes])
+    checks.equal("motors", names(model.actuator, model.nu), axes)
+    checks.relative("masses", model.body_mass[1:], [limb["kg"] for limb in expected["limbs"]], 1e-6)
+    inertias = [principal(model, body) for body in range(1, model.nbody)]
+    checks.relative("inertias", inertias, [limb["kg_m2"] for limb in expected["limbs"]], 1e-6)
+    checks.relative("total mass", model.body_mass.sum(), sum(limb["kg"] for limb in expected["limbs"]), 1e-6)
+    limits = [joint[f"{axis}_limit_rad"] for joint in expected["joints"] for axis in ("bend", "twist")]
+    checks.near("limits", model.jnt_range[1:, 1], limits, 1e-6)
+    checks.near("limits", -model.jnt_range[1:, 0], limits, 1e-6)
+    checks.relative("dampings", model.dof_damping[6:], [joint["damping"] for joint in expected["joints"] for _ in axes[:2]], 1e-6)
+    torques = [joint[f"{axis}_nm"] for joint in expected["joints"] for axis in ("bend", "twist")]
+    checks.relative("torques", model.actuator_ctrlrange[:, 1], torques, 1e-6)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    checks.near("places at the start", data.xpos[1:], [limb["at_m"] for limb in expected["limbs"]], PLACE_M)
+    checks.near("centre of mass", data.subtree_com[0], expected["centre_m"], 1e-6)
+    steps = [geom for geom in range(model.ngeom) if model.geom(geom).name.startswith("step ")]
+    found = [[*(model.geom_pos[geom] - model.geom_size[geom]), *(model.geom_pos[geom] + model.geom_size[geom])] for geom in steps]
+    checks.near("stairs", numpy.reshape(found, (-1, 6)), numpy.reshape(expected["steps"], (-1, 6)), 1e-5)
+    checks.relative("friction of limbs", model.pair_friction[:, 0], [expected["skin_friction"] ** 2] * model.npair, 1e-6)
+    checks.equal("pairs of limbs", model.npair, (limbs - 1) * (limbs - 2) // 2)
+
+
+def raised(model, height_m):
+    """The start, high above the ground."""
+    data = mujoco.MjData(model)
+    data.qpos[2] += height_m
+    return data
+
+
+def free_fall(checks, model, expected):
+    """Check 2: one second of free fall."""
+    data = raised(model, 10.0)
+    mujoco.mj_forward(model, data)
+    start = data.subtree_com[0][2]
+    for _ in range(round(1.0 / model.opt.timestep)):
+        mujoco.mj_step(model, data)
+    mujoco.mj_forward(model, data)
+    fallen = data.subtree_com[0][2] - start
+    step_s, gravity = model.opt.timestep, -model.opt.gravity[2]
+    checks.near("free fall, and its closed form", fallen, -gravity * (1.0 + step_s) / 2.0, 1e-4)
+    checks.near("free fall, here and there", fallen, expected["fallen_m"], 1e-4)
+
+
+def pendulum_reference(limb, gravity, times):
+    """The bend of a limb that hangs on a hinge and starts level, by Runge and Kutta's fourth order."""
+    _, length, height = limb["size_m"]
+    moment = (length**2 + height**2) / 12.0 + length**2 / 4.0
+    pull = gravity * length / 2.0 / moment
+    bend, rate, time, found = 0.0, 0.0, 0.0, []
+    step = 1.0 / 4800.0
+
+    def slope(bend, rate):
+        return rate, pull * math.cos(bend)
+
+    for wanted in times:
+        while time < wanted - step / 2.0:
+            a = slope(bend, rate)
+            b = slope(bend + a[0] * step / 2, rate + a[1] * step / 2)
+            c = slope(bend + b[0] * step / 2, rate + b[1] * step / 2)
+            d = slope(bend + c[0] * step, rate + c[1] * step)
+            bend += (a[0] + 2 * b[0] + 2 * c[0] + d[0]) * step / 6
+            rate += (a[1] + 2 * b[1] + 2 * c[1] + d[1]) * step / 6
+            time += step
+        found.append(bend)
+    return numpy.array(found)
+
+
+def pendulum(checks, text, expected):
+    """Check 3: two limbs, of which the first is clamped, without damping, until the limit is near."""
+    model = mujoco.MjModel.from_xml_string(text.replace('<freejoint name="free"/>', ""))
+    checks.equal("joints of the pendulum", names(model.joint, model.njnt), ["bend 1", "twist 1"])
+    # Away from the ground.
+    model.body_pos[1, 2] += 20.0
+    data = mujoco.MjData(model)
+    substeps = expected["substeps"]
+    here = numpy.array(expected["pendulum_rad"])
+    times = [(step + 1) * substeps * model.opt.timestep for step in range(len(here))]
+    there = []
+    for _ in times:
+        for _ in range(substeps):
+            mujoco.mj_step(model, data)
+        there.append(float(data.qpos[0]))
+    reference = pendulum_reference(expected["limbs"][1], -model.opt.gravity[2], times)
+    limit = expected["joints"][0]["bend_limit_rad"]
+    reached = numpy.flatnonzero(reference > limit - 0.05)
+    until = int(reached[0]) if reached.size else len(times)
+    checks.equal("pendulum swings", until >= 3, True)
+    checks.near("pendulum, there and by Runge and Kutta", there[:until], reference[:until], 0.02)
+    checks.near("pendulum, here and by Runge and Kutta", here[:until], reference[:until], 0.02)
+
+
+def free_limbs(checks, model, expected):
+    """Check 4: no gravity, damped joints, sines of torque on the bends for two seconds."""
+    model.opt.gravity[:] = 0.0
+    data = raised(model, 20.0)
+    there = []
+    for torques in expected["bend_torques_nm"]:
+        data.ctrl[0::2] = torques
+        for _ in range(expected["substeps"]):
+            mujoco.mj_step(model, data)
+        there.append(numpy.array(data.qpos[7::2]))
+    limits = numpy.array([joint["bend_limit_rad"] for joint in expected["joints"]])
+    here = numpy.array(expected["bends_rad"])
+    checks.equal("free limbs stay within their limits", bool(numpy.all(numpy.abs(here) < limits)), True)
+    checks.worst["greatest bend of free limbs"] = max(checks.worst.get("greatest bend of free limbs", 0.0), float(numpy.abs(here).max()))
+    checks.near("bends of free limbs", there, here, 0.01)
+
+
+def settling(checks, model, expected):
+    """Check 5: the limbs come to rest on the ground at the same height as here, and touch it with the right friction.
+
+    Limbs of unequal heights rest on edges, in one of several ways; those must not sink in."""
+    data = mujoco.MjData(model)
+    frictions = []
+    for _ in range(round(expected["settled_s"] / model.opt.timestep)):
+        mujoco.mj_step(model, data)
+        frictions += [contact.friction[0] for contact in data.contact if 0 in model.geom_bodyid[contact.geom]]
+    sizes = numpy.array([limb["size_m"] for limb in expected["limbs"]])
+    if numpy.ptp(sizes[:, 2]) == 0.0:
+        checks.near("heights at rest", data.xpos[1:, 2], expected["settled_z_m"], 0.005)
+        checks.near("half heights at rest", data.xpos[1:, 2], sizes[:, 2] / 2.0, 0.005)
+    reach = numpy.abs(data.xmat[1:].reshape(-1, 3, 3)[:, 2, :]) * sizes / 2.0
+    sunk = numpy.minimum(data.xpos[1:, 2] - reach.sum(axis=1), 0.0)
+    checks.near("depth in the ground", sunk, numpy.zeros(len(sizes)), 0.005)
+    checks.equal("touches the ground", bool(frictions), True)
+    checks.relative("friction of the ground", frictions, [expected["ground_friction"]] * len(frictions), 1e-6)
+
+
+def urdf(checks, model, expected):
+    """The URDF: names in order, degrees of freedom, masses, inertias, limits, torques."""
+    limbs, joints = len(expected["limbs"]), len(expected["joints"])
+    order = ["world", "limb_1"]
+    order += [name for joint in range(1, joints + 1) for name in (f"joint_{joint}", f"limb_{joint + 1}")]
+    checks.equal("URDF: links", names(model.body, model.nbody), order)
+    axes = [f"{axis}_{joint + 1}" for joint in range(joints) for axis in ("bend", "twist")]
+    checks.equal("URDF: joints", names(model.joint, model.njnt), ["free", *axes])
+    checks.equal("URDF: degrees of freedom", model.nv, 6 + 2 * joints)
+    bodies = [model.body(f"limb_{limb + 1}").id for limb in range(limbs)]
+    checks.relative("URDF: masses", model.body_mass[bodies], [limb["kg"] for limb in expected["limbs"]], 1e-6)
+    inertias = [principal(model, body) for body in bodies]
+    checks.relative("URDF: inertias", inertias, [limb["kg_m2"] for limb in expected["limbs"]], 1e-6)
+    limits = [joint[f"{axis}_limit_rad"] for joint in expected["joints"] for axis in ("bend", "twist")]
+    checks.near("URDF: limits", model.jnt_range[1:, 1], limits, 1e-6)
+    torques = [joint[f"{axis}_nm"] for joint in expected["joints"] for axis in ("bend", "twist")]
+    checks.relative("URDF: torques", model.jnt_actfrcrange[1:, 1], torques, 1e-6)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    centres = data.xipos[bodies]
+    checks.near("URDF: places at the start", centres, [limb["at_m"] for limb in expected["limbs"]], PLACE_M)
+
+
+def main(folder):
+    checks = Checks()
+    descriptions = sorted(pathlib.Path(folder).glob("*.json"))
+    for path in descriptions:
+        checks.name = path.stem
+        expected = json.loads(path.read_text(encoding="utf-8"))
+        text = path.with_suffix(".xml").read_text(encoding="utf-8")
+        model = mujoco.MjModel.from_xml_string(text)
+        structure(checks, model, expected)
+        free_fall(checks, model, expected)
+        settling(checks, model, expected)
+        free_limbs(checks, model, expected)
+        swing = path.with_name(f"{path.stem}-pendulum.xml").read_text(encoding="utf-8")
+        pendulum(checks, swing, expected)
+        urdf(checks, mujoco.MjModel.from_xml_path(str(path.with_suffix(".urdf"))), expected)
+    print(f"MuJoCo {mujoco.__version__}, {len(descriptions)} bodies; greatest differences:")
+    for what, off in checks.worst.items():
+        print(f"  {what}: {off:.3g}")
+    for failure in checks.failures:
+        print(failure)
+    print(f"{len(checks.failures)} failures")
+    return 1 if checks.failures or not descriptions else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

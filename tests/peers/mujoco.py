@@ -1,0 +1,188 @@
+"""Plays champions of Snakes & Stairs in MuJoCo.
+
+Without arguments it is the partner of `snakes exam FILE --suite mujoco`, which starts it. Each line on standard input is
+a JSON object, and so is each answer on standard output:
+
+    (start)                                             -> {"mujoco": "3.3.0"}
+    {"model": MJCF, "substeps": 2, "air_per_s": 2.0}    -> {"limbs": [...]}
+    {"torques": [[bend, twist], ...]}                   -> {"limbs": [...]}, after one step of control,
+                                                           or "broken", if MuJoCo cannot go on
+
+A limb is [x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz, touches, fx, fy, fz]: pose, velocity and angular velocity of
+its centre in the world, and the force of ground and stairs on it, in m, rad, s and N. The controller runs in `snakes`,
+so that any of them can be played, also those that sense their surroundings.
+
+    mujoco.py MODEL.xml MOTION.csv PICTURE.png [SECOND ...]
+
+draws the recorded motion of a champion (`snakes export CHAMPION -o MOTION.csv`) with MuJoCo's renderer, one moment below
+the other. Without a screen, set MUJOCO_GL=egl or MUJOCO_GL=osmesa.
+"""
+
+import json
+import math
+import os
+import sys
+
+# This file has the name of the package that it needs.
+_here = os.path.dirname(os.path.abspath(__file__)) if "__file__" in globals() else os.getcwd()
+sys.path = [entry for entry in sys.path if os.path.abspath(entry or os.getcwd()) != _here]
+
+
+def limb_bodies(mujoco, model):
+    """The numbers of the limbs' bodies, head first."""
+    names = [model.body(index).name for index in range(model.nbody)]
+    return [index for index, name in enumerate(names) if name.startswith("limb ")]
+
+
+class World:
+    """A champion's body on its stairs."""
+
+    def __init__(self, mujoco, numpy, text, substeps, air_per_s):
+        self.mujoco, self.numpy = mujoco, numpy
+        self.model = mujoco.MjModel.from_xml_string(text)
+        self.data = mujoco.MjData(self.model)
+        self.limbs = limb_bodies(mujoco, self.model)
+        self.substeps = substeps
+        # Share of the angular momentum that the air takes in a substep.
+        self.air = -math.expm1(-air_per_s * self.model.opt.timestep) / self.model.opt.timestep
+        self.look()
+
+    def look(self):
+        """Computes poses and velocities. Contacts stay those of the last substep."""
+        self.mujoco.mj_kinematics(self.model, self.data)
+        self.mujoco.mj_comPos(self.model, self.data)
+        self.mujoco.mj_comVel(self.model, self.data)
+
+    def velocity(self, body):
+        """Angular velocity and velocity of a body's centre, in the world."""
+        found = self.numpy.zeros(6)
+        kind = self.mujoco.mjtObj.mjOBJ_BODY
+        self.mujoco.mj_objectVelocity(self.model, self.data, kind, body, found, 0)
+        return found[:3], found[3:]
+
+    def step(self, torques):
+        """One step of control. A torque acts about the axes of the limb in front of the joint, as in `snakes`: the twist
+        of MuJoCo's hinges acts about the rear limb's axis. That is why the motors of the model are not used."""
+        data, numpy = self.data, self.numpy
+        couples = numpy.zeros((len(self.limbs), 3))
+        for joint, (bend, twist) in enumerate(torques):
+            axes = data.xmat[self.limbs[joint]].reshape(3, 3)
+            couple = axes @ (bend, twist, 0.0)
+            couples[joint] -= couple
+            couples[joint + 1] += couple
+        for _ in range(self.substeps):
+            for limb, body in enumerate(self.limbs):
+                torque = couples[limb]
+                if self.air > 0.0:
+                    axes = data.ximat[body].reshape(3, 3)
+                    inertia = self.model.body_inertia[body]
+                    spin, _ = self.velocity(body)
+                    torque = torque - self.air * (axes @ (inertia * (axes.T @ spin)))
+                data.xfrc_applied[body, 3:] = torque
+            self.mujoco.mj_step(self.model, data)
+            self.look()
+
+    def forces(self):
+        """For each body the force of ground and stairs in the last substep, if they touch it."""
+        forces, found = {}, self.numpy.zeros(6)
+        for index in range(self.data.ncon):
+            contact = self.data.contact[index]
+            bodies = [self.model.geom_bodyid[geom] for geom in contact.geom]
+            if 0 not in bodies:
+                continue
+            self.mujoco.mj_contactForce(self.model, self.data, index, found)
+            # The contact's first axis points from its first geom to its second one, on which the force acts.
+            side = 1.0 if bodies[0] == 0 else -1.0
+            body = bodies[1] if bodies[0] == 0 else bodies[0]
+            force = side * (contact.frame.reshape(3, 3).T @ found[:3])
+            forces[body] = forces.get(body, 0.0) + force
+        return forces
+
+    def is_broken(self):
+        """Whether MuJoCo has given up and started anew."""
+        bad = self.mujoco.mjtWarning
+        kinds = [bad.mjWARN_BADQPOS, bad.mjWARN_BADQVEL, bad.mjWARN_BADQACC]
+        return any(self.data.warning[kind].number > 0 for kind in kinds)
+
+    def state(self):
+        """The limbs, as the description of this file says."""
+        forces, rows = self.forces(), []
+        for body in self.limbs:
+            w, x, y, z = self.data.xquat[body]
+            spin, velocity = self.velocity(body)
+            force = forces.get(body)
+            touch = [0.0] * 4 if force is None else [1.0, *force]
+            rows.append([*self.data.xpos[body], x, y, z, w, *velocity, *spin, *touch])
+        return rows
+
+
+def serve(mujoco, numpy):
+    """Answers line by line until standard input ends."""
+
+    def answer(value):
+        print(json.dumps(value), flush=True)
+
+    answer({"mujoco": mujoco.__version__})
+    world = None
+    for line in sys.stdin:
+        order = json.loads(line)
+        if "model" in order:
+            world = World(mujoco, numpy, order["model"], order["substeps"], order["air_per_s"])
+        else:
+            world.step(order["torques"])
+        if world.is_broken():
+            answer("broken")
+        else:
+            answer({"limbs": [[float(number) for number in limb] for limb in world.state()]})
+
+
+def draw(mujoco, numpy, arguments):
+    """Draws moments of a recorded motion."""
+    import csv
+
+    from PIL import Image
+
+    model_path, motion_path, picture_path, *seconds = arguments
+    model = mujoco.MjModel.from_xml_path(model_path)
+    data = mujoco.MjData(model)
+    limbs = limb_bodies(mujoco, model)
+    with open(motion_path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    times = sorted({float(row["time_s"]) for row in rows})
+    pictures = []
+    with mujoco.Renderer(model, 540, 960) as renderer:
+        for second in map(float, seconds or [0, times[-1] / 2, times[-1]]):
+            nearest = min(times, key=lambda time: abs(time - second))
+            poses = [row for row in rows if float(row["time_s"]) == nearest]
+            mujoco.mj_resetData(model, data)
+            mujoco.mj_forward(model, data)
+            for body, row in zip(limbs, poses):
+                x, y, z, w = (float(row[f"rotation_{axis}"]) for axis in "xyzw")
+                geom = model.body_geomadr[body]
+                data.geom_xpos[geom] = [float(row[f"{axis}_m"]) for axis in "xyz"]
+                mujoco.mju_quat2Mat(data.geom_xmat[geom], numpy.array([w, x, y, z]))
+            renderer.update_scene(data, camera="overview")
+            pictures.append(renderer.render())
+    Image.fromarray(numpy.vstack(pictures)).save(picture_path)
+
+
+def main():
+    try:
+        import mujoco
+        import numpy
+    except ImportError as error:
+        print(json.dumps({"missing": str(error)}), flush=True)
+        return 1
+    if len(sys.argv) > 1:
+        draw(mujoco, numpy, sys.argv[1:])
+    else:
+        try:
+            serve(mujoco, numpy)
+        except Exception as error:  # The partner reads one line, whatever went wrong.
+            print(json.dumps({"error": f"{type(error).__name__}: {error}"}), flush=True)
+            return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,33 @@
+// Recorded poses: unpacked once, and interpolated at any moment.
+
+function bytesOf(text) { return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)); }
+function numbersOf(text) { return new Int16Array(bytesOf(text).buffer); }
+
+// A champion of the page's data, with its numbers unpacked.
+function unpacked(champion) {
+  return { ...champion, poses: numbersOf(champion.poses), torques: numbersOf(champion.torques), duration: (champion.frames - 1) * champion.frame_s };
+}
+
+// The poses at a time in seconds: between two frames they are interpolated.
+function posesAt(champion, time) {
+  const limbs = champion.limbs.length, place = Math.max(0, Math.min(champion.frames - 1, time / champion.frame_s));
+  const before = Math.floor(place), after = Math.min(before + 1, champion.frames - 1), share = place - before;
+  const value = (frame, limb, part) => champion.poses[(frame * limbs + limb) * 7 + part];
+  return champion.limbs.map((_, limb) => {
+    const at = [0, 1, 2].map((part) => (value(before, limb, part) * (1 - share) + value(after, limb, part) * share) * champion.unit_m);
+    const [a, b] = [before, after].map((frame) => [3, 4, 5, 6].map((part) => value(frame, limb, part)));
+    const sign = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] < 0 ? -1 : 1;
+    const turn = a.map((part, i) => part * (1 - share) + sign * b[i] * share), length = Math.hypot(...turn) || 1;
+    return { at, turn: turn.map((part) => part / length) };
+  });
+}
+
+// The number of a series at a time: that of the frame before.
+function atTime(champion, series, time) { return series[Math.max(0, Math.min(series.length - 1, Math.floor(time / champion.frame_s + 1e-6)))]; }
+
+// A champion that was simulated in the page: its poses as they come from the core.
+function simulated(champion, name, poses, state) {
+  const limbs = champion.limbs.length, frames = Math.floor(poses.length / (limbs * 7)), packed = new Int16Array(poses.length);
+  for (let i = 0; i < poses.length; i++) packed[i] = Math.round(i % 7 < 3 ? poses[i] / champion.unit_m : poses[i] * 32767);
+  return { ...champion, name, poses: packed, frames, frame_s: champion.step_s, duration: (frames - 1) * champion.step_s, steps: null, energy: null, torques: new Int16Array(0), state };
+}

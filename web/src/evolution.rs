@@ -1,0 +1,123 @@
+//! Evolution from a champion on, one evaluation at a time, so that a page can show its progress and stop it.
+
+use serde_json::{Value, json};
+use snakes_and_stairs::evolve::{
+    Champion, Founder, Origin, RunPlan, Settings, Strategy, StrategyKind, begin, ranking,
+};
+use snakes_and_stairs::genome::{Genome, GenomeSpace};
+use snakes_and_stairs::save::champion_text;
+use snakes_and_stairs::score::{Evaluation, Scored, score};
+
+use crate::replay::trial_with;
+
+/// More generations than anyone waits for.
+const GENERATIONS: u32 = 10_000;
+
+/// A search that descends from a champion.
+pub struct Evolution {
+    plan: RunPlan,
+    strategy: Box<dyn Strategy>,
+    generation: u32,
+    genomes: Vec<Genome>,
+    scored: Vec<Scored>,
+    best: Option<Champion>,
+    /// The best fitness of each finished generation.
+    history: Vec<f32>,
+}
+
+impl Evolution {
+    /// A search by the genetic algorithm, or by the learner that the champion's controller needs.
+    pub fn begin(
+        champion: Champion,
+        friction: Option<f32>,
+        seed: u64,
+        population: u32,
+    ) -> Result<Self, String> {
+        let trial = trial_with(&champion, friction)?;
+        let kind = champion.genome.controller.kind();
+        let genome = GenomeSpace { controller: kind, ..GenomeSpace::default() };
+        let mut settings =
+            Settings { trial, genome: genome.widened_for(&champion.genome), ..Settings::default() };
+        settings.evolution.population = population;
+        settings.evolution.generations = GENERATIONS;
+        let strategies = StrategyKind::ALL.into_iter();
+        let mut fitting = strategies.filter(|strategy| strategy.controllers().any(|of| of == kind));
+        let is_plain = fitting.clone().any(|strategy| strategy == StrategyKind::Ga);
+        settings.evolution.strategy = match is_plain {
+            true => StrategyKind::Ga,
+            false => fitting.next().ok_or("nothing can evolve this controller")?,
+        };
+        settings.check().map_err(|error| error.to_string())?;
+        let plan = RunPlan::new("page", seed, settings);
+        let plan = plan.starting_from(Founder::new("page", champion.genome));
+        let plan = plan.map_err(|error| error.to_string())?;
+        let strategy = begin(&plan);
+        let genomes = strategy.ask();
+        let (scored, history) = (Vec::new(), Vec::new());
+        Ok(Self { plan, strategy, generation: 1, genomes, scored, best: None, history })
+    }
+
+    /// Evaluates the next individual, and lets the search learn after the last one of a generation.
+    pub fn next(&mut self) -> Value {
+        let index = self.scored.len();
+        let genome = &self.genomes[index];
+        let trial = self.plan.trial_in(self.generation);
+        let scored = score(genome, &trial);
+        let evaluation = scored.evaluation;
+        self.scored.push(scored);
+        let is_candidate =
+            evaluation.disqualified.is_none() && self.strategy.may_be_champion(index);
+        let is_better = is_candidate
+            && self.best.as_ref().is_none_or(|best| evaluation.fitness > best.evaluation.fitness);
+        if is_better {
+            self.best = Some(Champion {
+                genome: genome.clone(),
+                trial,
+                evaluation,
+                chosen_by: None,
+                origin: Origin {
+                    preset: self.plan.preset.clone(),
+                    seed: self.plan.seed,
+                    generation: self.generation,
+                    individual: index as u32,
+                },
+            });
+        }
+        if self.scored.len() == self.genomes.len() {
+            self.finish_generation();
+        }
+        let mut state = self.state();
+        state["is_better"] = is_better.into();
+        state
+    }
+
+    fn finish_generation(&mut self) {
+        let (evaluations, episodes): (Vec<Evaluation>, Vec<_>) =
+            self.scored.drain(..).map(|scored| (scored.evaluation, scored.episode)).unzip();
+        let best = ranking(&evaluations).first().map(|&index| evaluations[index].fitness);
+        self.history.extend(best);
+        self.strategy.learn(episodes);
+        self.strategy.tell(&self.genomes, &evaluations);
+        self.generation += 1;
+        self.genomes = self.strategy.ask();
+    }
+
+    /// The progress so far.
+    pub fn state(&self) -> Value {
+        json!({
+            "generation": self.generation,
+            "individual": self.scored.len(),
+            "population": self.genomes.len(),
+            "history": self.history,
+            "best": self.best.as_ref().map(|best| best.evaluation.fitness),
+            "meaning": self.best.as_ref().map(Champion::reached),
+        })
+    }
+
+    /// The file of the best individual.
+    pub fn best(&self) -> Result<Value, String> {
+        let best = self.best.as_ref().ok_or("no individual is healthy")?;
+        let text = champion_text(best, None, &[]).map_err(|error| error.to_string())?;
+        Ok(json!({ "champion": text }))
+    }
+}

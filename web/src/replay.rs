@@ -1,0 +1,94 @@
+//! The simulation of a champion in the page.
+
+use serde_json::{Value, json};
+use snakes_and_stairs::evolve::Champion;
+use snakes_and_stairs::score::{Rollout, Trial};
+
+/// A champion that is simulated.
+pub struct Replay {
+    rollout: Rollout,
+    trial: Trial,
+    /// Whether the trial is the champion's own.
+    is_own: bool,
+    recorded_hash: u64,
+}
+
+/// A trial with another friction of stairs and ground; the champion's own without one.
+pub fn trial_with(champion: &Champion, friction: Option<f32>) -> Result<Trial, String> {
+    let mut trial = champion.trial.clone();
+    if let Some(friction) = friction {
+        trial.surface.friction = friction;
+        if let Some(ground) = &mut trial.ground {
+            ground.friction = friction;
+        }
+    }
+    trial.check().map_err(|error| error.to_string())?;
+    Ok(trial)
+}
+
+impl Replay {
+    /// Begins at the start of the trial.
+    pub fn begin(champion: Champion, friction: Option<f32>) -> Result<Self, String> {
+        let trial = trial_with(&champion, friction)?;
+        Ok(Self {
+            rollout: Rollout::new(&champion.genome, &trial),
+            is_own: trial == champion.trial,
+            trial,
+            recorded_hash: champion.evaluation.trace_hash,
+        })
+    }
+
+    /// The state at the start, with the poses.
+    pub fn start(&self) -> Value {
+        let mut state = self.state();
+        state["poses"] = self.poses().collect();
+        state
+    }
+
+    /// Position and rotation of each limb, head first, seven numbers each.
+    fn poses(&self) -> impl Iterator<Item = f32> + '_ {
+        self.rollout.poses().iter().flat_map(|pose| {
+            let (at, turn) = (pose.translation, pose.rotation);
+            [at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w]
+        })
+    }
+
+    /// Takes steps until the trial is over, at most this number.
+    pub fn advance(&mut self, steps: u32, with_poses: bool) -> Value {
+        let mut poses = Vec::new();
+        for _ in 0..steps {
+            if !self.rollout.advance() {
+                break;
+            }
+            if with_poses {
+                poses.extend(self.poses());
+            }
+        }
+        let mut state = self.state();
+        if with_poses {
+            state["poses"] = poses.into();
+        }
+        state
+    }
+
+    /// Time and result so far, and the poses now.
+    pub fn state(&self) -> Value {
+        let evaluation = self.rollout.evaluation();
+        let behaviour = evaluation.behaviour;
+        let hash = format!("{:016x}", evaluation.trace_hash);
+        json!({
+            "step": self.rollout.step(),
+            "last_step": self.rollout.last_step(),
+            "is_over": self.rollout.is_over(),
+            "fitness": evaluation.fitness,
+            "meaning": self.trial.result_in_words(&evaluation),
+            "disqualified": evaluation.disqualified.map(|reason| reason.words()),
+            "steps_climbed": behaviour.map_or(0, |of| of.steps_climbed),
+            "energy_j": evaluation.effort.map_or(0.0, |of| of.energy_j),
+            "is_equal": self.is_own
+                && self.rollout.is_over()
+                && evaluation.trace_hash == self.recorded_hash,
+            "hash": hash,
+        })
+    }
+}
