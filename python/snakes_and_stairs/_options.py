@@ -1,0 +1,88 @@
+"""What both environments have in common: the worlds that their arguments describe, their spaces and seeds."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Optional, Union
+
+import numpy as np
+from gymnasium import spaces
+
+from ._core import Problem, Worlds
+
+
+def make_worlds(
+    count: int,
+    preset: str,
+    stairs: Optional[Mapping[str, Any]],
+    body: Any,
+    settings: Optional[Mapping[str, Any]],
+    actions: str,
+    steps_per_action: int,
+    stiffness_nm_per_rad: Optional[float],
+    damping_nms_per_rad: Optional[float],
+    perturbation: Union[None, bool, Mapping[str, float]],
+    disqualification_penalty: float,
+    threads: Optional[int],
+) -> tuple[Problem, Worlds]:
+    """The problem and the worlds of an environment; every argument is checked."""
+    if body is not None:
+        raise ValueError(
+            f"body is {body!r}; allowed: None: there are no evolved bodies yet; settings such as"
+            ' {"agent.limbs": 6} or {"agent.limb_length_m": 1.5} change the body of the preset'
+        )
+    problem = Problem(preset, plain(stairs), plain(settings), "environment")
+    worlds = Worlds(
+        problem,
+        count,
+        actions=actions,
+        steps_per_action=steps_per_action,
+        stiffness_nm_per_rad=stiffness_nm_per_rad,
+        damping_nms_per_rad=damping_nms_per_rad,
+        perturbation=plain(perturbation),
+        disqualification_penalty=disqualification_penalty,
+        threads=threads,
+    )
+    return problem, worlds
+
+
+def plain(values: Any) -> Any:
+    """Any mapping as a dictionary; anything else as it is, for the core to check."""
+    return dict(values) if isinstance(values, Mapping) else values
+
+
+def observation_space(worlds: Worlds) -> spaces.Box:
+    """The ranges of the senses."""
+    senses = worlds.senses
+    low = np.array([sense["low"] for sense in senses], dtype=np.float32)
+    high = np.array([sense["high"] for sense in senses], dtype=np.float32)
+    return spaces.Box(low, high, dtype=np.float32)
+
+
+def action_space(worlds: Worlds) -> spaces.Box:
+    """The ranges of target angles or torques."""
+    limits = worlds.action_limits
+    return spaces.Box(-limits, limits, dtype=np.float32)
+
+
+def action_names(worlds: Worlds, actions: str) -> list[dict[str, Any]]:
+    """Index, name, unit and greatest magnitude of each part of an action."""
+    unit = "rad" if actions == "targets" else "N·m"
+    return [
+        {
+            "index": index,
+            "name": f"joint {index // 2 + 1} {('bend', 'twist')[index % 2]}",
+            "unit": unit,
+            "limit": float(limit),
+        }
+        for index, limit in enumerate(worlds.action_limits)
+    ]
+
+
+def physics_rate_hz(worlds: Worlds, steps_per_action: int) -> float:
+    """Actions per simulated second."""
+    return worlds.physics_steps_per_s / steps_per_action
+
+
+def draw_seed(random: np.random.Generator) -> np.uint64:
+    """The seed of an episode's perturbation."""
+    return random.integers(0, 2**64, dtype=np.uint64)

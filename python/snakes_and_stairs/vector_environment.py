@@ -1,0 +1,214 @@
+"""Many worlds as one Gymnasium environment, stepped on all cores."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Optional, Sequence, Union
+
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from ._options import (
+    action_names,
+    action_space,
+    draw_seed,
+    make_worlds,
+    observation_space,
+    physics_rate_hz,
+)
+
+
+class SnakesAndStairsVectorEnv(VectorEnv):
+    """N worlds: ``gymnasium.make_vec("SnakesAndStairs-v0", num_envs=N)``.
+
+    Observations, actions, rewards, ends and arguments are those of :class:`snakes_and_stairs.SnakesAndStairsEnv`, with a
+    first axis of N. In addition:
+
+        num_envs: number of worlds.
+        threads: number of threads that step them; None for all cores. Results do not depend on it.
+        autoreset_mode: ``AutoresetMode.NEXT_STEP`` (the step after an episode's last one ignores the action and begins the next
+            episode, with the reward 0), ``SAME_STEP`` (the last step begins the next episode; ``info["final_obs"]`` and
+            ``info["final_info"]`` have what ended), or ``DISABLED`` (``reset(options={"reset_mask": mask})`` begins episodes).
+
+    ``info`` has arrays ``time_s``, ``y_m``, ``energy_j``, ``steps_climbed`` with a value per world; where an episode ended also
+    ``evaluation``, a dictionary of arrays with the parts of an environment's ``evaluation``. As everywhere in Gymnasium, a mask
+    beside each array, such as ``_evaluation``, tells in which worlds its values are valid.
+    """
+
+    metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        preset: str = "climb",
+        *,
+        stairs: Optional[Mapping[str, Any]] = None,
+        body: None = None,
+        settings: Optional[Mapping[str, Any]] = None,
+        actions: str = "targets",
+        steps_per_action: int = 1,
+        stiffness_nm_per_rad: Optional[float] = None,
+        damping_nms_per_rad: Optional[float] = None,
+        perturbation: Union[None, bool, Mapping[str, float]] = None,
+        disqualification_penalty: float = 0.0,
+        threads: Optional[int] = None,
+        autoreset_mode: Union[str, AutoresetMode] = AutoresetMode.NEXT_STEP,
+        render_mode: None = None,
+    ):
+        if render_mode is not None:
+            raise ValueError(
+                f"render_mode is {render_mode!r}; allowed: None: save a champion and play it with `snakes replay`"
+            )
+        self.render_mode = None
+        self.problem, self._worlds = make_worlds(
+            num_envs,
+            preset,
+            stairs,
+            body,
+            settings,
+            actions,
+            steps_per_action,
+            stiffness_nm_per_rad,
+            damping_nms_per_rad,
+            perturbation,
+            disqualification_penalty,
+            threads,
+        )
+        self.num_envs = num_envs
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
+        self._actions = actions
+        self.single_observation_space = observation_space(self._worlds)
+        self.single_action_space = action_space(self._worlds)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        #: Actions per simulated second.
+        self.actions_per_s = physics_rate_hz(self._worlds, steps_per_action)
+        self._all = np.ones(num_envs, dtype=bool)
+        # The worlds whose episode has ended.
+        self._ended = np.zeros(num_envs, dtype=bool)
+        # One stream per world, so that a world's episodes do not depend on when those of others end.
+        self._streams: Optional[list[np.random.Generator]] = None
+
+    @property
+    def senses(self) -> list[dict[str, Any]]:
+        """Index, name, unit, scale, low and high of each part of an observation."""
+        return self._worlds.senses
+
+    @property
+    def action_parts(self) -> list[dict[str, Any]]:
+        """Index, name, unit and greatest magnitude of each part of an action."""
+        return action_names(self._worlds, self._actions)
+
+    @property
+    def servo(self) -> tuple[float, float]:
+        """Stiffness in N·m/rad and damping in N·m·s/rad of the servo that follows targets."""
+        return self._worlds.servo
+
+    def poses(self, index: int) -> np.ndarray:
+        """Poses of the limbs of a world, head first: rows of x, y, z in m and a quaternion x, y, z, w."""
+        return self._worlds.poses(index)
+
+    def reset(
+        self,
+        *,
+        seed: Union[None, int, Sequence[Optional[int]]] = None,
+        options: Optional[dict[str, Any]] = None,
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Begins an episode in every world, or in those of ``options["reset_mask"]``.
+
+        World ``i`` has the seed ``seed + i``, or ``seed[i]``, and then the episodes of a single environment with that seed.
+        """
+        options = dict(options or {})
+        mask = np.asarray(options.pop("reset_mask", self._all), dtype=bool)
+        if options:
+            raise ValueError(f"options is {options!r}; allowed: reset_mask")
+        if mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(
+                f"reset_mask is of shape {mask.shape} with {mask.sum()} flags;"
+                f" allowed: shape ({self.num_envs},) with at least one flag"
+            )
+        self._seed(seed, mask)
+        observations = self._begin(mask)
+        return observations, self._infos()
+
+    def step(
+        self, actions: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Holds an action for ``steps_per_action`` physics steps in every world that is in an episode."""
+        actions = np.asarray(actions, dtype=np.float32)
+        if actions.ndim != 2:
+            shape = self.action_space.shape
+            raise ValueError(f"action is of shape {actions.shape}; allowed: shape {shape}")
+        is_running = self._all
+        begins = self._ended
+        if begins.any():
+            if self.autoreset_mode is AutoresetMode.DISABLED:
+                which = np.flatnonzero(begins).tolist()
+                raise RuntimeError(f"the episodes of worlds {which} are over: call reset() first")
+            is_running = ~begins
+        observations, rewards, terminated, truncated = self._worlds.step(is_running, actions)
+        if begins.any():
+            observations = self._begin(begins.copy())
+        self._ended = terminated | truncated
+        infos = self._infos()
+        if self._ended.any():
+            infos = self._add_evaluations(infos)
+            if self.autoreset_mode is AutoresetMode.SAME_STEP:
+                observations, infos = self._begin_in_same_step(observations, infos)
+        return observations, rewards, terminated, truncated, infos
+
+    def _seed(self, seed: Union[None, int, Sequence[Optional[int]]], mask: np.ndarray) -> None:
+        if seed is None and self._streams is not None:
+            return
+        seeds: Sequence[Optional[int]]
+        if seed is None:
+            seeds = [None] * self.num_envs
+        elif isinstance(seed, (int, np.integer)):
+            seeds = [int(seed) + index for index in range(self.num_envs)]
+        else:
+            seeds = list(seed)
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed is a list of {len(seeds)}; allowed: {self.num_envs}, one per world")
+        if self._streams is None:
+            self._streams = [np.random.default_rng() for _ in range(self.num_envs)]
+        for index, one in enumerate(seeds):
+            if one is not None and mask[index]:
+                # As gymnasium.utils.seeding makes the generator of a single environment.
+                self._streams[index] = np.random.default_rng(np.random.SeedSequence(one))
+
+    def _begin(self, mask: np.ndarray) -> np.ndarray:
+        if self._streams is None:
+            self._seed(None, mask)
+        assert self._streams is not None
+        seeds = np.zeros(self.num_envs, dtype=np.uint64)
+        for index in np.flatnonzero(mask):
+            seeds[index] = draw_seed(self._streams[index])
+        observations = self._worlds.reset(mask, seeds)
+        self._ended = self._ended & ~mask
+        return observations
+
+    def _begin_in_same_step(
+        self, observations: np.ndarray, infos: dict[str, Any]
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        ended = self._ended.copy()
+        final = np.full(self.num_envs, None, dtype=object)
+        for index in np.flatnonzero(ended):
+            final[index] = observations[index].copy()
+        observations = self._begin(ended)
+        new = self._infos()
+        new.update(final_obs=final, _final_obs=ended, final_info=infos, _final_info=ended.copy())
+        return observations, new
+
+    def _infos(self) -> dict[str, Any]:
+        infos: dict[str, Any] = {}
+        for name, values in self._worlds.state().items():
+            infos[name] = values
+            infos[f"_{name}"] = self._all.copy()
+        return infos
+
+    def _add_evaluations(self, infos: dict[str, Any]) -> dict[str, Any]:
+        for index, result in enumerate(self._worlds.evaluations(self._ended)):
+            if result is not None:
+                infos = self._add_info(infos, {"evaluation": result}, index)
+        return infos

@@ -1,0 +1,94 @@
+//! Evaluates many genomes on many threads, without Python's lock, and ends when the user interrupts Python.
+
+use std::sync::Mutex;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+use pyo3::prelude::*;
+use snakes_and_stairs::genome::Genome;
+use snakes_and_stairs::run::{
+    Evaluator, LocalPool, RunControl, THREADS_RANGE, available_cores, evaluate_caught,
+};
+use snakes_and_stairs::score::{Evaluation, Scored, Trial};
+use snakes_and_stairs::world::Disqualification;
+
+use crate::errors::{crashed, no_threads, refused};
+
+/// The number of threads that was asked for; all cores if none was.
+pub fn threads_of(threads: Option<usize>) -> PyResult<usize> {
+    let threads = threads.unwrap_or_else(available_cores);
+    if !THREADS_RANGE.contains(&threads) {
+        return Err(refused("threads", threads, "None (all cores), or 1 to 1024"));
+    }
+    Ok(threads)
+}
+
+/// The result for a genome whose simulation panicked: what a run counts, too.
+fn void() -> Scored {
+    let evaluation = Evaluation {
+        fitness: 0.0,
+        centre_y_m: 0.0,
+        disqualified: Some(Disqualification::Crashed),
+        trace_hash: 0,
+        steps: 0,
+        effort: None,
+        behaviour: None,
+    };
+    Scored { evaluation, episode: None }
+}
+
+/// Time between two looks for an interrupt. Python itself reacts in some milliseconds.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Scores all genomes in a trial; the results are in their order.
+pub fn score_all(
+    py: Python<'_>,
+    genomes: &[Genome],
+    trial: &Trial,
+    threads: usize,
+) -> PyResult<Vec<Scored>> {
+    let control = RunControl::default();
+    let results: Mutex<Vec<Option<Scored>>> = Mutex::new(vec![None; genomes.len()]);
+    let pool = LocalPool::new(threads.min(genomes.len()).max(1)).map_err(no_threads)?;
+    let store = |index: usize, scored: Scored| {
+        if let Ok(mut results) = results.lock()
+            && let Some(place) = results.get_mut(index)
+        {
+            *place = Some(scored);
+        }
+    };
+    let interrupted = py.detach(|| {
+        std::thread::scope(|scope| {
+            let (done, finished) = channel::<()>();
+            let (control, pool, store) = (&control, &pool, &store);
+            scope.spawn(move || {
+                let jobs: Vec<&Genome> = genomes.iter().collect();
+                // Only an interrupt cancels.
+                let _ = pool.evaluate_batch(trial, &jobs, control, &|index, result| {
+                    store(index, result.unwrap_or_else(|_| void()));
+                });
+                drop(done);
+            });
+            loop {
+                match finished.recv_timeout(PATIENCE) {
+                    Err(RecvTimeoutError::Timeout) => {
+                        if let Err(interrupt) = Python::attach(|py| py.check_signals()) {
+                            control.cancel();
+                            return Some(interrupt);
+                        }
+                    }
+                    _ => return None,
+                }
+            }
+        })
+    });
+    if let Some(interrupt) = interrupted {
+        return Err(interrupt);
+    }
+    let results = results.into_inner().map_err(|_| crashed("a thread panicked".to_owned()))?;
+    // An evaluator may leave genomes out; none is lost.
+    let scored = results.into_iter().zip(genomes).map(|(scored, genome)| {
+        scored.unwrap_or_else(|| evaluate_caught(genome, trial).unwrap_or_else(|_| void()))
+    });
+    Ok(scored.collect())
+}

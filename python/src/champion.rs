@@ -1,0 +1,211 @@
+//! Saved champions and runs.
+
+use std::path::PathBuf;
+
+use numpy::ndarray::{Array2, Array3};
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde_json::{Value, json};
+use snakes_and_stairs::genome::Genome;
+use snakes_and_stairs::run;
+use snakes_and_stairs::run::headless::HeadlessError;
+use snakes_and_stairs::save::{self, LoadedChampion, RecordedV5, load_log};
+use snakes_and_stairs::schema::Choices;
+use snakes_and_stairs::score::Rollout;
+
+use crate::batch::score_all;
+use crate::convert::{parsed, to_python};
+use crate::errors::{crashed, unusable};
+use crate::evaluations::Evaluations;
+
+/// A saved champion.
+#[pyclass(frozen, module = "snakes_and_stairs._core")]
+pub struct Champion {
+    loaded: LoadedChampion,
+}
+
+impl Champion {
+    pub fn genome(&self) -> &Genome {
+        &self.loaded.champion.genome
+    }
+
+    fn json(&self) -> PyResult<Value> {
+        let LoadedChampion { champion, engine, exam, recording } = &self.loaded;
+        let value = |result: serde_json::Result<Value>| result.map_err(|e| crashed(e.to_string()));
+        let evaluation = &champion.evaluation;
+        let mut recorded = value(serde_json::to_value(RecordedV5::from(*evaluation)))?;
+        if let Some(recorded) = recorded.as_object_mut() {
+            let disqualified = evaluation.disqualified.map(|reason| reason.words());
+            recorded.insert("disqualified".to_owned(), json!(disqualified));
+        }
+        let origin = &champion.origin;
+        let exam = exam.iter().map(|result| {
+            json!({
+                "suite": result.suite.choice().name,
+                "trials": result.trials,
+                "landed": result.landed,
+                "disqualified": result.disqualified,
+                "median_steps": result.median_steps,
+                "kept": result.kept,
+                "each": result.each,
+            })
+        });
+        Ok(json!({
+            "engine": engine.version,
+            "is_of_this_engine": self.loaded.is_of_this_engine(),
+            "origin": {
+                "preset": origin.preset,
+                "seed": origin.seed,
+                "generation": origin.generation,
+                "individual": origin.individual,
+            },
+            "recorded": recorded,
+            "chosen_by": champion.chosen_by,
+            "has_poses": recording.is_some(),
+            "trial": value(serde_json::to_value(&champion.trial))?,
+            "genome": value(serde_json::to_value(&champion.genome))?,
+            "exam": exam.collect::<Vec<Value>>(),
+        }))
+    }
+}
+
+/// Reads a champion's file.
+#[pyfunction]
+pub fn load_champion(path: PathBuf) -> PyResult<Champion> {
+    let loaded = save::load_champion(&path).map_err(unusable)?;
+    Ok(Champion { loaded })
+}
+
+/// Reads a run's folder.
+#[pyfunction]
+pub fn load_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+    let (plan, records) = load_log(&folder).map_err(unusable)?;
+    let champions = save::load_run(&folder).map_err(unusable)?;
+    let run = PyDict::new(py);
+    run.set_item("preset", &plan.preset)?;
+    run.set_item("seed", plan.seed)?;
+    run.set_item("founder", plan.founder.as_ref().map(|founder| founder.name().to_owned()))?;
+    run.set_item("settings", to_python(py, &plan.settings)?)?;
+    run.set_item("generations", to_python(py, &records)?)?;
+    let list = PyList::empty(py);
+    for (generation, loaded) in champions {
+        let entry = PyDict::new(py);
+        entry.set_item("generation", generation)?;
+        entry.set_item("champion", Champion { loaded })?;
+        list.append(entry)?;
+    }
+    run.set_item("champions", list)?;
+    Ok(run)
+}
+
+/// What `snakes replay FILE --no-render --json` prints; `matches` is false if the record differs.
+#[pyfunction]
+pub fn replay<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>> {
+    let mut out = Vec::new();
+    match py.detach(|| run::replay(&path, true, &mut out)) {
+        Ok(()) | Err(HeadlessError::Differs { .. }) => {
+            let line = String::from_utf8(out).map_err(|error| crashed(error.to_string()))?;
+            parsed(py, &line)
+        }
+        Err(HeadlessError::Save(error)) => Err(unusable(error)),
+        Err(HeadlessError::Crashed { message, .. }) => Err(crashed(message)),
+        Err(HeadlessError::Output(error)) => Err(PyOSError::new_err(error.to_string())),
+        Err(error) => Err(PyRuntimeError::new_err(error.to_string())),
+    }
+}
+
+#[pymethods]
+impl Champion {
+    /// Everything in the file but the poses.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.json()?)
+    }
+
+    fn __repr__(&self) -> String {
+        let champion = &self.loaded.champion;
+        let origin = &champion.origin;
+        format!("<Champion of {}, seed {}: {}>", origin.preset, origin.seed, champion.reached())
+    }
+
+    /// The recorded trace hash.
+    #[getter]
+    fn trace_hash(&self) -> u64 {
+        self.loaded.champion.evaluation.trace_hash
+    }
+
+    /// Simulates it again in its trial.
+    fn evaluate(&self, py: Python<'_>) -> PyResult<Evaluations> {
+        let champion = &self.loaded.champion;
+        let scored = score_all(py, std::slice::from_ref(&champion.genome), &champion.trial, 1)?;
+        Ok(Evaluations::new(scored, &champion.trial.stairs))
+    }
+
+    /// Its motion, simulated again: arrays with a row per moment, the first before the first step.
+    fn trajectory<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let champion = &self.loaded.champion;
+        let motion = py.detach(|| run::caught(|| Motion::of(champion))).map_err(crashed)?;
+        motion.to_python(py)
+    }
+}
+
+/// The motion of a snake: limbs head first, joints from the head.
+#[derive(Default)]
+struct Motion {
+    limbs: usize,
+    joints: usize,
+    time_s: Vec<f64>,
+    position_m: Vec<f64>,
+    quaternion: Vec<f64>,
+    joint_state: Vec<f64>,
+}
+
+impl Motion {
+    fn of(champion: &snakes_and_stairs::evolve::Champion) -> Self {
+        let mut rollout = Rollout::new(&champion.genome, &champion.trial);
+        let body = rollout.body();
+        let mut motion =
+            Self { limbs: body.limbs.len(), joints: body.joints.len(), ..Self::default() };
+        motion.observe(&rollout);
+        while rollout.advance() {
+            motion.observe(&rollout);
+        }
+        motion
+    }
+
+    fn observe(&mut self, rollout: &Rollout) {
+        self.time_s.push(rollout.time_s().into());
+        for pose in rollout.poses() {
+            let (at, turn) = (pose.translation, pose.rotation);
+            self.position_m.extend([at.x, at.y, at.z].map(f64::from));
+            self.quaternion.extend([turn.x, turn.y, turn.z, turn.w].map(f64::from));
+        }
+        for joint in rollout.simulation().joint_states() {
+            let state = [joint.bend_rad, joint.twist_rad, joint.bend_rad_s, joint.twist_rad_s];
+            self.joint_state.extend(state.map(f64::from));
+        }
+    }
+
+    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (moments, limbs, joints) = (self.time_s.len(), self.limbs, self.joints);
+        let wrong = |error: numpy::ndarray::ShapeError| PyValueError::new_err(error.to_string());
+        let of_limbs = |values: &Vec<f64>, width| {
+            Array3::from_shape_vec((moments, limbs, width), values.clone()).map_err(wrong)
+        };
+        let arrays = PyDict::new(py);
+        let time_s: Bound<'py, PyArray1<f64>> = self.time_s.clone().into_pyarray(py);
+        arrays.set_item("time_s", time_s)?;
+        arrays.set_item("position_m", of_limbs(&self.position_m, 3)?.into_pyarray(py))?;
+        arrays.set_item("quaternion_xyzw", of_limbs(&self.quaternion, 4)?.into_pyarray(py))?;
+        for (index, name) in
+            ["bend_rad", "twist_rad", "bend_rate_rad_s", "twist_rate_rad_s"].iter().enumerate()
+        {
+            let values: Vec<f64> =
+                self.joint_state.iter().copied().skip(index).step_by(4).collect();
+            let array = Array2::from_shape_vec((moments, joints), values).map_err(wrong)?;
+            arrays.set_item(name, array.into_pyarray(py))?;
+        }
+        Ok(arrays)
+    }
+}

@@ -1,0 +1,103 @@
+//! Values of Python as texts of settings, and values of the core as dictionaries.
+
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use serde::Serialize;
+
+use crate::errors::{crashed, refused};
+
+/// A value as `--set` takes it: `5`, `0.3`, `true`, `none`, `[0.4, 0.5]`.
+pub fn text_of(field: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
+    if value.is_none() {
+        return Ok("none".to_owned());
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return text.extract();
+    }
+    if let Ok(flag) = value.cast::<PyBool>() {
+        return Ok(flag.is_true().to_string());
+    }
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let texts: Vec<String> =
+            value.try_iter()?.map(|one| text_of(field, &one?)).collect::<PyResult<_>>()?;
+        return Ok(format!("[{}]", texts.join(", ")));
+    }
+    if value.is_instance_of::<PyInt>() {
+        return value.str()?.extract();
+    }
+    if value.is_instance_of::<PyFloat>() {
+        return Ok(number(value.extract()?));
+    }
+    // NumPy's numbers and arrays know how to become Python's.
+    if value.hasattr("tolist")? {
+        return text_of(field, &value.call_method0("tolist")?);
+    }
+    let kind = value.get_type().name()?;
+    Err(refused(field, format!("a {kind}"), "a number, a bool, a string, None, or a list of these"))
+}
+
+/// A number as settings spell it: whole ones without a point, so that 5.0 steps are 5.
+fn number(value: f64) -> String {
+    value.to_string()
+}
+
+/// The changes of settings in a dictionary, in its order; `prefix` precedes each name.
+pub fn changes_in(
+    field: &str,
+    prefix: &str,
+    settings: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<(String, String)>> {
+    let Some(settings) = settings.filter(|settings| !settings.is_none()) else {
+        return Ok(Vec::new());
+    };
+    let Ok(settings) = settings.cast::<PyDict>() else {
+        let kind = settings.get_type().name()?;
+        return Err(refused(field, format!("a {kind}"), "a dictionary of names and values"));
+    };
+    let change = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let Ok(name) = name.cast::<PyString>() else {
+            return Err(refused(field, name.repr()?, "names as strings"));
+        };
+        let path = prefix.to_owned() + &name.extract::<String>()?;
+        let text = text_of(&path, &value)?;
+        Ok((path, text))
+    };
+    settings.iter().map(change).collect()
+}
+
+/// A value of the core as dictionaries, lists and numbers. Numbers keep the digits that files have.
+pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value).map_err(|error| crashed(error.to_string()))?;
+    parsed(py, &text)
+}
+
+/// A text of JSON as dictionaries, lists and numbers.
+pub fn parsed<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (json,))
+}
+
+/// The rows of an array of points: `columns` finite numbers each.
+pub fn rows(
+    field: &str,
+    array: &PyReadonlyArray2<'_, f64>,
+    columns: usize,
+) -> PyResult<Vec<Vec<f64>>> {
+    let view = array.as_array();
+    let (count, found) = view.dim();
+    if found != columns {
+        let allowed = format!("shape (n, {columns})");
+        return Err(refused(field, format!("of shape ({count}, {found})"), &allowed));
+    }
+    let row = |(index, row): (usize, numpy::ndarray::ArrayView1<'_, f64>)| {
+        for (column, value) in row.iter().enumerate() {
+            // Far outside the cube, reflections lose precision.
+            if !(-1.0e6..=1.0e6).contains(value) {
+                let name = format!("{field}[{index}, {column}]");
+                return Err(refused(&name, value, "finite numbers from -1e6 to 1e6"));
+            }
+        }
+        Ok(row.to_vec())
+    };
+    view.outer_iter().enumerate().map(row).collect()
+}

@@ -1,0 +1,167 @@
+//! The results of a batch, as arrays.
+
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+use snakes_and_stairs::score::{Behaviour, Evaluation, Scored};
+use snakes_and_stairs::world::{Effort, Stairs};
+
+/// The results of a batch of evaluations, one per snake, in order.
+#[pyclass(frozen, module = "snakes_and_stairs._core")]
+pub struct Evaluations {
+    pub scored: Vec<Scored>,
+    stairs: Stairs,
+}
+
+impl Evaluations {
+    pub fn new(scored: Vec<Scored>, stairs: &Stairs) -> Self {
+        Self { scored, stairs: stairs.clone() }
+    }
+
+    fn of<'py, T: numpy::Element>(
+        &self,
+        py: Python<'py>,
+        value: impl Fn(&Evaluation) -> T,
+    ) -> Bound<'py, PyArray1<T>> {
+        let values: Vec<T> = self.scored.iter().map(|scored| value(&scored.evaluation)).collect();
+        values.into_pyarray(py)
+    }
+
+    fn of_effort<'py>(
+        &self,
+        py: Python<'py>,
+        value: impl Fn(&Effort) -> f32,
+    ) -> Bound<'py, PyArray1<f64>> {
+        self.of(py, |of| of.effort.as_ref().map_or(f64::NAN, |effort| value(effort).into()))
+    }
+
+    fn of_behaviour<'py>(
+        &self,
+        py: Python<'py>,
+        value: impl Fn(&Behaviour) -> Option<f32>,
+    ) -> Bound<'py, PyArray1<f64>> {
+        self.of(py, |of| of.behaviour.as_ref().and_then(&value).map_or(f64::NAN, f64::from))
+    }
+}
+
+#[pymethods]
+impl Evaluations {
+    fn __len__(&self) -> usize {
+        self.scored.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let best = self.scored.iter().map(|scored| &scored.evaluation);
+        let best = best.filter(|of| of.disqualified.is_none()).map(|of| of.fitness);
+        let best = best.reduce(f32::max).map_or("none".to_owned(), |best| best.to_string());
+        format!("<Evaluations of {} snakes, best fitness {best}>", self.scored.len())
+    }
+
+    /// By the measure ``trial.fitness``; of a disqualified snake, the fitness after its last healthy step.
+    #[getter]
+    fn fitness<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of(py, |of| of.fitness.into())
+    }
+
+    /// Whether the physics broke or was exploited, or the snake left the arena. Such a snake ranks last.
+    #[getter]
+    fn disqualified<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.of(py, |of| of.disqualified.is_some())
+    }
+
+    /// The reason of each disqualification; None for a healthy snake.
+    #[getter]
+    fn reasons(&self) -> Vec<Option<&'static str>> {
+        let reason = |scored: &Scored| scored.evaluation.disqualified.map(|why| why.words());
+        self.scored.iter().map(reason).collect()
+    }
+
+    /// Whether it ended healthy with all steps under its middle block.
+    #[getter]
+    fn on_landing<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        self.of(py, |of| of.is_on_landing(&self.stairs))
+    }
+
+    /// Steps under the middle block at the end.
+    #[getter]
+    fn steps_climbed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.of(py, |of| of.behaviour.map_or(0, |behaviour| behaviour.steps_climbed.into()))
+    }
+
+    /// Healthy physics steps.
+    #[getter]
+    fn physics_steps<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.of(py, |of| of.steps.into())
+    }
+
+    /// Hash over the bits of all poses: equal only if every step was.
+    #[getter]
+    fn trace_hash<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+        self.of(py, |of| of.trace_hash)
+    }
+
+    /// y of the middle block at the end, in m.
+    #[getter]
+    fn centre_y_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of(py, |of| of.centre_y_m.into())
+    }
+
+    /// Energy that the joints spent, in J.
+    #[getter]
+    fn energy_j<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_effort(py, |effort| effort.energy_j)
+    }
+
+    /// Greatest speed of a block, in m/s.
+    #[getter]
+    fn top_speed_m_s<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_effort(py, |effort| effort.top_speed_m_s)
+    }
+
+    /// Greatest gap of a joint, in m.
+    #[getter]
+    fn joint_drift_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_effort(py, |effort| effort.joint_drift_m)
+    }
+
+    /// Greatest distance of a block from the middle of the stairs, in m.
+    #[getter]
+    fn sideways_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_effort(py, |effort| effort.sideways_m)
+    }
+
+    /// Mean height of the blocks over the tread below the middle block, in m.
+    #[getter]
+    fn mean_height_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_behaviour(py, |of| Some(of.mean_height_m))
+    }
+
+    /// Mean distance of the middle block from the middle of the stairs, in m.
+    #[getter]
+    fn mean_sideways_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_behaviour(py, |of| Some(of.mean_sideways_m))
+    }
+
+    /// Mean share of blocks that touch something, from 0 to 1.
+    #[getter]
+    fn contact_duty<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_behaviour(py, |of| Some(of.contact_duty))
+    }
+
+    /// Frequency of the controller, in Hz.
+    #[getter]
+    fn frequency_hz<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_behaviour(py, |of| Some(of.frequency_hz))
+    }
+
+    /// Energy per weight and way; NaN without a way.
+    #[getter]
+    fn cost_of_transport<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_behaviour(py, |of| of.cost_of_transport)
+    }
+
+    /// Share of the energy that lifted the snake; NaN without energy.
+    #[getter]
+    fn climbing_efficiency<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of_behaviour(py, |of| of.climbing_efficiency)
+    }
+}

@@ -1,0 +1,32 @@
+//! The compiled part of the Python package `snakes_and_stairs`. Its public face, with all checks of types and all
+//! documentation, is the Python code beside it; `snakes_and_stairs/_core.pyi` lists what this module offers.
+//!
+//! Nothing is simulated or scored here that the core does not simulate and score: environments advance a
+//! `score::Rollout`, evaluations are `score::score`.
+
+mod batch;
+mod champion;
+mod convert;
+mod errors;
+mod evaluations;
+mod problem;
+mod search;
+mod world;
+mod worlds;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<problem::Problem>()?;
+    module.add_class::<evaluations::Evaluations>()?;
+    module.add_class::<search::Search>()?;
+    module.add_class::<champion::Champion>()?;
+    module.add_class::<worlds::Worlds>()?;
+    module.add_function(wrap_pyfunction!(champion::load_champion, module)?)?;
+    module.add_function(wrap_pyfunction!(champion::load_run, module)?)?;
+    module.add_function(wrap_pyfunction!(champion::replay, module)?)?;
+    module.add_function(wrap_pyfunction!(problem::presets, module)?)?;
+    module.add("ENGINE_VERSION", snakes_and_stairs::ENGINE_VERSION)?;
+    Ok(())
+}

@@ -1,0 +1,296 @@
+//! A preset with changed settings: the trial, the space of genomes, and the search.
+
+use std::path::PathBuf;
+
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use snakes_and_stairs::evolve::{self, Origin, Settings, fields, with_fields};
+use snakes_and_stairs::genome::{ControllerKind, Genome};
+use snakes_and_stairs::rng::{Purpose, stream};
+use snakes_and_stairs::run::caught;
+use snakes_and_stairs::save::{load_preset, shipped_presets, store_champion};
+use snakes_and_stairs::schema;
+use snakes_and_stairs::score::evaluate;
+
+use crate::batch::{score_all, threads_of};
+use crate::champion::Champion;
+use crate::convert::{changes_in, rows, to_python};
+use crate::errors::{crashed, invalid, refused, unusable};
+use crate::evaluations::Evaluations;
+
+/// A preset with changed settings.
+#[pyclass(frozen, module = "snakes_and_stairs._core")]
+pub struct Problem {
+    pub preset: String,
+    pub settings: Settings,
+}
+
+/// The names and descriptions of the shipped presets, the default first.
+#[pyfunction]
+pub fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let dictionary = PyDict::new(py);
+    for preset in shipped_presets().map_err(unusable)? {
+        dictionary.set_item(preset.name, preset.about)?;
+    }
+    Ok(dictionary)
+}
+
+/// What a problem is for, which decides the settings that have an effect.
+#[derive(Clone, Copy, PartialEq)]
+enum Use {
+    Environment,
+    Evaluation,
+    Search,
+}
+
+impl Use {
+    fn named(name: &str) -> PyResult<Self> {
+        match name {
+            "environment" => Ok(Self::Environment),
+            "evaluation" => Ok(Self::Evaluation),
+            "search" => Ok(Self::Search),
+            _ => Err(refused("use", format!("{name:?}"), "environment, evaluation or search")),
+        }
+    }
+
+    /// Refuses a setting that would have no effect; none has more than one name here.
+    fn check(self, path: &str) -> PyResult<()> {
+        let is_of_trial = path.starts_with("trial.");
+        let is_of_body =
+            ["bend_limits_rad", "twist_limits_rad", "density_min_kg_m3", "density_max_kg_m3"]
+                .iter()
+                .any(|name| path.strip_prefix("genome.") == Some(name));
+        let (has_effect, allowed) = match self {
+            Self::Environment => (
+                is_of_body || is_of_trial && !path.starts_with("trial.repeats."),
+                "settings of trial except trial.repeats, and genome's limits and densities: an environment has no genome and \
+                 no search",
+            ),
+            Self::Evaluation => (
+                path.starts_with("genome.")
+                    || is_of_trial && path != "trial.repeats.champion_trials",
+                "settings of trial and genome: an evaluation has no search",
+            ),
+            Self::Search => {
+                (path != "evolution.strategy", "other settings; strategy=... chooses it")
+            }
+        };
+        if has_effect { Ok(()) } else { Err(refused("settings", format!("{path:?}"), allowed)) }
+    }
+}
+
+impl Problem {
+    /// Whether arrays of genes say everything about the genomes.
+    pub fn check_is_array(&self) -> PyResult<()> {
+        let kind = self.settings.genome.controller;
+        let is_array = !matches!(
+            kind,
+            ControllerKind::Grown | ControllerKind::Decisions | ControllerKind::JointDecisions
+        );
+        if is_array {
+            return Ok(());
+        }
+        let allowed = "a controller whose genomes are arrays of numbers; Search(...).evaluate() and tell() drive this one, \
+                       whose networks grow or which learns";
+        Err(refused("controller", kind, allowed))
+    }
+
+    pub fn dimension(&self) -> usize {
+        self.settings.genome.dimension(self.settings.trial.genome_shape())
+    }
+
+    /// The genomes at the rows of an array.
+    pub fn genomes_at(
+        &self,
+        field: &str,
+        points: &PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Vec<Genome>> {
+        self.check_is_array()?;
+        let shape = self.settings.trial.genome_shape();
+        let points = rows(field, points, self.dimension())?;
+        Ok(points.iter().map(|point| self.settings.genome.genome_at(point, shape)).collect())
+    }
+
+    /// The points of genomes, as the rows of an array.
+    pub fn points_of<'py>(
+        &self,
+        py: Python<'py>,
+        genomes: &[Genome],
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.check_is_array()?;
+        let points: Vec<f64> =
+            genomes.iter().flat_map(|genome| self.settings.genome.exact_point_of(genome)).collect();
+        let shape = (genomes.len(), self.dimension());
+        let array = numpy::ndarray::Array2::from_shape_vec(shape, points);
+        Ok(array.map_err(|error| crashed(error.to_string()))?.into_pyarray(py))
+    }
+}
+
+#[pymethods]
+impl Problem {
+    #[new]
+    #[pyo3(signature = (preset, stairs=None, settings=None, purpose="evaluation", strategy=None))]
+    fn new(
+        preset: &str,
+        stairs: Option<&Bound<'_, PyAny>>,
+        settings: Option<&Bound<'_, PyAny>>,
+        purpose: &str,
+        strategy: Option<&str>,
+    ) -> PyResult<Self> {
+        let purpose = Use::named(purpose)?;
+        let preset = load_preset(preset).map_err(unusable)?;
+        let mut changes = changes_in("stairs", "trial.stairs.", stairs)?;
+        let others = changes_in("settings", "", settings)?;
+        for (path, _) in &others {
+            // A ground without a surface of its own has no such settings yet.
+            let is_ground = path.trim_start_matches("trial.").starts_with("ground");
+            let is_strategy = path.rsplit('.').next() == Some("strategy");
+            let full = if is_ground {
+                "trial.ground".to_owned() + "."
+            } else if is_strategy {
+                "evolution.strategy".to_owned()
+            } else {
+                schema::find(&preset.settings, path).map_err(invalid)?
+            };
+            purpose.check(&full)?;
+        }
+        changes.extend(others);
+        if let Some(strategy) = strategy {
+            changes.push(("evolution.strategy".to_owned(), strategy.to_owned()));
+        }
+        let changes = changes.iter().map(|(path, text)| (path.as_str(), text.as_str()));
+        let settings = with_fields(&preset.settings, changes).map_err(invalid)?;
+        Ok(Self { preset: preset.name, settings })
+    }
+
+    #[getter]
+    fn preset(&self) -> &str {
+        &self.preset
+    }
+
+    #[getter]
+    fn controller(&self) -> String {
+        self.settings.genome.controller.to_string()
+    }
+
+    #[getter(dimension)]
+    fn dimension_in_python(&self) -> usize {
+        self.dimension()
+    }
+
+    /// The duration of a trial, in s.
+    #[getter]
+    fn duration_s(&self) -> f64 {
+        self.settings.trial.duration_s.into()
+    }
+
+    #[getter]
+    fn steps(&self) -> u32 {
+        self.settings.trial.stairs.steps
+    }
+
+    /// All settings by their full names, with their values as text.
+    #[getter]
+    fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dictionary = PyDict::new(py);
+        for (path, value) in fields(&self.settings) {
+            dictionary.set_item(path, value)?;
+        }
+        Ok(dictionary)
+    }
+
+    /// The genes of the coordinates.
+    #[getter]
+    fn genes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        self.check_is_array()?;
+        let list = PyList::empty(py);
+        let coordinates = self.settings.genome.coordinates(self.settings.trial.genome_shape());
+        for (index, coordinate) in coordinates.into_iter().enumerate() {
+            let gene = PyDict::new(py);
+            gene.set_item("index", index)?;
+            gene.set_item("field", coordinate.field)?;
+            gene.set_item("name", coordinate.name)?;
+            gene.set_item("unit", coordinate.unit)?;
+            gene.set_item("allowed", coordinate.allowed)?;
+            list.append(gene)?;
+        }
+        Ok(list)
+    }
+
+    /// The points of random genomes: those with which a run of this seed would begin.
+    fn random<'py>(
+        &self,
+        py: Python<'py>,
+        count: usize,
+        seed: u64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.check_is_array()?;
+        let most = evolve::LARGEST_POPULATION as usize;
+        if count > most {
+            return Err(refused("count", count, &format!("0 to {most}")));
+        }
+        let (space, shape) = (&self.settings.genome, self.settings.trial.genome_shape());
+        let genome =
+            |index| space.random_genome(shape, &mut stream(seed, 1, index, Purpose::Birth));
+        let genomes: Vec<Genome> = (0..count as u32).map(genome).collect();
+        self.points_of(py, &genomes)
+    }
+
+    /// The genomes at points, as dictionaries.
+    fn decode<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        to_python(py, &self.genomes_at("points", &points)?)
+    }
+
+    /// The point of a champion's genome.
+    fn point_of<'py>(
+        &self,
+        py: Python<'py>,
+        champion: &Champion,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.check_is_array()?;
+        let (genome, shape) = (champion.genome(), self.settings.trial.genome_shape());
+        let space = &self.settings.genome;
+        space.check_genome(genome, shape).map_err(|error| invalid(error.inside("champion")))?;
+        Ok(space.exact_point_of(genome).into_pyarray(py))
+    }
+
+    #[pyo3(signature = (points, threads=None))]
+    fn evaluate(
+        &self,
+        py: Python<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        threads: Option<usize>,
+    ) -> PyResult<Evaluations> {
+        let (genomes, trial) = (self.genomes_at("genomes", &points)?, &self.settings.trial);
+        let scored = score_all(py, &genomes, trial, threads_of(threads)?)?;
+        Ok(Evaluations::new(scored, &trial.stairs))
+    }
+
+    /// Writes the snake at a point as a champion that the program replays.
+    #[pyo3(signature = (path, points, seed=0, generation=1, individual=0))]
+    fn save_champion(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        points: PyReadonlyArray2<'_, f64>,
+        seed: u64,
+        generation: u32,
+        individual: u32,
+    ) -> PyResult<()> {
+        let genomes = self.genomes_at("genome", &points)?;
+        let [genome] = genomes.as_slice() else {
+            return Err(refused("genome", format!("{} rows", genomes.len()), "one row"));
+        };
+        let trial = self.settings.trial.clone();
+        let evaluation = py.detach(|| caught(|| evaluate(genome, &trial))).map_err(crashed)?;
+        let origin = Origin { preset: self.preset.clone(), seed, generation, individual };
+        let genome = genome.clone();
+        let champion = evolve::Champion { genome, trial, evaluation, chosen_by: None, origin };
+        store_champion(&path, &champion, None).map_err(unusable)
+    }
+}

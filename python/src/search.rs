@@ -1,0 +1,249 @@
+//! The project's own strategies, driven from Python: ask, evaluate, tell.
+
+use std::sync::{Mutex, MutexGuard};
+
+use numpy::{IntoPyArray, PyArray2, PyReadonlyArray1};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use snakes_and_stairs::evolve::{Founder, RunPlan, Strategy, StrategyKind, begin};
+use snakes_and_stairs::genome::Genome;
+use snakes_and_stairs::run::caught;
+use snakes_and_stairs::score::{Evaluation, FITNESS_RANGE, Scored};
+use snakes_and_stairs::world::Disqualification;
+
+use crate::batch::{score_all, threads_of};
+use crate::champion::Champion;
+use crate::errors::{crashed, invalid, refused};
+use crate::evaluations::Evaluations;
+use crate::problem::Problem;
+
+/// A strategy at work.
+#[pyclass(frozen, module = "snakes_and_stairs._core")]
+pub struct Search {
+    problem: Py<Problem>,
+    plan: RunPlan,
+    state: Mutex<SearchState>,
+}
+
+struct SearchState {
+    strategy: Box<dyn Strategy>,
+    /// The generation that was asked for and not told yet.
+    asked: Option<Vec<Genome>>,
+    finished: u32,
+    evaluated: u64,
+}
+
+impl SearchState {
+    /// The genomes of the generation in progress.
+    fn genomes(&mut self) -> Vec<Genome> {
+        self.asked.get_or_insert_with(|| self.strategy.ask()).clone()
+    }
+}
+
+impl Search {
+    /// Another thread that failed amid a change leaves nothing that could go on.
+    fn state(&self) -> PyResult<MutexGuard<'_, SearchState>> {
+        self.state.lock().map_err(|_| PyRuntimeError::new_err("the search failed before"))
+    }
+
+    fn learn(&self, scored: Vec<Scored>) -> PyResult<()> {
+        let mut state = self.state()?;
+        let Some(genomes) = state.asked.clone() else {
+            return Err(PyRuntimeError::new_err(
+                "tell without ask: call ask() or evaluate() first",
+            ));
+        };
+        if scored.len() != genomes.len() {
+            let allowed = format!("{}, as many as were asked for", genomes.len());
+            return Err(refused("number of results", scored.len(), &allowed));
+        }
+        let (evaluations, episodes) =
+            scored.into_iter().map(|scored| (scored.evaluation, scored.episode)).unzip();
+        let evaluations: Vec<Evaluation> = evaluations;
+        let strategy = &mut state.strategy;
+        caught(|| {
+            strategy.learn(episodes);
+            strategy.tell(&genomes, &evaluations);
+        })
+        .map_err(crashed)?;
+        state.asked = None;
+        state.finished += 1;
+        state.evaluated += genomes.len() as u64;
+        Ok(())
+    }
+}
+
+#[pymethods]
+impl Search {
+    #[new]
+    #[pyo3(signature = (problem, seed, founder=None))]
+    fn new(
+        py: Python<'_>,
+        problem: Py<Problem>,
+        seed: u64,
+        founder: Option<&Champion>,
+    ) -> PyResult<Self> {
+        let of = problem.get();
+        let mut plan = RunPlan::new(&of.preset, seed, of.settings.clone());
+        if let Some(champion) = founder {
+            let founder = Founder::new("a champion", champion.genome().clone());
+            plan = plan.starting_from(founder).map_err(invalid)?;
+        }
+        let strategy = py.detach(|| caught(|| begin(&plan))).map_err(crashed)?;
+        let state = SearchState { strategy, asked: None, finished: 0, evaluated: 0 };
+        Ok(Self { problem, plan, state: Mutex::new(state) })
+    }
+
+    #[getter]
+    fn problem(&self, py: Python<'_>) -> Py<Problem> {
+        self.problem.clone_ref(py)
+    }
+
+    #[getter]
+    fn strategy(&self) -> &'static str {
+        self.plan.settings.evolution.strategy.info().name
+    }
+
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.plan.seed
+    }
+
+    /// Finished generations.
+    #[getter]
+    fn generation(&self) -> PyResult<u32> {
+        Ok(self.state()?.finished)
+    }
+
+    /// Evaluations told so far.
+    #[getter]
+    fn evaluations(&self) -> PyResult<u64> {
+        Ok(self.state()?.evaluated)
+    }
+
+    /// Snakes in the next generation.
+    #[getter]
+    fn population(&self) -> PyResult<usize> {
+        Ok(self.state()?.strategy.population())
+    }
+
+    /// Whether a run of these settings would end here.
+    #[getter]
+    fn is_over(&self) -> PyResult<bool> {
+        let state = self.state()?;
+        let next = state.evaluated + state.strategy.population() as u64;
+        let last = self.plan.settings.evolution.generations;
+        Ok(state.finished >= last || next > self.plan.budget())
+    }
+
+    /// The points of the next generation.
+    fn ask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let problem = self.problem.get();
+        problem.check_is_array()?;
+        let genomes = self.state()?.genomes();
+        problem.points_of(py, &genomes)
+    }
+
+    /// Evaluates the next generation as a run does.
+    #[pyo3(signature = (threads=None))]
+    fn evaluate(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<Evaluations> {
+        let threads = threads_of(threads)?;
+        let (genomes, generation) = {
+            let mut state = self.state()?;
+            (state.genomes(), state.finished + 1)
+        };
+        let trial = self.plan.trial_in(generation);
+        let scored = score_all(py, &genomes, &trial, threads)?;
+        Ok(Evaluations::new(scored, &trial.stairs))
+    }
+
+    /// Learns from evaluations of the generation.
+    fn tell(&self, results: &Evaluations) -> PyResult<()> {
+        self.learn(results.scored.clone())
+    }
+
+    /// Learns from a fitness of the user's own.
+    #[pyo3(signature = (fitness, disqualified=None))]
+    fn tell_fitness(
+        &self,
+        fitness: PyReadonlyArray1<'_, f64>,
+        disqualified: Option<PyReadonlyArray1<'_, bool>>,
+    ) -> PyResult<()> {
+        let kind = self.plan.settings.evolution.strategy;
+        let needs_more = matches!(kind, StrategyKind::MapElites | StrategyKind::Novelty)
+            || self.state()?.strategy.learns_from_episodes();
+        if needs_more {
+            let allowed =
+                "the result of evaluate(): this strategy also learns from how the snakes moved";
+            return Err(refused(
+                &format!("results of {}", self.strategy()),
+                "fitness alone",
+                allowed,
+            ));
+        }
+        let fitness = fitness.as_array();
+        let disqualified = disqualified.as_ref().map(|flags| flags.as_array());
+        if let Some(flags) = disqualified
+            && flags.len() != fitness.len()
+        {
+            let allowed = format!("{}, as many as fitness has", fitness.len());
+            return Err(refused("number of flags in disqualified", flags.len(), &allowed));
+        }
+        let scored = fitness.iter().enumerate().map(|(index, &value)| {
+            let is_out = disqualified.is_some_and(|flags| flags[index]);
+            let fitness = if is_out { 0.0 } else { value as f32 };
+            if !FITNESS_RANGE.contains(&fitness) {
+                let (least, most) = (FITNESS_RANGE.start(), FITNESS_RANGE.end());
+                let allowed = format!("{least} to {most}, or disqualified");
+                return Err(refused(&format!("fitness[{index}]"), value, &allowed));
+            }
+            let evaluation = Evaluation {
+                fitness,
+                centre_y_m: 0.0,
+                disqualified: is_out.then_some(Disqualification::NotFinite),
+                trace_hash: 0,
+                steps: 0,
+                effort: None,
+                behaviour: None,
+            };
+            Ok(Scored { evaluation, episode: None })
+        });
+        let scored = scored.collect::<PyResult<_>>()?;
+        self.learn(scored)
+    }
+
+    /// The elites of MAP-Elites; None for a strategy without an archive.
+    fn archive<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let state = self.state()?;
+        let Some(archive) = state.strategy.archive() else { return Ok(None) };
+        let elites = PyList::empty(py);
+        for (cell, elite) in archive.elites() {
+            let entry = PyDict::new(py);
+            entry.set_item("column", cell % archive.cells)?;
+            entry.set_item("row", cell / archive.cells)?;
+            entry.set_item("fitness", f64::from(elite.fitness))?;
+            entry.set_item("generation", elite.generation)?;
+            entry.set_item("individual", elite.individual)?;
+            entry.set_item("genome", elite.point.clone().into_pyarray(py))?;
+            elites.append(entry)?;
+        }
+        let dictionary = PyDict::new(py);
+        dictionary.set_item("x", archive.x.label())?;
+        dictionary.set_item("y", archive.y.label())?;
+        dictionary.set_item("cells", archive.cells)?;
+        dictionary.set_item("coverage", archive.coverage())?;
+        dictionary.set_item("qd_score", archive.qd_score())?;
+        dictionary.set_item("elites", elites)?;
+        Ok(Some(dictionary))
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let state = self.state()?;
+        let (strategy, seed) = (self.strategy(), self.plan.seed);
+        let (finished, evaluated) = (state.finished, state.evaluated);
+        Ok(format!(
+            "<Search by {strategy}, seed {seed}: {finished} generations, {evaluated} evaluations>"
+        ))
+    }
+}

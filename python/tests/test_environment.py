@@ -1,0 +1,230 @@
+"""One world as a Gymnasium environment."""
+
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from conftest import SHORT
+from gymnasium.utils.env_checker import check_env
+
+import snakes_and_stairs as sns
+
+
+def make(**arguments):
+    arguments.setdefault("settings", SHORT)
+    return gymnasium.make("SnakesAndStairs-v0", **arguments)
+
+
+def episode(env, policy, seed=None):
+    """Senses, rewards and the last info of an episode."""
+    senses, info = env.reset(seed=seed)
+    seen, rewards = [senses], []
+    while True:
+        senses, reward, terminated, truncated, info = env.step(policy(len(rewards)))
+        seen.append(senses)
+        rewards.append(reward)
+        if terminated or truncated:
+            return np.array(seen), np.array(rewards), terminated, info
+
+
+def wave(env):
+    """A gait by hand."""
+    parts = env.action_space.shape[0]
+    shift = np.arange(parts)
+    amplitude = 0.6 * (shift % 2 == 0)
+    return lambda step: (amplitude * np.sin(0.1 * step + shift)).astype(np.float32)
+
+
+@pytest.mark.parametrize("actions", ["targets", "torques"])
+@pytest.mark.parametrize("perturbation", [None, True])
+@pytest.mark.parametrize("preset", ["climb", "report", "ice"])
+def test_gymnasiums_checker_has_no_complaints(preset, actions, perturbation):
+    env = make(preset=preset, actions=actions, perturbation=perturbation)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        # The space of actions is in rad or N·m on purpose; gymnasium.wrappers.RescaleAction makes it -1 to 1.
+        warnings.filterwarnings("ignore", message=".*symmetric and normalized.*")
+        check_env(env.unwrapped)
+    env.close()
+
+
+def test_the_same_actions_lead_to_the_same_bits():
+    env = make()
+    first, second = (episode(env, wave(env)) for _ in range(2))
+    assert np.array_equal(first[0], second[0])
+    assert np.array_equal(first[1], second[1])
+    assert first[3]["evaluation"]["trace_hash"] == second[3]["evaluation"]["trace_hash"]
+    other = episode(env, lambda step: wave(env)(step + 1))
+    assert other[3]["evaluation"]["trace_hash"] != first[3]["evaluation"]["trace_hash"]
+
+
+def test_an_episode_is_truncated_at_the_end_of_the_trial():
+    env = make(settings={"trial.duration_s": 3}, steps_per_action=7)
+    _, rewards, terminated, info = episode(env, wave(env))
+    assert not terminated
+    # 180 physics steps; the last action is cut off.
+    assert len(rewards) == 26
+    assert info["time_s"] == pytest.approx(3.0)
+    assert info["evaluation"]["physics_steps"] == 180
+
+
+def test_rewards_add_up_to_the_way_up_the_stairs():
+    env = make(settings={"trial.duration_s": 4})
+    env.reset()
+    start_m = env.unwrapped.poses()[2, 1]
+    _, rewards, _, info = episode(env, wave(env))
+    assert info["y_m"] != pytest.approx(start_m, abs=0.05)
+    assert rewards.sum() == pytest.approx(info["y_m"] - start_m, abs=1e-4)
+    # The evaluation takes the mean over the last half second, so it is near.
+    assert info["evaluation"]["fitness"] == pytest.approx(info["y_m"], abs=0.5)
+
+
+def test_energy_costs_reward_as_it_costs_fitness():
+    free, dear = (make(settings={**SHORT, "trial.energy_cost_per_kj": cost}) for cost in (0, 2))
+    _, free_rewards, _, info = episode(free, wave(free))
+    _, dear_rewards, _, same = episode(dear, wave(dear))
+    assert info["energy_j"] == same["energy_j"] > 0
+    cost = 2 * info["energy_j"] / 1000
+    assert free_rewards.sum() - dear_rewards.sum() == pytest.approx(cost)
+    lost = info["evaluation"]["fitness"] - same["evaluation"]["fitness"]
+    assert lost == pytest.approx(cost, rel=1e-3)
+
+
+def test_a_disqualified_snake_terminates_and_pays_the_penalty():
+    settings = {**SHORT, "trial.health.speed_m_s": 1.0}
+    plain, fined = (
+        make(settings=settings, actions="torques", disqualification_penalty=fine) for fine in (0, 5)
+    )
+    full = lambda step: np.full(8, 1000.0, dtype=np.float32)  # noqa: E731
+    _, rewards, terminated, info = episode(plain, full)
+    _, fined_rewards, _, _ = episode(fined, full)
+    assert terminated
+    assert info["evaluation"]["disqualified"] == "speed limit exceeded"
+    assert info["evaluation"]["on_landing"] is False
+    assert rewards.sum() - fined_rewards.sum() == pytest.approx(5)
+    with pytest.raises(RuntimeError, match="over: call reset"):
+        plain.unwrapped.step(full(0))
+
+
+def test_actions_beyond_the_space_are_clamped_and_nan_is_refused():
+    env = make(actions="torques")
+    most = lambda step: env.action_space.high  # noqa: E731
+    beyond = lambda step: 3 * env.action_space.high  # noqa: E731
+    assert np.array_equal(episode(env, most)[0], episode(env.unwrapped, beyond)[0])
+    env.reset()
+    action = np.zeros(8, dtype=np.float32)
+    action[3] = np.nan
+    with pytest.raises(ValueError, match=r"action\[0, 3\] is NaN; allowed: finite numbers"):
+        env.unwrapped.step(action)
+    with pytest.raises(ValueError, match="action is of shape"):
+        env.unwrapped.step(np.zeros(7, dtype=np.float32))
+    with pytest.raises(ValueError, match="action is of shape"):
+        env.unwrapped.step(np.zeros((2, 8), dtype=np.float32))
+
+
+def test_a_step_before_the_first_reset_is_refused():
+    env = sns.SnakesAndStairsEnv(settings=SHORT)
+    with pytest.raises(RuntimeError, match="call reset"):
+        env.step(np.zeros(8, dtype=np.float32))
+
+
+def test_a_servo_holds_the_joints_at_their_targets():
+    env = make(stiffness_nm_per_rad=900, settings={**SHORT, "gravity_m_s2": 0})
+    target = np.zeros(8, dtype=np.float32)
+    target[0], target[4] = 0.3, -0.3
+    seen, _, _, _ = episode(env, lambda step: target)
+    senses = {sense["name"]: sense for sense in env.unwrapped.senses}
+    for name, angle in (("joint 1 bend", 0.3), ("joint 2 bend", 0.0), ("joint 3 bend", -0.3)):
+        sense = senses[name]
+        assert sense["unit"] == "rad"
+        assert seen[-1, sense["index"]] * sense["scale"] == pytest.approx(angle, abs=0.02)
+    assert env.unwrapped.servo == (900, 60)
+
+
+def test_senses_and_parts_of_actions_are_described():
+    env = make().unwrapped
+    senses = env.senses
+    assert len(senses) == env.observation_space.shape[0] == 60
+    names = [sense["name"] for sense in senses]
+    assert names[0] == "joint 1 bend" and names[16] == "limb 1 touch" and names[-1] == "aside"
+    assert [sense["index"] for sense in senses] == list(range(60))
+    assert senses[names.index("limb 2 gap")]["unit"] == "m"
+    parts = env.action_parts
+    assert [part["name"] for part in parts[:3]] == ["joint 1 bend", "joint 1 twist", "joint 2 bend"]
+    assert {part["unit"] for part in parts} == {"rad"}
+    assert [part["limit"] for part in parts] == env.action_space.high.tolist()
+    torques = make(actions="torques").unwrapped
+    assert {part["unit"] for part in torques.action_parts} == {"N·m"}
+    assert torques.action_space.high[0] == 1000
+
+
+def test_observations_stay_within_their_space():
+    env = make(preset="trampoline", actions="torques", settings={"trial.duration_s": 5})
+    rng = np.random.default_rng(3)
+    low, high = env.action_space.low, env.action_space.high
+    seen, _, _, _ = episode(env, lambda step: rng.uniform(low, high).astype(np.float32))
+    assert len(seen) > 20
+    assert all(env.observation_space.contains(senses) for senses in seen)
+
+
+def test_stairs_and_settings_change_the_world():
+    with_steps = make(stairs={"steps": 3, "rise_m": [0.2, 0.4, 0.3]}).unwrapped
+    assert with_steps.problem.settings["trial.stairs.steps"] == "3"
+    assert with_steps.problem.settings["trial.stairs.rise_m"] == "[0.2, 0.4, 0.3]"
+    longer = make(settings={**SHORT, "agent.limbs": 7, "trial.start_y_m": np.float32(-9)}).unwrapped
+    assert longer.action_space.shape == (12,)
+    longer.reset()
+    assert longer.poses().shape == (7, 7)
+    assert longer.poses()[3, 1] == pytest.approx(-9)
+
+
+def test_perturbations_follow_the_seed():
+    env = make(perturbation={"start_m": 1.0})
+    starts = []
+    for seed in (1, None, None, 1, 2):
+        env.reset(seed=seed)
+        starts.append(tuple(env.unwrapped.poses()[2, :2]))
+    assert starts[0] == starts[3], "the same seed"
+    assert len(set(starts)) == 4, "every other episode starts elsewhere"
+    assert all(abs(x) <= 1 and abs(y + 7.23) <= 1 for x, y in starts)
+    fixed = make()
+    fixed.reset(seed=1)
+    here = fixed.unwrapped.poses()
+    fixed.reset(seed=2)
+    assert np.array_equal(here, fixed.unwrapped.poses())
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ({"preset": "climbb"}, 'preset is "climbb"; allowed: climb,'),
+        ({"stairs": {"steps": -1}}, r"trial.stairs.steps is .*-1.*; allowed: 0 to"),
+        ({"stairs": {"step": 3}}, "trial.stairs.step"),
+        ({"stairs": [3]}, "stairs is a list; allowed: a dictionary"),
+        ({"settings": {"surface.friction": float("nan")}}, "trial.surface.friction is"),
+        ({"settings": {"evolution.population": 5}}, "an environment has no genome and no search"),
+        ({"settings": {"genome.wave.harmonics": 3}}, "an environment has no genome and no search"),
+        ({"settings": {"repeats.trials": 3}}, "an environment has no genome and no search"),
+        ({"settings": {"surface.friction": object()}}, "surface.friction is a object; allowed: a number"),
+        ({"body": "centipede"}, "body is 'centipede'; allowed: None"),
+        ({"actions": "muscles"}, 'actions is "muscles"; allowed: targets, torques'),
+        ({"steps_per_action": 0}, "steps_per_action is 0; allowed: 1 to 1000"),
+        ({"stiffness_nm_per_rad": -1}, "stiffness_nm_per_rad is -1; allowed: 0 to 100000"),
+        ({"actions": "torques", "damping_nms_per_rad": 5}, "damping_nms_per_rad is 5; allowed: None"),
+        ({"perturbation": {"friction": 2}}, "perturbation.friction is 2; allowed: 0 to 0.9"),
+        ({"perturbation": {"wind": 2}}, 'perturbation is "wind"'),
+        ({"perturbation": 3}, "perturbation is a int; allowed: a dictionary"),
+        ({"disqualification_penalty": float("inf")}, "disqualification_penalty is inf; allowed: 0 to"),
+        ({"render_mode": "human"}, "render_mode is 'human'; allowed: None"),
+    ],
+)
+def test_what_is_not_allowed_is_refused_in_one_line(arguments, message):
+    with pytest.raises(ValueError, match=message) as error:
+        sns.SnakesAndStairsEnv(**arguments)
+    assert "\n" not in str(error.value)
+
+
+def test_options_of_reset_are_refused():
+    with pytest.raises(ValueError, match="options is"):
+        make().unwrapped.reset(options={"low": 1})

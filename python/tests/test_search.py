@@ -1,0 +1,160 @@
+"""The project's own strategies, driven from Python."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import SAVES, SHORT
+
+import snakes_and_stairs as sns
+from snakes_and_stairs import Problem, Search
+
+SMALL = {**SHORT, "evolution.population": 8, "evolution.generations": 3}
+#: Strategies whose genomes are arrays in the space of the preset climb.
+STRATEGIES = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"]
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_a_search_asks_and_learns_the_same_each_time(strategy):
+    def generations():
+        search = Search("climb", strategy=strategy, seed=4, settings=SMALL)
+        asked = []
+        while not search.is_over and len(asked) < 3:
+            genomes = search.ask()
+            assert genomes.shape == (search.population, search.dimension)
+            assert np.array_equal(genomes, search.ask()), "asking twice gives the same"
+            asked.append(genomes.tobytes())
+            search.tell(search.evaluate())
+        assert search.generation == len(asked) > 0
+        return asked
+
+    first = generations()
+    assert first == generations()
+    assert len(set(first)) == len(first), "every generation differs"
+
+
+def test_an_array_that_was_asked_for_has_the_results_of_the_search_itself():
+    search = Search("climb", strategy="ga", seed=4, settings=SMALL)
+    problem = Problem("climb", settings=SHORT)
+    for _ in range(2):
+        own = search.evaluate()
+        from_array = problem.evaluate(search.ask())
+        assert np.array_equal(own.trace_hash, from_array.trace_hash)
+        search.tell(from_array)
+
+
+@pytest.mark.parametrize(
+    "preset, settings",
+    [
+        ("climb", {"evolution.cma_es.newborns": 6, "repeats.champion_trials": 0}),
+        ("mixed-stairs", {}),
+        ("neat", {}),
+        ("q-learning", {}),
+        ("xcs", {}),
+    ],
+)
+def test_a_search_makes_the_generations_of_the_command_line(preset, settings, snakes, tmp_path):
+    settings = {**SMALL, **settings}
+    flags = [flag for name, value in settings.items() for flag in ("--set", f"{name}={value}")]
+    snakes("--no-render", "--preset", preset, "--seed", 9, "--out", tmp_path, *flags)
+    [folder] = tmp_path.iterdir()
+    run = sns.load_run(str(folder))
+    assert run["preset"] == preset and run["seed"] == 9
+    search = Search(preset, seed=9, settings=settings)
+    for record in run["generations"]:
+        assert not search.is_over
+        results = search.evaluate()
+        assert len(results) == record["evaluations"]
+        healthy = results.fitness[~results.disqualified]
+        assert int(results.disqualified.sum()) == record["disqualified"]
+        assert healthy.max() == pytest.approx(record["statistics"]["best"], rel=1e-6)
+        assert healthy.mean() == pytest.approx(record["statistics"]["mean"], rel=1e-6)
+        search.tell(results)
+    assert search.is_over
+
+
+def test_cma_es_finds_the_optimum_of_a_function_of_ones_own():
+    search = Search(
+        "climb",
+        strategy="cma_es",
+        seed=2,
+        settings={"evolution.cma_es.newborns": 0, "evolution.generations": 10_000},
+    )
+    best = -np.inf
+    for _ in range(150):
+        fitness = -((search.ask() - 0.3) ** 2).sum(axis=1)
+        best = max(best, fitness.max())
+        search.tell(fitness)
+    # It starts at 0.5 in every coordinate: 0.04 off in each of them.
+    assert best > -1e-3
+    assert search.evaluations == 150 * 30
+
+
+def test_disqualified_individuals_do_not_count():
+    settings = {**SMALL, "evolution.cma_es.newborns": 0}
+    searches = [Search("climb", strategy="cma_es", seed=2, settings=settings) for _ in range(2)]
+    genomes, again = (search.ask() for search in searches)
+    assert np.array_equal(genomes, again)
+    fitness = genomes[:, 0]
+    searches[0].tell(fitness)
+    searches[1].tell(fitness, disqualified=fitness > np.median(fitness))
+    assert not np.array_equal(searches[0].ask(), searches[1].ask())
+
+
+def test_map_elites_keeps_an_archive():
+    search = Search("climb", strategy="map_elites", seed=1, settings={**SMALL, "population": 20})
+    search.tell(search.evaluate())
+    archive = search.archive()
+    assert 0 < len(archive["elites"]) <= archive["cells"] ** 2
+    assert archive["coverage"] == pytest.approx(len(archive["elites"]) / archive["cells"] ** 2)
+    elite = archive["elites"][0]
+    again = Problem("climb", settings=SHORT).evaluate(elite["genome"])
+    assert again.fitness[0] == pytest.approx(elite["fitness"])
+    assert Search("climb", strategy="ga", settings=SMALL).archive() is None
+
+
+def test_a_founder_is_in_the_first_generation():
+    founder = str(SAVES / "climber.ron")
+    search = Search("climb", strategy="ga", settings={**SMALL, "trial.duration_s": 20}, founder=founder)
+    results = search.evaluate()
+    # The trial may differ from the founder's own, but it still climbs.
+    assert results.steps_climbed[0] == 10
+    with pytest.raises(ValueError, match="founder.controller is gait; allowed: signal"):
+        Search("report", founder=founder)
+
+
+def test_what_is_not_allowed_is_refused():
+    with pytest.raises(ValueError, match="strategy is .*; allowed: halving, "):
+        Search("climb", strategy="annealing")
+    with pytest.raises(ValueError, match="settings is .*strategy=... chooses it"):
+        Search("climb", settings={"evolution.strategy": "ga"})
+    search = Search("climb", strategy="ga", settings=SMALL)
+    with pytest.raises(RuntimeError, match="tell without ask"):
+        search.tell(np.zeros(8))
+    search.ask()
+    for fitness, message in [
+        (np.zeros(7), "number of results is 7; allowed: 8"),
+        (np.full(8, np.nan), r"fitness\[0\] is NaN; allowed"),
+        (np.zeros((8, 1)), r"fitness is of shape \(8, 1\)"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            search.tell(fitness)
+    with pytest.raises(ValueError, match="number of flags in disqualified is 2; allowed: 8"):
+        search.tell(np.zeros(8), disqualified=[True, False])
+    results = search.evaluate()
+    with pytest.raises(ValueError, match="disqualified is given"):
+        search.tell(results, disqualified=np.zeros(8, dtype=bool))
+    assert search.generation == 0
+    search.tell(results)
+    for strategy in ("map_elites", "novelty"):
+        search = Search("climb", strategy=strategy, settings=SMALL)
+        search.ask()
+        with pytest.raises(ValueError, match="fitness alone; allowed: the result of evaluate"):
+            search.tell(np.zeros(8))
+    for preset in ("neat", "q-learning"):
+        with pytest.raises(ValueError, match="controller is"):
+            Search(preset, settings=SMALL).ask()
+    learner = Search("q-learning", settings=SMALL)
+    count = len(learner.evaluate())
+    with pytest.raises(ValueError, match="fitness alone"):
+        learner.tell(np.zeros(count))
