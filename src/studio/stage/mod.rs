@@ -4,6 +4,7 @@ pub mod contact_meter;
 pub mod lane;
 pub mod opening;
 pub mod playback;
+pub mod ranking;
 pub mod readings;
 pub mod replay;
 pub mod selection;

@@ -1,4 +1,4 @@
-//! Leaderboard: ranking of several lanes, and the buttons below it.
+//! Leaderboard: the ranking of several lanes, and the buttons below it.
 
 use bevy_egui::egui;
 
@@ -7,65 +7,11 @@ use crate::score::KeyframeHistory;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::ranking::{RankedLane, ranking};
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
 use crate::world::Stairs;
-
-/// State of a lane in the ranking.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct RankedLane {
-    /// Number of the lane; the first is 0.
-    pub lane: usize,
-    /// Label of the lane.
-    pub name: String,
-    /// Time of landing, in simulated seconds.
-    pub landed_s: Option<f64>,
-    is_disqualified: bool,
-    /// Whether the snake was pulled by hand, which disqualifies it from the ranking.
-    is_disturbed: bool,
-    /// Distance of the middle block, in metres.
-    pub y_m: f32,
-}
-
-/// The lanes in ranking order: landed lanes by time, then lanes by distance, then pulled and disqualified ones.
-pub(super) fn ranking<'a>(
-    lanes: impl IntoIterator<Item = &'a Lane>,
-    time_s: f64,
-) -> Vec<RankedLane> {
-    let mut ranking: Vec<RankedLane> = lanes
-        .into_iter()
-        .map(|lane| {
-            let evaluation = lane.evaluation();
-            RankedLane {
-                lane: lane.number(),
-                name: lane.staged().label().to_owned(),
-                landed_s: lane.landed_s(time_s),
-                is_disqualified: evaluation.disqualified.is_some(),
-                is_disturbed: lane.is_disturbed(),
-                y_m: evaluation.centre_y_m,
-            }
-        })
-        .collect();
-    order(&mut ranking);
-    ranking
-}
-
-fn order(ranking: &mut [RankedLane]) {
-    ranking.sort_by(|a, b| {
-        let landed = |ranked: &RankedLane| ranked.landed_s.unwrap_or(f64::INFINITY);
-        let by_place = b.y_m.total_cmp(&a.y_m).then(a.lane.cmp(&b.lane));
-        let counts = |ranked: &RankedLane| (ranked.is_disqualified, ranked.is_disturbed);
-        counts(a).cmp(&counts(b)).then(landed(a).total_cmp(&landed(b))).then(by_place)
-    });
-}
-
-impl RankedLane {
-    /// Whether its result counts.
-    pub fn counts(&self) -> bool {
-        !self.is_disqualified && !self.is_disturbed
-    }
-}
 
 /// Time at which the middle block first passed each riser, in simulated seconds, as far as the snake has come by
 /// `time_s`. The last step is the landing.

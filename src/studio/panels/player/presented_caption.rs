@@ -3,10 +3,10 @@
 
 use bevy_egui::egui;
 
-use super::leaderboard::{RankedLane, ranking};
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::ranking::{RankedLane, ranking};
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::ui::decimals::decimals;

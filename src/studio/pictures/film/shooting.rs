@@ -15,6 +15,7 @@ use crate::studio::pictures::offscreen::Offscreen;
 use crate::studio::pictures::render::over_heads;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::ranking::ranking;
 
 /// Maximum number of frames that are drawn and not returned yet.
 const IN_FLIGHT: usize = 3;
@@ -48,7 +49,7 @@ pub fn shoot(
     let mut done = Ok(());
     Offscreen::draw(order.size, order.theme, |studio| {
         let mut overlays = studio.app.world_mut().resource_mut::<Overlays>();
-        order.overlays.iter().for_each(|overlay| overlays.toggle(*overlay));
+        order.overlays.iter().for_each(|overlay| overlays.show(*overlay));
         done = work(&mut Shooting { order, plan, studio, part: None, time_s: 0.0 });
         Ok(())
     })?;
@@ -146,12 +147,11 @@ fn band(lanes: &[&Lane], time_s: f64) -> Option<FilmBand> {
             if has_distance { progress } else { format!("{progress}, at {middle_m:.1} m") };
         return Some(FilmBand { name: first.staged().label().to_owned(), detail, clock });
     }
-    let mut order = lanes.to_vec();
-    order.sort_by(|a, b| b.drawn_middle().y.total_cmp(&a.drawn_middle().y));
-    let name = format!("1. {}", order[0].staged().label());
-    let behind = (2..).zip(&order[1..]);
-    let behind = behind.map(|(place, lane)| format!("{place}. {}", lane.staged().label()));
-    Some(FilmBand { name, detail: behind.take(3).collect::<Vec<_>>().join("   "), clock })
+    let mut places = (1..)
+        .zip(ranking(lanes.iter().copied(), time_s))
+        .map(|(place, ranked)| format!("{place}. {}", ranked.name));
+    let name = places.next().unwrap_or_default();
+    Some(FilmBand { name, detail: places.take(3).collect::<Vec<_>>().join("   "), clock })
 }
 
 /// A frame with its texts.
@@ -171,7 +171,7 @@ fn written_on(mut picture: Picture, frame: &PendingFrame) -> Result<Picture, Fil
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
+    use crate::save::{load_champion, shipped_champion};
     use crate::studio::commands::camera_mode::CameraMode;
     use crate::studio::commands::overlay::Overlay;
     use crate::studio::pictures::film::order::FilmPart;
@@ -190,6 +190,31 @@ mod tests {
             eprintln!("skipped: frames: no Vulkan driver is installed");
         }
         is_missing
+    }
+
+    #[test]
+    fn a_snake_that_landed_first_stays_first_however_far_the_others_go_on_the_landing() {
+        let saves = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("saves");
+        let champion = |name: &str| {
+            let loaded = load_champion(&saves.join(format!("{name}.ron"))).expect("well formed");
+            (name.to_owned(), loaded)
+        };
+        let champions = ["climber", "thrifty", "robust", "fast"].map(champion).to_vec();
+        let mut lanes = lanes_of(&FilmPart { title: None, champions }).expect("they fit");
+        let time_s = 30.0;
+        lanes.iter_mut().for_each(|lane| lane.skip_to(time_s));
+        let names = |key: &dyn Fn(&Lane) -> f64| -> Vec<String> {
+            let mut order: Vec<&Lane> = lanes.iter().collect();
+            order.sort_by(|a, b| key(a).total_cmp(&key(b)));
+            order.iter().map(|lane| lane.staged().label().to_owned()).collect()
+        };
+        let by_landing = names(&|lane| lane.landed_s(time_s).expect("it lands"));
+        let by_way = names(&|lane| -f64::from(lane.drawn_middle().y));
+        assert_ne!(by_landing, by_way, "the case shows nothing");
+        let band = band(&lanes.iter().collect::<Vec<_>>(), time_s).expect("lanes");
+        let places = (1..).zip(&by_landing).map(|(place, name)| format!("{place}. {name}"));
+        let places: Vec<String> = places.collect();
+        assert_eq!((&band.name, &band.detail), (&places[0], &places[1..].join("   ")));
     }
 
     #[test]

@@ -8,29 +8,6 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 #[test]
-fn the_ranking_puts_landed_lanes_first_and_pulled_or_disqualified_ones_last() {
-    let ranked = |lane, landed_s, is_disqualified, y_m| RankedLane {
-        lane,
-        name: lane.to_string(),
-        landed_s,
-        is_disqualified,
-        is_disturbed: lane == 5,
-        y_m,
-    };
-    let mut ranking = [
-        ranked(0, None, false, 12.0),
-        ranked(1, Some(9.0), false, 24.0),
-        ranked(2, None, true, 30.0),
-        ranked(3, Some(7.5), false, 22.0),
-        ranked(4, None, false, 14.0),
-        ranked(5, None, false, 40.0),
-    ];
-    order(&mut ranking);
-    let lanes = ranking.map(|ranked| ranked.lane);
-    assert_eq!(lanes, [3, 1, 4, 0, 5, 2]);
-}
-
-#[test]
 fn a_click_focuses_a_lane_and_buttons_keep_or_discard_a_change() {
     let loaded = shipped_champion().expect("well formed");
     let lane = |number| {
