@@ -179,7 +179,15 @@ pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<
         path: path.to_owned(),
         line: error.span.start.line,
         column: error.span.start.col,
-        problem: single_line(&error.code.to_string()),
+        problem: match error.code {
+            // The parser would name a type of this program.
+            ron::Error::ExpectedNamedStructLike(_)
+            | ron::Error::ExpectedStructLike
+            | ron::Error::ExpectedDifferentStructName { .. } => {
+                "fields in parentheses are expected here".to_owned()
+            }
+            code => single_line(&code.to_string()),
+        },
     })
 }
 

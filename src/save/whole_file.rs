@@ -1,7 +1,7 @@
 //! Writing whole files: at every instant either the old or the complete new one exists.
 
 use std::fs::{self, File};
-use std::io::{ErrorKind, Write};
+use std::io::{Error, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, PersistError};
@@ -100,11 +100,19 @@ pub(super) fn folder_of(path: &Path) -> &Path {
 }
 
 /// The error that a file or folder cannot be written.
-fn unwritable(path: &Path, error: std::io::Error) -> SaveError {
-    // An error of the temporary file names that file, which the user does not know; keep only its kind.
-    let names_another = error.raw_os_error().is_none() && error.kind() != ErrorKind::Other;
-    let source = if names_another { error.kind().into() } else { error };
-    SaveError::Unwritable { path: path.to_owned(), source }
+fn unwritable(path: &Path, error: Error) -> SaveError {
+    SaveError::Unwritable { path: path.to_owned(), source: without_temporary_name(error) }
+}
+
+/// An error of a temporary file or folder without its name, which the user does not know.
+pub(super) fn without_temporary_name(error: Error) -> Error {
+    if error.raw_os_error().is_some() || error.kind() == ErrorKind::Other {
+        return error;
+    }
+    match error.kind() {
+        ErrorKind::NotFound => Error::new(ErrorKind::NotFound, "its folder does not exist"),
+        kind => kind.into(),
+    }
 }
 
 /// Prefix of the names of files that are not complete yet.
@@ -132,4 +140,18 @@ pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
     }
     // Permissions alone do not tell (read-only mounts, quotas), so try it. The file is removed when dropped.
     tempfile::tempfile_in(folder).map(drop).map_err(unwritable)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_folder_is_told_in_words_and_without_the_name_of_a_temporary_file() {
+        let around = tempfile::tempdir().expect("a folder");
+        let path = around.path().join("none").join("champion.ron");
+        let error = write_whole(&path, b"text").expect_err("no folder").to_string();
+        let expected = format!("{}: cannot be written: its folder does not exist", path.display());
+        assert_eq!(error, expected);
+    }
 }

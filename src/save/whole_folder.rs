@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::SaveError;
 use super::picture::{Picture, encoded};
-use super::whole_file::{UNFINISHED, folder_of};
+use super::whole_file::{UNFINISHED, folder_of, without_temporary_name};
 
 /// A folder that is filled file by file and appears under its name only when it is complete. Dropped before, it leaves
 /// nothing behind.
@@ -35,13 +35,7 @@ impl UnfinishedFolder {
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
         let made = builder.tempdir_in(folder_of(path));
-        // An error of the temporary folder names that folder, which the user does not know; keep only its kind.
-        let folder = made.map_err(|error| {
-            unwritable(match error.raw_os_error() {
-                Some(_) => error,
-                None => error.kind().into(),
-            })
-        })?;
+        let folder = made.map_err(|error| unwritable(without_temporary_name(error)))?;
         Ok(Self { folder, path: path.to_owned() })
     }
 

@@ -138,6 +138,12 @@ fn a_file_of_another_kind_is_refused() {
     let message = refusal_of_save(|_| "(name: \"opening\", moves: [\"e4\", \"e5\"])".to_owned());
     let allowed = "allowed: \"snakes-and-stairs champion\"";
     assert_eq!(message, format!("error: save.ron: kind is \"\"; {allowed}"));
+    let message = refusal_of_save(|_| "Dear diary".to_owned());
+    let place = "damaged or incomplete at line 1, column 1";
+    assert_eq!(
+        message,
+        format!("error: save.ron: {place}: fields in parentheses are expected here")
+    );
     let message = refusal_of_save(|_| "\u{7f}ELF\u{1}\u{2}".to_owned());
     assert!(message.starts_with("error: save.ron: damaged or incomplete at line 1"), "{message}");
 }
