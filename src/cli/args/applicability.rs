@@ -48,7 +48,7 @@ const WITH_SERVER: &[Task] = &[Run, Exam, Robust, Compare, Families, Table1, Wor
 const OF_SERVER: [&str; 4] = ["creds", "tls_ca", "expect_workers", "local_threads"];
 
 /// The help of flags that mean something else in some subcommands: subcommand, flag, help.
-const OTHER_HELP: [(&str, &str, &str); 4] = [
+const OTHER_HELP: [(&str, &str, &str); 6] = [
     (
         "worker",
         "nats",
@@ -60,6 +60,8 @@ const OTHER_HELP: [(&str, &str, &str); 4] = [
         "out",
         "Folder for the manual pages of all commands [default: none, and the program's page is printed]",
     ),
+    ("export", "theme", "Colour theme of a film: light or dark [default: light]"),
+    ("render", "theme", "Colour theme of the picture: light or dark [default: light]"),
     ("machines", "nats", "Address of the NATS server, such as nats://192.168.1.5:4222"),
 ];
 

@@ -67,7 +67,7 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     Offscreen::draw(scene.size, scene.theme, |studio| {
         let world = studio.app.world_mut();
         let mut overlays = world.resource_mut::<Overlays>();
-        scene.overlays.iter().for_each(|overlay| overlays.toggle(*overlay));
+        scene.overlays.iter().for_each(|overlay| overlays.show(*overlay));
         for lane in lanes {
             let place = Transform::from_translation(lane.offset());
             world.spawn((lane, place, Visibility::default()));

@@ -28,6 +28,13 @@ impl Overlays {
         !self.0.is_empty()
     }
 
+    /// Shows an overlay.
+    pub fn show(&mut self, overlay: Overlay) {
+        if !self.shows(overlay) {
+            self.0.push(overlay);
+        }
+    }
+
     /// Shows or hides an overlay.
     pub fn toggle(&mut self, overlay: Overlay) {
         if self.shows(overlay) {

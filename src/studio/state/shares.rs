@@ -85,12 +85,14 @@ impl Shares {
         if let Some(busy) = self.busy() {
             return Err(busy);
         }
-        let most = format.info().most_champions;
-        if champions.is_empty() {
-            return Err("There is no snake on the stage.".to_owned());
+        refuse_number(format, champions.len())?;
+        let shared = champions.iter().map(shared).collect::<Result<Vec<_>, _>>()?;
+        let named = with_ending(path, format);
+        // The dialog asked about the name that was chosen, not about this one.
+        if named != path && named.exists() {
+            return Err(format!("{} exists already; choose another name.", name_of(&named)));
         }
-        let shared = champions.iter().take(most).map(shared).collect::<Result<Vec<_>, _>>()?;
-        let path = with_ending(path, format);
+        let path = named;
         let leash = Arc::new(Leash::default());
         let writer =
             Writer { leash: Arc::clone(&leash), arguments: arguments(format, &path, look) };
@@ -147,6 +149,23 @@ impl Shares {
             }
             Err(problem) => notices.problem(problem),
         }
+    }
+}
+
+/// Refuses a number of snakes that a file of this format does not hold.
+fn refuse_number(format: ExportFormat, found: usize) -> Result<(), String> {
+    let info = format.info();
+    match (found, info.most_champions) {
+        (0, _) => Err("There is no snake on the stage.".to_owned()),
+        (_, 1) if found > 1 => Err(format!(
+            "A .{} file holds one snake, and {found} are on the stage. Leave the race with the one that you want.",
+            info.ending
+        )),
+        (_, most) if found > most => Err(format!(
+            "A .{} file holds up to {most} snakes, and {found} are on the stage. Race fewer.",
+            info.ending
+        )),
+        _ => Ok(()),
     }
 }
 

@@ -55,3 +55,32 @@ fn without_a_snake_or_a_file_the_commands_are_refused_in_a_sentence() {
     assert_eq!(shares.cancel(), Err("No file is being written.".to_owned()));
     assert_eq!((shares.progress(), shares.busy()), (None, None));
 }
+
+#[test]
+fn a_race_that_the_file_cannot_hold_is_refused_instead_of_shortened() {
+    for (format, found, problem) in [
+        (
+            ExportFormat::Html,
+            7,
+            "A .html file holds up to 6 snakes, and 7 are on the stage. Race fewer.",
+        ),
+        (
+            ExportFormat::Mjcf,
+            2,
+            "A .xml file holds one snake, and 2 are on the stage. Leave the race with the one that you want.",
+        ),
+    ] {
+        let race = vec![staged(); found];
+        let refused = Shares::default().begin(format, Path::new("race"), &race, &look());
+        assert_eq!(refused, Err(problem.to_owned()));
+    }
+}
+
+#[test]
+fn a_file_that_exists_under_the_added_ending_is_not_replaced() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("climb.csv"), "mine").expect("written");
+    let path = folder.path().join("climb");
+    let refused = Shares::default().begin(ExportFormat::Csv, &path, &[staged()], &look());
+    assert_eq!(refused, Err("climb.csv exists already; choose another name.".to_owned()));
+}

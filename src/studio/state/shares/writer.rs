@@ -7,6 +7,7 @@ use std::process::{ChildStdin, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::evolve::Champion;
+use crate::run::BackgroundTask;
 use crate::save::ChampionCopies;
 
 /// Holds the standard input of the process, whose end makes it cancel.
@@ -68,19 +69,25 @@ pub fn written(
         .spawn()
         .map_err(failed)?;
     writer.leash.hold(process.stdin.take());
+    // At the same time as the output: a process whose errors fill the pipe, such as those of a driver, would wait for ever.
+    let errors = process.stderr.take();
+    let errors = BackgroundTask::start(move || {
+        let mut bytes = Vec::new();
+        // If reading fails, the text that came before counts.
+        let _ = errors.map(|mut from| from.read_to_end(&mut bytes));
+        String::from_utf8_lossy(&bytes).into_owned()
+    });
     let mut saved = None;
-    for line in process.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines()) {
-        match said(&line.map_err(failed)?) {
+    let lines = process.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines());
+    for line in lines.map_while(Result::ok) {
+        match said(&line) {
             Some(Said::Progress(share)) => show(share),
             Some(Said::Saved(path)) => saved = Some(path),
             None => {}
         }
     }
-    let mut errors = String::new();
-    if let Some(mut from) = process.stderr.take() {
-        from.read_to_string(&mut errors).map_err(failed)?;
-    }
     let ended = process.wait().map_err(failed)?;
+    let errors = errors.map_err(failed)?.wait().unwrap_or_default();
     saved.filter(|_| ended.success()).ok_or_else(|| problem(&errors))
 }
 
