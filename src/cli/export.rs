@@ -15,7 +15,7 @@ use super::film;
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
 use crate::export::{ExportFormat, ExportOrder, ExportProgress, ExportSource};
-use crate::run::headless::HeadlessError;
+use crate::run::headless::{HeadlessError, say};
 use crate::run::progress_bar::bar_of;
 use crate::run::{BackgroundTask, RunControl};
 
@@ -31,9 +31,13 @@ pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
         let film = film::ordered(args, wanted, format)?;
         return with_progress(args, wanted, |progress| film.carry_out(progress));
     }
-    let order = ExportOrder::new(ExportSource::read(&wanted.files)?, wanted.output.clone())?;
-    for champion in order.champions() {
-        equals_record(&champion.file, &champion.loaded)?;
+    let mut order = ExportOrder::new(ExportSource::read(&wanted.files)?, wanted.output.clone())?;
+    for champion in order.champions_mut() {
+        if !equals_record(&champion.file, &champion.loaded)? {
+            champion.take_result_of_this_engine();
+            let (name, result) = (&champion.name, champion.loaded.champion.reached());
+            say(&format!("{name} is exported with the result that it has here: {result}"));
+        }
     }
     with_progress(args, wanted, |progress| {
         order.carry_out(progress)?;

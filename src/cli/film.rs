@@ -108,7 +108,7 @@ fn parts(wanted: &ExportArgs, format: ExportFormat) -> Result<Vec<FilmPart>, Cli
             format!("{run} is a folder; add --story to film a run, or name champions in it");
         return Err(CliError::Usage(problem));
     }
-    within("number of champions", wanted.files.len(), 1..=format.info().most_champions)?;
+    format.check_champions(wanted.files.len())?;
     let champions = named_champions(&wanted.files)?;
     for (file, (_, loaded)) in wanted.files.iter().zip(&champions) {
         // A champion of another engine is drawn from its recording.

@@ -164,3 +164,21 @@ fn sensed(limb: &LimbReading, snake: &SnakeReading) -> [Option<f32>; 10] {
         Some(snake.aside),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documentation_lists_every_column() {
+        let page = include_str!("../../docs/export.md");
+        let rows: Vec<&str> = page
+            .lines()
+            .skip_while(|line| *line != "| column | meaning |")
+            .skip(2)
+            .take_while(|line| line.starts_with('|'))
+            .collect();
+        let row = |column: Column| format!("| `{}` | {} |", column.name, column.meaning);
+        assert_eq!(rows, columns().map(row).collect::<Vec<_>>());
+    }
+}

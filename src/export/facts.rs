@@ -1,5 +1,7 @@
 //! The facts about a champion that stand in the files of other programs.
 
+use serde_json::{Map, Value};
+
 use super::ExportedChampion;
 use crate::engine::Engine;
 
@@ -23,6 +25,15 @@ pub(super) fn facts(ExportedChampion { name, loaded, .. }: &ExportedChampion) ->
         ("engine", loaded.engine.to_string()),
         ("generator", generator()),
     ]
+}
+
+/// The facts about each champion: a JSON list of objects.
+pub(super) fn facts_as_json(champions: &[ExportedChampion]) -> Value {
+    let each = champions.iter().map(|champion| {
+        let facts = facts(champion).into_iter();
+        facts.map(|(name, value)| (name.to_owned(), value.into())).collect::<Map<_, _>>()
+    });
+    each.map(Value::from).collect()
 }
 
 /// The program and its version.

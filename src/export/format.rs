@@ -133,6 +133,39 @@ impl ExportFormat {
         matches!(self, Self::Mp4 | Self::Gif | Self::Png)
     }
 
+    /// Checks a number of champions that one file has to hold.
+    ///
+    /// # Errors
+    /// There are none, or too many.
+    pub fn check_champions(self, found: usize) -> Result<(), Invalid> {
+        let FormatInfo { ending, most_champions: most, .. } = self.info();
+        let allowed = match most {
+            1 => format!("a single champion in .{ending}; name one file"),
+            _ => format!("1 to {most} champions in .{ending}; name fewer files"),
+        };
+        let is_allowed = (1..=most).contains(&found);
+        is_allowed
+            .then_some(())
+            .ok_or_else(|| Invalid::new("FILES", format!("{found} champions"), allowed))
+    }
+
+    /// Checks a number of a run's generations, each with its champion, that one file has to hold.
+    ///
+    /// # Errors
+    /// There are none, or too many.
+    pub fn check_generations(self, found: usize) -> Result<(), Invalid> {
+        let FormatInfo { ending, most_generations: most, .. } = self.info();
+        let allowed = match most {
+            1 => format!(
+                "the champion of one generation in .{ending}; name its file in the run's folder"
+            ),
+            _ => format!("a run of 1 to {most} generations in .{ending}"),
+        };
+        let value = || format!("a run of {found} generations");
+        let is_allowed = (1..=most).contains(&found);
+        is_allowed.then_some(()).ok_or_else(|| Invalid::new("FILES", value(), allowed))
+    }
+
     /// The format of a file, by the ending of its name.
     ///
     /// # Errors

@@ -10,7 +10,6 @@ use super::mjcf::mjcf;
 use super::source::{ExportSource, ExportedChampion};
 use super::urdf::urdf;
 use super::{ExportError, ExportProgress, gltf, page, table_file};
-use crate::check::Invalid;
 use crate::save::UnfinishedFile;
 use crate::world::WorldPlan;
 
@@ -32,19 +31,10 @@ impl ExportOrder {
     /// No format has this ending, or its files do not hold this number of champions.
     pub fn new(source: ExportSource, path: PathBuf) -> Result<Self, ExportError> {
         let format = ExportFormat::of_path("--output", &path)?;
-        let info = format.info();
-        let most = if source.run.is_some() { info.most_generations } else { info.most_champions };
         let found = source.champions.len();
-        if !(1..=most).contains(&found) {
-            let value = match &source.run {
-                Some(_) => format!("a run with {found} generations"),
-                None => format!("{found} champions"),
-            };
-            let allowed = match most {
-                1 => format!("a single champion in .{}; name one file", info.ending),
-                _ => format!("up to {most} champions in .{}; name fewer files", info.ending),
-            };
-            return Err(Invalid::new("FILES", value, allowed).into());
+        match source.run {
+            Some(_) => format.check_generations(found)?,
+            None => format.check_champions(found)?,
         }
         Ok(Self { source, format, path })
     }
@@ -52,6 +42,11 @@ impl ExportOrder {
     /// The champions.
     pub fn champions(&self) -> &[ExportedChampion] {
         &self.source.champions
+    }
+
+    /// The champions, to be changed.
+    pub fn champions_mut(&mut self) -> &mut [ExportedChampion] {
+        &mut self.source.champions
     }
 
     /// The format.

@@ -101,7 +101,7 @@ mod tests {
         loaded.champion.trial.duration_s = 0.5;
         // A name that looks like a part of the template stays a name.
         let name = "{{core}}".to_owned();
-        let champion = ExportedChampion { name, file: "a.ron".into(), loaded };
+        let champion = ExportedChampion { name, file: "a.ron".into(), loaded, note: None };
         let source = ExportSource { champions: vec![champion], run: None };
         let progress = ExportProgress::new(&|_| (), &|| false);
         let data = PageData::recorded(&source, &progress).expect("not cancelled");

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
+use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::RunPlan;
-use crate::save::{GenerationRecord, LoadedChampion, load_champion, load_log, load_run};
+use crate::save::{GenerationRecord, LoadedChampion, load_champion_and_note, load_log, load_run};
+use crate::score::evaluate;
 
 /// A champion with the name under which it appears.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +18,19 @@ pub struct ExportedChampion {
     pub file: PathBuf,
     /// The champion.
     pub loaded: LoadedChampion,
+    /// The comment of its user in the file.
+    pub note: Option<String>,
+}
+
+impl ExportedChampion {
+    /// Replaces a record that the champion does not replay to by the result that it has here.
+    pub fn take_result_of_this_engine(&mut self) {
+        let LoadedChampion { champion, engine, recording, exam } = &mut self.loaded;
+        champion.evaluation = evaluate(&champion.genome, &champion.trial);
+        // Both describe the other record.
+        (*engine, *recording) = (Engine::THIS, None);
+        exam.clear();
+    }
 }
 
 /// The run that all exported champions come from.
@@ -61,8 +76,8 @@ impl ExportSource {
             let numbered = (2..=files.len() + 1).map(|number| format!("{stem} ({number})"));
             let name = std::iter::once(stem.to_string()).chain(numbered).find(is_free);
             let name = name.unwrap_or_else(|| stem.to_string());
-            let loaded = load_champion(file)?;
-            champions.push(ExportedChampion { name, file: file.clone(), loaded });
+            let (loaded, note) = load_champion_and_note(file)?;
+            champions.push(ExportedChampion { name, file: file.clone(), loaded, note });
         }
         Ok(Self { champions, run: None })
     }
@@ -75,6 +90,7 @@ impl ExportSource {
             name: format!("generation {number}"),
             file: folder.join(format!("generation-{number}.ron")),
             loaded,
+            note: None,
         };
         let champions = generations.iter().zip(loaded).map(champion).collect();
         Ok(Self { champions, run: Some(ExportedRun { plan, records, generations }) })

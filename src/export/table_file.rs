@@ -13,6 +13,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 
 use super::columns::{KEYS, RowReader, RowValues, VALUES, columns};
+use super::facts::facts_as_json;
 use super::motion::follow;
 use super::{ExportError, ExportProgress, ExportedChampion};
 use crate::save::UnfinishedFile;
@@ -98,8 +99,11 @@ fn of_csv(path: &Path) -> impl Fn(csv::Error) -> ExportError {
     }
 }
 
+/// Key of the metadata with the facts about each champion, as JSON.
+const CHAMPIONS: &str = "champions";
+
 /// Writes a table as Parquet: columns of 32-bit floats, in groups of [`ROWS_PER_GROUP`] rows, with the columns' meanings
-/// as metadata of the file.
+/// and facts about the champions as metadata of the file.
 pub(super) fn write_parquet(
     champions: &[ExportedChampion],
     path: &Path,
@@ -119,11 +123,12 @@ fn fill_parquet(
     let failed = of_parquet(path);
     let meanings =
         columns().map(|column| KeyValue::new(column.name.to_owned(), column.meaning.to_owned()));
+    let about = KeyValue::new(CHAMPIONS.to_owned(), facts_as_json(champions).to_string());
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         // The program's name and version; the library's own would change with each update of it.
         .set_created_by(concat!("snakes-and-stairs version ", env!("CARGO_PKG_VERSION")).to_owned())
-        .set_key_value_metadata(Some(meanings.collect()))
+        .set_key_value_metadata(Some(meanings.chain([about]).collect()))
         // Neighbouring steps differ in few bits of a float, and the bytes of equal weight resemble each other.
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
         .set_column_dictionary_enabled(KEYS[0].name.into(), true)

@@ -34,14 +34,10 @@ pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
                     xml.leaf("color", &[("rgba", spaced([red, green, blue, 1.0]))])
                 })?;
             }
-            xml.leaf("link", &[("name", "world".to_owned())])?;
+            // A floating joint to the world is what only some programs know: PyBullet would fix it there.
             let (at_m, turn_rad) = head_start(plan);
-            let joint = [("name", "free".to_owned()), ("type", "floating".to_owned())];
-            xml.element("joint", &joint, |xml| {
-                ends(xml, "world", "limb_1")?;
-                let rpy = ("rpy", spaced([0.0, 0.0, turn_rad]));
-                xml.leaf("origin", &[("xyz", spaced(at_m)), rpy])
-            })?;
+            let (xyz, rpy) = (spaced(at_m), spaced([0.0, 0.0, turn_rad]));
+            xml.comment(&format!("Start of limb_1 in the world: xyz {xyz}, rpy {rpy}"))?;
             for (index, limb) in plan.body.limbs.iter().enumerate() {
                 link(xml, index, limb)?;
             }

@@ -57,7 +57,7 @@ impl XmlText {
 
     /// A comment. XML has no escapes in comments and allows no two hyphens there.
     pub fn comment(&mut self, text: &str) -> io::Result<()> {
-        let text = format!(" {} ", printable(text).replace('-', "\u{2010}"));
+        let text = format!(" {} ", printable(text).replace("--", "-\u{2010}"));
         self.0.write_event(Event::Comment(BytesText::from_escaped(text)))
     }
 }
@@ -105,6 +105,15 @@ mod tests {
             ),
             "{text}"
         );
+    }
+
+    #[test]
+    fn negative_numbers_in_comments_are_numbers() {
+        let text = XmlText::document(|xml| {
+            xml.comment("at -3.23 m, ---")?;
+            xml.leaf("e", &[])
+        });
+        assert!(text.expect("in memory").contains("<!-- at -3.23 m, -\u{2010}- -->"));
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::SaveError;
-use super::champion_exam::exam_in_words;
-use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text};
+use super::champion_exam::{exam_in_words, is_programs_comment};
+use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, single_line};
 use super::v5::{ChampionV5, FORMAT, KIND};
 use super::whole_file::write_whole;
 use crate::Engine;
@@ -30,6 +30,23 @@ pub struct LoadedChampion {
 /// The file is unreadable, too large, damaged, of another kind or format, or has a value out of range.
 pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
     parse_champion(path, &read_text(path)?)
+}
+
+/// Reads a champion, and the comment of its user in the first line of the file.
+///
+/// # Errors
+/// As for [`load_champion`].
+pub fn load_champion_and_note(path: &Path) -> Result<(LoadedChampion, Option<String>), SaveError> {
+    let text = read_text(path)?;
+    Ok((parse_champion(path, &text)?, note(&text)))
+}
+
+/// The user's comment in the first line of a champion's file: a comment there, unless the program wrote it.
+pub(super) fn note(text: &str) -> Option<String> {
+    let comment = text.lines().next()?;
+    let line = comment.strip_prefix("//")?.trim();
+    let is_own = line.is_empty() || is_programs_comment(comment);
+    (!is_own).then(|| single_line(line))
 }
 
 /// Bytes reserved for the comment at the top.

@@ -37,7 +37,8 @@ mod whole_file;
 mod whole_folder;
 
 pub use champion::{
-    LoadedChampion, champion_text, load_champion, parse_champion, shipped_champion, store_champion,
+    LoadedChampion, champion_text, load_champion, load_champion_and_note, parse_champion,
+    shipped_champion, store_champion,
 };
 pub use champion_exam::{check_examinable, exam_in_words, store_exam};
 pub use change::parse_changes;

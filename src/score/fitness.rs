@@ -96,6 +96,11 @@ impl fmt::Display for Fitness {
     }
 }
 
+/// The greatest score of [`Fitness::Climb`], in m: the middle of the body when all of it lies on the landing.
+pub fn arrived_y_m(stairs: &Stairs, body: &BodyPlan) -> f32 {
+    stairs.landing_y_m() + body.length_m() / 2.0
+}
+
 /// State at the end of a rollout, from which every fitness is computed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FinalState<'a> {
@@ -117,7 +122,7 @@ impl FinalState<'_> {
             Fitness::Centre => middle.y,
             Fitness::Climb => {
                 let is_up = self.stairs.steps_under(middle.to_array()) > 0;
-                let arrived_y_m = self.stairs.landing_y_m() + self.body.length_m() / 2.0;
+                let arrived_y_m = arrived_y_m(self.stairs, self.body);
                 let max_y_m = if is_up { arrived_y_m } else { self.stairs.first_riser_y_m };
                 middle.y.min(max_y_m)
             }

@@ -22,7 +22,7 @@ pub use behaviour::Behaviour;
 pub use exam::{
     ExamCondition, ExamEnd, ExamSuite, StairsCell, StairsGrid, SuiteResult, median, varied,
 };
-pub use fitness::{FITNESS_RANGE, Fitness};
+pub use fitness::{FITNESS_RANGE, Fitness, arrived_y_m};
 pub use history::KeyframeHistory;
 pub use mirrored::MirroredRollout;
 pub use perturbation::{Perturbation, PerturbationRange};

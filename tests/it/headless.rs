@@ -278,6 +278,23 @@ fn robustness_says_that_a_champion_does_not_replay_to_its_record() {
 }
 
 #[test]
+fn a_champion_that_does_not_replay_is_exported_with_the_result_that_it_has_here() {
+    let folder = folder();
+    let save = include_str!("../../saves/first-climber.ron");
+    let hash = "trace_hash: \"";
+    let place = save.find(hash).expect("a record") + hash.len();
+    let edited = format!("{}0000{}", &save[..place], &save[place + 4..]);
+    std::fs::write(folder.path().join("edited.ron"), edited).expect("written");
+    let output = run(folder.path(), "export edited.ron -o model.xml");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("edited is exported with the result that it has here: "), "{said}");
+    let model = std::fs::read_to_string(folder.path().join("model.xml")).expect("written");
+    let own = &save[place..place + 16];
+    assert!(model.contains(own), "its own hash, {own}, is not in the model");
+}
+
+#[test]
 fn the_bench_reports_its_figures() {
     let folder = folder();
     let figures = &json_lines(folder.path(), "bench --threads 1 --json")[0];

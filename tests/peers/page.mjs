@@ -1,6 +1,7 @@
 // Opens an exported page in Chromium and prints, as JSON, what a visitor would find.
 //
 // page.mjs visit PAGE PICTURES      plays, scrubs, tries a twin, evolves; writes pictures into a folder
+// page.mjs twin PAGE FRICTION       tries a twin while the page checks its champion
 // page.mjs moment PAGE S CAMERA PICTURE   draws one moment as a picture
 // page.mjs hashes PAGE CHAMPIONS    simulates champions, a JSON list of their files' texts, with the page's core
 // page.mjs probe                    says whether Chromium is there
@@ -44,6 +45,12 @@ async function visit() {
   await drawn(page);
   found.firstFrameMs = Date.now() - began;
   found.check = await checked(page);
+  const view = await page.locator("#view").boundingBox();
+  await page.mouse.move(view.x + view.width / 2, view.y + view.height / 2);
+  await page.mouse.wheel(0, 300);
+  await page.waitForFunction(() => window.scrollY > 0, null, LONG);
+  found.scrolledTo = await page.evaluate(() => window.scrollY);
+  await page.evaluate(() => window.scrollTo(0, 0));
   const first = await seconds(page);
   await page.waitForFunction((from) => parseFloat(document.getElementById("clock").textContent) !== from, first, LONG);
   await page.locator("#play").click();
@@ -60,6 +67,7 @@ async function visit() {
   await page.locator("#try").click();
   await page.locator("#no-twin").waitFor({ state: "visible", ...LONG });
   found.twin = await page.locator("#twin-words").textContent();
+  found.twinNumbers = await page.locator("#numbers tr").last().innerText();
   found.lanes = await page.evaluate(() => state.lanes.length);
   await page.locator("#no-twin").click();
   found.lanesWithoutTwin = await page.evaluate(() => state.lanes.length);
@@ -99,6 +107,23 @@ async function visit() {
   return found;
 }
 
+// Asks for a twin at once, while the page still checks its champion; where the twin's middle is at its end, in metres along y.
+async function twin() {
+  const [friction] = rest;
+  const { page, notes } = await visitor({});
+  await drawn(page);
+  await page.locator("#whatif").waitFor({ state: "visible", ...LONG });
+  await page.locator("#friction").fill(friction);
+  await page.locator("#try").click();
+  await page.locator("#no-twin").waitFor({ state: "visible", ...LONG });
+  const check = await checked(page), words = await page.locator("#twin-words").textContent();
+  const { middle, frames } = await page.evaluate(() => {
+    const twin = state.lanes[1].champion, poses = posesAt(twin, twin.duration);
+    return { middle: poses[Math.floor(poses.length / 2)].at[1], frames: twin.frames };
+  });
+  return { check, words, middle, frames, errors: notes.errors };
+}
+
 async function moment() {
   const [time, camera, picture] = rest;
   const { page, notes } = await visitor({ viewport: { width: 1280, height: 900 }, colorScheme: "light" });
@@ -122,6 +147,6 @@ async function hashes() {
   return { ...found, errors: notes.errors };
 }
 
-const tasks = { visit, moment, hashes, probe: () => ({ version: browser.version() }) };
+const tasks = { visit, twin, moment, hashes, probe: () => ({ version: browser.version() }) };
 console.log(JSON.stringify(await tasks[task]()));
 await browser.close();

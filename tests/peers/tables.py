@@ -46,6 +46,9 @@ def main(csv_path, parquet_path, columns_path):
     metadata = pyarrow.parquet.read_schema(parquet_path).metadata
     for name, meaning in columns:
         assert metadata[name.encode()].decode() == meaning, f"{name} means {metadata[name.encode()]}"
+    facts = json.loads(metadata[b"champions"])
+    assert [of["champion"] for of in facts] == list(reference["champion"].unique()), facts
+    assert all(len(of["trace_hash"]) == 16 and of["preset"] and of["seed"] for of in facts), facts
     # The head has no joint in front of it.
     assert reference.loc[reference["limb"] == 1, "joint_bend_rad"].isna().all()
     assert reference.loc[reference["limb"] > 1, "joint_bend_rad"].notna().all()

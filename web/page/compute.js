@@ -15,31 +15,36 @@ async function compute() {
     return;
   }
   show("whatif", "evolve");
-  await checkChampions(replayer, words, bar);
   offerTwin(replayer);
   offerEvolution(module, replayer);
+  if (data.is_run) page.chosen = () => checkChampions(replayer, words, bar);
+  await checkChampions(replayer, words, bar);
 }
 
 // A module with one SIMD instruction, after the WebAssembly specification.
 const SIMD_TEST = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]);
 
-// Simulates champions again and compares their hashes with the records.
+// Simulates champions again and compares their hashes with the records: those of a race, or the chosen one of a run. A check
+// that another one has followed says nothing more.
+let checks = 0;
 async function checkChampions(replayer, words, bar) {
-  const list = data.is_run ? [subject()] : champions, results = [];
+  const check = ++checks, list = data.is_run ? [subject()] : champions, results = [];
+  delete find("check").dataset.result;
   bar.hidden = false;
   for (const champion of list) {
     words.textContent = `Simulating ${champion.name} again …`;
-    const began = performance.now();
+    let began = null;
     try {
-      const { state: found } = await replayer.ask({ champion: champion.file, poses: false }, ({ progress }) => { bar.value = progress; });
+      const { state: found } = await replayer.ask({ champion: champion.file, poses: false }, ({ progress }) => { began ??= performance.now(); if (check === checks) bar.value = progress; });
       const times = found.step * champion.step_s / Math.max(1e-3, (performance.now() - began) / 1000);
       results.push({ champion, found, times });
     } catch (error) { results.push({ champion, problem: error.message }); }
+    if (check !== checks) return;
   }
   bar.hidden = true;
   const rows = results.map(({ champion, found, times, problem }) => {
     const row = document.createElement("span"), verdict = document.createElement("span");
-    row.append(list.length > 1 ? `${champion.name}: ` : "", verdict, document.createElement("br"));
+    row.append(champions.length > 1 ? `${champion.name}: ` : "", verdict, document.createElement("br"));
     verdict.className = found?.is_equal ? "good" : "bad";
     verdict.textContent = problem ? `could not be simulated: ${problem}` : found.is_equal ? `the same, bit for bit` : `differs from the record (${found.hash} instead of ${champion.hash})`;
     if (found?.is_equal) verdict.after(` (hash ${found.hash}, ${times.toFixed(0)} times real time)`);
@@ -47,14 +52,16 @@ async function checkChampions(replayer, words, bar) {
   });
   words.replaceChildren(...rows);
   find("check").dataset.result = results.every(({ found }) => found?.is_equal) ? "equal" : "different";
-  page.chosen = data.is_run ? () => checkChampions(replayer, words, bar) : null;
 }
 
-// The friction that the slider asks for; none if it is the champion's own.
+// The friction that the slider asks for; none where it stands as it stood when the champion was chosen.
 function wantedFriction() {
   const friction = Number(find("friction").value);
-  return Math.abs(friction - subject().friction) < 0.005 ? null : friction;
+  return friction === state.ownFriction ? null : friction;
 }
+
+// The name of a snake that was simulated here; where there are several champions, with that of the one it comes from.
+function nameOf(champion, difference) { return champions.length > 1 ? `${champion.name}, ${difference}` : difference; }
 
 function offerTwin(replayer) {
   const words = find("twin-words"), button = find("try");
@@ -66,8 +73,10 @@ function offerTwin(replayer) {
     if (friction === null) { words.textContent = "Choose another friction first: this is its own ground."; return; }
     button.disabled = true;
     try {
-      const { state: found, poses } = await replayer.ask({ champion: champion.file, friction, poses: true }, ({ progress }) => { words.textContent = `Simulating … ${(progress * 100).toFixed(0)} %`; });
-      state.twin = simulated(champion, `friction ${friction.toFixed(2)}`, poses, found);
+      const { state: found, motion } = await replayer.ask({ champion: champion.file, friction, poses: true }, ({ progress }) => { words.textContent = `Simulating … ${(progress * 100).toFixed(0)} %`; });
+      // Another one may have been chosen meanwhile.
+      if (subject() !== champion) { button.disabled = false; return; }
+      state.twin = simulated(champion, nameOf(champion, `friction ${friction.toFixed(2)}`), motion, found);
       state.time = 0; restage(); find("no-twin").hidden = false; setPlaying(true);
       words.textContent = `On friction ${friction.toFixed(2)}: ${found.meaning}${found.disqualified ? ` (disqualified: ${found.disqualified})` : ""}. On its own ground, ${champion.friction.toFixed(2)}: ${champion.meaning}.`;
     } catch (error) { words.textContent = `It could not be simulated: ${error.message}`; }
@@ -76,18 +85,20 @@ function offerTwin(replayer) {
 }
 
 function offerEvolution(module, replayer) {
-  const button = find("evolve-start"), words = find("evolve-words"), chart = find("evolve-chart");
+  const button = find("evolve-start"), play = find("evolve-play"), save = find("evolve-save"), words = find("evolve-words"), chart = find("evolve-chart");
+  // The best descendant's file, with the champion from which it descends.
   let core = null, best = null, seed = 1;
+  const keep = (found) => { best = found; play.disabled = save.disabled = !found; };
   const runs = () => button.textContent === "Stop";
   button.onclick = async () => {
     if (runs()) { core.stop(); return; }
     const champion = subject(), friction = wantedFriction();
-    button.textContent = "Stop"; best = null;
+    button.textContent = "Stop"; keep(null);
     try {
       core ??= new Core(module);
       await core.ready;
       await core.ask({ evolve: true, champion: champion.file, friction, seed: seed++, population: 20 }, ({ evolution, champion: text }) => {
-        if (text) { best = text; find("evolve-play").disabled = false; find("evolve-save").disabled = false; }
+        if (text) keep({ champion, text });
         const { generation, individual, population, history, meaning } = evolution;
         words.textContent = `Generation ${generation}, ${individual} of ${population}${meaning ? `; best: ${meaning}` : ""}`;
         if (history.length > 0 && individual === 0) { chart.hidden = false; drawHistory(chart, history); }
@@ -95,11 +106,14 @@ function offerEvolution(module, replayer) {
     } catch (error) { words.textContent = `It stopped: ${error.message}`; }
     button.textContent = "Start again";
   };
-  find("evolve-save").onclick = () => savedAs(`${subject().name}-evolved`, best);
-  find("evolve-play").onclick = async () => {
-    const { state: found, poses } = await replayer.ask({ champion: best, poses: true }, () => {});
-    state.offspring = simulated(subject(), "evolved here", poses, found);
-    state.time = 0; restage(); setPlaying(true);
+  save.onclick = () => savedAs(`${best.champion.name}-evolved`, best.text);
+  play.onclick = async () => {
+    const { champion, text } = best;
+    try {
+      const { state: found, motion } = await replayer.ask({ champion: text, poses: true }, () => {});
+      state.offspring = simulated(champion, nameOf(champion, "evolved here"), motion, found);
+      state.time = 0; restage(); setPlaying(true);
+    } catch (error) { words.textContent = `It could not be simulated: ${error.message}`; }
   };
 }
 

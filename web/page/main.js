@@ -50,8 +50,8 @@ function updateNumbers() {
   state.lanes.forEach(({ champion, poses }, index) => {
     const cells = rows[index + 1].cells, middle = poses[Math.floor(poses.length / 2)].at[1];
     cells[1].textContent = `${middle.toFixed(2)} m`;
-    cells[2].textContent = champion.steps ? `${atTime(champion, champion.steps, state.time)} of ${champion.step_count}` : "";
-    cells[3].textContent = champion.energy ? `${(atTime(champion, champion.energy, state.time) / 1000).toFixed(2)} kJ` : "";
+    cells[2].textContent = `${atTime(champion, champion.steps, state.time)} of ${champion.step_count}`;
+    cells[3].textContent = `${(atTime(champion, champion.energy, state.time) / 1000).toFixed(2)} kJ`;
   });
   find("clock").textContent = `${state.time.toFixed(1)} s`;
   const time = find("time");
@@ -124,7 +124,11 @@ function listenToMouse() {
     else turn(event.clientX - last.clientX, event.clientY - last.clientY);
   });
   for (const end of ["pointerup", "pointercancel"]) view.addEventListener(end, (event) => { fingers.delete(event.pointerId); pinch = 0; });
-  view.addEventListener("wheel", (event) => { event.preventDefault(); zoom(Math.exp(event.deltaY * 0.001)); }, { passive: false });
+  // The wheel alone scrolls the page, as a finger's way up and down does, until the view has been clicked.
+  view.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.metaKey && document.activeElement !== view) return;
+    event.preventDefault(); zoom(Math.exp(event.deltaY * 0.001));
+  }, { passive: false });
   view.addEventListener("dblclick", () => setCamera(find("camera").value));
   view.addEventListener("keydown", (event) => {
     const turns = { ArrowLeft: [16, 0], ArrowRight: [-16, 0], ArrowUp: [0, 16], ArrowDown: [0, -16] }[event.key];
@@ -161,7 +165,9 @@ function describe() {
   find("strip-note").textContent = `Bend (thick) and twist of ${champion.name}, one row for each joint from the head; full height ${champion.torque_unit_nm.toFixed(0)} N·m.`;
   if (data.is_run) describeFacts(champion);
   offerFiles();
-  find("friction").value = champion.friction; find("friction-value").textContent = champion.friction.toFixed(2);
+  const slider = find("friction");
+  slider.max = Math.max(1.5, 2 * champion.friction); slider.value = champion.friction; state.ownFriction = Number(slider.value);
+  find("friction-value").textContent = champion.friction.toFixed(2);
 }
 
 // Buttons that save champions: those of a race, or the chosen one of a run.

@@ -25,9 +25,13 @@ function posesAt(champion, time) {
 // The number of a series at a time: that of the frame before.
 function atTime(champion, series, time) { return series[Math.max(0, Math.min(series.length - 1, Math.floor(time / champion.frame_s + 1e-6)))]; }
 
-// A champion that was simulated in the page: its poses as they come from the core.
-function simulated(champion, name, poses, state) {
+// A champion that was simulated in the page: its motion as it comes from the core, step by step.
+function simulated(champion, name, { poses, steps, energy }, state) {
   const limbs = champion.limbs.length, frames = Math.floor(poses.length / (limbs * 7)), packed = new Int16Array(poses.length);
-  for (let i = 0; i < poses.length; i++) packed[i] = Math.round(i % 7 < 3 ? poses[i] / champion.unit_m : poses[i] * 32767);
-  return { ...champion, name, poses: packed, frames, frame_s: champion.step_s, duration: (frames - 1) * champion.step_s, steps: null, energy: null, torques: new Int16Array(0), state };
+  // Its own unit: it may get further than its champion.
+  let furthest = 1;
+  for (let i = 0; i < poses.length; i++) if (i % 7 < 3) furthest = Math.max(furthest, Math.abs(poses[i]));
+  const unit_m = furthest / 32767;
+  for (let i = 0; i < poses.length; i++) packed[i] = Math.round(i % 7 < 3 ? poses[i] / unit_m : poses[i] * 32767);
+  return { ...champion, name, poses: packed, unit_m, frames, frame_s: champion.step_s, duration: (frames - 1) * champion.step_s, steps, energy, torques: new Int16Array(0), state };
 }

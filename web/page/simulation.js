@@ -15,15 +15,21 @@ function coreWorker() {
   const rest = () => new Promise((resolve) => setTimeout(resolve, 0));
   const simulate = async (message) => {
     let state = call({ begin: { champion: message.champion, friction: message.friction } });
-    let poses = message.poses ? state.poses : [];
-    while (!state.is_over) {
-      state = call({ advance: { steps: 30, poses: message.poses } });
-      if (message.poses) poses = poses.concat(state.poses);
+    const motion = { poses: [], steps: [], energy: [] };
+    const record = () => {
+      // A step that disqualifies has no poses.
+      if (message.poses && state.poses.length > 0) { motion.poses.push(...state.poses); motion.steps.push(state.steps_climbed); motion.energy.push(state.energy_j); }
       delete state.poses;
+    };
+    record();
+    // A recorded motion needs the state after each step.
+    const steps = message.poses ? 1 : 30;
+    while (!state.is_over) {
+      for (let taken = 0; taken < 30 && !state.is_over; taken += steps) { state = call({ advance: { steps, poses: message.poses } }); record(); }
       postMessage({ id: message.id, progress: state.step / state.last_step });
       await rest();
     }
-    postMessage({ id: message.id, state, poses });
+    postMessage({ id: message.id, state, motion });
   };
   const evolve = async (message) => {
     call({ evolve: { champion: message.champion, friction: message.friction, seed: message.seed, population: message.population } });
@@ -49,14 +55,21 @@ class Core {
   constructor(module) {
     const text = new Blob([`(${coreWorker})()`], { type: "text/javascript" });
     this.worker = new Worker(URL.createObjectURL(text));
-    this.waiting = new Map(); this.next = 0;
+    this.waiting = new Map(); this.next = 0; this.last = Promise.resolve();
     this.worker.onmessage = ({ data }) => this.waiting.get(data.id)?.(data);
     this.worker.onerror = (event) => this.waiting.forEach((tell, id) => tell({ id, error: event.message || "the core stopped" }));
     this.ready = this.ask({ module }, () => {});
   }
 
-  // Sends a message; `tell` hears of progress; the promise ends with the answer.
+  // Sends a message after the answer to the one before, because the core simulates one thing at a time; `tell` hears of
+  // progress; the promise ends with the answer.
   ask(message, tell) {
+    const answer = this.last.then(() => this.send(message, tell));
+    this.last = answer.catch(() => {});
+    return answer;
+  }
+
+  send(message, tell) {
     const id = this.next++;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, (data) => {

@@ -18,7 +18,7 @@ use gltf_json::validation::Checked;
 use gltf_json::{Asset, Index, Node, Scene};
 use serde_json::json;
 
-use super::facts::{facts, generator};
+use super::facts::{facts_as_json, generator};
 use super::{ExportError, ExportProgress, ExportedChampion};
 use crate::save::UnfinishedFile;
 use crate::world::{Rotation, Vector};
@@ -74,14 +74,10 @@ fn scene(
 
 /// The program, and the facts about each champion.
 fn asset(champions: &[ExportedChampion]) -> Asset {
-    let each = champions.iter().map(|champion| {
-        let facts = facts(champion).into_iter();
-        facts.map(|(name, value)| (name.to_owned(), value.into())).collect()
-    });
-    let each: Vec<serde_json::Map<String, serde_json::Value>> = each.collect();
     Asset {
         generator: Some(generator()),
-        extras: serde_json::value::to_raw_value(&json!({ "champions": each })).ok(),
+        extras: serde_json::value::to_raw_value(&json!({ "champions": facts_as_json(champions) }))
+            .ok(),
         ..Asset::default()
     }
 }
@@ -191,6 +187,7 @@ mod tests {
             name: name.to_owned(),
             file: format!("{name}.ron").into(),
             loaded: loaded.clone(),
+            note: None,
         };
         let champions = [named("a"), named("<b>\"")];
         let progress = ExportProgress::new(&|_| (), &|| false);

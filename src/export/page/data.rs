@@ -10,7 +10,7 @@ use crate::export::source::{ExportSource, ExportedChampion};
 use crate::export::{ExportError, ExportProgress};
 use crate::save::champion_text;
 use crate::schema::Choices;
-use crate::score::Rollout;
+use crate::score::{Fitness, Rollout, arrived_y_m};
 
 /// Everything that the page's script reads.
 #[derive(Debug, Serialize)]
@@ -175,11 +175,12 @@ impl PageChampion {
             torque_unit_nm: most_nm,
             steps: frames.steps,
             energy: frames.energy,
-            file: champion_text(
-                champion,
-                loaded.recording.as_ref().filter(|_| !is_of_run),
-                &loaded.exam,
-            )?,
+            file: exported.note.iter().map(|note| format!("// {note}\n")).collect::<String>()
+                + &champion_text(
+                    champion,
+                    loaded.recording.as_ref().filter(|_| !is_of_run),
+                    &loaded.exam,
+                )?,
             drawn: frames.poses,
         })
     }
@@ -198,8 +199,15 @@ fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
     let body = champion.body();
     let stairs = &trial.stairs;
     let effort = champion.evaluation.effort;
-    let mut facts = vec![
+    let mut measure = trial.fitness.words().to_owned();
+    if trial.fitness == Fitness::Climb {
+        measure += &format!("; at most {:.2} m", arrived_y_m(stairs, &body));
+    }
+    let mut facts = Vec::new();
+    facts.extend(exported.note.clone().map(|note| ("Note", note)));
+    facts.extend([
         ("Result", champion.reached()),
+        ("Fitness", measure),
         ("Controller", champion.genome.controller.kind().choice().title.to_owned()),
         (
             "Body",
@@ -219,7 +227,7 @@ fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
             ),
         ),
         (
-            "Found by",
+            "Run",
             format!(
                 "preset {}, seed {}, generation {}, snake {}",
                 origin.preset,
@@ -228,7 +236,7 @@ fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
                 origin.individual + 1
             ),
         ),
-    ];
+    ]);
     if let Some(effort) = effort {
         facts.push(("Energy", format!("{:.2} kJ", effort.energy_j / 1000.0)));
     }

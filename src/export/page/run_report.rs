@@ -31,6 +31,14 @@ pub fn of(run: &ExportedRun) -> String {
             format!("<tr><td><code>{}</code></td><td>{}</td></tr>\n", escaped(path), escaped(value))
         })
         .collect();
+    let (finished, planned) = (run.records.len(), settings.evolution.generations);
+    let stopped = match finished < planned as usize {
+        true => format!(
+            "<p class=\"note\">Stopped after {finished} of {planned} generations. The run hash is that of these {finished}; the \
+             command computes all {planned}.</p>\n"
+        ),
+        false => String::new(),
+    };
     let changes = match run.plan.changes == SettingChanges::default() {
         true => String::new(),
         false => "<p class=\"note\">Settings changed while it evolved; these are the last ones, and the command alone \
@@ -42,7 +50,7 @@ pub fn of(run: &ExportedRun) -> String {
          <div class=\"row\" id=\"generations\" role=\"group\" aria-label=\"Champion of generation\">\n{buttons}</div>\n\
          <table>\n<tr><th scope=\"row\">Evaluations</th><td>{evaluations}</td></tr>\n\
          <tr><th scope=\"row\">Run hash</th><td>{:016x}</td></tr>\n\
-         <tr><th scope=\"row\">Repeat it</th><td><code>{}</code></td></tr></table>\n{changes}\
+         <tr><th scope=\"row\">Repeat it</th><td><code>{}</code></td></tr></table>\n{stopped}{changes}\
          <details><summary>All settings</summary><table>\n{rows}</table></details></section>\n",
         chart(run),
         generations_hash(&run.records),

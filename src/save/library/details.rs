@@ -9,8 +9,8 @@ use crate::Engine;
 use crate::check::Invalid;
 use crate::evolve::{Origin, StrategyKind};
 use crate::genome::ControllerKind;
-use crate::save::champion_exam::is_programs_comment;
-use crate::save::files::{numbered, read_text, refuse_link, single_line};
+use crate::save::champion::note;
+use crate::save::files::{numbered, read_text, refuse_link};
 use crate::save::folder::has_generations_left;
 use crate::save::plan::load_plan;
 use crate::save::record::load_log;
@@ -170,14 +170,6 @@ fn champion(path: &Path, text: &str) -> Result<EntryDetails, SaveError> {
         note: note(text),
         thumbnail: Thumbnail::of_champion(champion, loaded.recording.as_ref()),
     })))
-}
-
-/// The comment in the first line, unless the program wrote it.
-fn note(text: &str) -> Option<String> {
-    let comment = text.lines().next()?;
-    let line = comment.strip_prefix("//")?.trim();
-    let is_own = line.is_empty() || is_programs_comment(comment);
-    (!is_own).then(|| single_line(line))
 }
 
 fn run(folder: &Path) -> Result<EntryDetails, SaveError> {

@@ -249,7 +249,8 @@ fn export(name: &str, champion: &Champion, path: &Path) {
         recording: None,
         exam: Vec::new(),
     };
-    let exported = ExportedChampion { name: name.to_owned(), file: path.to_owned(), loaded };
+    let exported =
+        ExportedChampion { name: name.to_owned(), file: path.to_owned(), loaded, note: None };
     let source = ExportSource { champions: vec![exported], run: None };
     let order = ExportOrder::new(source, path.to_owned()).expect("a known ending");
     order.carry_out(&ExportProgress::new(&|_| (), &|| false)).expect("written");

@@ -61,8 +61,11 @@ fn a_page_plays_computes_the_same_bits_and_asks_nothing_of_a_network() {
     assert!(found["text"].as_str().expect("text").contains("the same, bit for bit"));
     assert_eq!(found["held"][0], found["held"][1], "it holds");
     assert_eq!(found["scrubbed"], 2.0);
+    assert!(found["scrolledTo"].as_f64().expect("a number") > 0.0, "the wheel scrolls the page");
     assert_eq!((&found["lanes"], &found["lanesWithoutTwin"]), (&2.into(), &1.into()));
     assert!(found["twin"].as_str().expect("text").starts_with("On friction 0.20: "), "{found}");
+    let numbers = found["twinNumbers"].as_str().expect("text");
+    assert!(numbers.contains(" of 10") && numbers.contains(" kJ"), "{numbers}");
     assert!(found["evolved"].as_str().expect("text").contains("best: "), "{found}");
     let text = found["saved"].as_str().expect("text");
     let from_page = parse_champion(Path::new("saved"), text).expect("a champion");
@@ -71,8 +74,31 @@ fn a_page_plays_computes_the_same_bits_and_asks_nothing_of_a_network() {
     assert_eq!((&found["overflow"], &found["phoneOverflow"]), (&0.into(), &0.into()));
     assert!(found["phoneTurned"].as_f64().expect("a number").abs() > 0.1);
     let plain = found["withoutScripts"].as_str().expect("text");
-    assert!(plain.contains("411cfb816946c8fb") && plain.contains("26.00 m"), "{plain}");
+    for part in ["411cfb816946c8fb", "26.00 m", "at most 26.00 m", "Gallops up the stairs"] {
+        assert!(plain.contains(part), "{part} is not in {plain}");
+    }
     assert_eq!(found["hasDrawing"], true);
+}
+
+#[test]
+fn a_twin_gets_further_than_its_champion_and_disturbs_no_check() {
+    let Some(mut browser) = browser("a twin in Chromium") else { return };
+    let folder = folder();
+    let mut champion = load_champion(&saved("climber.ron")).expect("a champion").champion;
+    let good = champion.trial.surface.friction;
+    champion.trial.surface.friction = 0.02;
+    champion.evaluation = evaluate(&champion.genome, &champion.trial);
+    let reached_m = champion.evaluation.centre_y_m;
+    let (file, page) = (folder.path().join("slippery.ron"), folder.path().join("page.html"));
+    std::fs::write(&file, champion_text(&champion, None, &[]).expect("written")).expect("written");
+    export(&[&file], &page);
+    let found = found(browser.arg("twin").arg(&page).arg(good.to_string()));
+    assert_eq!((&found["errors"], &found["check"]), (&serde_json::json!([]), &"equal".into()));
+    let words = found["words"].as_str().expect("text");
+    assert!(words.contains("stands on the landing"), "{words}");
+    let middle_m = found["middle"].as_f64().expect("a number");
+    assert!(middle_m > 20.0 && reached_m < 15.0, "{middle_m} m, its champion {reached_m} m");
+    assert_eq!(found["frames"], champion.trial.steps() + 1);
 }
 
 #[test]
