@@ -5,9 +5,9 @@
 
 import argparse
 
+import numpy as np
 from ribs.archives import GridArchive
 from ribs.emitters import GaussianEmitter
-from ribs.schedulers import Scheduler
 
 from snakes_and_stairs import Problem
 
@@ -21,11 +21,13 @@ def main() -> None:
     args = parser.parse_args()
 
     problem = Problem("climb", settings={"trial.duration_s": args.duration})
+    # No healthy snake is further back than the arena reaches, so each counts for the QD score.
+    worst_m = -float(problem.settings["trial.health.arena_back_m"])
     archive = GridArchive(
         solution_dim=problem.dimension,
         dims=[16, 16],
         ranges=[(0.3, 2.3), (0.0, 1.0)],
-        qd_score_offset=-10.0,
+        qd_score_offset=worst_m,
         seed=args.seed,
     )
     emitter = GaussianEmitter(
@@ -35,15 +37,14 @@ def main() -> None:
         batch_size=args.batch,
         seed=args.seed,
     )
-    scheduler = Scheduler(archive, [emitter])
     for _ in range(args.iterations):
-        genomes = scheduler.ask()
+        genomes = emitter.ask()
         results = problem.evaluate(genomes)
-        # A disqualified snake has no place in the archive: the lowest fitness there is loses every cell.
-        objective = results.fitness.copy()
-        objective[results.disqualified] = -10.0
-        measures = list(zip(results.mean_height_m, results.contact_duty))
-        scheduler.tell(objective, measures)
+        # A disqualified snake has no place in the archive.
+        healthy = ~results.disqualified
+        measures = np.stack([results.mean_height_m, results.contact_duty], axis=1)
+        if healthy.any():
+            archive.add(genomes[healthy], results.fitness[healthy], measures[healthy])
     stats = archive.stats
     print(
         f"{stats.num_elites} elites in {archive.cells} cells, best fitness {stats.obj_max:.2f} m,"

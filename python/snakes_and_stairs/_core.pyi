@@ -19,6 +19,7 @@ __all__ = [
     "load_run",
     "presets",
     "replay",
+    "unpacked_evaluations",
 ]
 
 #: The version of the engine. Trace hashes of different versions differ.
@@ -37,9 +38,12 @@ def load_run(folder: _Path) -> dict[str, Any]:
 def replay(path: _Path) -> dict[str, Any]:
     """What ``snakes replay FILE --no-render --json`` prints: the champion simulated again and compared with its record."""
 
+def unpacked_evaluations(text: str) -> Evaluations:
+    """Evaluations from the text into which pickle packed them."""
+
 @final
 class Champion:
-    """A saved champion."""
+    """A saved champion, or a snake of a search as one."""
 
     @property
     def trace_hash(self) -> int:
@@ -62,7 +66,11 @@ class Evaluations:
     def __len__(self) -> int: ...
     @property
     def fitness(self) -> NDArray[np.float64]:
-        """By the measure ``trial.fitness``; of a disqualified snake, the fitness after its last healthy step."""
+        """By the measure ``trial.fitness``; of a disqualified snake, the fitness after its last healthy step. See :attr:`ranking`."""
+
+    @property
+    def ranking(self) -> NDArray[np.float64]:
+        """Fitness by which snakes rank: minus infinity for a disqualified one."""
 
     @property
     def disqualified(self) -> NDArray[np.bool_]:
@@ -168,9 +176,9 @@ class Problem:
         self,
         path: _Path,
         points: NDArray[np.float64],
-        seed: int = 0,
-        generation: int = 1,
-        individual: int = 0,
+        seed: int,
+        generation: int,
+        individual: int,
     ) -> None: ...
 
 @final
@@ -196,6 +204,8 @@ class Search:
     def is_over(self) -> bool: ...
     def ask(self) -> NDArray[np.float64]: ...
     def evaluate(self, threads: Optional[int] = None) -> Evaluations: ...
+    def champion(self, index: int) -> Champion: ...
+    def save_champion(self, path: _Path, index: int) -> None: ...
     def tell(self, results: Evaluations) -> None: ...
     def tell_fitness(
         self, fitness: NDArray[np.float64], disqualified: Optional[NDArray[np.bool_]] = None
@@ -210,8 +220,8 @@ class Worlds:
         cls,
         problem: Problem,
         count: int,
-        actions: str = "targets",
-        steps_per_action: int = 1,
+        actions: str,
+        steps_per_action: int,
         stiffness_nm_per_rad: Optional[float] = None,
         damping_nms_per_rad: Optional[float] = None,
         perturbation: Union[None, bool, dict[str, float]] = None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any, Mapping, Optional, Union
 
 import numpy as np
@@ -9,10 +10,12 @@ from gymnasium import spaces
 
 from ._core import Problem, Worlds
 
+Path = Union[str, "os.PathLike[str]"]
+
 
 def make_worlds(
     count: int,
-    preset: str,
+    preset: Path,
     stairs: Optional[Mapping[str, Any]],
     body: Any,
     settings: Optional[Mapping[str, Any]],
@@ -30,7 +33,7 @@ def make_worlds(
             f"body is {body!r}; allowed: None: there are no evolved bodies yet; settings such as"
             ' {"agent.limbs": 6} or {"agent.limb_length_m": 1.5} change the body of the preset'
         )
-    problem = Problem(preset, plain(stairs), plain(settings), "environment")
+    problem = Problem(os.fspath(preset), plain(stairs), plain(settings), "environment")
     worlds = Worlds(
         problem,
         count,
@@ -58,9 +61,15 @@ def observation_space(worlds: Worlds) -> spaces.Box:
     return spaces.Box(low, high, dtype=np.float32)
 
 
+#: Half the width of the range of an axis that cannot move; the world clamps to its own limit, 0.
+_LEAST_LIMIT = 1e-4
+
+
 def action_space(worlds: Worlds) -> spaces.Box:
     """The ranges of target angles or torques."""
-    limits = worlds.action_limits
+    # An axis that cannot move gets a range, too, because wrappers that rescale actions divide by its width.
+    limits = np.where(worlds.action_limits > 0, worlds.action_limits, _LEAST_LIMIT)
+    limits = limits.astype(np.float32)
     return spaces.Box(-limits, limits, dtype=np.float32)
 
 

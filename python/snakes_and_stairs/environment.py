@@ -8,6 +8,7 @@ import gymnasium
 import numpy as np
 
 from ._options import (
+    Path,
     action_names,
     action_space,
     draw_seed,
@@ -26,12 +27,16 @@ class SnakesAndStairsEnv(gymnasium.Env):
         A ``Box`` of float32 with what the snake senses, in the order of :attr:`senses`: for each joint (from the head) bend,
         twist, bend rate, twist rate; for each limb (head first) touch, load, blocked, pitch, roll, gap, step up, clearance; for
         the snake yaw, speed ahead, speed up, aside. That is 60 numbers for a snake of five limbs. :attr:`senses` has index, name,
-        unit and scale of each: a value times its scale is in the unit. Nothing among them tells the time or the absolute place.
+        unit and scale of each: a value times its scale is in the unit, up to ``low`` and ``high``, where it is clamped. Load and
+        blocked are shares without a unit: F / (F + W/n) of a force F, for the weight W of a snake of n limbs, smoothed over
+        0.1 s; ``half_force_n`` is W/n, the force that is sensed as 0.5. Nothing among the senses tells the time or the absolute
+        place.
 
     Action
         A ``Box`` of float32 of shape ``(2 * joints,)``: bend and twist of the first joint, then of the next. With
         ``actions="targets"`` target angles in rad, which a servo on each axis follows (torque = stiffness · (target − angle) −
         damping · rate); with ``actions="torques"`` torques in N·m. Values beyond the space are clamped to it; NaN is refused.
+        The space of an axis that cannot move, because its limit is 0, is ±0.0001; it stays where it is.
 
     Reward
         The change, over the step, of the score of the preset's measure of fitness (``trial.fitness``; for ``climb``: metres
@@ -67,7 +72,7 @@ class SnakesAndStairsEnv(gymnasium.Env):
 
     def __init__(
         self,
-        preset: str = "climb",
+        preset: Path = "climb",
         *,
         stairs: Optional[Mapping[str, Any]] = None,
         body: None = None,
@@ -107,12 +112,12 @@ class SnakesAndStairsEnv(gymnasium.Env):
 
     @property
     def senses(self) -> list[dict[str, Any]]:
-        """Index, name, unit, scale, low and high of each part of an observation."""
+        """Index, name, unit, scale, low and high of each part of an observation, and ``half_force_n``: see Observation."""
         return self._worlds.senses
 
     @property
     def action_parts(self) -> list[dict[str, Any]]:
-        """Index, name, unit and greatest magnitude of each part of an action."""
+        """Index, name, unit and greatest magnitude of each part of an action; 0 for an axis that cannot move."""
         return action_names(self._worlds, self._actions)
 
     @property

@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._core import Champion, Evaluations
-from ._options import plain
+from ._options import Path, plain
 
 Settings = Optional[Mapping[str, Any]]
-Path = Union[str, "os.PathLike[str]"]
 
 
 class Problem:
@@ -21,7 +20,7 @@ class Problem:
 
     A genome is a row of ``dimension`` numbers, each from 0 to 1: the position of a gene in its range (see :attr:`genes`).
     Numbers outside have a genome, too: an angle turns on, anything else is reflected at the ends of its range. So a method
-    needs no bounds.
+    needs no bounds. All 64 bits of a number count: keep genomes as float64.
 
     Arguments
         preset: a shipped preset (see :func:`presets`) or the path of a file.
@@ -74,13 +73,14 @@ class Problem:
         return self._core.genes
 
     def random(self, count: int, seed: int = 1) -> np.ndarray:
-        """``count`` random genomes as rows: the first generation of a run with this seed."""
+        """``count`` random genomes as rows: the first generation of a run with this seed, bit for bit."""
         return self._core.random(count, seed)
 
     def evaluate(self, genomes: ArrayLike, *, threads: Optional[int] = None) -> Evaluations:
         """Simulates genomes (an array of shape ``(n, dimension)``, or of ``(dimension,)`` for one) on all cores.
 
-        Each result depends on its genome alone, bit for bit: neither on the others nor on ``threads``.
+        Each result depends on its genome alone, bit for bit: neither on the others nor on ``threads``. An interrupt ends it as
+        soon as the snakes end that are being simulated.
         """
         return self._core.evaluate(_rows(genomes), threads)
 
@@ -91,7 +91,8 @@ class Problem:
     def genome_of(self, champion: Union[Path, Champion]) -> np.ndarray:
         """The genome of a saved champion (or the path of its file) as a row.
 
-        Rounding may change the last bit of a gene, unless the champion came from a row itself.
+        It stands for the champion's genes to the last bit. A ``UserWarning`` tells where that is impossible: for an angle beyond
+        a full turn, and for a gene so near to 0, between a negative and a positive end of its range, that 64 bits miss it.
         """
         if not isinstance(champion, Champion):
             champion = _core.load_champion(champion)
@@ -108,7 +109,7 @@ class Problem:
     ) -> None:
         """Writes a genome with its trial and evaluation to a file that the program opens, replays and examines.
 
-        ``seed``, ``generation`` and ``individual`` are written as its origin, for people.
+        ``seed``, ``generation`` and ``individual`` are written as its origin, for people. An interrupt leaves no file.
         """
         self._core.save_champion(path, _rows(genome), seed, generation, individual)
 
@@ -128,7 +129,7 @@ class Search:
 
     Asked, evaluated by :meth:`evaluate` and told so, it makes the generations of ``snakes --no-render`` with the same settings
     and seed, bit for bit. Strategies and controllers whose individuals are more than numbers (NEAT's networks, learners) do
-    the same, but :meth:`ask` refuses to describe them by an array.
+    the same, but :meth:`ask` refuses to describe them by an array; :meth:`save_champion` writes those, too.
 
     Arguments
         preset, stairs, settings: as those of :class:`Problem`; here settings may also change the search.
@@ -140,7 +141,7 @@ class Search:
 
     def __init__(
         self,
-        preset: str = "climb",
+        preset: Path = "climb",
         *,
         strategy: Optional[str] = None,
         seed: int = 1,
@@ -194,12 +195,24 @@ class Search:
         return self._core.is_over
 
     def ask(self) -> np.ndarray:
-        """The genomes of the next generation as rows, each number from 0 to 1. Asking twice gives the same."""
+        """The genomes of the next generation as rows, each number from 0 to 1. Asking twice gives the same.
+
+        A row stands for the genome to the last bit; a ``UserWarning`` tells of one that does not (see :meth:`Problem.genome_of`).
+        """
         return self._core.ask()
 
     def evaluate(self, *, threads: Optional[int] = None) -> Evaluations:
         """Evaluates the next generation as a run does, on all cores."""
         return self._core.evaluate(threads)
+
+    def champion(self, index: int) -> Champion:
+        """A snake of the generation that was asked for and not told yet, evaluated in its trial, with all that it is: also
+        networks that grow and what a learner knows."""
+        return self._core.champion(index)
+
+    def save_champion(self, path: Path, index: int) -> None:
+        """Writes such a snake to a file that the program opens, replays and examines. An interrupt leaves no file."""
+        self._core.save_champion(path, index)
 
     def tell(
         self,
@@ -209,8 +222,8 @@ class Search:
     ) -> None:
         """Learns from results of the generation that was asked for, in its order.
 
-        ``results`` are :class:`Evaluations`, or a fitness of your own (larger is better) with optional flags of individuals
-        that do not count. MAP-Elites, novelty search and the learners need :class:`Evaluations`.
+        ``results`` are :class:`Evaluations` of these genomes, or a fitness of your own (larger is better) with optional flags of
+        individuals that do not count. MAP-Elites, novelty search and the learners need :class:`Evaluations`.
         """
         if isinstance(results, Evaluations):
             if disqualified is not None:
@@ -231,7 +244,7 @@ class Search:
 
 def evaluate(
     genomes: ArrayLike,
-    preset: str = "climb",
+    preset: Path = "climb",
     *,
     stairs: Settings = None,
     settings: Settings = None,
@@ -241,7 +254,7 @@ def evaluate(
     return Problem(preset, stairs=stairs, settings=settings).evaluate(genomes, threads=threads)
 
 
-def _problem(preset: str, stairs: Settings, settings: Settings) -> Problem:
+def _problem(preset: Path, stairs: Settings, settings: Settings) -> Problem:
     return Problem(preset, stairs=stairs, settings=settings)
 
 

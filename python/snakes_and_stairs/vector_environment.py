@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
+from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from ._options import (
+    Path,
     action_names,
     action_space,
     draw_seed,
@@ -32,7 +34,8 @@ class SnakesAndStairsVectorEnv(VectorEnv):
 
     ``info`` has arrays ``time_s``, ``y_m``, ``energy_j``, ``steps_climbed`` with a value per world; where an episode ended also
     ``evaluation``, a dictionary of arrays with the parts of an environment's ``evaluation``. As everywhere in Gymnasium, a mask
-    beside each array, such as ``_evaluation``, tells in which worlds its values are valid.
+    beside each array, such as ``_evaluation``, tells in which worlds its values are valid: ``final_info`` tells only of worlds
+    whose episode ended, and the information of a reset only of worlds that it reset.
     """
 
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -40,7 +43,7 @@ class SnakesAndStairsVectorEnv(VectorEnv):
     def __init__(
         self,
         num_envs: int = 1,
-        preset: str = "climb",
+        preset: Path = "climb",
         *,
         stairs: Optional[Mapping[str, Any]] = None,
         body: None = None,
@@ -87,17 +90,18 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         self._all = np.ones(num_envs, dtype=bool)
         # The worlds whose episode has ended.
         self._ended = np.zeros(num_envs, dtype=bool)
-        # One stream per world, so that a world's episodes do not depend on when those of others end.
-        self._streams: Optional[list[np.random.Generator]] = None
+        # One stream per world, so that a world's episodes do not depend on when those of others end, and its seed.
+        self._streams: list[np.random.Generator] = []
+        self._seeds: list[int] = []
 
     @property
     def senses(self) -> list[dict[str, Any]]:
-        """Index, name, unit, scale, low and high of each part of an observation."""
+        """Index, name, unit, scale, low and high of each part of an observation, and ``half_force_n``: see the single environment."""
         return self._worlds.senses
 
     @property
     def action_parts(self) -> list[dict[str, Any]]:
-        """Index, name, unit and greatest magnitude of each part of an action."""
+        """Index, name, unit and greatest magnitude of each part of an action; 0 for an axis that cannot move."""
         return action_names(self._worlds, self._actions)
 
     @property
@@ -109,20 +113,35 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         """Poses of the limbs of a world, head first: rows of x, y, z in m and a quaternion x, y, z, w."""
         return self._worlds.poses(index)
 
+    @property
+    def np_random(self) -> tuple[np.random.Generator, ...]:
+        """The random numbers of each world."""
+        self._seed(None, self._all)
+        return tuple(self._streams)
+
+    @property
+    def np_random_seed(self) -> tuple[int, ...]:
+        """The seed of each world's random numbers."""
+        self._seed(None, self._all)
+        return tuple(self._seeds)
+
     def reset(
         self,
         *,
         seed: Union[None, int, Sequence[Optional[int]]] = None,
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Begins an episode in every world, or in those of ``options["reset_mask"]``.
+        """Begins an episode in every world, or in those of ``options["reset_mask"]``, an array of a bool per world.
 
         World ``i`` has the seed ``seed + i``, or ``seed[i]``, and then the episodes of a single environment with that seed.
         """
         options = dict(options or {})
-        mask = np.asarray(options.pop("reset_mask", self._all), dtype=bool)
+        mask = options.pop("reset_mask", self._all)
         if options:
             raise ValueError(f"options is {options!r}; allowed: reset_mask")
+        # Numbers of worlds would pass for flags otherwise.
+        if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+            raise TypeError(f"reset_mask is {mask!r}; allowed: an array of {self.num_envs} bools")
         if mask.shape != (self.num_envs,) or not mask.any():
             raise ValueError(
                 f"reset_mask is of shape {mask.shape} with {mask.sum()} flags;"
@@ -130,7 +149,7 @@ class SnakesAndStairsVectorEnv(VectorEnv):
             )
         self._seed(seed, mask)
         observations = self._begin(mask)
-        return observations, self._infos()
+        return observations, self._infos(mask)
 
     def step(
         self, actions: np.ndarray
@@ -151,15 +170,16 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         if begins.any():
             observations = self._begin(begins.copy())
         self._ended = terminated | truncated
-        infos = self._infos()
+        infos = self._infos(self._all)
         if self._ended.any():
-            infos = self._add_evaluations(infos)
             if self.autoreset_mode is AutoresetMode.SAME_STEP:
-                observations, infos = self._begin_in_same_step(observations, infos)
+                observations, infos = self._begin_in_same_step(observations)
+            else:
+                infos = self._add_evaluations(infos)
         return observations, rewards, terminated, truncated, infos
 
     def _seed(self, seed: Union[None, int, Sequence[Optional[int]]], mask: np.ndarray) -> None:
-        if seed is None and self._streams is not None:
+        if seed is None and self._streams:
             return
         seeds: Sequence[Optional[int]]
         if seed is None:
@@ -170,17 +190,19 @@ class SnakesAndStairsVectorEnv(VectorEnv):
             seeds = list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed is a list of {len(seeds)}; allowed: {self.num_envs}, one per world")
-        if self._streams is None:
-            self._streams = [np.random.default_rng() for _ in range(self.num_envs)]
+        least = min((one for one in seeds if one is not None), default=0)
+        if least < 0:
+            raise ValueError(f"seed is {least}; allowed: None, or 0 and greater")
+        if not self._streams:
+            # Each starts like that of a single environment without a seed.
+            drawn = [seeding.np_random() for _ in range(self.num_envs)]
+            self._streams, self._seeds = [list(part) for part in zip(*drawn)]
         for index, one in enumerate(seeds):
             if one is not None and mask[index]:
-                # As gymnasium.utils.seeding makes the generator of a single environment.
-                self._streams[index] = np.random.default_rng(np.random.SeedSequence(one))
+                self._streams[index], self._seeds[index] = seeding.np_random(int(one))
 
     def _begin(self, mask: np.ndarray) -> np.ndarray:
-        if self._streams is None:
-            self._seed(None, mask)
-        assert self._streams is not None
+        self._seed(None, mask)
         seeds = np.zeros(self.num_envs, dtype=np.uint64)
         for index in np.flatnonzero(mask):
             seeds[index] = draw_seed(self._streams[index])
@@ -188,23 +210,23 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         self._ended = self._ended & ~mask
         return observations
 
-    def _begin_in_same_step(
-        self, observations: np.ndarray, infos: dict[str, Any]
-    ) -> tuple[np.ndarray, dict[str, Any]]:
+    def _begin_in_same_step(self, observations: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
         ended = self._ended.copy()
+        infos = self._add_evaluations(self._infos(ended))
         final = np.full(self.num_envs, None, dtype=object)
         for index in np.flatnonzero(ended):
             final[index] = observations[index].copy()
         observations = self._begin(ended)
-        new = self._infos()
+        new = self._infos(self._all)
         new.update(final_obs=final, _final_obs=ended, final_info=infos, _final_info=ended.copy())
         return observations, new
 
-    def _infos(self) -> dict[str, Any]:
+    def _infos(self, mask: np.ndarray) -> dict[str, Any]:
+        """The state of the worlds of a mask; 0 elsewhere, as Gymnasium has it."""
         infos: dict[str, Any] = {}
         for name, values in self._worlds.state().items():
-            infos[name] = values
-            infos[f"_{name}"] = self._all.copy()
+            infos[name] = np.where(mask, values, np.zeros_like(values))
+            infos[f"_{name}"] = mask.copy()
         return infos
 
     def _add_evaluations(self, infos: dict[str, Any]) -> dict[str, Any]:

@@ -12,15 +12,15 @@ use snakes_and_stairs::run::{
 use snakes_and_stairs::score::{Evaluation, Scored, Trial};
 use snakes_and_stairs::world::Disqualification;
 
-use crate::errors::{crashed, no_threads, refused};
+use crate::convert::whole_as;
+use crate::errors::{crashed, no_threads};
 
 /// The number of threads that was asked for; all cores if none was.
-pub fn threads_of(threads: Option<usize>) -> PyResult<usize> {
-    let threads = threads.unwrap_or_else(available_cores);
-    if !THREADS_RANGE.contains(&threads) {
-        return Err(refused("threads", threads, "None (all cores), or 1 to 1024"));
-    }
-    Ok(threads)
+pub fn threads_of(threads: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
+    let (least, most) = (*THREADS_RANGE.start() as u64, *THREADS_RANGE.end() as u64);
+    let Some(threads) = threads else { return Ok(available_cores().min(most as usize)) };
+    let allowed = format!("None (all cores), or {least} to {most}");
+    Ok(whole_as("threads", threads, least..=most, &allowed)? as usize)
 }
 
 /// The result for a genome whose simulation panicked: what a run counts, too.
@@ -40,7 +40,8 @@ fn void() -> Scored {
 /// Time between two looks for an interrupt. Python itself reacts in some milliseconds.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Scores all genomes in a trial; the results are in their order.
+/// Scores all genomes in a trial; the results are in their order. An interrupt lets the snakes that are being simulated end
+/// first, so that it takes at most as long as the longest evaluation.
 pub fn score_all(
     py: Python<'_>,
     genomes: &[Genome],
@@ -85,6 +86,8 @@ pub fn score_all(
     if let Some(interrupt) = interrupted {
         return Err(interrupt);
     }
+    // It may also have come during the last wait.
+    py.check_signals()?;
     let results = results.into_inner().map_err(|_| crashed("a thread panicked".to_owned()))?;
     // An evaluator may leave genomes out; none is lost.
     let scored = results.into_iter().zip(genomes).map(|(scored, genome)| {

@@ -1,6 +1,6 @@
 //! Saved champions and runs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use numpy::ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray1};
@@ -8,12 +8,15 @@ use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::{Value, json};
+use snakes_and_stairs::Engine;
+use snakes_and_stairs::evolve;
 use snakes_and_stairs::genome::Genome;
 use snakes_and_stairs::run;
 use snakes_and_stairs::run::headless::HeadlessError;
 use snakes_and_stairs::save::{self, LoadedChampion, RecordedV5, load_log};
 use snakes_and_stairs::schema::Choices;
-use snakes_and_stairs::score::Rollout;
+use snakes_and_stairs::score::{Rollout, Trial};
+use snakes_and_stairs::world::Disqualification;
 
 use crate::batch::score_all;
 use crate::convert::{parsed, to_python};
@@ -29,6 +32,17 @@ pub struct Champion {
 impl Champion {
     pub fn genome(&self) -> &Genome {
         &self.loaded.champion.genome
+    }
+
+    /// A snake of this program as a champion.
+    pub fn new(champion: evolve::Champion) -> Self {
+        let engine = Engine::THIS;
+        Self { loaded: LoadedChampion { champion, engine, recording: None, exam: Vec::new() } }
+    }
+
+    /// Writes its file.
+    pub fn store(&self, path: &Path) -> PyResult<()> {
+        save::store_champion(path, &self.loaded.champion, None).map_err(unusable)
     }
 
     fn json(&self) -> PyResult<Value> {
@@ -69,6 +83,20 @@ impl Champion {
             "exam": exam.collect::<Vec<Value>>(),
         }))
     }
+}
+
+/// Evaluates a snake as the champion that it is to be.
+pub fn evaluated(
+    py: Python<'_>,
+    genome: Genome,
+    trial: Trial,
+    origin: evolve::Origin,
+) -> PyResult<Champion> {
+    let scored = score_all(py, std::slice::from_ref(&genome), &trial, 1)?;
+    let evaluation = scored.first().map(|scored| scored.evaluation);
+    let evaluation = evaluation.filter(|of| of.disqualified != Some(Disqualification::Crashed));
+    let evaluation = evaluation.ok_or_else(|| crashed("this snake has no result".to_owned()))?;
+    Ok(Champion::new(evolve::Champion { genome, trial, evaluation, chosen_by: None, origin }))
 }
 
 /// Reads a champion's file.
@@ -139,7 +167,8 @@ impl Champion {
     fn evaluate(&self, py: Python<'_>) -> PyResult<Evaluations> {
         let champion = &self.loaded.champion;
         let scored = score_all(py, std::slice::from_ref(&champion.genome), &champion.trial, 1)?;
-        Ok(Evaluations::new(scored, &champion.trial.stairs))
+        let genomes = std::slice::from_ref(&champion.genome);
+        Ok(Evaluations::new(genomes, scored, &champion.trial.stairs))
     }
 
     /// Its motion, simulated again: arrays with a row per moment, the first before the first step.

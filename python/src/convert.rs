@@ -1,6 +1,9 @@
 //! Values of Python as texts of settings, and values of the core as dictionaries.
 
+use std::ops::RangeInclusive;
+
 use numpy::PyReadonlyArray2;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde::Serialize;
@@ -40,6 +43,44 @@ pub fn text_of(field: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
 /// A number as settings spell it: whole ones without a point, so that 5.0 steps are 5.
 fn number(value: f64) -> String {
     value.to_string()
+}
+
+/// A whole number of a range. By itself, Python's conversion tells of one that does not fit neither the name nor the range.
+pub fn whole(field: &str, value: &Bound<'_, PyAny>, range: RangeInclusive<u64>) -> PyResult<u64> {
+    let allowed = format!("{} to {}", range.start(), range.end());
+    whole_as(field, value, range, &allowed)
+}
+
+/// The same with other words for what is allowed.
+pub fn whole_as(
+    field: &str,
+    value: &Bound<'_, PyAny>,
+    range: RangeInclusive<u64>,
+    allowed: &str,
+) -> PyResult<u64> {
+    let Ok(number) = value.call_method0("__index__") else {
+        let kind = value.get_type().name()?;
+        let message = format!("{field} is a {kind}; allowed: a whole number, {allowed}");
+        return Err(PyTypeError::new_err(message));
+    };
+    match number.extract() {
+        Ok(number) if range.contains(&number) => Ok(number),
+        _ => {
+            // Python does not write down numbers of thousands of digits.
+            let text = number.str().map_or("too large".to_owned(), |text| text.to_string());
+            Err(refused(field, text, allowed))
+        }
+    }
+}
+
+/// A whole number of 32 bits.
+pub fn whole_u32(field: &str, value: &Bound<'_, PyAny>) -> PyResult<u32> {
+    Ok(whole(field, value, 0..=u32::MAX.into())? as u32)
+}
+
+/// A seed.
+pub fn seed_of(value: &Bound<'_, PyAny>) -> PyResult<u64> {
+    whole("seed", value, 0..=u64::MAX)
 }
 
 /// The changes of settings in a dictionary, in its order; `prefix` precedes each name.

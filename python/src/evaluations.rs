@@ -1,20 +1,67 @@
 //! The results of a batch, as arrays.
 
 use numpy::{IntoPyArray, PyArray1};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
+use snakes_and_stairs::genome::Genome;
+use snakes_and_stairs::learn::Episode;
+use snakes_and_stairs::save::RecordedV5;
 use snakes_and_stairs::score::{Behaviour, Evaluation, Scored};
-use snakes_and_stairs::world::{Effort, Stairs};
+use snakes_and_stairs::world::{Disqualification, Effort, Stairs};
+
+use crate::errors::{crashed, invalid};
 
 /// The results of a batch of evaluations, one per snake, in order.
 #[pyclass(frozen, module = "snakes_and_stairs._core")]
 pub struct Evaluations {
     pub scored: Vec<Scored>,
+    /// The hashes of the genomes, by which a search knows whose results these are.
+    pub genomes: Vec<u64>,
     stairs: Stairs,
 }
 
+/// Evaluations as text, for pickle.
+#[derive(Serialize, Deserialize)]
+struct Packed {
+    stairs: Stairs,
+    results: Vec<PackedResult>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct PackedResult {
+    genome: u64,
+    disqualified: Option<Disqualification>,
+    recorded: RecordedV5,
+    episode: Option<Episode>,
+}
+
+impl PackedResult {
+    fn unpacked(self) -> PyResult<(u64, Scored)> {
+        let Self { genome, disqualified, recorded, episode } = self;
+        let evaluation = Evaluation { disqualified, ..recorded.evaluation().map_err(invalid)? };
+        if let Some(episode) = &episode {
+            episode.check().map_err(invalid)?;
+        }
+        Ok((genome, Scored { evaluation, episode }))
+    }
+}
+
+/// Evaluations from the text into which pickle packed them.
+#[pyfunction]
+pub fn unpacked_evaluations(text: &str) -> PyResult<Evaluations> {
+    let Packed { stairs, results } =
+        serde_json::from_str(text).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let results: Vec<(u64, Scored)> =
+        results.into_iter().map(PackedResult::unpacked).collect::<PyResult<_>>()?;
+    let (genomes, scored) = results.into_iter().unzip();
+    Ok(Evaluations { scored, genomes, stairs })
+}
+
 impl Evaluations {
-    pub fn new(scored: Vec<Scored>, stairs: &Stairs) -> Self {
-        Self { scored, stairs: stairs.clone() }
+    pub fn new(genomes: &[Genome], scored: Vec<Scored>, stairs: &Stairs) -> Self {
+        let genomes = genomes.iter().map(Genome::hash).collect();
+        Self { scored, genomes, stairs: stairs.clone() }
     }
 
     fn of<'py, T: numpy::Element>(
@@ -49,6 +96,21 @@ impl Evaluations {
         self.scored.len()
     }
 
+    /// So that results travel between processes, with all their bits.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        let packed = |(scored, genome): (&Scored, &u64)| PackedResult {
+            genome: *genome,
+            disqualified: scored.evaluation.disqualified,
+            recorded: scored.evaluation.into(),
+            episode: scored.episode.clone(),
+        };
+        let results = self.scored.iter().zip(&self.genomes).map(packed).collect();
+        let packed = Packed { stairs: self.stairs.clone(), results };
+        let text = serde_json::to_string(&packed).map_err(|error| crashed(error.to_string()))?;
+        let unpack = py.import("snakes_and_stairs._core")?.getattr("unpacked_evaluations")?;
+        Ok((unpack, (text,)))
+    }
+
     fn __repr__(&self) -> String {
         let best = self.scored.iter().map(|scored| &scored.evaluation);
         let best = best.filter(|of| of.disqualified.is_none()).map(|of| of.fitness);
@@ -60,6 +122,15 @@ impl Evaluations {
     #[getter]
     fn fitness<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of(py, |of| of.fitness.into())
+    }
+
+    /// Fitness by which snakes rank: minus infinity for a disqualified one.
+    #[getter]
+    fn ranking<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        self.of(
+            py,
+            |of| if of.disqualified.is_some() { f64::NEG_INFINITY } else { of.fitness.into() },
+        )
     }
 
     /// Whether the physics broke or was exploited, or the snake left the arena. Such a snake ranks last.

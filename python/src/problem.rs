@@ -3,19 +3,18 @@
 use std::path::PathBuf;
 
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use snakes_and_stairs::evolve::{self, Origin, Settings, fields, with_fields};
 use snakes_and_stairs::genome::{ControllerKind, Genome};
 use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::run::caught;
-use snakes_and_stairs::save::{load_preset, shipped_presets, store_champion};
+use snakes_and_stairs::save::{load_preset, shipped_presets};
 use snakes_and_stairs::schema;
-use snakes_and_stairs::score::evaluate;
 
 use crate::batch::{score_all, threads_of};
-use crate::champion::Champion;
-use crate::convert::{changes_in, rows, to_python};
+use crate::champion::{Champion, evaluated};
+use crate::convert::{changes_in, rows, seed_of, to_python, whole, whole_u32};
 use crate::errors::{crashed, invalid, refused, unusable};
 use crate::evaluations::Evaluations;
 
@@ -100,7 +99,7 @@ impl Problem {
         self.settings.genome.dimension(self.settings.trial.genome_shape())
     }
 
-    /// The genomes at the rows of an array.
+    /// The genomes at the rows of an array. All 64 bits of a number count, so that every genome has a row.
     pub fn genomes_at(
         &self,
         field: &str,
@@ -109,7 +108,20 @@ impl Problem {
         self.check_is_array()?;
         let shape = self.settings.trial.genome_shape();
         let points = rows(field, points, self.dimension())?;
-        Ok(points.iter().map(|point| self.settings.genome.genome_at(point, shape)).collect())
+        Ok(points.iter().map(|point| self.settings.genome.genome_at_fine(point, shape)).collect())
+    }
+
+    /// The point of a genome. A warning tells of one that no point has to the last bit: motion magnifies the least difference.
+    pub fn point_of_genome(&self, py: Python<'_>, genome: &Genome) -> PyResult<Vec<f64>> {
+        let (space, shape) = (&self.settings.genome, self.settings.trial.genome_shape());
+        let point = space.fine_point_of(genome);
+        if space.genome_at_fine(&point, shape).hash() != genome.hash() {
+            let message = c"a genome has a gene that no row reaches to the last bit, so its row may move otherwise; \
+                            evaluate and save the search's or the champion's own genome instead";
+            // Level 2 is the line that called the package.
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), message, 2)?;
+        }
+        Ok(point)
     }
 
     /// The points of genomes, as the rows of an array.
@@ -119,10 +131,12 @@ impl Problem {
         genomes: &[Genome],
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.check_is_array()?;
-        let points: Vec<f64> =
-            genomes.iter().flat_map(|genome| self.settings.genome.exact_point_of(genome)).collect();
+        let points: Vec<Vec<f64>> = genomes
+            .iter()
+            .map(|genome| self.point_of_genome(py, genome))
+            .collect::<PyResult<_>>()?;
         let shape = (genomes.len(), self.dimension());
-        let array = numpy::ndarray::Array2::from_shape_vec(shape, points);
+        let array = numpy::ndarray::Array2::from_shape_vec(shape, points.concat());
         Ok(array.map_err(|error| crashed(error.to_string()))?.into_pyarray(py))
     }
 }
@@ -222,14 +236,12 @@ impl Problem {
     fn random<'py>(
         &self,
         py: Python<'py>,
-        count: usize,
-        seed: u64,
+        count: &Bound<'py, PyAny>,
+        seed: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.check_is_array()?;
-        let most = evolve::LARGEST_POPULATION as usize;
-        if count > most {
-            return Err(refused("count", count, &format!("0 to {most}")));
-        }
+        let count = whole("count", count, 0..=evolve::LARGEST_POPULATION.into())?;
+        let seed = seed_of(seed)?;
         let (space, shape) = (&self.settings.genome, self.settings.trial.genome_shape());
         let genome =
             |index| space.random_genome(shape, &mut stream(seed, 1, index, Purpose::Birth));
@@ -256,7 +268,7 @@ impl Problem {
         let (genome, shape) = (champion.genome(), self.settings.trial.genome_shape());
         let space = &self.settings.genome;
         space.check_genome(genome, shape).map_err(|error| invalid(error.inside("champion")))?;
-        Ok(space.exact_point_of(genome).into_pyarray(py))
+        Ok(self.point_of_genome(py, genome)?.into_pyarray(py))
     }
 
     #[pyo3(signature = (points, threads=None))]
@@ -264,33 +276,34 @@ impl Problem {
         &self,
         py: Python<'_>,
         points: PyReadonlyArray2<'_, f64>,
-        threads: Option<usize>,
+        threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Evaluations> {
         let (genomes, trial) = (self.genomes_at("genomes", &points)?, &self.settings.trial);
         let scored = score_all(py, &genomes, trial, threads_of(threads)?)?;
-        Ok(Evaluations::new(scored, &trial.stairs))
+        Ok(Evaluations::new(&genomes, scored, &trial.stairs))
     }
 
     /// Writes the snake at a point as a champion that the program replays.
-    #[pyo3(signature = (path, points, seed=0, generation=1, individual=0))]
     fn save_champion(
         &self,
         py: Python<'_>,
         path: PathBuf,
         points: PyReadonlyArray2<'_, f64>,
-        seed: u64,
-        generation: u32,
-        individual: u32,
+        seed: &Bound<'_, PyAny>,
+        generation: &Bound<'_, PyAny>,
+        individual: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let genomes = self.genomes_at("genome", &points)?;
-        let [genome] = genomes.as_slice() else {
-            return Err(refused("genome", format!("{} rows", genomes.len()), "one row"));
+        let mut genomes = self.genomes_at("genome", &points)?;
+        let (Some(genome), true) = (genomes.pop(), genomes.is_empty()) else {
+            let rows = points.as_array().nrows();
+            return Err(refused("genome", format!("{rows} rows"), "one row"));
         };
-        let trial = self.settings.trial.clone();
-        let evaluation = py.detach(|| caught(|| evaluate(genome, &trial))).map_err(crashed)?;
-        let origin = Origin { preset: self.preset.clone(), seed, generation, individual };
-        let genome = genome.clone();
-        let champion = evolve::Champion { genome, trial, evaluation, chosen_by: None, origin };
-        store_champion(&path, &champion, None).map_err(unusable)
+        let origin = Origin {
+            preset: self.preset.clone(),
+            seed: seed_of(seed)?,
+            generation: whole_u32("generation", generation)?,
+            individual: whole_u32("individual", individual)?,
+        };
+        evaluated(py, genome, self.settings.trial.clone(), origin)?.store(&path)
     }
 }

@@ -1,19 +1,21 @@
 //! The project's own strategies, driven from Python: ask, evaluate, tell.
 
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
 
 use numpy::{IntoPyArray, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use snakes_and_stairs::evolve::{Founder, RunPlan, Strategy, StrategyKind, begin};
+use snakes_and_stairs::evolve::{Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
 use snakes_and_stairs::genome::Genome;
 use snakes_and_stairs::run::caught;
 use snakes_and_stairs::score::{Evaluation, FITNESS_RANGE, Scored};
 use snakes_and_stairs::world::Disqualification;
 
 use crate::batch::{score_all, threads_of};
-use crate::champion::Champion;
+use crate::champion::{Champion, evaluated};
+use crate::convert::{seed_of, whole};
 use crate::errors::{crashed, invalid, refused};
 use crate::evaluations::Evaluations;
 use crate::problem::Problem;
@@ -39,6 +41,14 @@ impl SearchState {
     fn genomes(&mut self) -> Vec<Genome> {
         self.asked.get_or_insert_with(|| self.strategy.ask()).clone()
     }
+
+    /// The same, if they were asked for.
+    fn asked(&self, use_of_them: &str) -> PyResult<&[Genome]> {
+        self.asked.as_deref().ok_or_else(|| {
+            let message = format!("{use_of_them} without ask: call ask() or evaluate() first");
+            PyRuntimeError::new_err(message)
+        })
+    }
 }
 
 impl Search {
@@ -47,16 +57,20 @@ impl Search {
         self.state.lock().map_err(|_| PyRuntimeError::new_err("the search failed before"))
     }
 
-    fn learn(&self, scored: Vec<Scored>) -> PyResult<()> {
+    /// Learns from results, which belong to the genomes of these hashes; without hashes they are in the order of those asked
+    /// for.
+    fn learn(&self, scored: Vec<Scored>, hashes: Option<&[u64]>) -> PyResult<()> {
         let mut state = self.state()?;
-        let Some(genomes) = state.asked.clone() else {
-            return Err(PyRuntimeError::new_err(
-                "tell without ask: call ask() or evaluate() first",
-            ));
-        };
+        let genomes = state.asked("tell")?.to_vec();
         if scored.len() != genomes.len() {
             let allowed = format!("{}, as many as were asked for", genomes.len());
             return Err(refused("number of results", scored.len(), &allowed));
+        }
+        let mut pairs = genomes.iter().zip(hashes.unwrap_or_default());
+        if let Some(index) = pairs.position(|(genome, hash)| genome.hash() != *hash) {
+            let field = format!("results[{index}]");
+            let allowed = "results of the genomes that were asked for, in their order";
+            return Err(refused(&field, "of another genome", allowed));
         }
         let (evaluations, episodes) =
             scored.into_iter().map(|scored| (scored.evaluation, scored.episode)).unzip();
@@ -81,9 +95,10 @@ impl Search {
     fn new(
         py: Python<'_>,
         problem: Py<Problem>,
-        seed: u64,
+        seed: &Bound<'_, PyAny>,
         founder: Option<&Champion>,
     ) -> PyResult<Self> {
+        let seed = seed_of(seed)?;
         let of = problem.get();
         let mut plan = RunPlan::new(&of.preset, seed, of.settings.clone());
         if let Some(champion) = founder {
@@ -147,7 +162,11 @@ impl Search {
 
     /// Evaluates the next generation as a run does.
     #[pyo3(signature = (threads=None))]
-    fn evaluate(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<Evaluations> {
+    fn evaluate(
+        &self,
+        py: Python<'_>,
+        threads: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Evaluations> {
         let threads = threads_of(threads)?;
         let (genomes, generation) = {
             let mut state = self.state()?;
@@ -155,12 +174,39 @@ impl Search {
         };
         let trial = self.plan.trial_in(generation);
         let scored = score_all(py, &genomes, &trial, threads)?;
-        Ok(Evaluations::new(scored, &trial.stairs))
+        Ok(Evaluations::new(&genomes, scored, &trial.stairs))
+    }
+
+    /// A snake of the generation that was asked for, as a champion.
+    fn champion(&self, py: Python<'_>, index: &Bound<'_, PyAny>) -> PyResult<Champion> {
+        let (mut genomes, generation) = {
+            let state = self.state()?;
+            (state.asked("champion")?.to_vec(), state.finished + 1)
+        };
+        let last = (genomes.len() as u64).saturating_sub(1);
+        let index = whole("index", index, 0..=last)?;
+        if genomes.is_empty() {
+            return Err(refused("index", index, "nothing: the generation is empty"));
+        }
+        let genome = genomes.swap_remove(index as usize);
+        let (preset, seed) = (self.plan.preset.clone(), self.plan.seed);
+        let origin = Origin { preset, seed, generation, individual: index as u32 };
+        evaluated(py, genome, self.plan.trial_in(generation), origin)
+    }
+
+    /// Writes it to a file.
+    fn save_champion(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        index: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        self.champion(py, index)?.store(&path)
     }
 
     /// Learns from evaluations of the generation.
     fn tell(&self, results: &Evaluations) -> PyResult<()> {
-        self.learn(results.scored.clone())
+        self.learn(results.scored.clone(), Some(&results.genomes))
     }
 
     /// Learns from a fitness of the user's own.
@@ -210,22 +256,26 @@ impl Search {
             Ok(Scored { evaluation, episode: None })
         });
         let scored = scored.collect::<PyResult<_>>()?;
-        self.learn(scored)
+        self.learn(scored, None)
     }
 
     /// The elites of MAP-Elites; None for a strategy without an archive.
     fn archive<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let state = self.state()?;
-        let Some(archive) = state.strategy.archive() else { return Ok(None) };
+        // A copy, because a warning may let other threads of Python go on, which may want the state.
+        let Some(archive) = self.state()?.strategy.archive().cloned() else { return Ok(None) };
+        let problem = self.problem.get();
+        let (space, shape) = (&problem.settings.genome, problem.settings.trial.genome_shape());
         let elites = PyList::empty(py);
         for (cell, elite) in archive.elites() {
+            // The archive's own coordinates are those of the strategy, of 32 bits.
+            let genome = space.genome_at(&elite.point, shape);
             let entry = PyDict::new(py);
             entry.set_item("column", cell % archive.cells)?;
             entry.set_item("row", cell / archive.cells)?;
             entry.set_item("fitness", f64::from(elite.fitness))?;
             entry.set_item("generation", elite.generation)?;
             entry.set_item("individual", elite.individual)?;
-            entry.set_item("genome", elite.point.clone().into_pyarray(py))?;
+            entry.set_item("genome", problem.point_of_genome(py, &genome)?.into_pyarray(py))?;
             elites.append(entry)?;
         }
         let dictionary = PyDict::new(py);

@@ -14,7 +14,7 @@ use snakes_and_stairs::schema;
 use snakes_and_stairs::score::{Evaluation, PerturbationRange};
 
 use crate::batch::threads_of;
-use crate::convert::changes_in;
+use crate::convert::{changes_in, whole};
 use crate::errors::{crashed, invalid, refused};
 use crate::problem::Problem;
 use crate::world::{ActionKind, StepResult, World, WorldRules, middle_body};
@@ -34,9 +34,9 @@ pub struct Worlds {
 }
 
 /// Most worlds of one environment: each takes about 70 KiB.
-const MOST_WORLDS: usize = 65_536;
+const MOST_WORLDS: u64 = 65_536;
 /// Most physics steps that one action lasts.
-const MOST_STEPS_PER_ACTION: u32 = 1000;
+const MOST_STEPS_PER_ACTION: u64 = 1000;
 
 fn within(field: &str, value: f64, range: std::ops::RangeInclusive<f64>) -> PyResult<f32> {
     if range.contains(&value) {
@@ -154,28 +154,24 @@ type Stepped<'py> = (
 impl Worlds {
     #[new]
     #[pyo3(signature = (
-        problem, count, actions="targets", steps_per_action=1, stiffness_nm_per_rad=None, damping_nms_per_rad=None,
+        problem, count, actions, steps_per_action, stiffness_nm_per_rad=None, damping_nms_per_rad=None,
         perturbation=None, disqualification_penalty=0.0, threads=None,
     ))]
     fn new(
         problem: &Problem,
-        count: usize,
+        count: &Bound<'_, PyAny>,
         actions: &str,
-        steps_per_action: u32,
+        steps_per_action: &Bound<'_, PyAny>,
         stiffness_nm_per_rad: Option<f64>,
         damping_nms_per_rad: Option<f64>,
         perturbation: Option<&Bound<'_, PyAny>>,
         disqualification_penalty: f64,
-        threads: Option<usize>,
+        threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let (trial, space) = (problem.settings.trial.clone(), &problem.settings.genome);
-        if !(1..=MOST_WORLDS).contains(&count) {
-            return Err(refused("num_envs", count, &format!("1 to {MOST_WORLDS}")));
-        }
-        if !(1..=MOST_STEPS_PER_ACTION).contains(&steps_per_action) {
-            let allowed = format!("1 to {MOST_STEPS_PER_ACTION}");
-            return Err(refused("steps_per_action", steps_per_action, &allowed));
-        }
+        let count = whole("num_envs", count, 1..=MOST_WORLDS)? as usize;
+        let steps_per_action =
+            whole("steps_per_action", steps_per_action, 1..=MOST_STEPS_PER_ACTION)? as u32;
         let actions = match actions {
             "targets" => ActionKind::Targets,
             "torques" => ActionKind::Torques,
@@ -238,12 +234,18 @@ impl Worlds {
     #[getter]
     fn senses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let list = PyList::empty(py);
+        let body = self.rules.body();
+        let weight_n = body.mass_kg() * self.rules.trial.physics.gravity_m_s2;
+        let limb_weight_n = weight_n / body.limbs.len() as f32;
         for (index, (name, info)) in self.rules.senses().into_iter().enumerate() {
             let sense = PyDict::new(py);
             sense.set_item("index", index)?;
             sense.set_item("name", name)?;
-            sense.set_item("unit", info.unit)?;
-            sense.set_item("scale", info.scale)?;
+            // A force is sensed as F / (F + W/n): a share without a unit, half at the weight of a limb.
+            let is_share = info.scale.is_none();
+            sense.set_item("unit", if is_share { "" } else { info.unit })?;
+            sense.set_item("scale", info.scale.unwrap_or(1.0))?;
+            sense.set_item("half_force_n", is_share.then_some(limb_weight_n))?;
             sense.set_item("low", info.range[0])?;
             sense.set_item("high", info.range[1])?;
             list.append(sense)?;
@@ -372,8 +374,14 @@ impl Worlds {
     }
 
     /// Poses of the limbs of a world, head first: x, y, z in m and a quaternion x, y, z, w.
-    fn poses<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let Some(world) = self.worlds.get(index).and_then(Option::as_ref) else {
+    fn poses<'py>(
+        &self,
+        py: Python<'py>,
+        index: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let last = (self.worlds.len() as u64).saturating_sub(1);
+        let index = whole("index", index, 0..=last)?;
+        let Some(world) = self.worlds.get(index as usize).and_then(Option::as_ref) else {
             return Err(PyRuntimeError::new_err("poses before reset: call reset() first"));
         };
         let poses = world.rollout().poses();

@@ -75,6 +75,18 @@ def test_a_snake_found_from_python_is_replayed_by_the_program(tmp_path, snakes):
     assert problem.evaluate(again).trace_hash[0] == int(printed["trace_hash"], 16)
 
 
+def test_a_champion_that_no_row_reaches_is_warned_of(tmp_path):
+    problem = sns.Problem("report", settings=SHORT)
+    path = tmp_path / "found.ron"
+    problem.save_champion(path, np.full(problem.dimension, 0.5))
+    text = path.read_text()
+    assert "bend_nm: [0.0, " in text
+    # Between -1000 and 1000, numbers of 64 bits are about 1e-13 apart.
+    path.write_text(text.replace("bend_nm: [0.0, ", "bend_nm: [1.2345e-12, ", 1))
+    with pytest.warns(UserWarning, match="no row reaches to the last bit"):
+        problem.genome_of(path)
+
+
 def test_files_that_cannot_be_read_are_refused_in_one_line(tmp_path):
     with pytest.raises(OSError, match="missing.ron: cannot be read"):
         sns.load_champion(str(tmp_path / "missing.ron"))

@@ -159,6 +159,37 @@ def test_senses_and_parts_of_actions_are_described():
     assert torques.action_space.high[0] == 1000
 
 
+@pytest.mark.parametrize("actions", ["targets", "torques"])
+def test_an_axis_that_cannot_move_can_be_rescaled(actions):
+    env = make(preset="thick-air", actions=actions)
+    assert (env.action_space.high > env.action_space.low).all()
+    if actions == "targets":
+        twist = env.unwrapped.action_parts[1]
+        assert twist["name"] == "joint 1 twist" and twist["limit"] == 0
+        assert env.action_space.high[1] == np.float32(1e-4)
+    rescaled = gymnasium.wrappers.RescaleAction(env, -1.0, 1.0)
+    rescaled.reset(seed=1)
+    for _ in range(5):
+        senses = rescaled.step(np.ones(8, dtype=np.float32))[0]
+    assert np.isfinite(senses).all()
+
+
+def test_every_sense_has_a_scale_and_forces_say_where_they_are_half():
+    env = make(settings={**SHORT, "gravity_m_s2": 9.0}).unwrapped
+    assert all(sense["scale"] > 0 for sense in env.senses)
+    senses = {sense["name"]: sense for sense in env.senses}
+    for name in ("limb 1 load", "limb 5 blocked"):
+        sense = senses[name]
+        assert (sense["unit"], sense["scale"], sense["low"], sense["high"]) == ("", 1.0, 0.0, 1.0)
+        settings = env.problem.settings
+        length, width, height = (
+            float(settings[f"trial.agent.limb_{side}_m"]) for side in ("length", "width", "height")
+        )
+        ends = [float(settings[f"genome.density_{end}_kg_m3"]) for end in ("min", "max")]
+        assert sense["half_force_n"] == pytest.approx(length * width * height * sum(ends) / 2 * 9.0)
+    assert senses["limb 1 gap"]["half_force_n"] is None
+
+
 def test_observations_stay_within_their_space():
     env = make(preset="trampoline", actions="torques", settings={"trial.duration_s": 5})
     rng = np.random.default_rng(3)
@@ -210,6 +241,8 @@ def test_perturbations_follow_the_seed():
         ({"body": "centipede"}, "body is 'centipede'; allowed: None"),
         ({"actions": "muscles"}, 'actions is "muscles"; allowed: targets, torques'),
         ({"steps_per_action": 0}, "steps_per_action is 0; allowed: 1 to 1000"),
+        ({"steps_per_action": -1}, "steps_per_action is -1; allowed: 1 to 1000"),
+        ({"steps_per_action": 2**64}, "steps_per_action is 18446744073709551616; allowed: 1 to 1000"),
         ({"stiffness_nm_per_rad": -1}, "stiffness_nm_per_rad is -1; allowed: 0 to 100000"),
         ({"actions": "torques", "damping_nms_per_rad": 5}, "damping_nms_per_rad is 5; allowed: None"),
         ({"perturbation": {"friction": 2}}, "perturbation.friction is 2; allowed: 0 to 0.9"),

@@ -1,11 +1,15 @@
 """Every example runs, on small numbers."""
 
 import re
+import runpy
 import subprocess
 import sys
 
 import pytest
+import ribs.archives
 from conftest import PYTHON
+
+import snakes_and_stairs as sns
 
 EXAMPLES = PYTHON / "examples"
 RUNS = {
@@ -47,6 +51,27 @@ def test_an_example_runs(name, tmp_path):
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=300)
     assert done.returncode == 0, done.stderr
     assert re.search(expected, done.stdout), done.stdout
+
+
+def test_no_disqualified_snake_enters_the_archive_of_pyribs(monkeypatch):
+    archives, archive_of_ribs, problem_of = [], ribs.archives.GridArchive, sns.Problem
+
+    def archive(**arguments):
+        archives.append(archive_of_ribs(**arguments))
+        return archives[-1]
+
+    def problem(preset, settings):
+        return problem_of(preset, settings={**settings, "trial.health.speed_m_s": 2.0})
+
+    monkeypatch.setattr(ribs.archives, "GridArchive", archive)
+    monkeypatch.setattr(sns, "Problem", problem)
+    monkeypatch.setattr(sys, "argv", ["", *RUNS["pyribs_map_elites.py"][0]])
+    runpy.run_path(str(EXAMPLES / "pyribs_map_elites.py"), run_name="__main__")
+    [archive] = archives
+    solutions = archive.data("solution")
+    results = problem("climb", {"trial.duration_s": 4}).evaluate(solutions)
+    assert len(results) > 0 and not results.disqualified.any()
+    assert archive.qd_score_offset == -30.0 < results.fitness.min()
 
 
 def test_a_snake_of_pycma_is_saved_for_the_program(tmp_path, snakes):

@@ -1,5 +1,6 @@
 """Evaluation in batches."""
 
+import multiprocessing
 import os
 import pickle
 import signal
@@ -63,6 +64,16 @@ def test_a_disqualified_snake_says_why():
     for is_out, reason in zip(results.disqualified, results.reasons):
         assert (reason == "speed limit exceeded") if is_out else reason is None
     assert not (results.on_landing & results.disqualified).any()
+
+
+def test_a_disqualified_snake_is_never_the_best():
+    problem = Problem("climb", settings={**SHORT, "trial.health.speed_m_s": 2.0})
+    results = problem.evaluate(problem.random(60))
+    out = results.disqualified
+    assert out.any() and not out.all()
+    assert np.isneginf(results.ranking[out]).all()
+    assert np.array_equal(results.ranking[~out], results.fitness[~out])
+    assert not out[results.ranking.argmax()]
 
 
 def test_numbers_outside_the_cube_are_reflected():
@@ -153,6 +164,49 @@ def test_a_problem_travels_to_other_processes():
     assert copy.evaluate(genome).trace_hash[0] == problem.evaluate(genome).trace_hash[0]
 
 
+@pytest.mark.parametrize("preset", ["climb", "waves-by-rules", "q-learning", "xcs", "zcs"])
+def test_results_travel_to_other_processes(preset):
+    search = sns.Search(preset, settings={**SHORT, "population": 6, "trial.health.speed_m_s": 3.0})
+    results = search.evaluate()
+    copy = pickle.loads(pickle.dumps(results))
+    for name in (*sns.frames.EVALUATION_COLUMNS, "ranking"):
+        assert getattr(copy, name).tobytes() == getattr(results, name).tobytes(), name
+    assert copy.reasons == results.reasons
+    # What a learner learns from and the hashes of the genomes are there, too.
+    search.tell(copy)
+
+
+def test_a_pool_of_processes_evaluates():
+    problem = Problem("climb", settings=SHORT)
+    genomes = problem.random(8)
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        parts = pool.map(problem.evaluate, np.array_split(genomes, 2))
+    hashes = np.concatenate([part.trace_hash for part in parts])
+    assert np.array_equal(hashes, problem.evaluate(genomes).trace_hash)
+
+
+def test_numbers_that_do_not_fit_are_refused_with_name_and_range(tmp_path):
+    problem = Problem("climb", settings=SHORT)
+    genome, path = problem.random(1), tmp_path / "none.ron"
+    seeds, u32 = "0 to 18446744073709551615", "0 to 4294967295"
+    for refused, message in [
+        (lambda: problem.random(-1), "count is -1; allowed: 0 to "),
+        (lambda: problem.random(10**9), "count is 1000000000; allowed: 0 to "),
+        (lambda: problem.random(2, seed=-1), f"seed is -1; allowed: {seeds}"),
+        (lambda: problem.evaluate(genome, threads=-1), r"threads is -1; allowed: None \(all cores\), or 1 to 1024"),
+        (lambda: problem.evaluate(genome, threads=2**70), "threads is 1180591620717411303424; allowed"),
+        (lambda: problem.save_champion(path, genome, seed=-1), f"seed is -1; allowed: {seeds}"),
+        (lambda: problem.save_champion(path, genome, generation=-1), f"generation is -1; allowed: {u32}"),
+        (lambda: problem.save_champion(path, genome, individual=2**32), f"individual is 4294967296; allowed: {u32}"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            refused()
+    with pytest.raises(TypeError, match="count is a float; allowed: a whole number, 0 to"):
+        problem.random(2.0)
+    assert not path.exists()
+    assert len(problem.random(np.int64(2), seed=np.uint64(2**64 - 1))) == 2
+
+
 def test_no_genomes_have_no_results():
     problem = Problem("climb", settings=SHORT)
     results = problem.evaluate(np.zeros((0, problem.dimension)))
@@ -173,6 +227,20 @@ def test_an_interrupt_ends_a_long_evaluation():
     finally:
         signal.signal(signal.SIGINT, earlier)
     assert time.perf_counter() - started < 20
+
+
+def test_an_interrupt_leaves_no_file(tmp_path):
+    earlier = signal.signal(signal.SIGINT, signal.default_int_handler)
+    settings = {"trial.duration_s": 600, "trial.repeats.trials": 10}
+    problem = Problem("climb", settings=settings)
+    path = tmp_path / "champion.ron"
+    threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            problem.save_champion(path, np.full(problem.dimension, 0.5))
+    finally:
+        signal.signal(signal.SIGINT, earlier)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_other_threads_of_python_go_on_during_an_evaluation():

@@ -128,10 +128,87 @@ def test_seeds_and_masks_of_the_wrong_shape_are_refused():
     bad[2, 1] = np.inf
     with pytest.raises(ValueError, match=r"action\[2, 1\] is inf; allowed: finite numbers"):
         envs.step(bad)
-    with pytest.raises(ValueError, match="num_envs is 0"):
-        sns.SnakesAndStairsVectorEnv(0)
-    with pytest.raises(ValueError, match="threads is 0"):
-        sns.SnakesAndStairsVectorEnv(2, threads=0)
+    with pytest.raises(ValueError, match="seed is -1; allowed: None, or 0 and greater"):
+        envs.reset(seed=-1)
+    for count in (0, -1, 2**64):
+        with pytest.raises(ValueError, match=f"num_envs is {count}; allowed: 1 to 65536"):
+            sns.SnakesAndStairsVectorEnv(count)
+    for threads in (0, -1):
+        with pytest.raises(ValueError, match=f"threads is {threads}; allowed"):
+            sns.SnakesAndStairsVectorEnv(2, threads=threads)
+
+
+def test_poses_of_a_world_that_there_is_not_are_refused():
+    envs = make().unwrapped
+    with pytest.raises(RuntimeError, match="poses before reset"):
+        envs.poses(1)
+    envs.reset(seed=1)
+    assert envs.poses(2).shape == (5, 7)
+    for index in (-1, 3, 99):
+        with pytest.raises(ValueError, match=f"index is {index}; allowed: 0 to 2"):
+            envs.poses(index)
+
+
+def test_numbers_of_worlds_are_no_mask():
+    envs = make(autoreset_mode=AutoresetMode.DISABLED)
+    envs.reset(seed=1)
+    for mask in ([0, 1, 2], [True, False, True], np.array([0, 1, 2]), np.ones(3), None):
+        with pytest.raises(TypeError, match="reset_mask is .*; allowed: an array of 3 bools"):
+            envs.reset(options={"reset_mask": mask})
+
+
+def same_infos(its, ours):
+    """Whether two dictionaries of information are equal, arrays within dictionaries included."""
+    assert its.keys() == ours.keys()
+    for name, values in its.items():
+        if isinstance(values, dict):
+            same_infos(values, ours[name])
+        elif name == "final_obs":
+            for one, other in zip(values, ours[name]):
+                assert np.array_equal(one, other) if one is not None else other is None
+        else:
+            assert values.dtype == ours[name].dtype, name
+            assert values.tolist() == ours[name].tolist(), name
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+def test_information_is_that_of_gymnasiums_own_vectorisation(mode):
+    # The worlds end at different times.
+    settings = {**SHORT, "trial.health.speed_m_s": 1.0}
+    arguments = {"settings": settings, "perturbation": True, "actions": "torques"}
+    own = gymnasium.make_vec(
+        "SnakesAndStairs-v0",
+        num_envs=3,
+        vectorization_mode="sync",
+        vector_kwargs={"autoreset_mode": mode},
+        **arguments,
+    )
+    envs = make(3, autoreset_mode=mode, **arguments)
+    same_infos(own.reset(seed=4)[1], envs.reset(seed=4)[1])
+    assert envs.np_random_seed == own.np_random_seed == (4, 5, 6)
+    ends = partial_ends = 0
+    for batch in 1000 * actions(150):
+        its, ours = own.step(batch), envs.step(batch)
+        assert np.array_equal(its[0], ours[0])
+        same_infos(its[4], ours[4])
+        ended = ours[2] | ours[3]
+        ends += int(ended.sum())
+        partial_ends += int(ended.any() and not ended.all())
+        if mode is AutoresetMode.DISABLED and ended.any():
+            its, ours = (of.reset(options={"reset_mask": ended.copy()}) for of in (own, envs))
+            assert np.array_equal(its[0], ours[0])
+            same_infos(its[1], ours[1])
+    assert ends > 3 and partial_ends > 1
+    own.close()
+
+
+def test_seeds_are_those_of_the_worlds():
+    envs = make().unwrapped
+    before = envs.np_random_seed
+    assert len(set(before)) == 3 and envs.np_random_seed == before
+    envs.reset(seed=[7, None, 9])
+    assert envs.np_random_seed == (7, before[1], 9)
+    assert len(envs.np_random) == 3
 
 
 def test_a_refused_step_leaves_the_worlds_as_they_were():

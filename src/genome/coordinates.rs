@@ -61,11 +61,26 @@ impl GenomeSpace {
     /// The genome at a point of the unit cube: a coordinate from 0 to 1 per gene that has a choice.
     /// Every point outside the cube has a genome too: see `GeneRange::at`.
     pub fn genome_at(&self, point: &[f64], shape: GenomeShape) -> Genome {
+        self.genome_by(|range, coordinate| range.at(coordinate), point, shape)
+    }
+
+    /// The genome at a point whose coordinates count with all of their 64 bits: see `GeneRange::fine_at`. Strategies use
+    /// [`Self::genome_at`].
+    pub fn genome_at_fine(&self, point: &[f64], shape: GenomeShape) -> Genome {
+        self.genome_by(|range, coordinate| range.fine_at(coordinate), point, shape)
+    }
+
+    fn genome_by(
+        &self,
+        at: impl Fn(GeneRange<'_>, f64) -> f32,
+        point: &[f64],
+        shape: GenomeShape,
+    ) -> Genome {
         let mut genome = self.zeroed(shape);
         let mut coordinates = point.iter().copied();
         genome.genes(self, &mut |gene, value| {
             let coordinate = if gene.range.is_point() { None } else { coordinates.next() };
-            *value = gene.range.at(coordinate.unwrap_or(0.0));
+            *value = at(gene.range, coordinate.unwrap_or(0.0));
         });
         genome
     }
@@ -92,6 +107,14 @@ impl GenomeSpace {
     pub fn exact_point_of(&self, genome: &Genome) -> Vec<f64> {
         let mut point = Vec::new();
         self.search_genes(genome.clone(), |range, value| point.push(range.exact_coordinate(value)));
+        point
+    }
+
+    /// The point of a genome that passes [`Self::check_genome`]: [`Self::genome_at_fine`] returns the genome to the last bit,
+    /// except for the rare values that `GeneRange::fine_coordinate` names.
+    pub fn fine_point_of(&self, genome: &Genome) -> Vec<f64> {
+        let mut point = Vec::new();
+        self.search_genes(genome.clone(), |range, value| point.push(range.fine_coordinate(value)));
         point
     }
 
@@ -170,6 +193,27 @@ mod tests {
                 let again = space.point_of(&space.genome_at(&point, SHAPE));
                 let off = point.iter().zip(&again).map(|(a, b)| (a - b).abs());
                 assert!(off.fold(0.0, f64::max) < 1e-5, "{kind}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_genome_returns_from_its_fine_point_to_the_last_bit() {
+        for kind in ControllerKind::ALL {
+            let mut space = space(kind);
+            space.wave.harmonics = 2;
+            for individual in 0..20 {
+                let mut rng = stream(1, 1, individual, Purpose::Birth);
+                let parent = space.random_genome(SHAPE, &mut rng);
+                for genome in [space.mutate(&parent, 25.0, &mut rng), parent] {
+                    let again = space.genome_at_fine(&space.fine_point_of(&genome), SHAPE);
+                    let values = |mut genome: Genome| {
+                        let mut bits = Vec::new();
+                        genome.genes(&space, &mut |_, value| bits.push(value.to_bits()));
+                        bits
+                    };
+                    assert_eq!(values(again), values(genome), "{kind}");
+                }
             }
         }
     }

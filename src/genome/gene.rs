@@ -133,6 +133,44 @@ impl GeneRange<'_> {
         near
     }
 
+    /// The value at a coordinate, computed in 64 bits and rounded once. [`Self::at`] knows only the coordinates that 32 bits
+    /// can hold, so it leaves out most values of a range.
+    pub fn fine_at(self, coordinate: f64) -> f32 {
+        let wrapped = self.wrapped(coordinate);
+        match self {
+            Self::Between(least, most) => {
+                let (low, high) = (f64::from(least), f64::from(most));
+                ((low + wrapped * (high - low)) as f32).clamp(least, most)
+            }
+            Self::Turn => (wrapped * f64::from(TAU)) as f32,
+            Self::Fixed(_) | Self::OneOf(_) => self.at(coordinate),
+        }
+    }
+
+    /// A coordinate at which [`Self::fine_at`] returns the value to the last bit. There is none for an angle beyond a full turn,
+    /// nor for a value so near to 0, in a range on both sides of it, that even 64 bits cannot tell it from its neighbours; then
+    /// a coordinate nearby.
+    pub fn fine_coordinate(self, value: f32) -> f64 {
+        let near = match self {
+            Self::Between(least, most) => {
+                let (low, high) = (f64::from(least), f64::from(most));
+                (f64::from(value) - low) / (high - low)
+            }
+            Self::Turn => f64::from(value) / f64::from(TAU),
+            Self::Fixed(_) | Self::OneOf(_) => return self.coordinate(value),
+        };
+        let (mut below, mut above) = (near, near);
+        for _ in 0..4 {
+            for candidate in [below, above] {
+                if (0.0..=1.0).contains(&candidate) && self.fine_at(candidate) == value {
+                    return candidate;
+                }
+            }
+            (below, above) = (below.next_down(), above.next_up());
+        }
+        near
+    }
+
     /// Whether a gene may have this value.
     pub fn contains(self, value: f32) -> bool {
         match self {
@@ -210,5 +248,32 @@ mod tests {
         for (coordinate, value) in [(0.1, 1.0), (0.5, 2.0), (1.0, 3.0), (1.2, 3.0), (-0.4, 2.0)] {
             assert_eq!(list.at(coordinate), value, "at {coordinate}");
         }
+    }
+
+    #[test]
+    fn fine_coordinates_reach_every_value() {
+        let torque = GeneRange::Between(-1000.0, 1000.0);
+        let mut value = 312.5_f32;
+        let mut left_out = 0;
+        for _ in 0..2000 {
+            for value in [value, -value] {
+                assert_eq!(torque.fine_at(torque.fine_coordinate(value)), value);
+                left_out += u32::from(torque.at(torque.exact_coordinate(value)) != value);
+            }
+            value = value.next_up();
+        }
+        assert!(left_out > 1000, "coordinates of 32 bits reach all but {left_out} of 4000 values");
+        for value in [-1000.0, 1000.0, 0.0, 1e-5, -1e-5, 999.99994] {
+            assert_eq!(torque.fine_at(torque.fine_coordinate(value)), value);
+        }
+        for value in [0.0, 1e-30, 1.0, std::f32::consts::PI, TAU] {
+            assert_eq!(GeneRange::Turn.fine_at(GeneRange::Turn.fine_coordinate(value)), value);
+        }
+        let stiffness = GeneRange::Between(50.0, 1000.0);
+        for (coordinate, value) in [(-0.5, 525.0), (1.5, 525.0), (2.0, 50.0), (f64::NAN, 50.0)] {
+            assert_eq!(stiffness.fine_at(coordinate), value, "reflected at {coordinate}");
+        }
+        let list = GeneRange::OneOf(&[1.0, 2.0, 3.0]);
+        assert_eq!(list.fine_at(list.fine_coordinate(2.0)), 2.0);
     }
 }

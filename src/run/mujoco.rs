@@ -3,8 +3,9 @@
 //! A Python process holds MuJoCo (`tests/peers/mujoco.py`, which is part of the program). The controller runs here: it feels
 //! the limbs that MuJoCo moves, and its torques go back. So every kind of controller can be played, with or without senses.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::{self, BufRead, BufReader, Write};
+use std::path::{self, Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use serde::{Deserialize, Serialize};
@@ -117,7 +118,7 @@ impl Mujoco {
         };
         let failed = |error: io::Error| missing(error.to_string());
         let folder = tempfile::tempdir().map_err(failed)?;
-        let mut command = Command::new(&python);
+        let mut command = Command::new(program(&python));
         command
             .args(["-c", include_str!("../../tests/peers/mujoco.py")])
             .current_dir(folder.path());
@@ -238,6 +239,17 @@ impl Mujoco {
     }
 }
 
+/// The program that a name stands for: the process works in a folder of its own, in which a relative path would mean another
+/// file. A bare name is searched for as always. Links stay, because the Python of a virtual environment is one.
+fn program(name: &OsStr) -> PathBuf {
+    let name = Path::new(name);
+    if name.components().count() > 1 {
+        path::absolute(name).unwrap_or_else(|_| name.to_owned())
+    } else {
+        name.to_owned()
+    }
+}
+
 /// Ends the process.
 impl Drop for Mujoco {
     fn drop(&mut self) {
@@ -298,6 +310,18 @@ mod tests {
         let result = MujocoResult::of(&here, &there);
         assert_eq!((result.trials, result.climbed, result.landed), (3, [2, 2], [1, 0]));
         assert_eq!((result.way, result.kept), ([0.5, 0.5], 0.8), "the third has no way here");
+    }
+
+    #[test]
+    fn a_relative_path_of_python_is_looked_for_where_the_program_was_started() {
+        let here = std::env::current_dir().expect("there is one");
+        for name in ["venv/bin/python", "./python"] {
+            let found = program(OsStr::new(name));
+            assert!(found.starts_with(&here) && found.ends_with("python"), "{}", found.display());
+        }
+        assert_eq!(program(OsStr::new("python3")), Path::new("python3"));
+        let absolute = here.join("venv/bin/python");
+        assert_eq!(program(absolute.as_os_str()), absolute);
     }
 
     #[test]

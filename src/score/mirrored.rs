@@ -59,15 +59,19 @@ impl MirroredRollout {
         &self.torques
     }
 
-    /// Takes over the limbs after the step, head first. A limb that is faster than the trial allows, or a number that is
-    /// not finite, disqualifies the snake; the other limits are for this program's engine.
+    /// Takes over the limbs after the step, head first. A limb that is faster than the trial allows or beyond the sideways or
+    /// backward limit, or a number that is not finite, disqualifies the snake. Gaps of joints and energy from nothing are
+    /// errors of this program's engine; another one has its own.
     pub fn take(&mut self, limbs: &[LimbState]) {
-        let fastest_m_s = self.plan.health.speed_m_s;
+        let health = &self.plan.health;
         let is_healthy = |limb: &LimbState| {
-            limb.pose.translation.is_finite()
+            let centre = limb.pose.translation;
+            centre.is_finite()
                 && limb.pose.rotation.is_finite()
                 && limb.angular_velocity_rad_s.is_finite()
-                && limb.velocity_m_s.length() <= fastest_m_s
+                && limb.velocity_m_s.length() <= health.speed_m_s
+                && centre.x.abs() <= health.arena_half_width_m
+                && centre.y >= -health.arena_back_m
         };
         if limbs.len() == self.plan.body.limbs.len() && limbs.iter().all(is_healthy) {
             self.world.mirror(limbs);
@@ -91,6 +95,47 @@ impl MirroredRollout {
                 ExamEnd::at(middle_m, &self.plan.stairs, self.plan.start_y_m)
             }
             _ => ExamEnd::CRASHED,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::score::Perturbation;
+    use crate::world::Vector;
+
+    #[test]
+    fn a_limb_beyond_the_limits_of_the_arena_disqualifies_the_snake() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let condition = ExamCondition {
+            label: String::new(),
+            trial: champion.trial,
+            perturbation: Perturbation::default(),
+        };
+        let is_over_with_tail_at = |x: f32, y: f32| {
+            let mut rollout = MirroredRollout::new(&champion.genome, &condition);
+            let at_rest = |pose| LimbState {
+                pose,
+                velocity_m_s: Vector::ZERO,
+                angular_velocity_rad_s: Vector::ZERO,
+                contact_n: None,
+            };
+            let mut limbs: Vec<LimbState> = rollout.world().poses().map(at_rest).collect();
+            let tail = limbs.last_mut().expect("a snake has limbs");
+            (tail.pose.translation.x, tail.pose.translation.y) = (x, y);
+            rollout.take(&limbs);
+            rollout.is_over()
+        };
+        for (x, y, is_beyond) in [
+            (11.9, -29.9, false),
+            (12.1, -7.0, true),
+            (-12.1, -7.0, true),
+            (0.0, -30.1, true),
+            (0.0, -29.9, false),
+        ] {
+            assert_eq!(is_over_with_tail_at(x, y), is_beyond, "at {x}, {y}");
         }
     }
 }
