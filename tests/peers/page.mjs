@@ -67,6 +67,8 @@ async function visit() {
   await page.locator("#try").click();
   await page.locator("#no-twin").waitFor({ state: "visible", ...LONG });
   found.twin = await page.locator("#twin-words").textContent();
+  // They appear with the next frame.
+  await page.waitForFunction(() => [...document.querySelectorAll("#numbers td")].at(-1).textContent !== "", null, LONG);
   found.twinNumbers = await page.locator("#numbers tr").last().innerText();
   found.lanes = await page.evaluate(() => state.lanes.length);
   await page.locator("#no-twin").click();
