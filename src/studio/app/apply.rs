@@ -24,7 +24,7 @@ use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::library::Library;
 use crate::studio::state::machines::MachinesLink;
-use crate::studio::state::shares::Shares;
+use crate::studio::state::shares::{Shares, refuse_number};
 use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
@@ -103,9 +103,12 @@ pub(super) fn apply(
                 .apply(command, &mut history, notices)
                 .map(|show| stage.present_others(show, notices)),
             Command::Share(ShareCommand::Ask(format)) => {
-                let question = FileQuestion::Share(*format, stage.name_for_file());
-                let ask = FileCommand::Ask(question);
-                files.apply(&ask, &mut library, &mut history, notices).map(drop)
+                // Before anyone chooses a file in vain.
+                refuse_number(*format, stage.champions_to_share().len()).and_then(|()| {
+                    let question = FileQuestion::Share(*format, stage.name_for_file());
+                    let ask = FileCommand::Ask(question);
+                    files.apply(&ask, &mut library, &mut history, notices).map(drop)
+                })
             }
             Command::Share(ShareCommand::Cancel) => shares.cancel(),
             Command::File(FileCommand::Answer(FileQuestion::Share(format, _), paths)) => {

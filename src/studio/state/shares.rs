@@ -153,7 +153,10 @@ impl Shares {
 }
 
 /// Refuses a number of snakes that a file of this format does not hold.
-fn refuse_number(format: ExportFormat, found: usize) -> Result<(), String> {
+///
+/// # Errors
+/// There are none, or too many; the sentence says what to do.
+pub(crate) fn refuse_number(format: ExportFormat, found: usize) -> Result<(), String> {
     let info = format.info();
     match (found, info.most_champions) {
         (0, _) => Err("There is no snake on the stage.".to_owned()),
