@@ -41,6 +41,21 @@ impl TaskProgress {
     }
 }
 
+impl BackgroundTask<String> {
+    /// Reads text to its end, such as the errors of a process, which would wait once they fill their pipe. If reading
+    /// fails, the text that came before counts.
+    ///
+    /// # Errors
+    /// The thread could not be started.
+    pub fn start_reading(mut source: impl io::Read + Send + 'static) -> io::Result<Self> {
+        Self::start(move || {
+            let mut bytes = Vec::new();
+            let _ = source.read_to_end(&mut bytes);
+            String::from_utf8_lossy(&bytes).into_owned()
+        })
+    }
+}
+
 impl<T: Send + 'static> BackgroundTask<T> {
     /// Starts work that is one item.
     ///

@@ -61,6 +61,37 @@ impl Notice {
     fn is_over(&self) -> bool {
         self.shown_for >= self.lasts
     }
+
+    /// Draws its card, at most this wide in points. Returns the card's height and the command of a clicked button.
+    fn show(&self, ui: &mut egui::Ui, width: f32) -> (f32, Option<Command>) {
+        let palette = theme::of(ui);
+        let edge = if self.is_problem { palette.problem } else { palette.accent };
+        let mut taken = None;
+        let card = palette.card(edge).show(ui, |ui| {
+            ui.set_max_width(width);
+            let text = egui::RichText::new(&self.text).color(palette.text);
+            // The card is right-aligned, its text left-aligned.
+            let lines = egui::Layout::top_down(egui::Align::Min);
+            let label = ui.with_layout(lines, |ui| ui.label(text)).inner;
+            // Screen readers announce the message.
+            ui.ctx().accesskit_node_builder(label.id, |node| {
+                node.set_role(Role::Status);
+                node.set_live(Live::Polite);
+            });
+            if !self.offers.is_empty() {
+                let row = egui::Layout::left_to_right(egui::Align::Center);
+                let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+                ui.allocate_ui_with_layout(size, row, |ui| {
+                    for (label, command) in &self.offers {
+                        if ui.button(label).clicked() {
+                            taken = Some(command.clone());
+                        }
+                    }
+                });
+            }
+        });
+        (card.response.rect.height(), taken)
+    }
 }
 
 impl Notices {
@@ -161,6 +192,50 @@ impl Notices {
         ends.take_while(|end| *end <= height).count().max(1)
     }
 
+    /// Draws the messages in the lower right corner of a room. Returns the rectangle that they cover, and the command of a
+    /// clicked button, whose message goes.
+    fn show(
+        &mut self,
+        context: &egui::Context,
+        room: egui::Rect,
+    ) -> (Option<egui::Rect>, Option<Command>) {
+        // Older messages for which there is no room wait behind the later ones.
+        let fitting = self.fitting(room.height());
+        // The rest is for the card's margins.
+        let width = theme::NOTICE_WIDTH.min(room.width() - theme::GAP * 3.0);
+        let (mut heights, mut taken) = (Vec::new(), None);
+        let shown = egui::Area::new(egui::Id::new("notices"))
+            .pivot(egui::Align2::RIGHT_BOTTOM)
+            .fixed_pos(room.max)
+            // Without a button, clicks reach the stage behind the messages.
+            .interactable(self.drawn().any(|(_, notice)| !notice.offers.is_empty()))
+            .show(context, |ui| {
+                ui.spacing_mut().item_spacing.y = theme::GAP;
+                ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
+                    for (index, notice) in self.drawn().rev().take(fitting) {
+                        let (height, command) = notice.show(ui, width);
+                        heights.push((index, height));
+                        taken = taken.take().or(command.map(|command| (index, command)));
+                    }
+                });
+            });
+        for (index, height) in heights {
+            let before = std::mem::replace(&mut self.list[index].height, height);
+            if before.to_bits() != height.to_bits() {
+                // The area is placed by the size that it had. Drawn there, the buttons would move away from the pointer
+                // in the next frame.
+                context.request_discard("a message of another height");
+            }
+        }
+        let is_empty = self.drawn().next().is_none();
+        let covered = (!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0));
+        let command = taken.map(|(index, command)| {
+            self.list.remove(index);
+            command
+        });
+        (covered, command)
+    }
+
     fn push(&mut self, new: Notice) {
         // A repeated message replaces the earlier one and restarts its display time.
         let is_same = |notice: &Notice| new.subject.is_some() && notice.subject == new.subject;
@@ -186,59 +261,11 @@ fn draw(
 ) -> Result {
     notices.list.iter_mut().for_each(|notice| notice.shown_for += time.delta());
     notices.list.retain(|notice| !notice.is_over());
-    let context = contexts.ctx_mut()?;
-    let mut taken = None;
     // The stairs rise to the upper right, so there is most room over the ground at the lower right.
     let room = area.messages_room().shrink(theme::GAP * 1.5);
-    // Older messages for which there is no room wait behind the later ones.
-    let fitting = notices.fitting(room.height());
-    // The rest is for the card's margins.
-    let width = theme::NOTICE_WIDTH.min(room.width() - theme::GAP * 3.0);
-    let mut heights = Vec::new();
-    let shown = egui::Area::new(egui::Id::new("notices"))
-        .pivot(egui::Align2::RIGHT_BOTTOM)
-        .fixed_pos(room.max)
-        // Without a button, clicks reach the stage behind the messages.
-        .interactable(notices.drawn().any(|(_, notice)| !notice.offers.is_empty()))
-        .show(context, |ui| {
-            ui.spacing_mut().item_spacing.y = theme::GAP;
-            ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
-                for (index, notice) in notices.drawn().rev().take(fitting) {
-                    let palette = theme::of(ui);
-                    let edge = if notice.is_problem { palette.problem } else { palette.accent };
-                    let card = palette.card(edge).show(ui, |ui| {
-                        ui.set_max_width(width);
-                        let text = egui::RichText::new(&notice.text).color(palette.text);
-                        // The card is right-aligned, its text left-aligned.
-                        let lines = egui::Layout::top_down(egui::Align::Min);
-                        let label = ui.with_layout(lines, |ui| ui.label(text)).inner;
-                        // Screen readers announce the message.
-                        ui.ctx().accesskit_node_builder(label.id, |node| {
-                            node.set_role(Role::Status);
-                            node.set_live(Live::Polite);
-                        });
-                        if !notice.offers.is_empty() {
-                            let row = egui::Layout::left_to_right(egui::Align::Center);
-                            let size =
-                                egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
-                            ui.allocate_ui_with_layout(size, row, |ui| {
-                                for (label, command) in &notice.offers {
-                                    if ui.button(label).clicked() {
-                                        taken = Some((index, command.clone()));
-                                    }
-                                }
-                            });
-                        }
-                    });
-                    heights.push((index, card.response.rect.height()));
-                }
-            });
-        });
-    heights.into_iter().for_each(|(index, height)| notices.list[index].height = height);
-    let is_empty = notices.drawn().next().is_none();
-    area.set_messages((!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0)));
-    if let Some((index, command)) = taken {
-        notices.list.remove(index);
+    let (covered, taken) = notices.show(contexts.ctx_mut()?, room);
+    area.set_messages(covered);
+    if let Some(command) = taken {
         send.write(command);
     }
     Ok(())
@@ -246,6 +273,11 @@ fn draw(
 
 #[cfg(test)]
 mod tests {
+    use std::cell::RefCell;
+
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
     use super::*;
 
     #[test]
@@ -291,6 +323,25 @@ mod tests {
         notices.list[1].shown_for = NEWS;
         assert!(!notices.list[1].is_over(), "a button takes time to reach");
     }
+
+    #[test]
+    fn a_button_moved_for_one_frame_when_the_text_above_it_grew_by_a_line() {
+        let notices = RefCell::new(Notices::default());
+        let offer = |text: &str| {
+            notices.borrow_mut().offer("best", text.to_owned(), [("Show it", Command::Redo)]);
+        };
+        let room = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(600.0, 500.0));
+        offer("Generation 4 is the best so far: 3.34 m, climbs 1 step");
+        let mut harness = Harness::new_ui(|ui| drop(notices.borrow_mut().show(ui.ctx(), room)));
+        harness.run();
+        let below = harness.get_by_label("Show it").rect();
+        offer(
+            "Generation 5 is the best so far: 3.63 m, passes 1 step beside the stairs of the staircase",
+        );
+        harness.step();
+        assert_eq!(harness.get_by_label("Show it").rect(), below);
+    }
+
     #[test]
     fn a_presentation_hides_news_but_neither_problems_nor_important_news() {
         let mut notices = Notices::default();

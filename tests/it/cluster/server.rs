@@ -4,6 +4,8 @@ use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use futures_util::StreamExt;
@@ -162,19 +164,62 @@ pub fn worker_that_tells(url: &str) -> Process {
     Process(piped.spawn().expect("the worker starts"))
 }
 
+/// A pipe that is read while its process runs, so that it never fills.
+struct Pipe {
+    bytes: Arc<Mutex<Vec<u8>>>,
+    reader: JoinHandle<()>,
+}
+
+impl Pipe {
+    fn read(mut pipe: impl Read + Send + 'static) -> Self {
+        let bytes = Arc::new(Mutex::new(Vec::new()));
+        let all = Arc::clone(&bytes);
+        let reader = std::thread::spawn(move || {
+            let mut buffer = [0; 4096];
+            while let Ok(length @ 1..) = pipe.read(&mut buffer) {
+                all.lock().expect("no panic").extend_from_slice(&buffer[..length]);
+            }
+        });
+        Self { bytes, reader }
+    }
+
+    /// Number of lines so far.
+    fn lines(&self) -> usize {
+        self.bytes.lock().expect("no panic").iter().filter(|byte| **byte == b'\n').count()
+    }
+
+    /// All bytes, after the end of the process.
+    fn whole(self) -> Vec<u8> {
+        self.reader.join().expect("no panic");
+        std::mem::take(&mut *self.bytes.lock().expect("no panic"))
+    }
+}
+
 /// A coordinator in a folder of its own.
 pub struct Run {
     pub folder: PathBuf,
     arguments: String,
     process: Process,
+    stdout: Pipe,
+    stderr: Pipe,
 }
 
 impl Run {
     /// Starts a command on a server.
     pub fn start(folder: &Path, arguments: &str, url: &str) -> Self {
         let arguments = format!("{arguments} --json --nats {url}");
-        let process = spawned(folder, &arguments);
-        Self { folder: folder.to_owned(), arguments, process }
+        let (process, stdout, stderr) = spawned(folder, &arguments);
+        Self { folder: folder.to_owned(), arguments, process, stdout, stderr }
+    }
+
+    /// Waits until this number of generations is finished.
+    pub fn wait_for_generations(&mut self, count: usize) {
+        let began = Instant::now();
+        while self.stdout.lines() < count {
+            assert!(self.is_running(), "the run ended before generation {count}");
+            assert!(began.elapsed() < Duration::from_mins(5), "waited for generation {count}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
     }
 
     /// Whether it has not ended.
@@ -186,7 +231,7 @@ impl Run {
     pub fn restart(&mut self) {
         self.process.0.kill().expect("it can be killed");
         self.process.0.wait().expect("it ends");
-        self.process = spawned(&self.folder, &self.arguments);
+        (self.process, self.stdout, self.stderr) = spawned(&self.folder, &self.arguments);
     }
 
     /// Stops it with the interrupt key, and returns what it said.
@@ -200,16 +245,7 @@ impl Run {
 
     /// Waits for the end.
     pub fn output(mut self) -> Output {
-        let (mut stdout, mut stderr) = (Vec::new(), Vec::new());
-        let errors = self.process.0.stderr.take();
-        let reader = std::thread::spawn(move || {
-            let mut text = Vec::new();
-            errors.expect("piped").read_to_end(&mut text).expect("read");
-            text
-        });
-        let pipe = self.process.0.stdout.as_mut().expect("piped");
-        pipe.read_to_end(&mut stdout).expect("read");
-        stderr.extend(reader.join().expect("read"));
+        let (stdout, stderr) = (self.stdout.whole(), self.stderr.whole());
         let status = self.process.0.wait().expect("it ends");
         Output { status, stdout, stderr }
     }
@@ -230,10 +266,14 @@ impl Run {
     }
 }
 
-fn spawned(folder: &Path, arguments: &str) -> Process {
+/// The process, its standard output and its standard error.
+fn spawned(folder: &Path, arguments: &str) -> (Process, Pipe, Pipe) {
     let mut command = snakes(folder, arguments);
     let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped()).stdin(Stdio::null());
-    Process(piped.spawn().expect("the coordinator starts"))
+    let mut child = piped.spawn().expect("the coordinator starts");
+    let stdout = Pipe::read(child.stdout.take().expect("piped"));
+    let stderr = Pipe::read(child.stderr.take().expect("piped"));
+    (Process(child), stdout, stderr)
 }
 
 /// The hash of a run on the last of its lines.

@@ -1,6 +1,6 @@
 //! A film as MP4: frames go through a pipe to ffmpeg, which compresses them as H.264.
 
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
@@ -113,13 +113,8 @@ impl RunningFfmpeg {
         let mut process = command.spawn()?;
         let gone = || io::Error::from(io::ErrorKind::BrokenPipe);
         let frames = process.stdin.take().ok_or_else(gone)?;
-        let mut errors = process.stderr.take().ok_or_else(gone)?;
-        let said = BackgroundTask::start(move || {
-            let mut bytes = Vec::new();
-            // If reading fails, the text that came before counts.
-            let _ = errors.read_to_end(&mut bytes);
-            String::from_utf8_lossy(&bytes).into_owned()
-        })?;
+        let errors = process.stderr.take().ok_or_else(gone)?;
+        let said = BackgroundTask::start_reading(errors)?;
         let frames = BufWriter::with_capacity(1 << 20, frames);
         Ok(Self { process, frames: Some(frames), said })
     }

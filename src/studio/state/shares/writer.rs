@@ -1,7 +1,7 @@
 //! The process that writes a file: this program as `snakes export`.
 
 use std::ffi::OsString;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{ChildStdin, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -70,13 +70,7 @@ pub fn written(
         .map_err(failed)?;
     writer.leash.hold(process.stdin.take());
     // At the same time as the output: a process whose errors fill the pipe, such as those of a driver, would wait for ever.
-    let errors = process.stderr.take();
-    let errors = BackgroundTask::start(move || {
-        let mut bytes = Vec::new();
-        // If reading fails, the text that came before counts.
-        let _ = errors.map(|mut from| from.read_to_end(&mut bytes));
-        String::from_utf8_lossy(&bytes).into_owned()
-    });
+    let errors = process.stderr.take().map(BackgroundTask::start_reading).transpose();
     let mut saved = None;
     let lines = process.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines());
     for line in lines.map_while(Result::ok) {
@@ -87,8 +81,8 @@ pub fn written(
         }
     }
     let ended = process.wait().map_err(failed)?;
-    let errors = errors.map_err(failed)?.wait().unwrap_or_default();
-    saved.filter(|_| ended.success()).ok_or_else(|| problem(&errors))
+    let errors = errors.map_err(failed)?.map(|errors| errors.wait().unwrap_or_default());
+    saved.filter(|_| ended.success()).ok_or_else(|| problem(&errors.unwrap_or_default()))
 }
 
 /// A line of the process.
