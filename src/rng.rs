@@ -4,7 +4,7 @@
 //! request. The numbers of an individual therefore do not depend on the number of threads, on the order
 //! of evaluation, or on an open window.
 
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Purpose of a random stream. The discriminants are part of the determinism promise: new ones may be
@@ -48,6 +48,19 @@ pub fn stream(run_seed: u64, generation: u32, individual: u32, purpose: Purpose)
     key[16..24].copy_from_slice(&u64::from(individual).to_le_bytes());
     key[24..32].copy_from_slice(&(purpose as u64).to_le_bytes());
     ChaCha8Rng::from_seed(key)
+}
+
+/// A uniformly distributed number from 0 to less than 1.
+pub fn uniform(rng: &mut ChaCha8Rng) -> f64 {
+    rng.random_range(0.0..1.0)
+}
+
+/// A normally distributed number of mean 0 and variance 1, by the method of Box and Muller (1958).
+pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    // From (0, 1], where the logarithm is finite.
+    let first = 1.0 - uniform(rng);
+    let second = uniform(rng);
+    (-2.0 * libm::log(first)).sqrt() * libm::cos(std::f64::consts::TAU * second)
 }
 
 #[cfg(test)]

@@ -76,7 +76,12 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     check_compared(&args.preset()?.settings, &settings)?;
     // The budget counts every simulation, and the table has the best fitness.
     settings.trial.repeats.champion_trials = 0;
-    let strategies: Vec<StrategyKind> = kinds("--strategies", &compared.strategies)?;
+    let mut strategies: Vec<StrategyKind> = kinds("--strategies", &compared.strategies)?;
+    if compared.strategies == "all" {
+        // Those that vary bodies are compared with the others where they are named.
+        let varies = settings.genome.bodies.vary;
+        strategies.retain(|kind| kind.info().varies_bodies == varies);
+    }
     let controllers: Vec<ControllerKind> = kinds("--controllers", &compared.controllers)?;
     let first_seed = args.seed()?;
     let seeds = seeds_from(first_seed, compared.seeds)?;

@@ -4,6 +4,7 @@
 
 mod args;
 mod bench;
+mod body;
 #[cfg(feature = "cluster")]
 mod cluster;
 mod compare;
@@ -76,6 +77,7 @@ fn perform(args: &Args) -> Result<(), CliError> {
         Some(Subcommand::Man) => manual::manual(args),
         Some(Subcommand::Presets) => lists::print_presets(args.json),
         Some(Subcommand::Settings { markdown }) => lists::print_settings(args, *markdown),
+        Some(Subcommand::Body { file }) => body::body(file, args.json),
         Some(Subcommand::Bench) => bench::print_bench(args),
         Some(Subcommand::Verify) => verify::verify(args),
         Some(Subcommand::Robust { file, trials, range }) => {

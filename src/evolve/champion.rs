@@ -35,17 +35,13 @@ impl Champion {
         let score = self.score();
         match self.trial.fitness {
             Fitness::StepsClimbed => score,
-            _ => format!("{score}, {}", self.trial.result_in_words(&self.evaluation)),
+            _ => format!("{score}, {}", self.trial.result_in_words(&self.genome, &self.evaluation)),
         }
     }
 
     /// Its fitness with the unit.
     pub fn score(&self) -> String {
-        let fitness = self.evaluation.fitness;
-        match self.trial.fitness {
-            Fitness::StepsClimbed => format!("{fitness:.0} steps"),
-            kind => format!("{fitness:.2}{}", kind.unit()),
-        }
+        self.trial.fitness.text(self.evaluation.fitness)
     }
 }
 

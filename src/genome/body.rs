@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::chain::{Segment, check_segments, segment_genes};
 use super::gene::{Gene, GeneRange, GeneVisitor};
 use super::space::{DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_LIMIT_RAD};
 use crate::check::{Invalid, within};
 
-/// The limits of the joints and the material. Champion files store it as it stands here.
+/// The limits of the joints and the material, or a body of its own. Champion files store it as it stands here.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyGenes {
@@ -16,18 +17,40 @@ pub struct BodyGenes {
     pub twist_limit_rad: f32,
     /// Density of the material, in kg/m³.
     pub density_kg_m3: f32,
+    /// The blocks of a body of its own, from the head; empty if the trial determines the blocks. With blocks of its own,
+    /// the three genes above have no effect and are 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub segments: Vec<Segment>,
 }
 
 impl BodyGenes {
     /// Genes of zeros.
-    pub(super) const ZEROED: Self =
-        Self { bend_limit_rad: 0.0, twist_limit_rad: 0.0, density_kg_m3: 0.0 };
+    pub(super) const ZEROED: Self = Self {
+        bend_limit_rad: 0.0,
+        twist_limit_rad: 0.0,
+        density_kg_m3: 0.0,
+        segments: Vec::new(),
+    };
 
     /// Checks every value.
     ///
     /// # Errors
     /// The first value out of range.
     pub fn check(&self) -> Result<(), Invalid> {
+        if !self.segments.is_empty() {
+            let unused = [
+                ("bend_limit_rad", self.bend_limit_rad),
+                ("twist_limit_rad", self.twist_limit_rad),
+                ("density_kg_m3", self.density_kg_m3),
+            ];
+            for (field, value) in unused {
+                if value != 0.0 {
+                    let allowed = "0, because each of the segments has its own";
+                    return Err(Invalid::new(field, value, allowed));
+                }
+            }
+            return check_segments(&self.segments);
+        }
         within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
         within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
         within("density_kg_m3", self.density_kg_m3, DENSITY_RANGE_KG_M3)
@@ -35,6 +58,11 @@ impl BodyGenes {
 
     /// Visits every gene, in a fixed order.
     pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        if !self.segments.is_empty() {
+            let densities = [space.density_min_kg_m3, space.density_max_kg_m3];
+            segment_genes(&mut self.segments, &space.bodies, densities, visit);
+            return;
+        }
         let range = GeneRange::OneOf(&space.bend_limits_rad);
         let (field, name) = (format_args!("bend_limit_rad"), format_args!("bend limit"));
         visit(Gene { field, name, unit: "rad", range }, &mut self.bend_limit_rad);
@@ -48,6 +76,16 @@ impl BodyGenes {
 
     /// Widens a space so that it contains these genes.
     pub(super) fn widen(&self, space: &mut GenomeSpace) {
+        space.bodies.vary = !self.segments.is_empty();
+        if space.bodies.vary {
+            space.bodies.widen(&self.segments);
+            for segment in &self.segments {
+                let density_kg_m3 = segment.density_kg_m3;
+                space.density_min_kg_m3 = space.density_min_kg_m3.min(density_kg_m3);
+                space.density_max_kg_m3 = space.density_max_kg_m3.max(density_kg_m3);
+            }
+            return;
+        }
         for (limits, limit) in [
             (&mut space.bend_limits_rad, self.bend_limit_rad),
             (&mut space.twist_limits_rad, self.twist_limit_rad),

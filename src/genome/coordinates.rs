@@ -1,8 +1,10 @@
 //! Genomes as points of the unit cube, which lets any strategy search in any space.
 
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::body::BodyGenes;
+use super::chain::Segment;
 use super::gene::{GeneRange, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
@@ -20,10 +22,17 @@ pub struct Coordinate {
     pub allowed: String,
 }
 
+/// Share of random bodies whose blocks are nearly alike. Bodies drawn anywhere in their ranges hardly ever move at first.
+const PLAIN_SHARE: f64 = 0.5;
+
 impl GenomeSpace {
     /// Genes of zeros, in the layout of this space.
     pub(super) fn zeroed(&self, shape: GenomeShape) -> Genome {
-        Genome { body: BodyGenes::ZEROED, controller: self.controller.zeroed(self, shape) }
+        let mut body = BodyGenes::ZEROED;
+        if self.bodies.vary {
+            body.segments = (0..=shape.joints).map(|i| Segment::newborn(i, &self.bodies)).collect();
+        }
+        Genome { body, controller: self.controller.zeroed(self, shape) }
     }
 
     /// Visits the genes of a genome that have a choice: one for each coordinate.
@@ -39,6 +48,15 @@ impl GenomeSpace {
     pub fn dimension(&self, shape: GenomeShape) -> usize {
         let mut count = 0;
         self.search_genes(self.zeroed(shape), |_, _| count += 1);
+        count
+    }
+
+    /// Number of coordinates that belong to the body. They come before those of the controller.
+    pub fn body_dimension(&self, shape: GenomeShape) -> usize {
+        let mut count = 0;
+        self.zeroed(shape).body.genes(self, &mut |gene, _| {
+            count += usize::from(!gene.range.is_point());
+        });
         count
     }
 
@@ -82,6 +100,7 @@ impl GenomeSpace {
             let coordinate = if gene.range.is_point() { None } else { coordinates.next() };
             *value = at(gene.range, coordinate.unwrap_or(0.0));
         });
+        self.bodies.repair(&mut genome.body.segments);
         genome
     }
 
@@ -145,10 +164,29 @@ impl GenomeSpace {
         }
     }
 
-    /// Draws a genome at random: signals by the report's random walk, other genes anywhere in their ranges.
+    /// Draws a genome at random: signals by the report's random walk, other genes anywhere in their ranges. Where bodies
+    /// evolve, their number of blocks is random, too.
     pub fn random_genome(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
+        if !self.bodies.vary {
+            return self.drawn(shape, false, rng);
+        }
+        let joints = rng.random_range(self.bodies.limbs()) as usize - 1;
+        let is_plain = rng.random_range(0.0..1.0) < PLAIN_SHARE;
+        self.drawn(GenomeShape { joints, ..shape }, is_plain, rng)
+    }
+
+    /// Draws a genome at random whose body has blocks that are nearly alike, one more than the joints of a shape.
+    pub fn random_genome_of_plain_body(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
+        self.drawn(shape, true, rng)
+    }
+
+    fn drawn(&self, shape: GenomeShape, is_plain: bool, rng: &mut ChaCha8Rng) -> Genome {
         let Genome { mut body, mut controller } = self.zeroed(shape);
         controller.encoding_mut().randomize(&mut body, self, rng);
+        if is_plain {
+            self.bodies.make_plain(&mut body.segments, rng);
+        }
+        self.bodies.repair(&mut body.segments);
         Genome { body, controller }
     }
 
@@ -157,6 +195,7 @@ impl GenomeSpace {
     pub fn mutate(&self, parent: &Genome, shift_nm: f32, rng: &mut ChaCha8Rng) -> Genome {
         let Genome { mut body, mut controller } = parent.clone();
         controller.encoding_mut().mutate(&mut body, self, shift_nm, rng);
+        self.bodies.repair(&mut body.segments);
         Genome { body, controller }
     }
 

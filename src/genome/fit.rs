@@ -1,5 +1,6 @@
 //! Whether a genome fits into a space, and the space into which it fits.
 
+use super::chain::{BodySpace, Segment};
 use super::gene::{GeneRange, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
@@ -8,6 +9,10 @@ use crate::check::Invalid;
 fn same(field: &str, found: impl ToString, expected: impl ToString) -> Result<(), Invalid> {
     let (found, expected) = (found.to_string(), expected.to_string());
     if found == expected { Ok(()) } else { Err(Invalid::new(field, found, expected)) }
+}
+
+fn volume_m3(segments: &[Segment]) -> f64 {
+    segments.iter().map(Segment::volume_m3).sum()
 }
 
 impl GenomeSpace {
@@ -29,6 +34,7 @@ impl GenomeSpace {
     /// The first difference.
     pub fn check_layout(&self, genome: &Genome, shape: GenomeShape) -> Result<(), Invalid> {
         same("controller", genome.controller.kind(), self.controller)?;
+        let shape = self.shape_of(genome, shape)?;
         same("controller joints", genome.controller.joints(), shape.joints)?;
         let mut expected = Vec::new();
         let zeroed = self.zeroed(shape);
@@ -42,6 +48,24 @@ impl GenomeSpace {
         });
         result?;
         same("genes", genome.gene_count(), zeroed.gene_count())
+    }
+
+    /// The shape that a genome must have: its own number of joints where bodies evolve.
+    fn shape_of(&self, genome: &Genome, shape: GenomeShape) -> Result<GenomeShape, Invalid> {
+        let segments = &genome.body.segments;
+        if !self.bodies.vary {
+            same("segments", segments.len(), 0)?;
+            return Ok(shape);
+        }
+        if !self.bodies.is_within_limits(segments) {
+            let value = format!("{} blocks of {:.3} m³", segments.len(), volume_m3(segments));
+            let BodySpace { limbs_min, limbs_max, volume_m3, .. } = self.bodies;
+            let allowed = format!(
+                "{limbs_min} to {limbs_max} blocks of {volume_m3} m³ together, within all limits of genome.bodies"
+            );
+            return Err(Invalid::new("segments", value, allowed));
+        }
+        Ok(GenomeShape { joints: segments.len() - 1, ..shape })
     }
 
     /// Checks the genes whose range is of interest.

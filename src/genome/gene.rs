@@ -56,6 +56,8 @@ pub enum GeneRange<'a> {
     Fixed(f32),
     /// Any from one end to the other.
     Between(f32, f32),
+    /// Any from one positive end to the other; equal ratios are equally far apart.
+    Ratio(f32, f32),
     /// An angle in radians, where a full turn equals none.
     Turn,
     /// One of a list.
@@ -67,7 +69,7 @@ impl GeneRange<'_> {
     pub fn is_point(self) -> bool {
         match self {
             Self::Fixed(_) => true,
-            Self::Between(least, most) => least >= most,
+            Self::Between(least, most) | Self::Ratio(least, most) => least >= most,
             Self::Turn => false,
             Self::OneOf(values) => values.iter().all(|value| Some(value) == values.first()),
         }
@@ -82,6 +84,10 @@ impl GeneRange<'_> {
             Self::Between(least, most) => {
                 let share = wrapped as f32;
                 (least + (most - least) * share).clamp(least, most)
+            }
+            Self::Ratio(least, most) => {
+                let ratio = f64::from(most) / f64::from(least);
+                ((f64::from(least) * libm::pow(ratio, wrapped)) as f32).clamp(least, most)
             }
             Self::Turn => TAU * wrapped as f32,
             Self::OneOf(values) => {
@@ -108,6 +114,10 @@ impl GeneRange<'_> {
         match self {
             Self::Fixed(_) => 0.0,
             Self::Between(least, most) => f64::from((value - least) / (most - least)),
+            Self::Ratio(least, most) => {
+                let log = |value: f32| libm::log(f64::from(value));
+                (log(value) - log(least)) / (log(most) - log(least))
+            }
             Self::Turn => f64::from(value / TAU),
             Self::OneOf(values) => {
                 let index = values.iter().position(|known| *known == value).unwrap_or(0);
@@ -143,7 +153,7 @@ impl GeneRange<'_> {
                 ((low + wrapped * (high - low)) as f32).clamp(least, most)
             }
             Self::Turn => (wrapped * f64::from(TAU)) as f32,
-            Self::Fixed(_) | Self::OneOf(_) => self.at(coordinate),
+            Self::Fixed(_) | Self::Ratio(..) | Self::OneOf(_) => self.at(coordinate),
         }
     }
 
@@ -157,6 +167,7 @@ impl GeneRange<'_> {
                 (f64::from(value) - low) / (high - low)
             }
             Self::Turn => f64::from(value) / f64::from(TAU),
+            Self::Ratio(..) => self.coordinate(value),
             Self::Fixed(_) | Self::OneOf(_) => return self.coordinate(value),
         };
         let (mut below, mut above) = (near, near);
@@ -175,7 +186,9 @@ impl GeneRange<'_> {
     pub fn contains(self, value: f32) -> bool {
         match self {
             Self::Fixed(only) => value == only,
-            Self::Between(least, most) => (least..=most).contains(&value),
+            Self::Between(least, most) | Self::Ratio(least, most) => {
+                (least..=most).contains(&value)
+            }
             Self::Turn => value.is_finite(),
             Self::OneOf(values) => values.contains(&value),
         }
@@ -185,8 +198,10 @@ impl GeneRange<'_> {
     pub fn words(self) -> String {
         match self {
             Self::Fixed(only) => only.to_string(),
-            Self::Between(least, most) if least == most => least.to_string(),
-            Self::Between(least, most) => format!("{least} to {most}"),
+            Self::Between(least, most) | Self::Ratio(least, most) if least == most => {
+                least.to_string()
+            }
+            Self::Between(least, most) | Self::Ratio(least, most) => format!("{least} to {most}"),
             Self::Turn => "an angle".to_owned(),
             Self::OneOf(values) => {
                 let mut text = String::from("one of");
@@ -214,6 +229,10 @@ impl GeneRange<'_> {
                 let shifted = middle + shifted(value - middle, share * half, half, rng);
                 // Rounding could leave the range.
                 shifted.clamp(least, most)
+            }
+            Self::Ratio(..) => {
+                let by = rng.random_range(-share / 2.0..=share / 2.0);
+                self.at((self.coordinate(value) + f64::from(by)).clamp(0.0, 1.0))
             }
             Self::Turn => {
                 let turn = rng.random_range(-share / 2.0..=share / 2.0);
@@ -248,6 +267,21 @@ mod tests {
         for (coordinate, value) in [(0.1, 1.0), (0.5, 2.0), (1.0, 3.0), (1.2, 3.0), (-0.4, 2.0)] {
             assert_eq!(list.at(coordinate), value, "at {coordinate}");
         }
+    }
+
+    #[test]
+    fn in_a_range_of_ratios_half_way_is_the_geometric_mean() {
+        let range = GeneRange::Ratio(0.5, 8.0);
+        for (coordinate, value) in [(0.0, 0.5), (0.5, 2.0), (0.75, 4.0), (1.0, 8.0), (-0.5, 2.0)] {
+            assert!((range.at(coordinate) - value).abs() < 1e-6, "at {coordinate}");
+        }
+        assert!((range.coordinate(4.0) - 0.75).abs() < 1e-7);
+        let mut value = 0.5_f32;
+        while value < 8.0 {
+            assert_eq!(range.fine_at(range.fine_coordinate(value)), value);
+            value = value.next_up() * 1.001;
+        }
+        assert!(GeneRange::Ratio(2.0, 2.0).is_point() && !range.contains(8.1));
     }
 
     #[test]

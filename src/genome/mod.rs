@@ -4,6 +4,7 @@
 //! [`GenomeSpace`]; what it does to a body is decided in `score`, where it meets a trial.
 
 mod body;
+mod chain;
 pub mod controllers;
 mod coordinates;
 mod features;
@@ -16,6 +17,7 @@ mod space;
 mod wave_space;
 
 pub use body::BodyGenes;
+pub use chain::{BodyChange, BodySpace, MOST_SEGMENTS, Segment};
 pub use controllers::{ControllerGenes, JointCommands};
 pub use coordinates::Coordinate;
 pub use gene::{Feature, GenomeShape};

@@ -1,5 +1,6 @@
 //! The space genomes are drawn from: the range of every gene.
 
+use super::chain::BodySpace;
 use super::kind::ControllerKind;
 use super::network_space::NetworkSpace;
 use super::wave_space::WaveSpace;
@@ -19,6 +20,9 @@ setting_group! {
         /// Ranges of reflexes and networks.
         #[serde(default, skip_serializing_if = "is_default")]
         network: NetworkSpace = NetworkSpace::default();
+        /// Ranges of bodies that evolve.
+        #[serde(default, skip_serializing_if = "is_default")]
+        bodies: BodySpace = BodySpace::default();
         /// A torque, of a signal or a wave, stays within plus and minus this, in N·m. The report has 1000.
         torque_range_nm: f32 = 1000.0;
         /// Greatest difference between neighbouring points of a random signal, in N·m. The report has 1000.
@@ -56,6 +60,7 @@ impl SettingGroup for GenomeSpace {
             controller,
             wave,
             network,
+            bodies,
             torque_range_nm,
             torque_step_nm,
             points_per_s,
@@ -64,7 +69,11 @@ impl SettingGroup for GenomeSpace {
             density_min_kg_m3,
             density_max_kg_m3,
         } = self;
-        walk.without_effect(controller.unused_settings());
+        let mut unused = controller.unused_settings();
+        if bodies.vary {
+            unused.extend(["bend_limits_rad", "twist_limits_rad"]);
+        }
+        walk.without_effect(unused);
         walk.section(Self::CONTROLLER);
         settings! { walk, controller: choice("Controller").hint("How the genome drives the joints"); }
         walk.section(Section {
@@ -87,6 +96,7 @@ impl SettingGroup for GenomeSpace {
         }
         walk.group("wave", wave);
         walk.group("network", network);
+        walk.group("bodies", bodies);
         walk.section(Section {
             title: "Random snakes",
             about: "Where joint limits and densities of snakes come from, unless they have fixed values.",
@@ -121,6 +131,17 @@ impl GenomeSpace {
     /// The section of the controller's kind.
     pub const CONTROLLER: Section =
         Section { title: "Controller", about: "How genes become torques." };
+
+    /// Whether joints can bend, and whether they can twist.
+    pub(super) fn turning_axes(&self) -> [bool; 2] {
+        if self.bodies.vary {
+            let BodySpace { bend_limit_max_rad, twist_limit_max_rad, .. } = self.bodies;
+            return [bend_limit_max_rad > 0.0, twist_limit_max_rad > 0.0];
+        }
+        [&self.bend_limits_rad, &self.twist_limits_rad]
+            .map(|limits| limits.iter().any(|limit| *limit > 0.0))
+    }
+
     /// How many points a signal needs to last `duration_s`.
     pub fn points(&self, duration_s: f32) -> usize {
         libm::ceilf(duration_s * self.points_per_s).max(1.0) as usize

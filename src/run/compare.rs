@@ -38,8 +38,9 @@ impl PlannedRun {
     ) -> Result<RunPlan, Invalid> {
         let mut settings = settings.clone();
         settings.genome.controller = self.controller;
+        settings.evolution.strategy = self.strategy;
+        settings.genome.bodies.vary = self.strategy.info().varies_bodies;
         let evolution = &mut settings.evolution;
-        evolution.strategy = self.strategy;
         let fixed_generations = self.strategy.info().compared_generations;
         if let Some(generations) = fixed_generations {
             evolution.generations = generations;
@@ -295,6 +296,8 @@ mod tests {
         let mut settings = Settings::default();
         settings.trial.duration_s = 0.5;
         settings.evolution.population = 6;
+        settings.evolution.islands.candidates = 4;
+        settings.genome.bodies.limbs_max = 3;
         let planned = |strategy: StrategyKind| {
             let gait = ControllerKind::Gait;
             let controller = strategy.controllers().find(|kind| *kind == gait);

@@ -24,7 +24,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let trial = &loaded.champion.trial;
     let found = simulated(path, &loaded)?;
     let matches = found.agrees_with(&recorded);
-    let meaning = trial.result_in_words(&found);
+    let meaning = trial.result_in_words(&loaded.champion.genome, &found);
     if json {
         let line = json!({
             "fitness": short(found.fitness),

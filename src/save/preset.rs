@@ -66,6 +66,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "waves-by-rules",
     "limb-neurons",
     "neat",
+    "bodies",
 ];
 
 /// The shipped presets, the default first.
@@ -160,7 +161,7 @@ mod tests {
     use super::*;
     use crate::evolve::EvolutionSettings;
     use crate::rng::{Purpose, stream};
-    use crate::score::{Repeats, Trial, evaluate};
+    use crate::score::{Fitness, Repeats, Trial, evaluate};
 
     #[test]
     fn the_shipped_presets_are_well_formed_and_the_default_is_first() {
@@ -192,10 +193,11 @@ mod tests {
         let report = &load_preset("report").expect("shipped").settings;
         let mut rng = stream(1, 1, 0, Purpose::Birth);
         let genome = report.genome.random_genome(report.trial.genome_shape(), &mut rng);
-        // Some differ only in the controller and the search: `quick` has the world of `report`.
+        // Some differ only in controller, search and reward: `quick` has the world of `report`.
         let mut worlds: Vec<Trial> = Vec::new();
         for preset in presets {
-            let trial = Trial { repeats: Repeats::default(), ..preset.settings.trial };
+            let (repeats, fitness) = (Repeats::default(), Fitness::default());
+            let trial = Trial { repeats, fitness, ..preset.settings.trial };
             if !worlds.contains(&trial) {
                 worlds.push(trial);
             }

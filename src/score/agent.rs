@@ -1,5 +1,6 @@
 //! Settings of the snake's body: its limbs, its joints, its skin.
 
+use super::own_body::own_body;
 use crate::control::ActiveSenses;
 use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD};
 use crate::schema::{
@@ -30,6 +31,10 @@ setting_group! {
         max_bend_torque_nm: PerPart = 1000.0.into();
         /// Largest torque on the joints' twist axes, in N·m.
         max_twist_torque_nm: PerPart = 1000.0.into();
+        /// Greatest sum of the torques of all joints of a body of its own about both axes, in N·m; a stronger body has all of
+        /// them reduced alike. That of the five blocks of the report by default.
+        #[serde(default = "usual_torque_budget_nm", skip_serializing_if = "is_usual_torque_budget")]
+        torque_budget_nm: f32 = USUAL_TORQUE_BUDGET_NM;
         /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic, and where a
         /// child ends up says nothing about its parent.
         joint_damping_nms_per_rad: PerPart = 30.0.into();
@@ -43,6 +48,17 @@ setting_group! {
         #[serde(default, skip_serializing_if = "is_default")]
         senses: ActiveSenses = ActiveSenses::default();
     }
+}
+
+/// Four joints with two axes of 1000 N·m each.
+const USUAL_TORQUE_BUDGET_NM: f32 = 8000.0;
+
+fn usual_torque_budget_nm() -> f32 {
+    USUAL_TORQUE_BUDGET_NM
+}
+
+fn is_usual_torque_budget(budget_nm: &f32) -> bool {
+    *budget_nm == USUAL_TORQUE_BUDGET_NM
 }
 
 impl SettingGroup for AgentSettings {
@@ -59,6 +75,7 @@ impl SettingGroup for AgentSettings {
             twist_limit_rad,
             max_bend_torque_nm,
             max_twist_torque_nm,
+            torque_budget_nm,
             joint_damping_nms_per_rad,
             joint_cfm_m_s_per_n,
             angular_damping_per_s,
@@ -130,6 +147,11 @@ impl SettingGroup for AgentSettings {
                 .unit("N·m")
                 .hint("How strongly a joint can twist. Larger torques from the controller are cut off")
                 .slider(0.0, 2000.0);
+            torque_budget_nm: number("Torque budget", 1.0..=1.0e7).advanced()
+                .unit("N·m")
+                .hint("Greatest sum of the torques of all joints of an evolving body. A stronger body has all of them reduced")
+                .slider(100.0, 20_000.0)
+                .logarithmic_from(100.0);
             // At 1e5 a torque of 1000 N·m turns a joint by half a degree a second.
             joint_damping_nms_per_rad: per_part("Joint damping", 0.0..=1.0e5, each_joint)
                 .unit("N·m·s/rad")
@@ -166,6 +188,9 @@ impl AgentSettings {
 
     /// The body that these settings and a genome make together: the one place where both meet.
     pub fn body_plan(&self, genome: &Genome) -> BodyPlan {
+        if !genome.body.segments.is_empty() {
+            return own_body(self, &genome.body.segments);
+        }
         let given = |part: &Option<PerPart>, index: usize, of_genome: f32| {
             part.as_ref().map_or(of_genome, |part| part.at(index))
         };
@@ -182,11 +207,14 @@ impl AgentSettings {
             twist_limit_rad: given(&self.twist_limit_rad, index, genome.body.twist_limit_rad),
             max_bend_torque_nm: self.max_bend_torque_nm.at(index),
             max_twist_torque_nm: self.max_twist_torque_nm.at(index),
+            gap_scale: 1.0,
             damping_nms_per_rad: self.joint_damping_nms_per_rad.at(index),
             cfm_m_s_per_n: self.joint_cfm_m_s_per_n.at(index),
         };
+        let limbs: Vec<LimbPlan> = (0..self.limbs as usize).map(limb).collect();
         BodyPlan {
-            limbs: (0..self.limbs as usize).map(limb).collect(),
+            middle_limb: BodyPlan::middle_of(&limbs),
+            limbs,
             joints: (0..self.joints()).map(joint).collect(),
             angular_damping_per_s: self.angular_damping_per_s,
         }

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 
+use super::way_up::{WayUp, mean_steps};
 use crate::schema::{Choices, choices};
 use crate::world::{BodyPlan, Pose, Stairs};
 
@@ -42,6 +43,11 @@ choices! {
         Climb = "climb", "Climb: y on the stairs",
             "The y of the middle block at the end. Beside the stairs, only the distance to the first riser counts.\n\
              Unintended rewards: A leap over the stairs in the last half second.";
+        /// The way of every limb along the stairs counts by its mass, so no body has an advantage by its length: 0 at the
+        /// start, 1 with all limbs on the landing. Who arrives early has up to 0.1 more.
+        Share = "share", "Share of the stairs",
+            "The share of the way to the landing that the whole body has covered at the end, weighted by mass.\n\
+             Unintended rewards: None known. Beside the stairs nothing counts, and a leap over untouched steps is capped.";
     }
 }
 
@@ -63,6 +69,7 @@ impl Fitness {
             Self::Height => "height of the middle block at the end",
             Self::FurthestY => "furthest y of the middle block at any time",
             Self::StepsClimbed => "steps climbed at the end",
+            Self::Share => "share of the way to the landing at the end",
         }
     }
 
@@ -81,12 +88,21 @@ impl Fitness {
 
     /// Whether the measure is a position on the y axis.
     pub fn is_along_y(self) -> bool {
-        !matches!(self, Self::Height | Self::StepsClimbed)
+        !matches!(self, Self::Height | Self::StepsClimbed | Self::Share)
     }
 
-    /// The unit with a leading space, or nothing for a count.
+    /// The unit with a leading space, or nothing for a count or a share.
     pub fn unit(self) -> &'static str {
-        if self == Self::StepsClimbed { "" } else { " m" }
+        if matches!(self, Self::StepsClimbed | Self::Share) { "" } else { " m" }
+    }
+
+    /// A fitness in words, with its unit.
+    pub fn text(self, fitness: f32) -> String {
+        match self {
+            Self::StepsClimbed => format!("{fitness:.0} steps"),
+            Self::Share => format!("{fitness:.3} of the stairs"),
+            other => format!("{fitness:.2}{}", other.unit()),
+        }
     }
 }
 
@@ -112,12 +128,14 @@ pub(super) struct FinalState<'a> {
     pub furthest_y_m: f32,
     /// The stairs.
     pub stairs: &'a Stairs,
+    /// The way here, on which [`Fitness::Share`] depends.
+    pub way: &'a WayUp,
 }
 
 impl FinalState<'_> {
     /// The score.
     pub fn score(&self, fitness: Fitness) -> f32 {
-        let middle = self.poses[self.body.middle_limb()].translation;
+        let middle = self.poses[self.body.middle_limb].translation;
         match fitness {
             Fitness::Centre => middle.y,
             Fitness::Climb => {
@@ -136,6 +154,9 @@ impl FinalState<'_> {
             Fitness::Height => middle.z,
             Fitness::FurthestY => self.furthest_y_m,
             Fitness::StepsClimbed => self.stairs.steps_under([middle.x, middle.y, middle.z]) as f32,
+            Fitness::Share => {
+                self.way.share(mean_steps(self.body, self.poses, self.stairs), self.stairs)
+            }
         }
     }
 }
@@ -157,12 +178,14 @@ mod tests {
         let body = BodyPlan {
             limbs: vec![limb(4.0, 1.0), limb(4.0, 1.0), limb(2.0, 2.0)],
             joints: Vec::new(),
+            middle_limb: 1,
             angular_damping_per_s: 0.0,
         };
         let pose = |x, y, z| Pose::from_parts(Vector::new(x, y, z), Rotation::IDENTITY);
         let score = |fitness, x, z| {
             let poses = [pose(0.0, 10.0, 1.0), pose(x, 6.0, z), pose(0.0, 4.0, 1.0)];
-            FinalState { body: &body, poses: &poses, furthest_y_m: 9.5, stairs: &stairs }
+            let way = WayUp::begin(&body, &poses, &stairs);
+            FinalState { body: &body, poses: &poses, furthest_y_m: 9.5, stairs: &stairs, way: &way }
                 .score(fitness)
         };
         for (fitness, expected) in [

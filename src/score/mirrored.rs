@@ -88,7 +88,7 @@ impl MirroredRollout {
 
     /// How it ends, if it ends now. When it landed is not recorded.
     pub fn end(&self) -> ExamEnd {
-        let middle = self.world.poses().nth(self.plan.body.middle_limb());
+        let middle = self.world.poses().nth(self.plan.body.middle_limb);
         match middle {
             Some(middle) if !self.is_disqualified => {
                 let middle_m = middle.translation.to_array();

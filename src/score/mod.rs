@@ -10,12 +10,14 @@ mod exam;
 mod fitness;
 mod history;
 mod mirrored;
+mod own_body;
 mod perturbation;
 mod recording;
 mod repeats;
 mod rollout;
 mod scored;
 mod trial;
+mod way_up;
 
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;

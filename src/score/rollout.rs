@@ -12,7 +12,8 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::behaviour::{BehaviourMoment, BehaviourObserver};
 use super::fitness::FinalState;
 use super::trial::steps_in;
-use super::{Behaviour, Perturbation, Trial};
+use super::way_up::WayUp;
+use super::{Behaviour, Fitness, Perturbation, Trial};
 use crate::control::{ActiveSenses, Activity, ControlLoop, Perception};
 use crate::genome::Genome;
 use crate::learn::Episode;
@@ -97,6 +98,8 @@ pub struct Rollout {
     frequency_hz: f32,
     observer: BehaviourObserver,
     furthest_y_m: f32,
+    /// The way up, which is observed if the fitness depends on it.
+    way: WayUp,
     /// The scores of the last [`SCORED_S`], the earliest first.
     recent: VecDeque<f32>,
     trace: Xxh3Default,
@@ -116,16 +119,26 @@ impl Rollout {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
         let mut rollout = Self::in_world(genome, trial, plan);
-        rollout.shove = perturbation.shove;
+        rollout.shove = perturbation.shove.map(|shove| {
+            // The limb was drawn for the number of limbs of the trial. A body of its own is shoved at the same share of its
+            // length.
+            let (own, drawn_for) = (rollout.body().limbs.len(), trial.agent.limbs.max(1) as usize);
+            let is_own = !genome.body.segments.is_empty();
+            let limb = if is_own { shove.limb * own / drawn_for } else { shove.limb };
+            Shove { limb, ..shove }
+        });
         rollout
     }
 
     fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
-        let simulation = Simulation::new(&plan);
+        let mut simulation = Simulation::new(&plan);
+        let settled = if plan.settles { simulation.settle() } else { Ok(()) };
+        let poses: Vec<Pose> = simulation.poses().collect();
         let mut rollout = Self {
             control: ControlLoop::new(&genome.controller, &plan.physics, trial.agent.senses),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
-            poses: simulation.poses().collect(),
+            way: WayUp::begin(&plan.body, &poses, &plan.stairs),
+            poses,
             simulation,
             conditions: Arc::new(Conditions::of(trial, plan)),
             change: None,
@@ -136,7 +149,7 @@ impl Rollout {
             recent: VecDeque::new(),
             trace: Xxh3Default::new(),
             step: 0,
-            disqualified: None,
+            disqualified: settled.err(),
             is_disturbed: false,
         };
         rollout.furthest_y_m = rollout.middle_m().y;
@@ -195,6 +208,11 @@ impl Rollout {
         }
         self.furthest_y_m = self.furthest_y_m.max(self.middle_m().y);
         self.observer.observe(&self.simulation, &self.conditions.world.stairs);
+        if self.conditions.fitness == Fitness::Share {
+            let now_s = self.time_s();
+            let stairs = &self.conditions.world.stairs;
+            self.way.observe(&self.simulation, &self.poses, stairs, now_s);
+        }
         self.remember_score();
         true
     }
@@ -234,9 +252,14 @@ impl Rollout {
             wave_uses: self.control.wave_uses(),
         };
         let behaviour = self.observer.behaviour(self.stairs(), &moment);
+        let duration_s = self.last_step() as f32 * world.physics.step_s();
+        let score = self.conditions.fitness.over(&self.recent).unwrap_or_else(|| self.score());
+        let score = match self.conditions.fitness {
+            Fitness::Share => score + self.way.bonus(duration_s),
+            _ => score,
+        };
         Evaluation {
-            fitness: self.conditions.fitness.over(&self.recent).unwrap_or_else(|| self.score())
-                - cost,
+            fitness: score - cost,
             centre_y_m: middle.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
@@ -253,6 +276,7 @@ impl Rollout {
             poses: &self.poses,
             furthest_y_m: self.furthest_y_m,
             stairs: self.stairs(),
+            way: &self.way,
         };
         state.score(self.conditions.fitness)
     }
@@ -296,7 +320,7 @@ impl Rollout {
 
     /// Position of the middle limb's centre after the last healthy step, in metres.
     pub fn middle_m(&self) -> Vector {
-        self.poses[self.body().middle_limb()].translation
+        self.poses[self.body().middle_limb].translation
     }
 
     /// Whether all steps of the stairs are under the middle limb now.

@@ -14,7 +14,8 @@ setting_group! {
         /// Length of the simulation, in simulated seconds.
         duration_s: f32 = 5.0;
         /// Position of the snake's centre on the y axis at the start, in metres. The report's first
-        /// generation, which does not move, stands at -7.23.
+        /// generation, which does not move, stands at -7.23. A body of its own starts with its front 5 m before this, where
+        /// the front of the report's snake is, so that all have the same way to the stairs.
         start_y_m: f32 = -7.23;
         /// Step length, substeps, gravity.
         physics: PhysicsSettings = PhysicsSettings::default();
@@ -36,6 +37,9 @@ setting_group! {
         health: HealthLimits = HealthLimits::default();
     }
 }
+
+/// Distance of the front of a body of its own from `start_y_m`, in metres: half the length of the report's snake.
+const FRONT_M: f32 = 5.0;
 
 impl SettingGroup for Trial {
     fn walk(&mut self, walk: &mut Walk<'_>) {
@@ -149,6 +153,8 @@ impl Trial {
 
     /// The world in which this trial evaluates a genome.
     pub fn world_plan(&self, genome: &Genome) -> WorldPlan {
+        let body = self.agent.body_plan(genome);
+        let has_own_body = !genome.body.segments.is_empty();
         WorldPlan {
             physics: self.physics.clone(),
             stairs: self.stairs.clone(),
@@ -156,8 +162,13 @@ impl Trial {
             ground: self.ground().clone(),
             skin: self.agent.skin.clone(),
             health: self.health.clone(),
-            body: self.agent.body_plan(genome),
-            start_y_m: self.start_y_m,
+            start_y_m: if has_own_body {
+                self.own_start_y_m(body.length_m())
+            } else {
+                self.start_y_m
+            },
+            settles: has_own_body,
+            body,
             start_x_m: 0.0,
             start_turn_rad: 0.0,
         }
@@ -179,15 +190,29 @@ impl Trial {
         self.stairs.meaning(y_m, f64::from(self.start_y_m), length_m)
     }
 
+    /// The same for a snake of a genome, whose body may be of its own.
+    fn meaning_of(&self, genome: &Genome, y_m: f64) -> String {
+        if genome.body.segments.is_empty() {
+            return self.meaning(y_m);
+        }
+        let length_m = self.agent.body_plan(genome).length_m();
+        self.stairs.meaning(y_m, f64::from(self.own_start_y_m(length_m)), length_m.into())
+    }
+
+    /// Position of the middle of a body of its own at the start, in metres.
+    fn own_start_y_m(&self, length_m: f32) -> f32 {
+        self.start_y_m + FRONT_M - length_m / 2.0
+    }
+
     /// Describes where one snake ended: as [`Trial::meaning`], unless its behaviour says that it lay beside the stairs
     /// or behind them. A record without a behaviour only has the distance.
-    pub fn result_in_words(&self, evaluation: &Evaluation) -> String {
+    pub fn result_in_words(&self, genome: &Genome, evaluation: &Evaluation) -> String {
         let y_m = f64::from(evaluation.centre_y_m);
         let off_the_stairs = match evaluation.behaviour {
             Some(Behaviour { steps_climbed: 0, .. }) => self.stairs.meaning_off_the_stairs(y_m),
             _ => None,
         };
-        off_the_stairs.unwrap_or_else(|| self.meaning(y_m))
+        off_the_stairs.unwrap_or_else(|| self.meaning_of(genome, y_m))
     }
 }
 

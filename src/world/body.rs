@@ -11,6 +11,8 @@ pub struct BodyPlan {
     pub limbs: Vec<LimbPlan>,
     /// The joints, in the order in which the world inserts them. A joint's parent comes before its child.
     pub joints: Vec<JointPlan>,
+    /// Index of the limb whose centre counts as the centre of the snake.
+    pub middle_limb: usize,
     /// Rate at which the air takes the limbs' angular velocity, in 1/s: after a time t, `exp(-rate t)` of it is left.
     pub angular_damping_per_s: f32,
 }
@@ -48,6 +50,9 @@ pub struct JointPlan {
     /// Torque that resists bend and twist, per joint rate, in N·m·s/rad. Integrated implicitly by
     /// the solver, so that large values stay stable.
     pub damping_nms_per_rad: f32,
+    /// Factor of the allowed distance between its anchors: 1, or for a body of its own the smallest side of both limbs
+    /// in metres, so that small limbs may not come further apart for their size.
+    pub gap_scale: f32,
     /// Constraint force mixing, in m/s per N: 0 holds anchors, locked axis and limits practically
     /// rigidly, larger is softer. It stands for a spring of `12 / CFM` N/m along the snake: see
     /// [`super::ERP_TIME_S`].
@@ -82,13 +87,35 @@ impl BodyPlan {
         self.limbs.iter().map(LimbPlan::mass_kg).sum()
     }
 
+    /// Volume of the whole body, in m³.
+    pub fn volume_m3(&self) -> f32 {
+        self.limbs.iter().map(|limb| limb.size_m().into_iter().product::<f32>()).sum()
+    }
+
     /// Height of the line on which the joints lie at the start, in metres: the centre of the tallest limb.
     pub fn axis_height_m(&self) -> f32 {
         self.limbs.iter().map(|limb| limb.height_m).fold(0.0, f32::max) / 2.0
     }
 
-    /// Index of the limb whose centre counts as the centre of the snake: the third of five.
-    pub fn middle_limb(&self) -> usize {
-        self.limbs.len() / 2
+    /// Index of the middle one of limbs that are alike: the third of five.
+    pub fn middle_of(limbs: &[LimbPlan]) -> usize {
+        limbs.len() / 2
+    }
+
+    /// Index of the limb in which the centre of mass of the straight body lies.
+    pub fn middle_by_mass(limbs: &[LimbPlan]) -> usize {
+        let (mut mass_kg, mut moment_kg_m, mut end_m) = (0.0, 0.0, 0.0);
+        for limb in limbs {
+            moment_kg_m += limb.mass_kg() * (end_m + limb.length_m / 2.0);
+            mass_kg += limb.mass_kg();
+            end_m += limb.length_m;
+        }
+        let centre_m = moment_kg_m / mass_kg;
+        let mut end_m = 0.0;
+        let passed = limbs.iter().take_while(|limb| {
+            end_m += limb.length_m;
+            end_m < centre_m
+        });
+        passed.count().min(limbs.len().saturating_sub(1))
     }
 }

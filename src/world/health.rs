@@ -21,6 +21,8 @@ pub enum Disqualification {
     LeftArena,
     /// The agent gained mechanical energy that its joints did not supply.
     EnergyFromNothing,
+    /// A body of its own fell over or did not come to rest before its trial.
+    FellOver,
     /// The program failed while it simulated the agent.
     Crashed,
 }
@@ -34,6 +36,7 @@ impl Disqualification {
             Self::TooFast => "speed limit exceeded",
             Self::LeftArena => "sideways or backward limit crossed",
             Self::EnergyFromNothing => "energy from nothing",
+            Self::FellOver => "not at rest at the start",
             Self::Crashed => "simulation failed",
         }
     }
@@ -44,7 +47,8 @@ setting_group! {
     /// leaves to a value that limits nothing.
     pub struct HealthLimits in "Disqualification": "A snake that breaks the physics instead of climbing is disqualified." {
         /// Largest distance between the two anchors of a joint, in metres. A tenth of a block's
-        /// width by default: a gap that can be seen.
+        /// width by default: a gap that can be seen. Of a body of its own it is that of blocks of 1 m, and in proportion
+        /// to the smallest side of both.
         joint_drift_m: f32 = 0.1,
             number("Joint gap", 0.001..=10.0)
                 .unit("m")

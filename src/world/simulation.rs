@@ -14,6 +14,7 @@ pub(super) mod mirror;
 pub(super) mod observe;
 pub(super) mod patches;
 pub(super) mod sensing;
+mod settle;
 mod shove;
 
 use super::bounce::{LimbVelocity, finish_bounce};
@@ -48,6 +49,8 @@ pub struct WorldPlan {
     pub health: HealthLimits,
     /// The snake.
     pub body: BodyPlan,
+    /// Whether the snake comes to rest without torques before its trial begins.
+    pub settles: bool,
     /// Position of the middle of the straight snake on the y axis at the start, in metres.
     pub start_y_m: f32,
     /// Its position on the x axis at the start, in metres; 0 is in front of the middle of the stairs.
@@ -139,7 +142,7 @@ impl Simulation {
             },
             ..Default::default()
         };
-        if let Some(middle) = plan.body.limbs.get(plan.body.middle_limb()) {
+        if let Some(middle) = plan.body.limbs.get(plan.body.middle_limb) {
             soften(&mut physics.integration_parameters, &laws, &plan.physics, middle);
         }
         let bounces = [plan.surface.bounce, plan.ground.bounce, plan.skin.bounce]

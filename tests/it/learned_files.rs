@@ -187,3 +187,38 @@ fn hostile_networks_are_refused_with_field_value_and_range() {
     let missing_row = champion("modular").replacen("hidden: [[", "hidden: [[0.5], [", 1);
     assert_refused("modular", &missing_row, &["hidden[0].weights is 1", "allowed: "]);
 }
+
+#[test]
+fn hostile_bodies_are_refused_with_field_value_and_range() {
+    let place = "        body: ";
+    for (mark, value, parts) in [
+        ("length_m: ", "NaN", ["segments[0].length_m is NaN", "allowed: 0.1 to 10"]),
+        ("width_m: ", "inf", ["segments[0].width_m is inf", "allowed: 0.1 to 10"]),
+        ("height_m: ", "1.0e-30", ["segments[0].height_m is ", "allowed: 0.1 to 10"]),
+        (
+            "density_kg_m3: 0.0,\n            segments: [(\n                id: 1,\n",
+            "x: 1",
+            ["x", "line"],
+        ),
+        ("strength: ", "1.5", ["segments[0].strength is 1.5", "allowed: 0 to 1"]),
+        ("bend_limit_rad: ", "0.5", ["body.bend_limit_rad is 0.5", "allowed: 0, because"]),
+        ("id: ", "2", ["segments[1].id is 2", "no other block of the body"]),
+        ("id: ", "-1", ["out of bounds", "line"]),
+        ("length_m: ", "9.0", ["masses of segments[0] and segments[1] is in the ratio", "1 to 8"]),
+    ] {
+        assert_refuses_behind(place, "bodies", mark, value, &parts);
+    }
+    let text = champion("bodies");
+    let start = text.find("segments: [").expect("segments") + "segments: [".len();
+    let segment = &text[start..start + text[start..].find(')').expect("an end") + 1];
+    let with = |count: usize| {
+        let many: String = (0..count)
+            .map(|number| segment.replacen("id: 1,", &format!("id: {},", 1000 + number), 1) + ", ")
+            .collect();
+        format!("{}{many}{}", &text[..start], &text[start..])
+    };
+    assert_refused("bodies", &with(8), &["segments is 13", "allowed: 2 to 12"]);
+    assert_refused("bodies", &with(20_000), &["segments is 20005", "allowed: 2 to 12"]);
+    // One block more than the controller has joints for.
+    assert_refused("bodies", &with(1), &["controller joints is 4 joints", "allowed: 5"]);
+}

@@ -3,6 +3,7 @@
 
 mod architecture;
 mod bad_input;
+mod bodies;
 mod champions;
 #[cfg(all(feature = "cluster", target_os = "linux"))]
 mod cluster;

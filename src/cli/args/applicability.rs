@@ -15,6 +15,7 @@ enum Task {
     ReplayInWindow,
     CheckReplay,
     Bench,
+    Body,
     Verify,
     Exam,
     Export,
@@ -34,9 +35,9 @@ enum Task {
 }
 
 use Task::{
-    Bench, CheckReplay, Compare, Completions, Exam, Export, Families, Figures, Machines, Manual,
-    Presets, Render, ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown, Table1, Verify,
-    Window, Worker,
+    Bench, Body, CheckReplay, Compare, Completions, Exam, Export, Families, Figures, Machines,
+    Manual, Presets, Render, ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown, Table1,
+    Verify, Window, Worker,
 };
 
 /// The tasks that compute on other machines.
@@ -74,6 +75,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
             Run,
             CheckReplay,
             Bench,
+            Body,
             Verify,
             Exam,
             Export,
@@ -154,6 +156,7 @@ impl Task {
             Some(Subcommand::Replay { .. }) if args.no_render => CheckReplay,
             Some(Subcommand::Replay { .. }) => ReplayInWindow,
             Some(Subcommand::Bench) => Bench,
+            Some(Subcommand::Body { .. }) => Body,
             Some(Subcommand::Verify) => Verify,
             Some(Subcommand::Exam { .. }) => Exam,
             Some(Subcommand::Export(_)) => Export,
@@ -181,6 +184,7 @@ impl Task {
             ReplayInWindow => "snakes replay",
             CheckReplay => "snakes replay --no-render",
             Bench => "snakes bench",
+            Body => "snakes body",
             Verify => "snakes verify",
             Exam => "snakes exam",
             Export => "snakes export",

@@ -171,6 +171,11 @@ pub enum Subcommand {
         #[command(flatten)]
         range: PerturbationArgs,
     },
+    /// Print the blocks and joints of a champion's body: sizes, masses, limits, torques
+    Body {
+        /// Saved champion
+        file: PathBuf,
+    },
     /// Compare search strategies and controllers under equal budgets
     Compare(CompareArgs),
     /// Train every family of controllers over several seeds, examine the champions, and hold the results against demands

@@ -82,6 +82,7 @@ mod tests {
         let mut settings = Settings { evolution, ..Default::default() };
         settings.genome.controller = controller;
         settings.trial.duration_s = 1.0;
+        settings.let_bodies_vary_as_the_strategy_does();
         settings
     }
 
@@ -119,7 +120,13 @@ mod tests {
                 let asked = begin(&founded).ask();
                 assert_eq!(asked.len(), random.len());
                 let what = format!("{strategy}, {controller}");
-                if strategy == StrategyKind::CmaEs {
+                if strategy == StrategyKind::BodyGa {
+                    assert_eq!(asked[0], genome, "{what}");
+                    let fresh = asked[1..].iter().filter(|other| random.contains(other)).count();
+                    assert_eq!(fresh, 10, "every second one");
+                    continue;
+                }
+                if matches!(strategy, StrategyKind::CmaEs | StrategyKind::Islands) {
                     assert_ne!(asked, random, "{what}");
                     continue;
                 }

@@ -1,5 +1,7 @@
 //! The settings of an experiment.
 
+mod bodies;
+mod body_search;
 mod by_name;
 mod cma_es;
 mod ga;
@@ -12,6 +14,7 @@ mod partners;
 mod size;
 mod strategy_kind;
 
+pub use body_search::{BodyGaSettings, BodyProtection, IslandSettings};
 pub use by_name::{fields, with_field, with_fields};
 pub use cma_es::{CmaEsSettings, RestartKind};
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
@@ -80,6 +83,12 @@ setting_group! {
         /// NEAT.
         #[serde(default, skip_serializing_if = "is_default")]
         neat: NeatSettings = NeatSettings::default();
+        /// The genetic algorithm over bodies.
+        #[serde(default, skip_serializing_if = "is_default")]
+        body_ga: BodyGaSettings = BodyGaSettings::default();
+        /// Islands.
+        #[serde(default, skip_serializing_if = "is_default")]
+        islands: IslandSettings = IslandSettings::default();
         /// Exploration of all learners.
         #[serde(default, skip_serializing_if = "is_default")]
         exploration: ExplorationSettings = ExplorationSettings::default();
@@ -197,6 +206,31 @@ strategy_kinds! {
         check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
+    /// A genetic algorithm over bodies.
+    BodyGa = StrategyInfo {
+        name: "body_ga",
+        title: "Genetic algorithm of bodies",
+        words: "Blocks come, go, divide and merge; new bodies are protected while they learn to move.",
+        color: [0x40, 0x80, 0xe0],
+        settings: &["body_ga"],
+        varies_bodies: true,
+        check_size: |evolution, size| {
+            size.check_population(evolution.population, LARGEST_STATE_GENES)
+        },
+        ..StrategyInfo::PLAIN
+    };
+    /// A CMA-ES for each number of blocks.
+    Islands = StrategyInfo {
+        name: "islands",
+        title: "Islands",
+        words: "A CMA-ES for each number of blocks; the best of them get the evaluations.",
+        color: [0xa0, 0x60, 0x20],
+        settings: &["islands"],
+        is_budget_driven: true,
+        varies_bodies: true,
+        check_size: IslandSettings::check_size,
+        ..StrategyInfo::PLAIN
+    };
 }
 
 named_by_info!(StrategyKind);
@@ -216,6 +250,8 @@ impl SettingGroup for EvolutionSettings {
             xcs,
             zcs,
             neat,
+            body_ga,
+            islands,
             exploration,
         } = self;
         walk.section(Self::RUN);
@@ -234,7 +270,7 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 10] = [
+        let groups: [(&str, &mut dyn SettingGroup); 12] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
@@ -244,6 +280,8 @@ impl SettingGroup for EvolutionSettings {
             ("xcs", xcs),
             ("zcs", zcs),
             ("neat", neat),
+            ("body_ga", body_ga),
+            ("islands", islands),
             ("exploration", exploration),
         ];
         for (name, group) in groups {
@@ -292,13 +330,20 @@ impl SettingGroup for Settings {
             "Takes effect with the next run, because existing genomes would not fit new ones.",
         );
         walk.group("genome", genome);
+        let mut unused = Vec::new();
         if !genome.controller.senses_surroundings() {
-            walk.without_effect(vec![
+            unused.extend([
                 "trial.agent.senses.sight",
                 "trial.agent.senses.touch",
                 "trial.agent.senses.balance",
             ]);
         }
+        if genome.bodies.vary {
+            unused.extend(bodies::REPLACED);
+        } else {
+            unused.push("trial.agent.torque_budget_nm");
+        }
+        walk.without_effect(unused);
         walk.fixed(
             "Takes effect with the next run, because the fitness of earlier generations could not be compared.",
         );
@@ -308,6 +353,7 @@ impl SettingGroup for Settings {
     /// Checks that a generation, and what the strategy keeps, fit into memory.
     fn check_together(&self) -> Result<(), Invalid> {
         self.check_partners()?;
+        self.check_bodies()?;
         let points = self.genome.points(self.trial.duration_s);
         let torque_points = 2 * self.trial.agent.joints() * points;
         if torque_points > LARGEST_GENOME_TORQUES {

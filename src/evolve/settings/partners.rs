@@ -11,6 +11,9 @@ use crate::schema::Choices;
 impl StrategyKind {
     /// Whether the strategy can improve controllers of this kind.
     pub fn improves(self, controller: ControllerKind) -> bool {
+        if self.info().varies_bodies && !BODY_CONTROLLERS.contains(&controller) {
+            return false;
+        }
         let is_partner = |kind: Self| kind.info().only_controllers.contains(&controller);
         is_partner(self)
             || self.info().only_controllers.is_empty() && !Self::ALL.into_iter().any(is_partner)
@@ -22,10 +25,38 @@ impl StrategyKind {
     }
 }
 
+/// The controllers whose waves follow the blocks of a body that changes.
+const BODY_CONTROLLERS: [ControllerKind; 2] = [ControllerKind::Wave, ControllerKind::Gait];
+
 impl Settings {
-    /// The change of strategy or controller that a change of the other calls for, as field and text: without it they would
-    /// not go together. None if they do, or if the field is another one.
-    pub fn partner_change(&self, field: &str, text: &str) -> Option<(&'static str, &'static str)> {
+    /// The changes of strategy, controller and the evolution of bodies that a change of one of them calls for, as fields and
+    /// texts: without them they would not go together. Empty if they do, or if the field is another one.
+    pub fn partner_changes(&self, field: &str, text: &str) -> Vec<(&'static str, &'static str)> {
+        let mut changes: Vec<_> = self.partner_change(field, text).into_iter().collect();
+        if field == "genome.bodies.vary" {
+            let varies = text == "true";
+            if varies != self.evolution.strategy.info().varies_bodies {
+                let strategy = if varies { StrategyKind::Islands } else { StrategyKind::CmaEs };
+                changes.push(("evolution.strategy", strategy.name()));
+                if !strategy.improves(self.genome.controller) {
+                    changes.push(("genome.controller", ControllerKind::Gait.name()));
+                }
+            }
+            return changes;
+        }
+        let named = |text: &str| StrategyKind::named("evolution.strategy", text).ok();
+        let partner = changes.iter().find(|(field, _)| *field == "evolution.strategy");
+        let strategy = if field == "evolution.strategy" { named(text) } else { None };
+        if let Some(strategy) = strategy.or_else(|| partner.and_then(|(_, text)| named(text))) {
+            let varies = strategy.info().varies_bodies;
+            if varies != self.genome.bodies.vary {
+                changes.push(("genome.bodies.vary", if varies { "true" } else { "false" }));
+            }
+        }
+        changes
+    }
+
+    fn partner_change(&self, field: &str, text: &str) -> Option<(&'static str, &'static str)> {
         match field {
             "evolution.strategy" => {
                 let strategy = StrategyKind::named(field, text).ok()?;
@@ -62,6 +93,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::with_fields;
 
     #[test]
     fn every_kind_of_controller_has_a_strategy_and_every_strategy_a_controller() {
@@ -85,6 +117,17 @@ mod tests {
         assert_eq!(partner(&settings, strategy, "xcs"), Some((controller, "decisions")));
         assert_eq!(partner(&settings, strategy, "neat"), Some((controller, "grown")));
         assert_eq!(partner(&settings, strategy, "novelty"), None);
+        let all = |settings: &Settings, field, text| settings.partner_changes(field, text);
+        let vary = "genome.bodies.vary";
+        assert_eq!(all(&settings, strategy, "islands"), [(vary, "true")]);
+        assert_eq!(all(&settings, vary, "true"), [(strategy, "islands")]);
+        let bodies = with_fields(&settings, [(vary, "true"), (strategy, "body_ga")]);
+        let bodies = bodies.expect("they go together");
+        assert_eq!(all(&bodies, strategy, "islands"), []);
+        assert_eq!(all(&bodies, strategy, "ga"), [(vary, "false")]);
+        assert_eq!(all(&bodies, vary, "false"), [(strategy, "cma_es")]);
+        let sensing = [(strategy, "cma_es"), (vary, "false")];
+        assert_eq!(all(&bodies, controller, "modular"), sensing);
         assert_eq!(partner(&settings, controller, "decisions"), Some((strategy, "q_learning")));
         assert_eq!(partner(&settings, controller, "reflex"), None);
         assert_eq!(partner(&settings, "trial.duration_s", "3"), None);

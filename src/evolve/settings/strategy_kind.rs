@@ -28,6 +28,8 @@ pub struct StrategyInfo {
     pub only_controllers: &'static [ControllerKind],
     /// Whether it keeps an archive of elites over two descriptors.
     pub has_archive: bool,
+    /// Whether it varies bodies, which no other strategy can.
+    pub varies_bodies: bool,
     /// Whether its individuals belong to species.
     pub has_species: bool,
     /// Number of generations in a comparison, where more would not continue the search; none for any number.
@@ -48,6 +50,7 @@ impl StrategyInfo {
         has_fixed_population: false,
         only_controllers: &[],
         has_archive: false,
+        varies_bodies: false,
         has_species: false,
         compared_generations: None,
         check_size: |evolution, size| {

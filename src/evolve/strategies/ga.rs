@@ -7,7 +7,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::search::{Search, normal};
+use super::search::Search;
 use super::wave_takeover::WaveTakeover;
 use crate::check::{Invalid, within};
 use crate::control::WaveUses;
@@ -16,7 +16,7 @@ use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{Crossover, GaSettings, Mutation, ParentSelection};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
 use crate::genome::Genome;
-use crate::rng::Purpose;
+use crate::rng::{Purpose, normal};
 use crate::score::Evaluation;
 
 /// The range of self-adapted steps, as shares of a gene's range.

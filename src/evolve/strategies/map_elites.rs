@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cma::{Cma, RankedCandidate};
 use super::cma_es::covariance_shape;
-use super::search::{Search, normal};
+use super::search::Search;
 use crate::check::{Invalid, within};
 use crate::evolve::archives::{Addition, Archive, Elite};
 use crate::evolve::parents::{IndividualId, Parents};
@@ -16,7 +16,7 @@ use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::MapElitesSettings;
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::Genome;
-use crate::rng::Purpose;
+use crate::rng::{Purpose, normal};
 use crate::score::Evaluation;
 
 /// The state of MAP-Elites.

@@ -3,10 +3,12 @@
 //! A new strategy is a file here and a line in [`constructors`], a row of
 //! [`StrategyKind`] and, if it has any, its settings in [`super::settings`].
 
+mod body_ga;
 mod cma;
 mod cma_es;
 mod ga;
 mod halving;
+mod islands;
 mod learned;
 mod learning;
 mod map_elites;
@@ -40,6 +42,8 @@ fn constructors(settings: &Settings) -> Constructors {
             Constructors::of::<Learning<Policy>>()
         }
         StrategyKind::Neat => Constructors::of::<neat::Neat>(),
+        StrategyKind::BodyGa => Constructors::of::<body_ga::BodyGa>(),
+        StrategyKind::Islands => Constructors::of::<islands::Islands>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }
 }

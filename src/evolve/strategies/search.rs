@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::check::{Invalid, within};
 use crate::evolve::plan::{Founder, RunPlan};
 use crate::genome::{Genome, GenomeShape, GenomeSpace};
-use crate::rng::{Purpose, stream};
+use crate::rng::{Purpose, normal, stream};
 
 /// A search among points: the genome at each point, and the streams of random numbers.
 #[derive(Debug, Clone)]
@@ -132,17 +131,4 @@ impl Search {
         // Reflections and turns return any point to the cube, but lose precision far outside.
         point.iter().try_for_each(|&x| within("coordinate", x, -1.0e6..=1.0e6))
     }
-}
-
-/// A uniformly distributed number from 0 to less than 1.
-pub fn uniform(rng: &mut ChaCha8Rng) -> f64 {
-    rng.random_range(0.0..1.0)
-}
-
-/// A normally distributed number of mean 0 and variance 1, by the method of Box and Muller (1958).
-pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    // From (0, 1], where the logarithm is finite.
-    let first = 1.0 - uniform(rng);
-    let second = uniform(rng);
-    (-2.0 * libm::log(first)).sqrt() * libm::cos(std::f64::consts::TAU * second)
 }

@@ -159,7 +159,7 @@ impl PageChampion {
         Ok(Self {
             name: exported.name.clone(),
             facts: facts(exported),
-            meaning: trial.result_in_words(&champion.evaluation),
+            meaning: trial.result_in_words(&champion.genome, &champion.evaluation),
             hash: format!("{:016x}", champion.evaluation.trace_hash),
             friction: trial.surface.friction,
             width_m: stairs.width_m,

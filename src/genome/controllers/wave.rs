@@ -123,9 +123,9 @@ impl Waves {
     ) {
         space.wave.frequency_gene(&mut self.frequency_hz, visit);
         // A joint that cannot turn needs no search.
-        let turns = |limits: &[f32]| limits.iter().any(|limit| *limit > 0.0);
-        let bend = if turns(&space.bend_limits_rad) { bend } else { 0.0 };
-        let twist = if turns(&space.twist_limits_rad) { twist } else { 0.0 };
+        let [bend_turns, twist_turns] = space.turning_axes();
+        let bend = if bend_turns { bend } else { 0.0 };
+        let twist = if twist_turns { twist } else { 0.0 };
         for (joint, waves) in self.joints.iter_mut().enumerate() {
             for (axis, wave, amplitude) in
                 [("bend", &mut waves.bend, bend), ("twist", &mut waves.twist, twist)]

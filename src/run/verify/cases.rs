@@ -228,6 +228,21 @@ const CASES: &[Case] = &[
         "controller=decisions; strategy=zcs; zcs.rules=300; zcs.wildcard_share=0.6; zcs.discount=0.8; \
          zcs.learning_rate=0.1; ga_rate=0.5; start_y_m=-3",
     ),
+    (
+        "bodies, islands",
+        [3, 24, 3],
+        "controller=gait; strategy=islands; bodies.vary=true; limbs_min=3; limbs_max=4; candidates=6; first_step=0.2; body_share=0.5; \
+         trial.fitness=share; start_y_m=-3; trial.duration_s=3",
+    ),
+    (
+        "bodies in other ranges, genetic algorithm",
+        [3, 12, 4],
+        "controller=wave; strategy=body_ga; bodies.vary=true; protection=none; tournament_size=2; two_parents=0.8; \
+         mutation_step=0.2; kept_best=1; length_min_m=0.3; length_max_m=3; thickness_min_m=0.3; thickness_max_m=2.5; \
+         bend_limit_min_rad=0.5; bend_limit_max_rad=1; twist_limit_min_rad=0.1; twist_limit_max_rad=0.5; \
+         strength_min=0.1; volume_m3=8; longest_m=11; torque_budget_nm=6000; trial.fitness=share; start_y_m=-3; \
+         trial.duration_s=3",
+    ),
 ];
 
 /// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.
@@ -256,7 +271,11 @@ pub(super) fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
     }
     // A new preset comes last in their list: a seed, once given, stays. Those of controllers that sense their surroundings
     // have the world of the first, and their families have cases above: emulated processors take minutes for each second.
-    let of_worlds = |preset: &Preset| !preset.settings.genome.controller.senses_surroundings();
+    // That of evolving bodies has this world, too, and one of its generations is larger than a case.
+    let of_worlds = |preset: &Preset| {
+        let genome = &preset.settings.genome;
+        !genome.controller.senses_surroundings() && !genome.bodies.vary
+    };
     for (preset, seed) in presets.into_iter().filter(of_worlds).zip(200..) {
         let mut settings = preset.settings;
         sized(&mut settings, 6, 2);

@@ -29,7 +29,7 @@ impl Thumbnail {
         let empty = Self::of_trial(&champion.trial);
         let Some(recording) = recording else { return empty };
         let body = champion.body();
-        let middle = body.middle_limb();
+        let middle = body.middle_limb;
         let last = recording.frames().len().saturating_sub(1);
         let mut frames: Vec<usize> =
             (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();

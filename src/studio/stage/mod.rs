@@ -269,6 +269,7 @@ fn limit_in_words(broken: Disqualification, health: &HealthLimits) -> String {
         ),
         Disqualification::NotFinite
         | Disqualification::EnergyFromNothing
+        | Disqualification::FellOver
         | Disqualification::Crashed => reason.to_owned(),
     }
 }

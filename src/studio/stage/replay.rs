@@ -32,7 +32,7 @@ impl Replay {
                 recording: Arc::clone(recording),
                 step: 0,
                 last_step: staged.trial().steps(),
-                middle_limb: staged.body().middle_limb(),
+                middle_limb: staged.body().middle_limb,
             }),
             None => Self::Simulated(Box::new(staged.rollout())),
         }

@@ -24,7 +24,7 @@ use crate::studio::stage::Show;
 use batch_jobs::BatchJobs;
 use examination::Examination;
 
-pub(crate) use item::{LibraryItem, fitness_text};
+pub(crate) use item::LibraryItem;
 pub(crate) use load::founder_of;
 pub(crate) use poll::plugin;
 

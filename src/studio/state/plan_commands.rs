@@ -20,8 +20,12 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
             Ok(kind) => format!("The controller is now {}, to suit the strategy.", kind.title()),
             Err(_) => String::new(),
         },
+        "genome.bodies.vary" if name == "true" => {
+            "Bodies evolve now, to suit the strategy.".to_owned()
+        }
+        "genome.bodies.vary" => "Bodies no longer evolve, to suit the strategy.".to_owned(),
         _ => match StrategyKind::named(field, name) {
-            Ok(kind) => format!("The strategy is now {}, to suit the controller.", kind.title()),
+            Ok(kind) => format!("The strategy is now {}, to suit your choice.", kind.title()),
             Err(_) => String::new(),
         },
     }
@@ -44,8 +48,8 @@ pub(crate) fn apply_to_plan(
         PlanCommand::SetPopulation(population) => run.set_population(*population)?,
         PlanCommand::SetField { field, text } => {
             let mut fields = vec![(field.as_str(), text.as_str())];
-            // A strategy and a controller that do not go together would be refused.
-            if let Some(partner) = run.next_settings().partner_change(field, text) {
+            // A strategy, a controller and bodies that do not go together would be refused.
+            for partner in run.next_settings().partner_changes(field, text) {
                 notices.info(partner_in_words(partner));
                 fields.push(partner);
             }

@@ -29,7 +29,6 @@ impl Simulation {
             return Err(Disqualification::NotFinite);
         }
         let speed_limit_squared = self.health.speed_m_s * self.health.speed_m_s;
-        let drift_limit_squared = self.health.joint_drift_m * self.health.joint_drift_m;
         for (index, &limb) in self.limbs.iter().enumerate() {
             let body = &self.physics.bodies[limb];
             let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
@@ -48,10 +47,14 @@ impl Simulation {
             }
             // The order of these checks is part of the bits of a run: it decides which reason is reported.
             let to_parents = self.body.joints.iter().filter(|joint| joint.child == index);
-            let drift_squared =
-                to_parents.map(|joint| self.drift_squared(joint)).fold(0.0, f32::max);
-            if drift_squared > drift_limit_squared {
-                return Err(Disqualification::JointBroke);
+            let mut drift_squared = 0.0_f32;
+            for joint in to_parents {
+                let limit_m = self.health.joint_drift_m * joint.gap_scale;
+                let of_joint = self.drift_squared(joint);
+                if of_joint > limit_m * limit_m {
+                    return Err(Disqualification::JointBroke);
+                }
+                drift_squared = drift_squared.max(of_joint);
             }
             seen = seen.and(Effort {
                 energy_j: 0.0,

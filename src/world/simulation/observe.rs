@@ -80,6 +80,21 @@ impl Simulation {
         self.limbs.iter().filter(touches).count()
     }
 
+    /// Indices of the limbs that touch the stairs.
+    pub fn limbs_on_stairs(&self) -> impl Iterator<Item = usize> + '_ {
+        let touches = |limb: &RigidBodyHandle| {
+            let collider = self.physics.bodies[*limb].colliders()[0];
+            self.physics.narrow_phase.contact_pairs_with(collider).any(|pair| {
+                let other = other_collider(pair, collider);
+                other != self.contacts.ground
+                    && self.is_world(other)
+                    && pair.has_any_active_contact()
+            })
+        };
+        let all = self.limbs.iter().enumerate();
+        all.filter(move |(_, limb)| touches(limb)).map(|(index, _)| index)
+    }
+
     /// The torques that acted in the last step, clamped to the joints' limits, one per joint.
     pub fn applied_torques(&self) -> impl ExactSizeIterator<Item = JointTorque> + '_ {
         self.applied.iter().map(|applied| applied.torque)

@@ -52,7 +52,7 @@ impl Simulation {
     /// The senses of the snake as a whole.
     pub fn read_snake(&self) -> SnakeReading {
         let head = &self.physics.bodies[self.limbs[0]];
-        let middle = &self.physics.bodies[self.limbs[self.body.middle_limb()]];
+        let middle = &self.physics.bodies[self.limbs[self.body.middle_limb]];
         let velocity = middle.linvel();
         SnakeReading {
             yaw: (*head.rotation() * Vector::Y).x,

@@ -21,6 +21,7 @@ fn plan(limbs: usize) -> WorldPlan {
         max_bend_torque_nm: 1000.0,
         max_twist_torque_nm: 1000.0,
         damping_nms_per_rad: 0.0,
+        gap_scale: 1.0,
         cfm_m_s_per_n: 0.0,
     };
     WorldPlan {
@@ -33,8 +34,10 @@ fn plan(limbs: usize) -> WorldPlan {
         body: BodyPlan {
             limbs: vec![limb; limbs],
             joints: (0..limbs - 1).map(joint).collect(),
+            middle_limb: limbs / 2,
             angular_damping_per_s: 0.0,
         },
+        settles: false,
         start_y_m: -7.23,
         start_x_m: 0.0,
         start_turn_rad: 0.0,

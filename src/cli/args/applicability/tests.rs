@@ -6,12 +6,13 @@ use clap::CommandFactory;
 use std::ffi::OsString;
 
 /// Every task, as words of the command line.
-const TASKS: [(Task, &str); 21] = [
+const TASKS: [(Task, &str); 22] = [
     (Window, ""),
     (Run, "--no-render"),
     (ReplayInWindow, "replay a.ron"),
     (CheckReplay, "replay a.ron --no-render"),
     (Bench, "bench"),
+    (Body, "body a.ron"),
     (Verify, "verify"),
     (Exam, "exam a.ron"),
     (Export, "export a.ron -o a.csv"),

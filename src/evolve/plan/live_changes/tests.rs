@@ -12,6 +12,7 @@ fn plan(strategy: StrategyKind) -> RunPlan {
     settings.evolution.population = 24;
     settings.genome.controller = ControllerKind::Gait;
     settings.trial.duration_s = 1.0;
+    settings.let_bodies_vary_as_the_strategy_does();
     RunPlan::new("test", 1, settings)
 }
 
@@ -49,7 +50,20 @@ fn advance(strategy: &mut dyn Strategy, generation: u32) {
 }
 
 /// Allowed changes of each strategy.
-const ALLOWED: [(StrategyKind, &[(&str, &str)]); 6] = [
+const ALLOWED: [(StrategyKind, &[(&str, &str)]); 8] = [
+    (
+        StrategyKind::BodyGa,
+        &[
+            ("body_ga.protection", "none"),
+            ("body_ga.tournament_size", "7"),
+            ("body_ga.two_parents", "0.9"),
+            ("body_ga.mutation_step", "0.2"),
+            ("body_ga.kept_best", "5"),
+            ("population", "7"),
+            ("population", "30"),
+        ],
+    ),
+    (StrategyKind::Islands, &[("generations", "40")]),
     (
         StrategyKind::Halving,
         &[

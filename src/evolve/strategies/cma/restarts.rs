@@ -12,7 +12,7 @@ use super::rates::CovarianceShape;
 use super::run::Cma;
 use crate::check::{Invalid, within};
 use crate::evolve::settings::{LARGEST_POPULATION, LARGEST_SAMPLE, RestartKind};
-use crate::evolve::strategies::search::uniform;
+use crate::rng::uniform;
 
 /// Maximum number of times that the population of large runs doubles.
 const MOST_DOUBLINGS: u32 = 9;
@@ -68,6 +68,13 @@ impl RestartedCma {
             small_evaluations: 0,
             large_evaluations: 0,
         })
+    }
+
+    /// The same with a first standard deviation of its own for each coordinate of the first run, as a factor of the step.
+    #[must_use]
+    pub fn with_scales(mut self, scales: &[f64]) -> Self {
+        self.current.scale(scales);
+        self
     }
 
     /// The parameters with which runs begin.

@@ -18,7 +18,7 @@ use super::rates::{CovarianceShape, LearningRates};
 use super::termination::{HistoryWindows, StopReason, ValueHistory};
 use crate::check::{Invalid, within};
 use crate::evolve::settings::{LARGEST_POPULATION, LARGEST_SAMPLE};
-use crate::evolve::strategies::search::normal;
+use crate::rng::normal;
 
 /// Maximum dimension of a full covariance, whose axes take time cubic in it.
 pub const LARGEST_FULL: usize = 256;
@@ -79,6 +79,13 @@ impl Cma {
         (0..dimension).for_each(|i| run.covariance[diagonal_index(shape, i)] = 1.0);
         run.check()?;
         Ok(run)
+    }
+
+    /// Scales the standard deviation of each coordinate, before the first iteration.
+    pub fn scale(&mut self, scales: &[f64]) {
+        for (coordinate, scale) in scales.iter().enumerate().take(self.mean.len()) {
+            self.covariance[diagonal_index(self.shape, coordinate)] *= scale * scale;
+        }
     }
 
     /// Candidates per iteration.

@@ -133,6 +133,7 @@ pub(super) fn axis_title(fitness: Fitness) -> &'static str {
         Fitness::Height => "Height of the middle block",
         Fitness::FurthestY => "Furthest distance",
         Fitness::StepsClimbed => "Steps climbed",
+        Fitness::Share => "Share of the stairs",
     }
 }
 

@@ -95,7 +95,7 @@ fn hover_text(member: &FrontMember, trial: &Trial) -> String {
     let [y_m, energy_kj] = place(member);
     format!(
         "Distance {y_m:.2} m: {}\nEnergy {} kJ\nGeneration {}, snake {}\nClick to replay",
-        trial.result_in_words(&member.evaluation),
+        trial.result_in_words(&member.genome, &member.evaluation),
         number(energy_kj),
         member.generation,
         member.individual + 1

@@ -9,7 +9,7 @@ use crate::save::library::{RunDetails, SavePlace};
 use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::thumbnail::{sparkline, thumbnail};
-use crate::studio::state::library::{LibraryItem, fitness_text};
+use crate::studio::state::library::LibraryItem;
 use crate::studio::ui::text_rows::{explain, row};
 use crate::studio::ui::theme;
 
@@ -82,7 +82,7 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     if let Some(run) = item.run() {
         lines.push(match run.best {
             Some((generation, fitness)) => {
-                let fitness = fitness_text(fitness, run.rewarded);
+                let fitness = run.rewarded.text(fitness);
                 format!("Best {fitness} in generation {generation}; {}", item.generation_text())
             }
             None => item.generation_text(),
@@ -150,7 +150,7 @@ pub fn champions(
         for generation in run.champions.get(rows).unwrap_or_default() {
             let index = (*generation as usize).saturating_sub(1);
             let fitness = run.best_of_each.get(index).copied().flatten();
-            let about = fitness.map(|fitness| fitness_text(fitness, run.rewarded));
+            let about = fitness.map(|fitness| run.rewarded.text(fitness));
             let name = format!("Generation {generation}");
             let response = row(ui, false, &name, &about.unwrap_or_default());
             if response.on_hover_text("Click to replay").clicked() {

@@ -119,7 +119,7 @@ impl Progress {
                 // The distance alone does not say that this snake is on the stairs.
                 if let Some(best) = self.runs.get(truth.answer).and_then(Found::best) {
                     truth.words += ": it ";
-                    truth.words += &best.trial.result_in_words(&best.evaluation);
+                    truth.words += &best.trial.result_in_words(&best.genome, &best.evaluation);
                 }
                 Some(truth)
             }

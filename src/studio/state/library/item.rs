@@ -7,7 +7,6 @@ use crate::save::EntryNotes;
 use crate::save::library::{
     ChampionDetails, EntryDetails, EntryProblem, LibraryEntry, RunDetails, SavePlace, Thumbnail,
 };
-use crate::score::Fitness;
 
 /// An entry and, once read, its contents.
 #[derive(Debug)]
@@ -156,7 +155,7 @@ impl LibraryItem {
     pub fn fitness_text(&self) -> String {
         let rewarded = self.champion().map(|of| of.rewarded).or(self.run().map(|of| of.rewarded));
         match (self.fitness(), rewarded) {
-            (Some(fitness), Some(rewarded)) => fitness_text(fitness, rewarded),
+            (Some(fitness), Some(rewarded)) => rewarded.text(fitness),
             _ => String::new(),
         }
     }
@@ -218,14 +217,6 @@ impl LibraryItem {
             [&self.name, kind, &fitness, self.preset().unwrap_or_default(), &generation, &date];
         let said: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         said.join(", ")
-    }
-}
-
-/// A fitness with its unit.
-pub fn fitness_text(fitness: f32, rewarded: Fitness) -> String {
-    match rewarded {
-        Fitness::StepsClimbed => format!("{fitness:.0} steps"),
-        other => format!("{fitness:.2}{}", other.unit()),
     }
 }
 

@@ -1,0 +1,103 @@
+//! `snakes body`: the body of a champion in numbers.
+
+use std::path::Path;
+
+use super::error::CliError;
+use super::output::print;
+use crate::save::load_champion;
+use crate::world::BodyPlan;
+
+/// Prints the blocks and joints of a champion, from the head.
+pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
+    let champion = load_champion(file)?.champion;
+    let body = champion.body();
+    let is_own = !champion.genome.body.segments.is_empty();
+    if json { print_lines(&body, is_own) } else { print(&table(&body, is_own)) }
+}
+
+/// Greatest torque of all joints together about both axes, in N·m.
+fn torque_nm(body: &BodyPlan) -> f32 {
+    body.joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum()
+}
+
+fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
+    for (index, limb) in body.limbs.iter().enumerate() {
+        // The joint in front of the block; the head has none.
+        let joint = body.joints.iter().find(|joint| joint.child == index);
+        let line = serde_json::json!({
+            "block": index + 1,
+            "length_m": limb.length_m,
+            "width_m": limb.width_m,
+            "height_m": limb.height_m,
+            "density_kg_m3": limb.density_kg_m3,
+            "mass_kg": limb.mass_kg(),
+            "bend_limit_rad": joint.map(|joint| joint.bend_limit_rad),
+            "twist_limit_rad": joint.map(|joint| joint.twist_limit_rad),
+            "max_bend_torque_nm": joint.map(|joint| joint.max_bend_torque_nm),
+            "max_twist_torque_nm": joint.map(|joint| joint.max_twist_torque_nm),
+        });
+        print(&format!("{line}\n"))?;
+    }
+    let line = serde_json::json!({
+        "done": true,
+        "blocks": body.limbs.len(),
+        "evolved": is_own,
+        "length_m": body.length_m(),
+        "mass_kg": body.mass_kg(),
+        "volume_m3": body.volume_m3(),
+        "torque_nm": torque_nm(body),
+    });
+    print(&format!("{line}\n"))
+}
+
+fn table(body: &BodyPlan, is_own: bool) -> String {
+    let origin = if is_own { "a body of its own" } else { "the body of its trial" };
+    let mut text = format!(
+        "{} blocks, {origin}: {:.2} m long, {:.1} kg, {:.2} m³, {:.0} N·m of torque in all joints\n\n",
+        body.limbs.len(),
+        body.length_m(),
+        body.mass_kg(),
+        body.volume_m3(),
+        torque_nm(body),
+    );
+    text +=
+        "block  length  width  height    mass  joint in front: bend, twist   torque: bend, twist\n";
+    for (index, limb) in body.limbs.iter().enumerate() {
+        let joint = body.joints.iter().find(|joint| joint.child == index).map(|joint| {
+            let [bend, twist] =
+                [joint.bend_limit_rad, joint.twist_limit_rad].map(|limit| limit.to_degrees());
+            format!(
+                "{:>15}±{bend:>3.0}°  ±{twist:>3.0}°  {:>9.0} {:>5.0} N·m",
+                "", joint.max_bend_torque_nm, joint.max_twist_torque_nm
+            )
+        });
+        let line = format!(
+            "{:>5}  {:>4.2} m {:>4.2} m  {:>4.2} m {:>4.1} kg  {}",
+            index + 1,
+            limb.length_m,
+            limb.width_m,
+            limb.height_m,
+            limb.mass_kg(),
+            joint.unwrap_or_default(),
+        );
+        text += line.trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_is_a_line_of_sums_and_a_line_for_each_block() {
+        let champion = crate::save::shipped_champion().expect("well formed").champion;
+        let text = table(&champion.body(), false);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 3 + 5, "{text}");
+        assert!(lines[0].starts_with("5 blocks, the body of its trial: 10.00 m long, "), "{text}");
+        assert!(lines[0].contains("10.00 m³, 8000 N·m"), "{text}");
+        assert!(!lines[3].contains('°') && lines[4].contains('°'), "the head has no joint: {text}");
+    }
+}

@@ -1,0 +1,124 @@
+//! What goes with bodies that evolve.
+
+use super::Settings;
+use crate::check::Invalid;
+use crate::schema::PerPart;
+
+/// Settings that have no effect where each genome has a body of its own.
+pub(super) const REPLACED: [&str; 7] = [
+    "trial.agent.limbs",
+    "trial.agent.limb_width_m",
+    "trial.agent.limb_length_m",
+    "trial.agent.limb_height_m",
+    "trial.agent.density_kg_m3",
+    "trial.agent.bend_limit_rad",
+    "trial.agent.twist_limit_rad",
+];
+
+impl Settings {
+    /// Checks that strategy, controller and trial go with evolving bodies, if bodies evolve.
+    pub(super) fn check_bodies(&self) -> Result<(), Invalid> {
+        let (strategy, varies) = (self.evolution.strategy, self.genome.bodies.vary);
+        if strategy.info().varies_bodies != varies {
+            let names = super::StrategyKind::ALL.into_iter();
+            let fitting: Vec<&str> = names
+                .filter(|kind| kind.info().varies_bodies == varies)
+                .map(super::StrategyKind::name)
+                .collect();
+            let state =
+                if varies { "while bodies evolve" } else { "unless genome.bodies.vary is true" };
+            let allowed = format!("{} {state}", fitting.join(", "));
+            return Err(Invalid::new("evolution.strategy", strategy, allowed));
+        }
+        if !varies {
+            return Ok(());
+        }
+        let agent = &self.trial.agent;
+        for (field, value) in [
+            ("max_bend_torque_nm", &agent.max_bend_torque_nm),
+            ("max_twist_torque_nm", &agent.max_twist_torque_nm),
+            ("joint_damping_nms_per_rad", &agent.joint_damping_nms_per_rad),
+            ("joint_cfm_m_s_per_n", &agent.joint_cfm_m_s_per_n),
+        ] {
+            if let PerPart::Each(values) = value {
+                let field = format!("trial.agent.{field}");
+                let value = format!("a list of {}", values.len());
+                return Err(Invalid::new(field, value, "one value while bodies evolve"));
+            }
+        }
+        // The engine takes one mass for all contacts, and the masses of limbs differ.
+        for (field, cfm) in [
+            ("trial.surface", self.trial.surface.soft_cfm_m_s_per_n),
+            ("trial.ground", self.trial.ground().soft_cfm_m_s_per_n),
+            ("trial.agent.skin", agent.skin.soft_cfm_m_s_per_n),
+        ] {
+            if cfm > 0.0 {
+                let field = format!("{field}.soft_cfm_m_s_per_n");
+                return Err(Invalid::new(field, cfm, "0 while bodies evolve"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Settings {
+    /// Makes a strategy that varies bodies small enough for a test, and lets bodies evolve.
+    #[cfg(test)]
+    pub(crate) fn let_bodies_vary_as_the_strategy_does(&mut self) {
+        self.genome.bodies.vary = self.evolution.strategy.info().varies_bodies;
+        self.genome.bodies.limbs_max = 3;
+        self.evolution.islands.candidates = 4;
+        if !self.genome.bodies.vary {
+            self.genome.bodies = Default::default();
+            self.evolution.islands = Default::default();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{StrategyKind, with_fields};
+    use crate::genome::ControllerKind;
+
+    #[test]
+    fn what_does_not_go_with_evolving_bodies_is_refused_before_a_run() {
+        let mut settings = Settings::default();
+        settings.genome.bodies.vary = true;
+        let said = |settings: &Settings| settings.check().expect_err("refused").to_string();
+        let error = said(&settings);
+        assert!(error.starts_with("evolution.strategy is halving; allowed: "), "{error}");
+        assert!(error.ends_with(" while bodies evolve"), "{error}");
+        settings.evolution.strategy = StrategyKind::BodyGa;
+        let expected =
+            "genome.controller is signal; allowed: wave, gait with evolution.strategy body_ga";
+        assert_eq!(said(&settings), expected);
+        settings.genome.controller = ControllerKind::Gait;
+        settings.check().expect("allowed");
+        for (field, value, expected) in [
+            (
+                "max_bend_torque_nm",
+                "[1, 2, 3, 4]",
+                "a list of 4; allowed: one value while bodies evolve",
+            ),
+            ("surface.soft_cfm_m_s_per_n", "0.001", "0.001; allowed: 0 while bodies evolve"),
+            ("skin.soft_cfm_m_s_per_n", "0.001", "0.001; allowed: 0 while bodies evolve"),
+        ] {
+            let error = with_fields(&settings, [(field, value)]).expect_err("refused").to_string();
+            assert!(error.ends_with(expected), "{error}");
+        }
+        settings.evolution.strategy = StrategyKind::Islands;
+        settings.evolution.generations = 1;
+        settings.evolution.population = 131;
+        let error = said(&settings);
+        assert_eq!(
+            error,
+            "evolution.generations is 1; allowed: at least 2 at this population: one generation of islands has 132 evaluations"
+        );
+        settings.evolution.population = 132;
+        settings.check().expect("allowed");
+        settings.genome.bodies.vary = false;
+        let error = said(&settings);
+        assert!(error.ends_with(" unless genome.bodies.vary is true"), "{error}");
+    }
+}

@@ -1,0 +1,106 @@
+//! Settings of the strategies that vary bodies.
+
+use super::EvolutionSettings;
+use super::size::{GenomeSize, LARGEST_POPULATION};
+use crate::check::Invalid;
+use crate::schema::{choice, choices, number, setting_group, whole};
+
+setting_group! {
+    /// Settings of the genetic algorithm over bodies.
+    pub struct BodyGaSettings in "Genetic algorithm of bodies":
+        "Blocks come, go, divide and merge; parents are selected and crossed block by block."
+    {
+        /// How bodies that have just changed are protected from those that have had time to learn to move.
+        protection: BodyProtection = BodyProtection::Age,
+            choice("Protection of new bodies")
+                .hint("A changed body moves by the gait of its parent, and would lose against bodies that have adapted theirs");
+
+        /// Number of candidates in a tournament.
+        tournament_size: u32 = 3,
+            whole("Tournament size", 1..=1000)
+                .hint("Number of snakes drawn at random, the best of which becomes a parent")
+                .slider(1.0, 20.0);
+
+        /// Share of the children that have two parents.
+        two_parents: f32 = 0.3,
+            number("Share with two parents", 0.0..=1.0).advanced()
+                .hint("Share of children whose blocks come from two parents, aligned by descent")
+                .slider(0.0, 1.0);
+
+        /// Standard deviation of a gene's mutation, as a share of its range.
+        mutation_step: f32 = 0.08,
+            number("Step of mutation", 1.0e-4..=0.5)
+                .hint("As a share of each gene's range. About one gene in ten mutates in a child")
+                .slider(0.001, 0.5)
+                .logarithmic_from(0.001);
+
+        /// Number of the best that are copied unchanged.
+        kept_best: u32 = 2,
+            whole("Elites", 0..=LARGEST_POPULATION)
+                .hint("Number of best snakes copied unchanged into the next generation")
+                .slider(0.0, 20.0);
+    }
+}
+
+choices! {
+    /// How new bodies are protected.
+    pub enum BodyProtection {
+        None = "none", "None", "Only the fitness counts.";
+        /// The Pareto front of fitness and the generations since the last change of the structure.
+        Age = "age", "Age", "A younger body may be worse: a snake only loses against one that is better and no older.";
+    }
+}
+
+impl IslandSettings {
+    /// Checks that a run of these settings has at least one generation.
+    ///
+    /// # Errors
+    /// One generation of all islands is larger than the whole run.
+    pub(super) fn check_size(
+        evolution: &EvolutionSettings,
+        size: &GenomeSize<'_>,
+    ) -> Result<(), Invalid> {
+        let bodies = &size.space.bodies;
+        let islands = u64::from(bodies.limbs_max.saturating_sub(bodies.limbs_min)) + 1;
+        let first = islands * u64::from(evolution.islands.candidates);
+        if evolution.budget() >= first {
+            return Ok(());
+        }
+        let least = first.div_ceil(u64::from(evolution.population.max(1)));
+        let allowed = format!(
+            "at least {least} at this population: one generation of islands has {first} evaluations"
+        );
+        Err(Invalid::new("evolution.generations", evolution.generations, allowed))
+    }
+}
+
+setting_group! {
+    /// Settings of the islands.
+    pub struct IslandSettings in "Islands":
+        "A CMA-ES for each number of blocks; those that learn fastest get the evaluations."
+    {
+        /// Candidates of each island in a generation.
+        candidates: u32 = 12,
+            whole("Candidates per island", 4..=1000)
+                .hint("Number of snakes of each number of blocks in a generation")
+                .slider(4.0, 60.0)
+                .fixed(super::cma_es::LEARNED);
+
+        /// First standard deviation of every gene, as a share of its range.
+        first_step: f32 = 0.15,
+            number("First step", 0.001..=1.0)
+                .hint("Standard deviation of the first candidates around the best newborn, as a share of each gene's range")
+                .slider(0.01, 0.5)
+                .logarithmic_from(0.01)
+                .fixed(super::cma_es::LEARNED);
+
+        /// First standard deviation of the genes of the body, as a share of that of the controller's genes. The gait has to be
+        /// learned for a body that is still nearly the same.
+        body_share: f32 = 0.3,
+            number("Share of the body", 0.001..=1.0).advanced()
+                .hint("First step of the genes of the body, as a share of the first step of the other genes")
+                .slider(0.01, 1.0)
+                .logarithmic_from(0.01)
+                .fixed(super::cma_es::LEARNED);
+    }
+}

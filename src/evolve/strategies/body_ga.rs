@@ -1,0 +1,276 @@
+//! A genetic algorithm over genomes with bodies of their own: blocks come, go, divide and merge.
+//!
+//! A changed body is controlled by genes that fit its parent's, so it would lose against bodies that have adapted. It is
+//! protected by its age, after Schmidt and Lipson, "Age-Fitness Pareto Optimization" (2010), and Cheney and others,
+//! "Scalable co-optimization of morphology and control in embodied machines" (2018): the age counts the generations
+//! since the last change of the structure.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
+use crate::evolve::parents::{IndividualId, Parents};
+use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::settings::{BodyGaSettings, BodyProtection};
+use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
+use crate::genome::{BodyChange, Genome, GenomeShape, GenomeSpace};
+use crate::rng::{Purpose, stream};
+use crate::score::Evaluation;
+use std::sync::Arc;
+
+/// Attempts to change a body within its limits, before its genes change instead.
+const ATTEMPTS: usize = 20;
+
+/// An individual of the last generation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyMember {
+    /// Its genes.
+    genome: Genome,
+    /// Generations since the last change of the structure of its body.
+    age: u32,
+}
+
+/// The genetic algorithm.
+#[derive(Debug, Clone)]
+pub struct BodyGa {
+    settings: BodyGaSettings,
+    space: GenomeSpace,
+    shape: GenomeShape,
+    seed: u64,
+    /// The next generation; the first is 1.
+    generation: u32,
+    population: usize,
+    founder: Option<Arc<Founder>>,
+    /// The last generation, best first; empty at the beginning.
+    members: Vec<BodyMember>,
+    /// Their ids; empty if they are unknown.
+    ids: Vec<IndividualId>,
+}
+
+/// How an individual is made; the numbers are indices in the last generation.
+enum Variation {
+    Random,
+    Elite(usize),
+    Child(usize, Option<usize>),
+}
+
+impl BodyGa {
+    fn with(plan: &RunPlan, finished: u32, members: Vec<BodyMember>) -> Self {
+        Self {
+            settings: plan.settings.evolution.body_ga.clone(),
+            space: plan.settings.genome.clone(),
+            shape: plan.settings.trial.genome_shape(),
+            seed: plan.seed,
+            generation: finished + 1,
+            population: plan.settings.evolution.population as usize,
+            founder: plan.founder.clone().filter(|_| finished == 0),
+            members,
+            ids: Vec::new(),
+        }
+    }
+
+    fn stream(&self, individual: usize, purpose: Purpose) -> ChaCha8Rng {
+        stream(self.seed, self.generation, individual as u32, purpose)
+    }
+
+    /// How an individual is made, and the stream from which its random numbers continue.
+    fn variation(&self, individual: usize) -> (Variation, ChaCha8Rng) {
+        let mut rng = self.stream(individual, Purpose::Mutation);
+        let count = self.members.len();
+        // At least one individual has to change.
+        let elites = (self.settings.kept_best as usize).min(self.population - 1).min(count);
+        let variation = if count == 0 {
+            Variation::Random
+        } else if individual < elites {
+            Variation::Elite(individual)
+        } else {
+            let mut parent = || {
+                let drawn = (0..self.settings.tournament_size).map(|_| rng.random_range(0..count));
+                // Members are in order, so the best of those drawn has the lowest index.
+                drawn.fold(count - 1, usize::min)
+            };
+            let first = parent();
+            let second = parent();
+            let is_crossed = rng.random_range(0.0..1.0) < f64::from(self.settings.two_parents);
+            Variation::Child(first, Some(second).filter(|second| is_crossed && *second != first))
+        };
+        (variation, rng)
+    }
+
+    fn individual(&self, individual: usize) -> BodyMember {
+        let (variation, mut rng) = self.variation(individual);
+        match variation {
+            Variation::Random => self.first(individual),
+            Variation::Elite(index) => {
+                let elite = &self.members[index];
+                BodyMember { age: elite.age.saturating_add(1), genome: elite.genome.clone() }
+            }
+            Variation::Child(first, second) => {
+                let (mut age, mut genome) =
+                    (self.members[first].age, self.members[first].genome.clone());
+                if let Some(other) = second.map(|index| &self.members[index]) {
+                    let fitter = &self.members[first.min(second.unwrap_or(first))].genome;
+                    let less_fit = &self.members[first.max(second.unwrap_or(first))].genome;
+                    genome = self.space.with_crossed_bodies(fitter, less_fit, &mut rng);
+                    age = age.max(other.age);
+                }
+                self.varied(BodyMember { genome, age }, &mut rng)
+            }
+        }
+    }
+
+    /// A child of a genome: with a change of its structure, or with small changes of its genes.
+    fn varied(&self, parent: BodyMember, rng: &mut ChaCha8Rng) -> BodyMember {
+        if let Some(change) = BodyChange::draw(rng) {
+            let changed = (0..ATTEMPTS)
+                .find_map(|_| self.space.with_body_change(&parent.genome, change, rng));
+            if let Some(genome) = changed {
+                return BodyMember { genome, age: 0 };
+            }
+        }
+        let genome =
+            self.space.with_small_changes(&parent.genome, self.settings.mutation_step.into(), rng);
+        BodyMember { genome, age: parent.age.saturating_add(1) }
+    }
+
+    /// An individual of the first generation: the founder, if there is one, every second one a child of it, the others
+    /// drawn at random.
+    fn first(&self, individual: usize) -> BodyMember {
+        match &self.founder {
+            Some(founder) if individual == 0 => {
+                BodyMember { genome: founder.genome().clone(), age: 0 }
+            }
+            Some(founder) if individual.is_multiple_of(2) => {
+                let mut rng = self.stream(individual, Purpose::Mutation);
+                self.varied(BodyMember { genome: founder.genome().clone(), age: 0 }, &mut rng)
+            }
+            _ => {
+                let mut rng = self.stream(individual, Purpose::Birth);
+                BodyMember { genome: self.space.random_genome(self.shape, &mut rng), age: 0 }
+            }
+        }
+    }
+
+    fn generation(&self) -> Vec<BodyMember> {
+        (0..self.population).map(|individual| self.individual(individual)).collect()
+    }
+
+    /// The order of a generation as parents: the elites by fitness alone, then by the protection of new bodies.
+    fn order(&self, ages: &[u32], evaluations: &[Evaluation]) -> Vec<usize> {
+        let ranked = full_ranking(evaluations);
+        match self.settings.protection {
+            BodyProtection::None => ranked,
+            BodyProtection::Age => {
+                let elites = (self.settings.kept_best as usize).min(ranked.len());
+                let (best, others) = ranked.split_at(elites);
+                let mut order = best.to_vec();
+                order.extend(by_fronts(others, ages));
+                order
+            }
+        }
+    }
+}
+
+/// Orders indices, given best first, by Pareto fronts of rank and age: the first front are those of which none is both
+/// better and no older, the second those that only the first beats, and so on. Each front is in the order of ranks.
+fn by_fronts(ranked: &[usize], ages: &[u32]) -> Vec<usize> {
+    // Of those ranked before, the youngest decides: an individual is in the front after the last in which one before it
+    // is no older.
+    let mut youngest: Vec<u32> = Vec::new();
+    let mut fronts: Vec<Vec<usize>> = Vec::new();
+    for &index in ranked {
+        let age = ages.get(index).copied().unwrap_or(u32::MAX);
+        // The youngest of earlier fronts are younger than those of later ones.
+        let front = youngest.partition_point(|&of_front| of_front <= age);
+        if front == fronts.len() {
+            fronts.push(Vec::new());
+            youngest.push(age);
+        }
+        fronts[front].push(index);
+        youngest[front] = youngest[front].min(age);
+    }
+    fronts.concat()
+}
+
+impl Strategy for BodyGa {
+    fn begin(plan: &RunPlan) -> Self {
+        Self::with(plan, 0, Vec::new())
+    }
+
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
+        let resumed = Self::with(plan, finished, state.read()?);
+        within("members", resumed.members.len(), 0..=resumed.population)?;
+        for member in &resumed.members {
+            plan.settings.trial.check_genome(&member.genome)?;
+            resumed.space.check_genome(&member.genome, resumed.shape)?;
+        }
+        Ok(resumed)
+    }
+
+    fn ask(&self) -> Vec<Genome> {
+        self.generation().into_iter().map(|member| member.genome).collect()
+    }
+
+    fn population(&self) -> usize {
+        self.population
+    }
+
+    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+        let generation = self.generation();
+        let ages: Vec<u32> = generation.iter().map(|member| member.age).collect();
+        let order = self.order(&ages, evaluations);
+        self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
+        self.ids = IndividualId::all(self.generation, &order);
+        self.generation += 1;
+    }
+
+    fn state(&self) -> StrategyState {
+        StrategyState::of(&self.members)
+    }
+
+    fn apply_settings(&mut self, plan: &RunPlan) {
+        self.settings = plan.settings.evolution.body_ga.clone();
+        self.population = plan.settings.evolution.population as usize;
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let of = |individual| {
+            let id = |index: usize| self.ids.get(index).copied();
+            let parents = match self.variation(individual).0 {
+                Variation::Random => Some(Parents::None),
+                Variation::Elite(index) | Variation::Child(index, None) => {
+                    id(index).map(Parents::One)
+                }
+                Variation::Child(first, Some(second)) => {
+                    id(first).zip(id(second)).map(|(a, b)| Parents::Two(a, b))
+                }
+            };
+            parents.unwrap_or(Parents::Unknown)
+        };
+        (0..self.population).map(of).collect()
+    }
+
+    fn parent_pool(&self) -> Vec<IndividualId> {
+        self.ids.clone()
+    }
+
+    fn restore_parents(&mut self, pool: &[IndividualId]) {
+        self.ids = pool.get(..self.members.len()).unwrap_or_default().to_vec();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_younger_body_only_loses_against_one_that_is_better_and_no_older() {
+        // Best first: the second is older than the first, the third younger, the fourth younger still.
+        assert_eq!(by_fronts(&[3, 1, 0, 2], &[2, 9, 0, 5]), [3, 0, 2, 1]);
+        // Equal ages are ordered by fitness alone.
+        assert_eq!(by_fronts(&[1, 2, 0], &[4, 4, 4]), [1, 2, 0]);
+        assert!(by_fronts(&[], &[]).is_empty());
+    }
+}

@@ -1,0 +1,247 @@
+//! Islands: a CMA-ES for each number of blocks. Those that learn fastest get the evaluations, by successive halving
+//! (Jamieson and Talwalkar, "Non-stochastic Best Arm Identification and Hyperparameter Optimization", 2016).
+//!
+//! A body with another number of blocks has other genes, so a covariance is learned within one number of blocks only.
+
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+use super::cma::{CmaParameters, RankedCandidate, RestartedCma};
+use super::cma_es::covariance_shape;
+use crate::check::{Invalid, within};
+use crate::evolve::parents::Parents;
+use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::settings::{IslandSettings, RestartKind};
+use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
+use crate::genome::{Genome, GenomeShape, GenomeSpace};
+use crate::rng::{Purpose, stream};
+use crate::score::Evaluation;
+
+/// The stages: how many evaluations an island has had at the end of a stage, and how many islands go on.
+const STAGES: [(u64, usize); 2] = [(120, 5), (480, 2)];
+
+/// An island: all about one number of blocks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Island {
+    /// Number of blocks.
+    limbs: u32,
+    /// Whether it still gets evaluations.
+    is_active: bool,
+    /// Evaluations so far.
+    evaluations: u64,
+    /// Its best fitness so far; none before the first that is not disqualified.
+    best: Option<f32>,
+    /// Its runs of CMA-ES; none while the generation of random genomes is pending that the first begins with.
+    runs: Option<RestartedCma>,
+}
+
+/// The islands.
+#[derive(Debug, Clone)]
+pub struct Islands {
+    settings: IslandSettings,
+    space: GenomeSpace,
+    duration_s: f32,
+    seed: u64,
+    generation: u32,
+    islands: Vec<Island>,
+}
+
+impl Islands {
+    fn with(plan: &RunPlan, finished: u32, islands: Vec<Island>) -> Self {
+        Self {
+            settings: plan.settings.evolution.islands.clone(),
+            space: plan.settings.genome.clone(),
+            duration_s: plan.settings.trial.duration_s,
+            seed: plan.seed,
+            generation: finished + 1,
+            islands,
+        }
+    }
+
+    fn shape(&self, island: &Island) -> GenomeShape {
+        GenomeShape { joints: island.limbs as usize - 1, duration_s: self.duration_s }
+    }
+
+    fn parameters(&self, island: &Island) -> CmaParameters {
+        CmaParameters {
+            step: self.settings.first_step.into(),
+            population: self.settings.candidates,
+            shape: covariance_shape(self.space.dimension(self.shape(island))),
+            active: true,
+            restart: RestartKind::Ipop,
+        }
+    }
+
+    /// The run of an island around a point.
+    fn start(&self, island: &Island, mean: Vec<f64>) -> Option<RestartedCma> {
+        // The check of the settings excludes errors. Without a run, all genomes of the island would be random.
+        let shape = self.shape(island);
+        let body = self.space.body_dimension(shape);
+        let scale = |index| if index < body { f64::from(self.settings.body_share) } else { 1.0 };
+        let scales: Vec<f64> = (0..mean.len()).map(scale).collect();
+        let runs = RestartedCma::new(self.parameters(island), mean).ok();
+        let runs = runs.map(|runs| runs.with_scales(&scales));
+        debug_assert!(runs.is_some(), "the settings were checked");
+        runs
+    }
+
+    /// Number of candidates of an island in the next generation.
+    fn size(&self, island: &Island) -> usize {
+        let runs = island.runs.as_ref().map_or(self.settings.candidates, RestartedCma::population);
+        if island.is_active { runs as usize } else { 0 }
+    }
+
+    /// The points of an island, given the index of its first individual.
+    fn points(&self, island: &Island, first: usize) -> Vec<Vec<f64>> {
+        let stream = |index: usize, purpose| {
+            stream(self.seed, self.generation, (first + index) as u32, purpose)
+        };
+        match &island.runs {
+            Some(runs) if island.is_active => {
+                runs.candidates(|index| stream(index as usize, Purpose::Sample))
+            }
+            _ => (0..self.size(island))
+                .map(|index| {
+                    let mut rng = stream(index, Purpose::Birth);
+                    let genome =
+                        self.space.random_genome_of_plain_body(self.shape(island), &mut rng);
+                    self.space.point_of(&genome)
+                })
+                .collect(),
+        }
+    }
+
+    /// Ends a stage once all active islands have had its evaluations.
+    fn end_stage(&mut self) {
+        let active = || self.islands.iter().filter(|island| island.is_active);
+        let (count, least) =
+            (active().count(), active().map(|island| island.evaluations).min().unwrap_or(0));
+        let stage = STAGES.into_iter().find(|(_, keep)| *keep < count);
+        let Some((_, keep)) = stage.filter(|(evaluations, _)| least >= *evaluations) else {
+            return;
+        };
+        let mut order: Vec<usize> =
+            (0..self.islands.len()).filter(|&index| self.islands[index].is_active).collect();
+        let best = |index: usize| self.islands[index].best.unwrap_or(f32::NEG_INFINITY);
+        order.sort_by(|&a, &b| best(b).total_cmp(&best(a)));
+        for &index in order.iter().skip(keep) {
+            self.islands[index].is_active = false;
+        }
+    }
+}
+
+impl Strategy for Islands {
+    /// The island of a founder begins at the founder, the others at the best of some random genomes.
+    fn begin(plan: &RunPlan) -> Self {
+        let limbs = plan.settings.genome.bodies.limbs();
+        let island =
+            |limbs| Island { limbs, is_active: true, evaluations: 0, best: None, runs: None };
+        let mut search = Self::with(plan, 0, limbs.map(island).collect());
+        if let Some(founder) = plan.founder.as_ref().map(|founder: &Arc<Founder>| founder.genome())
+        {
+            let own = search
+                .islands
+                .iter()
+                .position(|island| island.limbs as usize == founder.body.segments.len());
+            if let Some(index) = own {
+                let mean = search.space.exact_point_of(founder);
+                search.islands[index].runs = search.start(&search.islands[index], mean);
+            }
+        }
+        search
+    }
+
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
+        let search = Self::with(plan, finished, state.read()?);
+        let limbs: Vec<u32> = search.islands.iter().map(|island| island.limbs).collect();
+        if !limbs.iter().copied().eq(plan.settings.genome.bodies.limbs()) {
+            let allowed = "one island for each number of blocks of the run";
+            return Err(Invalid::new("islands", format!("of {limbs:?} blocks"), allowed));
+        }
+        for island in &search.islands {
+            let Some(runs) = &island.runs else { continue };
+            runs.check()?;
+            let dimension = search.space.dimension(search.shape(island));
+            within("coordinates", runs.current().mean().len(), dimension..=dimension)?;
+            let mean = runs.current().mean().iter();
+            mean.copied().try_for_each(|x| within("coordinate", x, -1.0e6..=1.0e6))?;
+            if *runs.parameters() != search.parameters(island) {
+                let value = "different from those of the run";
+                return Err(Invalid::new("parameters", value, "the parameters of the run"));
+            }
+            within("population", runs.population(), 2..=search.settings.candidates << 9)?;
+            within("step", runs.current().step(), 0.0..=1.0e6)?;
+        }
+        Ok(search)
+    }
+
+    fn ask(&self) -> Vec<Genome> {
+        let mut genomes = Vec::with_capacity(self.population());
+        for island in &self.islands {
+            let (shape, points) = (self.shape(island), self.points(island, genomes.len()));
+            genomes.extend(points.iter().map(|point| self.space.genome_at(point, shape)));
+        }
+        genomes
+    }
+
+    fn population(&self) -> usize {
+        self.islands.iter().map(|island| self.size(island)).sum()
+    }
+
+    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+        let mut first = 0;
+        for index in 0..self.islands.len() {
+            let island = &self.islands[index];
+            let points = self.points(island, first);
+            if points.is_empty() {
+                continue;
+            }
+            let own = evaluations.get(first..first + points.len()).unwrap_or_default();
+            let order = full_ranking(own);
+            let mut next = island.clone();
+            next.evaluations += own.len() as u64;
+            let best = order.first().map(|&best| &own[best]);
+            let fitness = best.filter(|best| best.disqualified.is_none()).map(|best| best.fitness);
+            next.best = [next.best, fitness].into_iter().flatten().reduce(f32::max);
+            if let Some(runs) = &mut next.runs {
+                // A disqualified agent has no fitness. Its value is the least of those ranked before it.
+                let mut least = f64::INFINITY;
+                let ranked = order.iter().map(|&index| {
+                    if own[index].disqualified.is_none() {
+                        least = least.min(f64::from(own[index].fitness));
+                    }
+                    let value = if least.is_finite() { least } else { 0.0 };
+                    RankedCandidate { point: &points[index], value }
+                });
+                let ranked: Vec<RankedCandidate> = ranked.collect();
+                let mut rng = stream(self.seed, self.generation, first as u32, Purpose::Restart);
+                // No candidate is missing. If one is not finite, there is nothing left to learn.
+                let _ = runs.update(&ranked, &mut rng);
+            } else if let Some(&best) = order.first() {
+                next.runs = self.start(island, points[best].clone());
+            }
+            first += points.len();
+            self.islands[index] = next;
+        }
+        self.end_stage();
+        self.generation += 1;
+    }
+
+    fn state(&self) -> StrategyState {
+        StrategyState::of(&self.islands)
+    }
+
+    fn apply_settings(&mut self, plan: &RunPlan) {
+        // The runs depend on no setting that may change.
+        self.settings = plan.settings.evolution.islands.clone();
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let of = |island: &Island| {
+            let parents = if island.runs.is_some() { Parents::Distribution } else { Parents::None };
+            vec![parents; self.size(island)]
+        };
+        self.islands.iter().flat_map(of).collect()
+    }
+}

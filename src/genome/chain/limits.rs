@@ -1,0 +1,52 @@
+//! How much neighbouring blocks may differ, so that the engine holds the joint between them together.
+
+use super::segment::Segment;
+use crate::check::Invalid;
+
+/// Largest ratio of the masses of neighbouring blocks. Measured on a swinging chain with one inner iteration: at 10 the
+/// joint drifts 0.06 m, at 30 it breaks.
+pub const MASS_RATIO: f64 = 8.0;
+/// Largest ratio of their largest moments of inertia in a file: that of two blocks of the same shape, one of twice the
+/// sides.
+pub const INERTIA_RATIO: f64 = 32.0;
+/// The same in bodies that evolution makes.
+pub const EVOLVED_INERTIA_RATIO: f64 = 10.0;
+
+/// Largest principal moment of inertia of a box, in kg·m².
+pub fn inertia_kg_m2(mass_kg: f64, sizes_m: [f32; 3]) -> f64 {
+    let squares = sizes_m.map(|size| f64::from(size) * f64::from(size));
+    let least = squares.into_iter().fold(f64::INFINITY, f64::min);
+    mass_kg / 12.0 * (squares.iter().sum::<f64>() - least)
+}
+
+/// The larger of two numbers over the smaller.
+pub fn ratio(a: f64, b: f64) -> f64 {
+    a.max(b) / a.min(b)
+}
+
+/// Checks the ratios of all neighbours.
+///
+/// # Errors
+/// The first pair that differs too much.
+pub fn check_neighbours(segments: &[Segment]) -> Result<(), Invalid> {
+    for (index, pair) in segments.windows(2).enumerate() {
+        let [front, rear] = pair else { continue };
+        let checks = [
+            ("masses", ratio(front.mass_kg(), rear.mass_kg()), MASS_RATIO),
+            (
+                "moments of inertia",
+                ratio(front.inertia_kg_m2(), rear.inertia_kg_m2()),
+                INERTIA_RATIO,
+            ),
+        ];
+        for (what, found, most) in checks {
+            // Sizes are rounded to 32 bits.
+            if found > most * 1.000_01 {
+                let field = format!("{what} of segments[{index}] and segments[{}]", index + 1);
+                let value = format!("in the ratio {found:.1}");
+                return Err(Invalid::new(field, value, format!("a ratio of 1 to {most}")));
+            }
+        }
+    }
+    Ok(())
+}

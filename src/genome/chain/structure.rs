@@ -1,0 +1,327 @@
+//! Changes of the structure of a body: blocks come, go, divide and merge, and their waves with them.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use std::f32::consts::{PI, TAU};
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::segment::Segment;
+use crate::genome::controllers::{ControllerGenes, JointWaves, Wave, Waves};
+use crate::genome::individual::Genome;
+use crate::genome::space::GenomeSpace;
+
+/// A change of the structure of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BodyChange {
+    /// A copy of a block behind it, whose joint follows in the rhythm of its neighbours.
+    Duplicate,
+    /// A block becomes two halves, held straight: at first hardly a difference.
+    Split,
+    /// A block goes, with its joint.
+    Remove,
+    /// Two neighbours become one: the inverse of a split.
+    Merge,
+    /// A block between two neighbours, the mean of both.
+    Insert,
+    /// A block changes its sizes a lot.
+    Resize,
+}
+
+/// Standard deviation of the logarithm of a size in [`BodyChange::Resize`].
+const RESIZE: f64 = 0.4;
+
+impl BodyChange {
+    /// All of them, with the probability that a child has one.
+    pub const RATES: [(Self, f64); 6] = [
+        (Self::Duplicate, 0.07),
+        (Self::Split, 0.06),
+        (Self::Remove, 0.07),
+        (Self::Merge, 0.03),
+        (Self::Insert, 0.03),
+        (Self::Resize, 0.04),
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Duplicate => "duplicate",
+            Self::Split => "split",
+            Self::Remove => "remove",
+            Self::Merge => "merge",
+            Self::Insert => "insert",
+            Self::Resize => "resize",
+        }
+    }
+
+    /// Draws a change by its probability; none for the rest.
+    pub fn draw(rng: &mut ChaCha8Rng) -> Option<Self> {
+        let mut left = rng.random_range(0.0..1.0);
+        Self::RATES.into_iter().find_map(|(change, rate)| {
+            left -= rate;
+            (left < 0.0).then_some(change)
+        })
+    }
+}
+
+impl GenomeSpace {
+    /// A genome whose body has this change at a random place, within all limits. None if its body does not allow it, or if
+    /// the genome has no body of its own.
+    pub fn with_body_change(
+        &self,
+        parent: &Genome,
+        change: BodyChange,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Genome> {
+        let mut child = parent.clone();
+        let count = child.body.segments.len();
+        let pairs = matches!(change, BodyChange::Merge | BodyChange::Insert);
+        let places = if pairs { count.checked_sub(1)? } else { count };
+        if places == 0 {
+            return None;
+        }
+        let place = rng.random_range(0..places);
+        let mut editor = BodyEditor {
+            waves: waves_mut(&mut child.controller)?,
+            segments: &mut child.body.segments,
+            space: self,
+        };
+        match change {
+            BodyChange::Duplicate => editor.duplicate(place)?,
+            BodyChange::Split => editor.split(place)?,
+            BodyChange::Remove => editor.remove(place)?,
+            BodyChange::Merge => editor.merge(place)?,
+            BodyChange::Insert => editor.insert(place)?,
+            BodyChange::Resize => editor.resize(place, rng),
+        }
+        self.bodies.repair(&mut child.body.segments);
+        self.bodies.is_within_limits(&child.body.segments).then_some(child)
+    }
+}
+
+/// The waves of a controller that has them.
+pub(super) fn waves_mut(controller: &mut ControllerGenes) -> Option<&mut Waves> {
+    match controller {
+        ControllerGenes::Wave(waves) => Some(waves),
+        ControllerGenes::Gait(gait) => Some(&mut gait.waves),
+        _ => None,
+    }
+}
+
+/// A genome in the middle of a change. The joint in front of block k, counted from 0, has the waves k - 1.
+struct BodyEditor<'a> {
+    segments: &'a mut Vec<Segment>,
+    waves: &'a mut Waves,
+    space: &'a GenomeSpace,
+}
+
+impl BodyEditor<'_> {
+    /// None if the body has as many blocks as it may have.
+    fn room(&self) -> Option<()> {
+        (self.segments.len() < self.space.bodies.limbs_max as usize).then_some(())
+    }
+
+    /// The id of a new block between two others, derived from them alone: the same change of the same body has the same id
+    /// in every run and on every machine.
+    fn new_id(&self, place: usize, change: BodyChange) -> u64 {
+        let id = |index: usize| self.segments.get(index).map_or(0, |segment| segment.id);
+        let mut ordinal = 0_u64;
+        loop {
+            let parts = [id(place), id(place + 1), change as u64, ordinal];
+            let bytes: Vec<u8> = parts.iter().flat_map(|part| part.to_le_bytes()).collect();
+            let new = xxh3_64(&bytes);
+            if self.segments.iter().all(|segment| segment.id != new) {
+                return new;
+            }
+            ordinal += 1;
+        }
+    }
+
+    fn duplicate(&mut self, place: usize) -> Option<()> {
+        self.room()?;
+        let id = self.new_id(place, BodyChange::Duplicate);
+        let copy = Segment { id, ..self.segments[place].clone() };
+        let joint = self.joint_behind(place)?;
+        self.segments.insert(place + 1, copy);
+        self.waves.joints.insert(place, joint);
+        Some(())
+    }
+
+    fn split(&mut self, place: usize) -> Option<()> {
+        self.room()?;
+        let half_m = self.segments[place].length_m / 2.0;
+        if half_m < self.space.bodies.length_min_m {
+            return None;
+        }
+        let id = self.new_id(place, BodyChange::Split);
+        self.segments[place].length_m = half_m;
+        let rear = Segment { id, ..self.segments[place].clone() };
+        self.segments.insert(place + 1, rear);
+        let mut joint = self.waves.joints.first()?.clone();
+        for wave in [&mut joint.bend, &mut joint.twist] {
+            wave.offset = 0.0;
+            wave.harmonics.iter_mut().for_each(|harmonic| {
+                (harmonic.amplitude, harmonic.phase_rad) = (0.0, 0.0);
+            });
+        }
+        self.waves.joints.insert(place, joint);
+        Some(())
+    }
+
+    /// The joints beside the removed one share its offset, so that the body keeps its posture on the whole.
+    fn remove(&mut self, place: usize) -> Option<()> {
+        if self.segments.len() <= self.space.bodies.limbs_min as usize {
+            return None;
+        }
+        self.segments.remove(place);
+        let joint = place.saturating_sub(1);
+        let gone = self.waves.joints.remove(joint);
+        let [bend, twist] = self.offset_ranges();
+        for beside in [joint.checked_sub(1), Some(joint)].into_iter().flatten() {
+            if let Some(waves) = self.waves.joints.get_mut(beside) {
+                add_offset(&mut waves.bend, gone.bend.offset / 2.0, bend);
+                add_offset(&mut waves.twist, gone.twist.offset / 2.0, twist);
+            }
+        }
+        Some(())
+    }
+
+    fn merge(&mut self, place: usize) -> Option<()> {
+        if self.segments.len() <= self.space.bodies.limbs_min as usize {
+            return None;
+        }
+        let rear = self.segments.remove(place + 1);
+        let front = &mut self.segments[place];
+        let length_m = front.length_m + rear.length_m;
+        if length_m > self.space.bodies.length_max_m {
+            return None;
+        }
+        let share = (rear.volume_m3() / (front.volume_m3() + rear.volume_m3())) as f32;
+        let mean = |front: f32, rear: f32| front + (rear - front) * share;
+        front.length_m = length_m;
+        front.width_m = mean(front.width_m, rear.width_m);
+        front.height_m = mean(front.height_m, rear.height_m);
+        front.density_kg_m3 = mean(front.density_kg_m3, rear.density_kg_m3);
+        self.waves.joints.remove(place);
+        Some(())
+    }
+
+    fn insert(&mut self, place: usize) -> Option<()> {
+        self.room()?;
+        let id = self.new_id(place, BodyChange::Insert);
+        let (front, rear) = (&self.segments[place], &self.segments[place + 1]);
+        let size = |of: fn(&Segment) -> f32| (of(front) * of(rear)).sqrt();
+        let mean = |of: fn(&Segment) -> f32| (of(front) + of(rear)) / 2.0;
+        let new = Segment {
+            id,
+            length_m: size(|segment| segment.length_m),
+            width_m: size(|segment| segment.width_m),
+            height_m: size(|segment| segment.height_m),
+            density_kg_m3: size(|segment| segment.density_kg_m3),
+            bend_limit_rad: mean(|segment| segment.bend_limit_rad),
+            twist_limit_rad: mean(|segment| segment.twist_limit_rad),
+            strength: mean(|segment| segment.strength),
+        };
+        let behind = self.waves.joints.get(place)?;
+        let before = match place.checked_sub(1) {
+            Some(index) => self.waves.joints[index].clone(),
+            None => self.joint_before_head()?,
+        };
+        let joint = JointWaves {
+            bend: half_way(&before.bend, &behind.bend),
+            twist: half_way(&before.twist, &behind.twist),
+        };
+        self.segments.insert(place + 1, new);
+        self.waves.joints.insert(place, joint);
+        Some(())
+    }
+
+    fn resize(&mut self, place: usize, rng: &mut ChaCha8Rng) {
+        let bodies = &self.space.bodies;
+        let segment = &mut self.segments[place];
+        let thickness = [bodies.thickness_min_m, bodies.thickness_max_m];
+        for (size, [least, most]) in [
+            (&mut segment.length_m, [bodies.length_min_m, bodies.length_max_m]),
+            (&mut segment.width_m, thickness),
+            (&mut segment.height_m, thickness),
+        ] {
+            let factor = libm::exp(RESIZE * crate::rng::normal(rng)) as f32;
+            *size = (*size * factor).clamp(least, most);
+        }
+    }
+
+    /// The waves of a joint behind the joint of a block, one step further in the rhythm of the body.
+    fn joint_behind(&self, place: usize) -> Option<JointWaves> {
+        let joints = &self.waves.joints;
+        let Some(own) = place.checked_sub(1) else { return self.joint_before_head() };
+        let pair = match (joints.get(own + 1), own.checked_sub(1)) {
+            (Some(next), _) => Some([joints.get(own)?, next]),
+            (None, Some(previous)) => Some([&joints[previous], joints.get(own)?]),
+            (None, None) => None,
+        };
+        Some(moved_on(joints.get(own)?, pair, 1.0))
+    }
+
+    /// The waves of a joint before the first, one step back in the rhythm of the body.
+    fn joint_before_head(&self) -> Option<JointWaves> {
+        let joints = &self.waves.joints;
+        let pair = joints.get(1).map(|second| [&joints[0], second]);
+        Some(moved_on(joints.first()?, pair, -1.0))
+    }
+
+    /// Greatest offsets about the bend and the twist axes.
+    fn offset_ranges(&self) -> [f32; 2] {
+        let wave = &self.space.wave;
+        if self.space.controller == crate::genome::ControllerKind::Gait {
+            [wave.angle_range_rad, wave.twist_range_rad]
+        } else {
+            [self.space.torque_range_nm; 2]
+        }
+    }
+}
+
+/// A joint's waves, moved by the lag from the first to the second of a pair.
+fn moved_on(joint: &JointWaves, pair: Option<[&JointWaves; 2]>, direction: f32) -> JointWaves {
+    let mut moved = joint.clone();
+    let Some([first, second]) = pair else { return moved };
+    for (wave, first, second) in [
+        (&mut moved.bend, &first.bend, &second.bend),
+        (&mut moved.twist, &first.twist, &second.twist),
+    ] {
+        for ((harmonic, first), second) in
+            wave.harmonics.iter_mut().zip(&first.harmonics).zip(&second.harmonics)
+        {
+            let lag = lag_rad(first.phase_rad, second.phase_rad);
+            harmonic.phase_rad = turn(harmonic.phase_rad + direction * lag);
+        }
+    }
+    moved
+}
+
+/// The wave half way between two: means of offset and amplitude, and the phase half way along the shorter way round.
+/// Averaging phasors instead would cancel opposite waves.
+fn half_way(a: &Wave, b: &Wave) -> Wave {
+    let mut wave = a.clone();
+    wave.offset = (a.offset + b.offset) / 2.0;
+    for ((harmonic, a), b) in wave.harmonics.iter_mut().zip(&a.harmonics).zip(&b.harmonics) {
+        harmonic.amplitude = (a.amplitude + b.amplitude) / 2.0;
+        harmonic.phase_rad = turn(a.phase_rad + lag_rad(a.phase_rad, b.phase_rad) / 2.0);
+    }
+    wave
+}
+
+/// The way from one phase to another by the shorter way round: from -π to π.
+fn lag_rad(from: f32, to: f32) -> f32 {
+    turn(to - from + PI) - PI
+}
+
+/// A phase from 0 to less than a full turn.
+fn turn(phase_rad: f32) -> f32 {
+    phase_rad - TAU * libm::floorf(phase_rad / TAU)
+}
+
+fn add_offset(wave: &mut Wave, by: f32, range: f32) {
+    wave.offset = (wave.offset + by).clamp(-range, range);
+}
+
+#[cfg(test)]
+mod tests;

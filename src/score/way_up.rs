@@ -1,0 +1,157 @@
+//! The share of the stairs that a body of any length has climbed.
+
+use crate::world::{BodyPlan, Pose, Simulation, Stairs};
+
+/// Time for which the whole body has to stay on the landing to have arrived, in s.
+const ARRIVAL_S: f32 = 0.5;
+/// Greatest addition to the share for an early arrival.
+const ARRIVAL_BONUS: f32 = 0.1;
+
+/// The part of a rollout on which [`Fitness::Share`](super::Fitness::Share) depends, beside its present state.
+#[derive(Debug, Clone, Default)]
+pub(super) struct WayUp {
+    /// Way of the body at the start: see [`mean_steps`].
+    start_steps: f32,
+    /// Whether a limb has touched each tread, the lowest first.
+    touched: Vec<bool>,
+    /// Time since which the whole body stands on the landing, in s.
+    up_since_s: Option<f32>,
+    /// Time at which it stood there for long enough, in s.
+    arrived_s: Option<f32>,
+}
+
+impl WayUp {
+    /// The way up of a body at its start.
+    pub fn begin(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> Self {
+        Self {
+            start_steps: mean_steps(body, poses, stairs),
+            touched: vec![false; stairs.steps as usize],
+            ..Self::default()
+        }
+    }
+
+    /// Takes in the state after a healthy step, at this simulated time.
+    pub fn observe(
+        &mut self,
+        simulation: &Simulation,
+        poses: &[Pose],
+        stairs: &Stairs,
+        time_s: f32,
+    ) {
+        for limb in simulation.limbs_on_stairs() {
+            let steps =
+                poses.get(limb).map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
+            let tread =
+                (steps as usize).checked_sub(1).and_then(|tread| self.touched.get_mut(tread));
+            tread.into_iter().for_each(|touched| *touched = true);
+        }
+        let is_up = mean_steps(simulation.body(), poses, stairs) >= stairs.steps as f32;
+        self.up_since_s = is_up.then(|| self.up_since_s.unwrap_or(time_s));
+        let stays = self.up_since_s.is_some_and(|since_s| time_s - since_s >= ARRIVAL_S);
+        if stays && self.arrived_s.is_none() {
+            self.arrived_s = Some(time_s);
+        }
+    }
+
+    /// The share of the way from the start to the landing. A body that has leapt over treads can have at most twice the share
+    /// of the treads that it has touched.
+    pub fn share(&self, steps: f32, stairs: &Stairs) -> f32 {
+        let all = stairs.steps as f32;
+        let whole = all - self.start_steps;
+        if whole <= 0.0 {
+            return 0.0;
+        }
+        let share = (steps - self.start_steps) / whole;
+        if stairs.steps == 0 {
+            return share;
+        }
+        let touched = self.touched.iter().filter(|touched| **touched).count() as f32;
+        // The part of the way before the first riser needs no touch.
+        let capped = (2.0 * touched).min(all);
+        share.min((capped - self.start_steps.min(0.0)) / (all - self.start_steps.min(0.0)))
+    }
+
+    /// The addition for an arrival at this time of the trial, of a body that still is where it arrived.
+    pub fn bonus(&self, duration_s: f32) -> f32 {
+        let arrived_s = self.arrived_s.filter(|_| self.up_since_s.is_some());
+        arrived_s.map_or(0.0, |arrived_s| ARRIVAL_BONUS * (1.0 - arrived_s / duration_s).max(0.0))
+    }
+}
+
+/// The way of a body along the stairs, in steps: the mean over its limbs, weighted by mass. The way of a limb counts from
+/// the first riser, in treads, up to the last step; above its tread only, and beside, inside or behind the stairs only up
+/// to the first riser. Before the first riser it is negative.
+pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f32 {
+    let (mut sum, mut mass_kg) = (0.0, 0.0);
+    for (pose, limb) in poses.iter().zip(&body.limbs) {
+        let at_m = pose.translation;
+        let way = (at_m.y - stairs.first_riser_y_m) / stairs.tread_m;
+        let most = if stairs.steps_under(at_m.to_array()) > 0 { stairs.steps as f32 } else { 0.0 };
+        sum += limb.mass_kg() * way.min(most);
+        mass_kg += limb.mass_kg();
+    }
+    // Equal limbs at the top have exactly all steps, whatever the rounding of their masses.
+    let mean = sum / mass_kg;
+    let all = stairs.steps as f32;
+    if mean >= all * (1.0 - 1.0e-6) { all } else { mean }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{LimbPlan, Rotation, Vector};
+
+    fn body(lengths_m: &[f32]) -> BodyPlan {
+        let limb =
+            |&length_m| LimbPlan { width_m: 1.0, length_m, height_m: 1.0, density_kg_m3: 2.0 };
+        BodyPlan {
+            limbs: lengths_m.iter().map(limb).collect(),
+            joints: Vec::new(),
+            middle_limb: 0,
+            angular_damping_per_s: 0.0,
+        }
+    }
+
+    fn poses(places: &[[f32; 3]]) -> Vec<Pose> {
+        let pose = |&at: &[f32; 3]| Pose::from_parts(Vector::from(at), Rotation::IDENTITY);
+        places.iter().map(pose).collect()
+    }
+
+    #[test]
+    fn the_way_counts_by_mass_and_only_on_the_stairs() {
+        let stairs = Stairs::default();
+        let heavy_tail = body(&[1.0, 3.0]);
+        let way = |places: &[[f32; 3]]| mean_steps(&heavy_tail, &poses(places), &stairs);
+        // The head is half a tread past the second riser, the tail two treads before the first.
+        assert_eq!(way(&[[0.0, 6.0, 1.5], [0.0, -1.0, 0.5]]), (1.5 - 2.0 * 3.0) / 4.0);
+        assert_eq!(
+            way(&[[3.0, 6.0, 1.5], [0.0, -1.0, 0.5]]),
+            -1.5,
+            "the head is beside the stairs"
+        );
+        assert_eq!(way(&[[0.0, 6.0, 0.5], [0.0, -1.0, 0.5]]), -1.5, "the head is inside a step");
+        assert_eq!(way(&[[0.0, 30.0, 5.5], [0.0, 27.0, 5.5]]), 10.0, "up");
+    }
+
+    #[test]
+    fn a_leap_over_untouched_steps_is_capped() {
+        let stairs = Stairs::default();
+        let both = body(&[1.0, 1.0]);
+        let mut way = WayUp::begin(&both, &poses(&[[0.0, -1.0, 0.5], [0.0, -3.0, 0.5]]), &stairs);
+        assert_eq!(way.share(way.start_steps, &stairs), 0.0, "nothing for staying");
+        way.touched = vec![true; 10];
+        assert_eq!(way.share(10.0, &stairs), 1.0);
+        way.touched = vec![false; 10];
+        way.touched[9] = true;
+        // Of the 12.5 treads from the start to the landing 2.5 lie before the stairs, and one touch counts for two steps.
+        assert!((way.share(10.0, &stairs) - 4.5 / 12.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn an_early_arrival_has_a_bonus_as_long_as_the_body_stays() {
+        let mut way = WayUp { arrived_s: Some(3.0), up_since_s: Some(2.5), ..WayUp::default() };
+        assert!((way.bonus(15.0) - 0.08).abs() < 1e-6);
+        way.up_since_s = None;
+        assert_eq!(way.bonus(15.0), 0.0, "it has fallen off again");
+    }
+}

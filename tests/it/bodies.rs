@@ -1,0 +1,93 @@
+//! Claims about evolving bodies that take longer than a test may, as tables:
+//!
+//!     cargo test --release --no-default-features --test it bodies:: -- --ignored --nocapture
+
+use rayon::prelude::*;
+use snakes_and_stairs::evolve::{Settings, with_fields};
+use snakes_and_stairs::genome::Genome;
+use snakes_and_stairs::rng::{Purpose, stream};
+use snakes_and_stairs::save::load_preset;
+use snakes_and_stairs::score::{Evaluation, evaluate};
+
+/// Seed of the random bodies. No setting was chosen on them.
+const SEED: u64 = 101;
+
+fn settings(changes: &[(&str, &str)]) -> Settings {
+    let preset = load_preset("bodies").expect("shipped").settings;
+    with_fields(&preset, changes.iter().copied()).expect("allowed")
+}
+
+fn random_bodies(settings: &Settings, count: u32) -> Vec<Genome> {
+    let one = |individual| {
+        let mut rng = stream(SEED, 1, individual, Purpose::Birth);
+        settings.genome.random_genome(settings.trial.genome_shape(), &mut rng)
+    };
+    (0..count).map(one).collect()
+}
+
+fn evaluated(settings: &Settings, genomes: &[Genome]) -> Vec<Evaluation> {
+    genomes.par_iter().map(|genome| evaluate(genome, &settings.trial)).collect()
+}
+
+/// Rank correlation after Spearman. Equal values have equal ranks.
+fn rank_correlation(a: &[f32], b: &[f32]) -> f64 {
+    let ranks = |values: &[f32]| -> Vec<f64> {
+        let rank = |value: &f32| {
+            let below = values.iter().filter(|other| *other < value).count();
+            let equal = values.iter().filter(|other| *other == value).count();
+            below as f64 + (equal as f64 - 1.0) / 2.0
+        };
+        values.iter().map(rank).collect()
+    };
+    let (a, b) = (ranks(a), ranks(b));
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (mean_a, mean_b) = (mean(&a), mean(&b));
+    let pairs = || a.iter().zip(&b).map(|(x, y)| (x - mean_a, y - mean_b));
+    let covariance: f64 = pairs().map(|(x, y)| x * y).sum();
+    let [of_a, of_b] = pairs().fold([0.0, 0.0], |[p, q], (x, y)| [p + x * x, q + y * y]);
+    if of_a == 0.0 || of_b == 0.0 { 0.0 } else { covariance / (of_a * of_b).sqrt() }
+}
+
+/// Without torques no body gets anywhere, whatever its length.
+#[test]
+#[ignore = "simulates 2000 bodies for 15 s each"]
+fn a_body_without_torques_scores_nothing_whatever_its_length() {
+    let settings = settings(&[
+        ("max_bend_torque_nm", "0"),
+        ("max_twist_torque_nm", "0"),
+        ("trial.duration_s", "15"),
+    ]);
+    let genomes = random_bodies(&settings, 2000);
+    let evaluations = evaluated(&settings, &genomes);
+    let healthy = || genomes.iter().zip(&evaluations).filter(|(_, of)| of.disqualified.is_none());
+    let lengths: Vec<f32> =
+        healthy().map(|(genome, _)| settings.trial.agent.body_plan(genome).length_m()).collect();
+    let shares: Vec<f32> = healthy().map(|(_, of)| of.fitness).collect();
+    let largest = shares.iter().map(|share| share.abs()).fold(0.0, f32::max);
+    let not_at_rest = evaluations.len() - shares.len();
+    println!("bodies                       {}", genomes.len());
+    println!("not at rest at the start     {not_at_rest}");
+    println!("largest share, either sign   {largest:.4}   (claim: at most 0.02)");
+    println!("rank correlation with length {:.3}", rank_correlation(&lengths, &shares));
+    assert!(largest <= 0.02, "a body gains or loses {largest} without torques");
+    assert!(not_at_rest * 10 <= genomes.len(), "{not_at_rest} did not come to rest");
+}
+
+/// No body creates energy unnoticed: what moves is paid by the joints.
+#[test]
+#[ignore = "simulates 1000 bodies for 15 s each"]
+fn no_body_creates_energy_without_being_disqualified() {
+    let settings = settings(&[("trial.duration_s", "15")]);
+    let genomes = random_bodies(&settings, 1000);
+    let evaluations = evaluated(&settings, &genomes);
+    let mut reasons = std::collections::BTreeMap::<&str, u32>::new();
+    for evaluation in &evaluations {
+        let reason = evaluation.disqualified.map_or("healthy", |reason| reason.words());
+        *reasons.entry(reason).or_default() += 1;
+        assert!(evaluation.fitness.is_finite());
+    }
+    for (reason, count) in &reasons {
+        println!("{count:>5}  {reason}");
+    }
+    assert!(reasons.get("healthy").is_some_and(|count| *count >= 800), "{reasons:?}");
+}
