@@ -26,8 +26,6 @@ const SAMPLE: i32 = 34;
 const DASH: (i32, i32) = (10, 7);
 /// Space around the name of a mark on its plate, in pixels.
 const PLATE: f32 = 8.0;
-/// Height of the names below a chart, in pixels; they are rotated.
-const NAMES_HEIGHT: u32 = 250;
 /// Maximum length of a name, in characters; the rest is cut off.
 const MAX_NAME_LENGTH: usize = 32;
 
@@ -193,7 +191,7 @@ fn paint(
     let (x_digits, y_digits) = (x.digits(), y.digits());
     let mut builder = ChartBuilder::on(area);
     builder.margin(MARGIN).y_label_area_size(78);
-    builder.x_label_area_size(if has_names { NAMES_HEIGHT } else { 48 });
+    builder.x_label_area_size(if has_names { names_height(area, chart)? } else { 48 });
     if !chart.name.is_empty() {
         builder.caption(&chart.name, text());
     }
@@ -214,7 +212,7 @@ fn paint(
         let upright = [(*place, *chart.y.range.start()), (*place, *chart.y.range.end())];
         axes.draw_series(LineSeries::new(upright, FAINT.stroke_width(1)))?;
         let (x, y) = axes.plotting_area().map_coordinate(&upright[0]);
-        let short: String = name.chars().take(MAX_NAME_LENGTH).collect();
+        let short = short(name);
         let style = text().transform(FontTransform::Rotate270);
         let style = style.pos(Pos::new(HPos::Right, VPos::Center));
         let (left, top) = area.get_base_pixel();
@@ -229,6 +227,23 @@ fn paint(
         axes.draw_series(dashes)?;
     }
     mark_labels(area, &axes, chart)
+}
+
+/// A name that has room below an axis.
+fn short(name: &str) -> String {
+    name.chars().take(MAX_NAME_LENGTH).collect()
+}
+
+/// Height of the longest name below the x axis, which stands upright, with its distance from the axis, in pixels.
+fn names_height(
+    area: &DrawingArea<BitMapBackend<'_>, Shift>,
+    chart: &Chart,
+) -> Result<u32, Box<dyn Error>> {
+    let mut longest = 0;
+    for (_, name) in &chart.x.names {
+        longest = longest.max(area.estimate_text_size(&short(name), &text())?.0);
+    }
+    Ok(longest + 24)
 }
 
 /// Writes the names of the marks on plates beside their lines, where they cover least of the series.

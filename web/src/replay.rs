@@ -2,11 +2,13 @@
 
 use serde_json::{Value, json};
 use snakes_and_stairs::evolve::Champion;
+use snakes_and_stairs::genome::Genome;
 use snakes_and_stairs::score::{Rollout, Trial};
 
 /// A champion that is simulated.
 pub struct Replay {
     rollout: Rollout,
+    genome: Genome,
     trial: Trial,
     /// Whether the trial is the champion's own.
     is_own: bool,
@@ -35,6 +37,7 @@ impl Replay {
             is_own: trial == champion.trial,
             trial,
             recorded_hash: champion.evaluation.trace_hash,
+            genome: champion.genome,
         })
     }
 
@@ -81,7 +84,7 @@ impl Replay {
             "last_step": self.rollout.last_step(),
             "is_over": self.rollout.is_over(),
             "fitness": evaluation.fitness,
-            "meaning": self.trial.result_in_words(&evaluation),
+            "meaning": self.trial.result_in_words(&self.genome, &evaluation),
             "disqualified": evaluation.disqualified.map(|reason| reason.words()),
             "steps_climbed": behaviour.map_or(0, |of| of.steps_climbed),
             "energy_j": evaluation.effort.map_or(0.0, |of| of.energy_j),

@@ -96,7 +96,7 @@ setting_group! {
 
         /// First standard deviation of the genes of the body, as a share of that of the controller's genes. The gait has to be
         /// learned for a body that is still nearly the same.
-        body_share: f32 = 0.3,
+        body_share: f32 = 0.1,
             number("Share of the body", 0.001..=1.0).advanced()
                 .hint("First step of the genes of the body, as a share of the first step of the other genes")
                 .slider(0.01, 1.0)
