@@ -224,7 +224,7 @@ strategy_kinds! {
         name: "islands",
         title: "Islands",
         words: "A CMA-ES for each number of blocks; the best of them get the evaluations.",
-        color: [0xa0, 0x60, 0x20],
+        color: [0xb0, 0x00, 0x30],
         settings: &["islands"],
         is_budget_driven: true,
         varies_bodies: true,
@@ -362,7 +362,11 @@ impl SettingGroup for Settings {
             let allowed = format!("values for at most {LARGEST_GENOME_TORQUES} torque points");
             return Err(Invalid::new("genome.points_per_s", value, allowed));
         }
-        let shape = self.trial.genome_shape();
+        let mut shape = self.trial.genome_shape();
+        if self.genome.bodies.vary {
+            // The largest genomes have the most blocks.
+            shape.joints = self.genome.bodies.limbs_max as usize - 1;
+        }
         let size = GenomeSize { space: &self.genome, shape, torque_points };
         (self.evolution.strategy.info().check_size)(&self.evolution, &size)
     }

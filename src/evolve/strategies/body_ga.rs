@@ -264,6 +264,8 @@ impl Strategy for BodyGa {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::{Settings, StrategyKind};
+    use crate::genome::ControllerKind;
 
     #[test]
     fn a_younger_body_only_loses_against_one_that_is_better_and_no_older() {
@@ -272,5 +274,58 @@ mod tests {
         // Equal ages are ordered by fitness alone.
         assert_eq!(by_fronts(&[1, 2, 0], &[4, 4, 4]), [1, 2, 0]);
         assert!(by_fronts(&[], &[]).is_empty());
+    }
+
+    fn ga(change: impl FnOnce(&mut BodyGaSettings)) -> BodyGa {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::BodyGa;
+        settings.evolution.population = 200;
+        settings.genome.bodies.vary = true;
+        settings.genome.controller = ControllerKind::Gait;
+        change(&mut settings.evolution.body_ga);
+        settings.check().expect("they go together");
+        BodyGa::begin(&RunPlan::new("test", 1, settings))
+    }
+
+    fn advance(ga: &mut BodyGa) {
+        let genomes = ga.ask();
+        let fitness = |genome: &Genome| genome.body.segments.len() as f32;
+        let evaluations: Vec<Evaluation> =
+            genomes.iter().map(|genome| Evaluation::of_fitness(fitness(genome))).collect();
+        ga.tell(&genomes, &evaluations);
+    }
+
+    #[test]
+    fn three_in_ten_children_have_another_structure_and_age_begins_again() {
+        let mut ga = ga(|settings| settings.two_parents = 0.0);
+        advance(&mut ga);
+        let generation = ga.generation();
+        let ids = |member: &BodyMember| -> Vec<(u64, u32)> {
+            let segments = member.genome.body.segments.iter();
+            segments.map(|segment| (segment.id, segment.length_m.to_bits())).collect()
+        };
+        let parents: Vec<Vec<(u64, u32)>> = ga.members.iter().map(ids).collect();
+        assert!(
+            generation[..2].iter().all(|elite| parents.contains(&ids(elite)) && elite.age == 1)
+        );
+        let new = generation[2..].iter().filter(|child| child.age == 0).count();
+        assert!((35..85).contains(&new), "{new} of 198");
+        assert!(generation[2..].iter().all(|child| child.age <= 1));
+    }
+
+    #[test]
+    fn without_protection_only_the_fitness_orders_parents() {
+        let evaluations: Vec<Evaluation> =
+            [3.0, 2.0, 1.0, 0.0].map(Evaluation::of_fitness).to_vec();
+        let ages = [9, 8, 0, 9];
+        let order = |protection| {
+            ga(|settings| (settings.protection, settings.kept_best) = (protection, 1))
+                .order(&ages, &evaluations)
+        };
+        assert_eq!(order(BodyProtection::None), [0, 1, 2, 3]);
+        // Behind the best, the second and the young one are the first front.
+        assert_eq!(order(BodyProtection::Age), [0, 1, 2, 3]);
+        let older = ga(|settings| settings.kept_best = 1).order(&[0, 5, 7, 2], &evaluations);
+        assert_eq!(older, [0, 1, 3, 2], "the third is both worse and older than the second");
     }
 }

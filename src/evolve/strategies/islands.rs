@@ -245,3 +245,87 @@ impl Strategy for Islands {
         self.islands.iter().flat_map(of).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{Settings, StrategyKind};
+    use crate::genome::ControllerKind;
+
+    fn plan() -> RunPlan {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::Islands;
+        settings.genome.bodies.vary = true;
+        settings.genome.controller = ControllerKind::Gait;
+        settings.check().expect("they go together");
+        RunPlan::new("test", 1, settings)
+    }
+
+    /// Takes generations in which seven blocks are the best, and the others the worse the more they differ.
+    fn advance(search: &mut Islands, generations: u32) {
+        for _ in 0..generations {
+            let genomes = search.ask();
+            assert_eq!(genomes.len(), search.population());
+            let fitness = |genome: &Genome| -(genome.body.segments.len() as f32 - 7.0).abs();
+            let evaluations: Vec<Evaluation> =
+                genomes.iter().map(|genome| Evaluation::of_fitness(fitness(genome))).collect();
+            search.tell(&genomes, &evaluations);
+        }
+    }
+
+    fn active(search: &Islands) -> Vec<u32> {
+        let islands = search.islands.iter().filter(|island| island.is_active);
+        islands.map(|island| island.limbs).collect()
+    }
+
+    #[test]
+    fn the_best_five_islands_go_on_after_120_evaluations_and_the_best_two_after_480() {
+        let mut search = Islands::begin(&plan());
+        assert_eq!(search.population(), 11 * 12);
+        advance(&mut search, 9);
+        assert_eq!(active(&search).len(), 11);
+        advance(&mut search, 1);
+        assert_eq!(active(&search), [5, 6, 7, 8, 9]);
+        advance(&mut search, 29);
+        assert_eq!(active(&search).len(), 5);
+        advance(&mut search, 1);
+        assert_eq!(active(&search), [6, 7], "of equals the one with fewer blocks");
+        let parents = search.parents();
+        assert!(parents.iter().all(|parents| *parents == Parents::Distribution));
+        assert_eq!(parents.len(), search.population());
+    }
+
+    #[test]
+    fn bodies_vary_less_than_gaits_at_first() {
+        let mut search = Islands::begin(&plan());
+        advance(&mut search, 1);
+        let island = search.islands.iter().find(|island| island.limbs == 7).expect("an island");
+        let body = search.space.body_dimension(search.shape(island));
+        let points = search.points(island, 0);
+        let mean = island.runs.as_ref().expect("started").current().mean();
+        let spread = |range: std::ops::Range<usize>| {
+            let offs = points.iter().flat_map(|point| {
+                range.clone().map(|coordinate| (point[coordinate] - mean[coordinate]).abs())
+            });
+            offs.sum::<f64>() / range.len() as f64
+        };
+        let ratio = spread(0..body) / spread(body..mean.len());
+        assert!((0.07..0.14).contains(&ratio), "{ratio} instead of 0.1");
+    }
+
+    #[test]
+    fn a_state_of_other_islands_is_refused() {
+        let mut search = Islands::begin(&plan());
+        advance(&mut search, 2);
+        let state = search.state();
+        assert_eq!(Islands::resume(&plan(), 2, &state).expect("its own").ask(), search.ask());
+        let mut fewer = plan();
+        fewer.settings.genome.bodies.limbs_max = 11;
+        let error = Islands::resume(&fewer, 2, &state).expect_err("refused").to_string();
+        assert!(error.starts_with("islands is of [2, 3, "), "{error}");
+        let mut others = plan();
+        others.settings.genome.controller = ControllerKind::Wave;
+        let error = Islands::resume(&others, 2, &state).expect_err("refused").to_string();
+        assert!(error.starts_with("coordinates is "), "{error}");
+    }
+}

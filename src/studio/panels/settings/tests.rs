@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::values::list_of;
 use super::*;
-use crate::evolve::{Settings, fields, with_field};
+use crate::evolve::{Settings, fields, with_field, with_fields};
 use crate::schema::{NumberRange, Parts, SettingKind, list};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
@@ -158,7 +158,9 @@ fn every_control_sends_the_value_that_was_entered() {
             other => panic!("{full}: {other:?}"),
         };
         assert_eq!(sent, (full.clone(), expected.clone()));
-        let changed = with_field(settings, &full, &expected).expect(&full);
+        let mut changes = vec![(full.as_str(), expected.as_str())];
+        changes.extend(settings.partner_changes(&full, &expected));
+        let changed = with_fields(settings, changes).expect(&full);
         assert_ne!(changed, *settings, "{full} = {expected}");
     }
 }
