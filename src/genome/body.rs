@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::chain::{Segment, check_segments, segment_genes};
 use super::gene::{Gene, GeneRange, GeneVisitor};
-use super::space::{DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_LIMIT_RAD};
+use super::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
+use super::space::GenomeSpace;
 use crate::check::{Invalid, within};
 
 /// The limits of the joints and the material, or a body of its own. Champion files store it as it stands here.

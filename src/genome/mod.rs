@@ -12,6 +12,7 @@ mod fit;
 mod gene;
 mod individual;
 mod kind;
+mod limits;
 mod network_space;
 mod space;
 mod wave_space;
@@ -23,11 +24,9 @@ pub use coordinates::Coordinate;
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;
 pub use kind::ControllerKind;
+pub use limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
 pub use network_space::{MOST_LIBRARY_WAVES, NetworkSpace};
-pub use space::{
-    DENSITY_RANGE_KG_M3, GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_LIMIT_RAD, LARGEST_TORQUE_NM,
-    POINTS_PER_S_RANGE,
-};
+pub use space::{GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_TORQUE_NM, POINTS_PER_S_RANGE};
 pub use wave_space::{
     FREQUENCY_RANGE_HZ, MOST_HARMONICS, SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD, WaveSpace,
 };

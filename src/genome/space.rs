@@ -2,6 +2,7 @@
 
 use super::chain::BodySpace;
 use super::kind::ControllerKind;
+use super::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
 use super::network_space::NetworkSpace;
 use super::wave_space::WaveSpace;
 use crate::check::{Invalid, within};
@@ -40,10 +41,6 @@ setting_group! {
     }
 }
 
-/// Half a turn is where a joint angle wraps around; a limit stays clear of it.
-pub const LARGEST_LIMIT_RAD: f32 = 3.0;
-/// The range of every density, in kg/m³: from a balloon to tungsten.
-pub const DENSITY_RANGE_KG_M3: std::ops::RangeInclusive<f32> = 0.1..=20_000.0;
 /// The range of torque points per second. Beyond the physics' own rate more points do nothing.
 pub const POINTS_PER_S_RANGE: std::ops::RangeInclusive<f32> = 0.1..=1000.0;
 

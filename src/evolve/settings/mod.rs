@@ -211,7 +211,7 @@ strategy_kinds! {
         name: "body_ga",
         title: "Genetic algorithm of bodies",
         words: "Blocks come, go, divide and merge; new bodies are protected while they learn to move.",
-        color: [0x40, 0x80, 0xe0],
+        color: [0x50, 0xc0, 0xe0],
         settings: &["body_ga"],
         varies_bodies: true,
         check_size: |evolution, size| {
@@ -224,7 +224,7 @@ strategy_kinds! {
         name: "islands",
         title: "Islands",
         words: "A CMA-ES for each number of blocks; the best of them get the evaluations.",
-        color: [0xb0, 0x00, 0x30],
+        color: [0xf0, 0x40, 0x50],
         settings: &["islands"],
         is_budget_driven: true,
         varies_bodies: true,

@@ -50,7 +50,7 @@ pub struct BodyGa {
 }
 
 /// How an individual is made; the numbers are indices in the last generation.
-enum Variation {
+enum BodyVariation {
     Random,
     Elite(usize),
     Child(usize, Option<usize>),
@@ -76,15 +76,15 @@ impl BodyGa {
     }
 
     /// How an individual is made, and the stream from which its random numbers continue.
-    fn variation(&self, individual: usize) -> (Variation, ChaCha8Rng) {
+    fn variation(&self, individual: usize) -> (BodyVariation, ChaCha8Rng) {
         let mut rng = self.stream(individual, Purpose::Mutation);
         let count = self.members.len();
         // At least one individual has to change.
         let elites = (self.settings.kept_best as usize).min(self.population - 1).min(count);
         let variation = if count == 0 {
-            Variation::Random
+            BodyVariation::Random
         } else if individual < elites {
-            Variation::Elite(individual)
+            BodyVariation::Elite(individual)
         } else {
             let mut parent = || {
                 let drawn = (0..self.settings.tournament_size).map(|_| rng.random_range(0..count));
@@ -94,7 +94,10 @@ impl BodyGa {
             let first = parent();
             let second = parent();
             let is_crossed = rng.random_range(0.0..1.0) < f64::from(self.settings.two_parents);
-            Variation::Child(first, Some(second).filter(|second| is_crossed && *second != first))
+            BodyVariation::Child(
+                first,
+                Some(second).filter(|second| is_crossed && *second != first),
+            )
         };
         (variation, rng)
     }
@@ -102,12 +105,12 @@ impl BodyGa {
     fn individual(&self, individual: usize) -> BodyMember {
         let (variation, mut rng) = self.variation(individual);
         match variation {
-            Variation::Random => self.first(individual),
-            Variation::Elite(index) => {
+            BodyVariation::Random => self.first(individual),
+            BodyVariation::Elite(index) => {
                 let elite = &self.members[index];
                 BodyMember { age: elite.age.saturating_add(1), genome: elite.genome.clone() }
             }
-            Variation::Child(first, second) => {
+            BodyVariation::Child(first, second) => {
                 let (mut age, mut genome) =
                     (self.members[first].age, self.members[first].genome.clone());
                 if let Some(other) = second.map(|index| &self.members[index]) {
@@ -239,11 +242,11 @@ impl Strategy for BodyGa {
         let of = |individual| {
             let id = |index: usize| self.ids.get(index).copied();
             let parents = match self.variation(individual).0 {
-                Variation::Random => Some(Parents::None),
-                Variation::Elite(index) | Variation::Child(index, None) => {
+                BodyVariation::Random => Some(Parents::None),
+                BodyVariation::Elite(index) | BodyVariation::Child(index, None) => {
                     id(index).map(Parents::One)
                 }
-                Variation::Child(first, Some(second)) => {
+                BodyVariation::Child(first, Some(second)) => {
                     id(first).zip(id(second)).map(|(a, b)| Parents::Two(a, b))
                 }
             };

@@ -1,6 +1,7 @@
 //! Bodies that evolve: chains of blocks whose number, sizes and joints are genes.
 
 mod cross;
+mod genes;
 mod limits;
 mod mutation;
 mod repair;
@@ -8,7 +9,8 @@ mod segment;
 mod space;
 mod structure;
 
+pub(super) use genes::segment_genes;
+pub(super) use segment::check_segments;
 pub use segment::{MOST_SEGMENTS, Segment};
-pub(super) use segment::{check_segments, segment_genes};
 pub use space::BodySpace;
 pub use structure::BodyChange;

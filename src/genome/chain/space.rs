@@ -1,9 +1,10 @@
 //! The space of bodies that evolve.
 
 use crate::check::Invalid;
+use crate::genome::limits::LARGEST_LIMIT_RAD;
 use crate::schema::{Section, SettingGroup, Walk, number, setting_group, settings, switch, whole};
 
-use super::segment::{MOST_SEGMENTS, Segment};
+use super::segment::MOST_SEGMENTS;
 
 setting_group! {
     /// Ranges of bodies that evolve. All bodies have the same volume.
@@ -94,22 +95,22 @@ impl SettingGroup for BodySpace {
                 .hint("Largest width and height of a block")
                 .slider(0.2, 5.0)
                 .logarithmic_from(0.2);
-            bend_limit_min_rad: number("Minimum bend limit", 0.0..=super::super::LARGEST_LIMIT_RAD)
+            bend_limit_min_rad: number("Minimum bend limit", 0.0..=LARGEST_LIMIT_RAD)
                 .advanced()
                 .unit("rad")
                 .hint("Least range of a joint upwards and downwards")
                 .slider(0.0, 3.0);
-            bend_limit_max_rad: number("Maximum bend limit", 0.0..=super::super::LARGEST_LIMIT_RAD)
+            bend_limit_max_rad: number("Maximum bend limit", 0.0..=LARGEST_LIMIT_RAD)
                 .advanced()
                 .unit("rad")
                 .hint("Greatest range of a joint upwards and downwards")
                 .slider(0.0, 3.0);
-            twist_limit_min_rad: number("Minimum twist limit", 0.0..=super::super::LARGEST_LIMIT_RAD)
+            twist_limit_min_rad: number("Minimum twist limit", 0.0..=LARGEST_LIMIT_RAD)
                 .advanced()
                 .unit("rad")
                 .hint("Least range of a joint about the long axis")
                 .slider(0.0, 3.0);
-            twist_limit_max_rad: number("Maximum twist limit", 0.0..=super::super::LARGEST_LIMIT_RAD)
+            twist_limit_max_rad: number("Maximum twist limit", 0.0..=LARGEST_LIMIT_RAD)
                 .advanced()
                 .unit("rad")
                 .hint("Greatest range of a joint about the long axis")
@@ -155,33 +156,6 @@ impl BodySpace {
     /// The numbers of blocks that a body may have.
     pub fn limbs(&self) -> std::ops::RangeInclusive<u32> {
         self.limbs_min..=self.limbs_max
-    }
-
-    /// Widens the space so that it contains a body.
-    pub(in crate::genome) fn widen(&mut self, segments: &[Segment]) {
-        let count = segments.len() as u32;
-        (self.limbs_min, self.limbs_max) = (self.limbs_min.min(count), self.limbs_max.max(count));
-        let widen = |[least, most]: [&mut f32; 2], value: f32| {
-            (*least, *most) = (least.min(value), most.max(value));
-        };
-        for segment in segments {
-            widen([&mut self.length_min_m, &mut self.length_max_m], segment.length_m);
-            for side in [segment.width_m, segment.height_m] {
-                widen([&mut self.thickness_min_m, &mut self.thickness_max_m], side);
-            }
-            widen(
-                [&mut self.bend_limit_min_rad, &mut self.bend_limit_max_rad],
-                segment.bend_limit_rad,
-            );
-            widen(
-                [&mut self.twist_limit_min_rad, &mut self.twist_limit_max_rad],
-                segment.twist_limit_rad,
-            );
-            self.strength_min = self.strength_min.min(segment.strength);
-        }
-        self.volume_m3 = segments.iter().map(Segment::volume_m3).sum::<f64>() as f32;
-        let length_m: f32 = segments.iter().map(|segment| segment.length_m).sum();
-        self.longest_m = self.longest_m.max(length_m);
     }
 
     /// Length, width and height of each block of a body of equal ones, in metres: as long together as the snake of five

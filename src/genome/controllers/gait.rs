@@ -6,7 +6,8 @@ use super::encoding::{ControllerEncoding, ControllerInfo, JointCommands};
 use super::wave::Waves;
 use crate::check::{Invalid, within};
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
-use crate::genome::space::{GenomeSpace, LARGEST_LIMIT_RAD};
+use crate::genome::limits::LARGEST_LIMIT_RAD;
+use crate::genome::space::GenomeSpace;
 use crate::genome::wave_space::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
 
 /// Target angles of the joints, and the servo that pulls towards them: a torque of

@@ -7,8 +7,9 @@ use super::gait::Gait;
 use super::servo::twists;
 use crate::check::{Invalid, within};
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
+use crate::genome::limits::LARGEST_LIMIT_RAD;
 use crate::genome::network_space::WEIGHT_RANGE;
-use crate::genome::space::{GenomeSpace, LARGEST_LIMIT_RAD};
+use crate::genome::space::GenomeSpace;
 
 /// The inputs of a joint's reflex, about its bend or its twist axis; the last is the bias.
 pub const REFLEX_INPUTS: [&str; 9] = [

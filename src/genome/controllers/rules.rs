@@ -14,8 +14,9 @@ use super::wave_rule::WaveRule;
 use crate::check::{Invalid, within};
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
 use crate::genome::kind::ControllerKind;
+use crate::genome::limits::LARGEST_LIMIT_RAD;
 use crate::genome::network_space::{MOST_LIBRARY_WAVES, MOST_WAVE_RULES};
-use crate::genome::space::{GenomeSpace, LARGEST_LIMIT_RAD};
+use crate::genome::space::GenomeSpace;
 use crate::genome::wave_space::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
 
 /// Waves of target angles, the rules that choose among them, and the servo that pulls towards the targets: see

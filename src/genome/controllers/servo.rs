@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
-use crate::genome::space::{GenomeSpace, LARGEST_LIMIT_RAD};
+use crate::genome::limits::LARGEST_LIMIT_RAD;
+use crate::genome::space::GenomeSpace;
 use crate::genome::wave_space::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
 
 /// The servo of a controller whose outputs from -1 to 1 are target angles.

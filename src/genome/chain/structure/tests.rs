@@ -1,3 +1,5 @@
+//! Tests of changes of the structure of a body.
+
 use super::*;
 use crate::genome::{ControllerKind, GenomeShape};
 use crate::rng::{Purpose, stream};

@@ -1,0 +1,6 @@
+//! Limits of bodies in every space of genomes.
+
+/// Half a turn is where a joint angle wraps around; a limit stays clear of it.
+pub const LARGEST_LIMIT_RAD: f32 = 3.0;
+/// The range of every density, in kg/m³: from a balloon to tungsten.
+pub const DENSITY_RANGE_KG_M3: std::ops::RangeInclusive<f32> = 0.1..=20_000.0;
