@@ -87,6 +87,11 @@ impl Problem {
             kind,
             ControllerKind::Grown | ControllerKind::Decisions | ControllerKind::JointDecisions
         );
+        if self.settings.genome.bodies.vary {
+            let allowed = "false; genomes with bodies of their own have no common length, but Search(...).evaluate() and \
+                           tell() drive them";
+            return Err(refused("genome.bodies.vary", true, allowed));
+        }
         if is_array {
             return Ok(());
         }

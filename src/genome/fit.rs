@@ -4,7 +4,7 @@ use super::chain::{BodySpace, Segment};
 use super::gene::{GeneRange, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
-use crate::check::Invalid;
+use crate::check::{Invalid, within};
 
 fn same(field: &str, found: impl ToString, expected: impl ToString) -> Result<(), Invalid> {
     let (found, expected) = (found.to_string(), expected.to_string());
@@ -64,6 +64,15 @@ impl GenomeSpace {
                 "{limbs_min} to {limbs_max} blocks of {volume_m3} m³ together, within all limits of genome.bodies"
             );
             return Err(Invalid::new("segments", value, allowed));
+        }
+        // The genes of the head's joint wait until a block comes before it; no visitor sees them.
+        if let Some(head) = segments.first() {
+            let space = &self.bodies;
+            let bends = space.bend_limit_min_rad..=space.bend_limit_max_rad;
+            within("segments[0].bend_limit_rad", head.bend_limit_rad, bends)?;
+            let twists = space.twist_limit_min_rad..=space.twist_limit_max_rad;
+            within("segments[0].twist_limit_rad", head.twist_limit_rad, twists)?;
+            within("segments[0].strength", head.strength, space.strength_min..=1.0)?;
         }
         Ok(GenomeShape { joints: segments.len() - 1, ..shape })
     }

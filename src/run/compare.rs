@@ -101,12 +101,11 @@ fn run_one(
         let reached = (experiment.evaluated() * CURVE_POINTS as u64).div_ceil(budget.max(1));
         curve.iter_mut().skip((reached as usize).saturating_sub(1)).for_each(|at| *at = best);
     }
-    let start_y_m = plan.settings.trial.start_y_m;
     let best = experiment.best().map(|best| ComparedBest {
         fitness: best.evaluation.fitness,
         steps_climbed: best.evaluation.behaviour.map_or(0, |behaviour| behaviour.steps_climbed),
         energy_j_per_m: Descriptor::EnergyPerMetre
-            .value(&best.evaluation, start_y_m)
+            .value(&best.evaluation, best.trial.middle_start_y_m(&best.genome))
             .filter(|energy| energy.is_finite()),
         cost_of_transport: best.evaluation.behaviour.and_then(|of| of.cost_of_transport),
         climbing_efficiency: best.evaluation.behaviour.and_then(|of| of.climbing_efficiency),

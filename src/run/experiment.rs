@@ -257,11 +257,12 @@ impl Experiment {
         let leaders = ranking.iter().take(MAX_LEADERS);
         self.leaders = leaders.map(|&index| evaluated.individual(index)).collect();
 
-        let start_y_m = self.plan.settings.trial.start_y_m;
+        let trial = &self.plan.settings.trial;
         for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
             if !self.strategy.may_be_champion(index) {
                 continue;
             }
+            let start_y_m = trial.middle_start_y_m(genome);
             // Clone only the few genomes that enter the front.
             if self.front.accepts(genome, evaluation, start_y_m) {
                 let (genome, evaluation) = (genome.clone(), *evaluation);

@@ -177,7 +177,8 @@ fn read_front(members: Vec<FrontMemberV3>, plan: &RunPlan) -> Result<Front, Inva
         let FrontMemberV3 { generation, individual, recorded, genome } = member;
         let evaluation = recorded.evaluation().map_err(|error| error.inside(&place))?;
         trial.check_genome(&genome).map_err(|error| error.inside(&place))?;
-        front.add(FrontMember { genome, evaluation, generation, individual }, trial.start_y_m);
+        let start_y_m = trial.middle_start_y_m(&genome);
+        front.add(FrontMember { genome, evaluation, generation, individual }, start_y_m);
     }
     Ok(front)
 }

@@ -13,7 +13,7 @@ use super::record::{count_records, read_records};
 use super::run_name::run_name;
 use super::whole_file::prepare_folder;
 use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
-use crate::evolve::RunPlan;
+use crate::evolve::{RunPlan, StrategyKind};
 
 /// The folder of saved champions and runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -113,7 +113,11 @@ pub fn has_generations_left(plan: &RunPlan, records: &[GenerationRecord]) -> boo
     if evolution.strategy.info().is_budget_driven && !records.is_empty() {
         // Generations may grow, so the budget may be spent before the last generation.
         let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
-        let next = records.last().map_or(0, |last| u64::from(last.evaluations));
+        let last = records.last().map_or(0, |last| u64::from(last.evaluations));
+        // Those of islands shrink, to two islands in the end.
+        let least = 2 * u64::from(evolution.islands.candidates);
+        let shrinks = evolution.strategy == StrategyKind::Islands;
+        let next = if shrinks { last.min(least) } else { last };
         if spent + next > plan.budget() {
             return false;
         }

@@ -176,6 +176,17 @@ impl AgentSettings {
     /// The section of the material of the limbs.
     pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
 
+    /// The settings that have no effect on a body of a genome's own, by their paths in the settings of a run.
+    pub const REPLACED_BY_OWN_BODIES: [&str; 7] = [
+        "trial.agent.limbs",
+        "trial.agent.limb_width_m",
+        "trial.agent.limb_length_m",
+        "trial.agent.limb_height_m",
+        "trial.agent.density_kg_m3",
+        "trial.agent.bend_limit_rad",
+        "trial.agent.twist_limit_rad",
+    ];
+
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {
         self.limbs.saturating_sub(1) as usize

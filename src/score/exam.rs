@@ -132,7 +132,7 @@ impl ExamEnd {
             }
         }
         let evaluation = rollout.evaluation();
-        let start_y_m = trial.start_y_m + perturbation.ahead_m;
+        let start_y_m = trial.middle_start_y_m(genome) + perturbation.ahead_m;
         Self::new(&evaluation, rollout.stairs(), start_y_m, landed_s)
     }
 

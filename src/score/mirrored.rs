@@ -92,7 +92,7 @@ impl MirroredRollout {
         match middle {
             Some(middle) if !self.is_disqualified => {
                 let middle_m = middle.translation.to_array();
-                ExamEnd::at(middle_m, &self.plan.stairs, self.plan.start_y_m)
+                ExamEnd::at(middle_m, &self.plan.stairs, self.plan.middle_start_y_m())
             }
             _ => ExamEnd::CRASHED,
         }

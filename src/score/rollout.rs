@@ -245,7 +245,7 @@ impl Rollout {
         let world = &self.conditions.world;
         let moment = BehaviourMoment {
             middle_m: middle.to_array(),
-            start_y_m: world.start_y_m,
+            start_y_m: world.middle_start_y_m(),
             weight_n: self.body().mass_kg() * world.physics.gravity_m_s2,
             energy_j: effort.energy_j,
             frequency_hz: self.frequency_hz,

@@ -22,7 +22,6 @@ pub fn score(genome: &Genome, trial: &Trial) -> Scored {
     let mut rollout = Rollout::new(genome, trial);
     while rollout.advance() {}
     let nominal = rollout.evaluation();
-    let limbs = rollout.body().limbs.len() as u32;
     let episode = rollout.finish();
     let repeats = &trial.repeats;
     if repeats.trials <= 1 || nominal.disqualified.is_some() {
@@ -31,8 +30,11 @@ pub fn score(genome: &Genome, trial: &Trial) -> Scored {
     let mut fitnesses = vec![nominal.fitness];
     let hash = genome.hash();
     fitnesses.extend((1..repeats.trials).map(|number| {
-        let perturbation =
-            repeats.off.draw(trial.duration_s, limbs, &mut repeats.stream(hash, number));
+        let perturbation = repeats.off.draw(
+            trial.duration_s,
+            trial.agent.limbs,
+            &mut repeats.stream(hash, number),
+        );
         let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
         let at_start = rollout.evaluation().fitness;
         while rollout.advance() {}

@@ -196,7 +196,16 @@ impl Trial {
             return self.meaning(y_m);
         }
         let length_m = self.agent.body_plan(genome).length_m();
-        self.stairs.meaning(y_m, f64::from(self.own_start_y_m(length_m)), length_m.into())
+        self.stairs.meaning(y_m, f64::from(self.middle_start_y_m(genome)), length_m.into())
+    }
+
+    /// Position of the middle limb's centre on the y axis at the start, in metres.
+    pub fn middle_start_y_m(&self, genome: &Genome) -> f32 {
+        if genome.body.segments.is_empty() {
+            self.start_y_m
+        } else {
+            self.start_y_m + FRONT_M - self.agent.body_plan(genome).front_to_middle_m()
+        }
     }
 
     /// Position of the middle of a body of its own at the start, in metres.

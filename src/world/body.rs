@@ -87,6 +87,12 @@ impl BodyPlan {
         self.limbs.iter().map(LimbPlan::mass_kg).sum()
     }
 
+    /// Distance of the middle limb's centre from the front of the straight body, in metres.
+    pub fn front_to_middle_m(&self) -> f32 {
+        let before: f32 = self.limbs.iter().take(self.middle_limb).map(|limb| limb.length_m).sum();
+        before + self.limbs.get(self.middle_limb).map_or(0.0, |limb| limb.length_m / 2.0)
+    }
+
     /// Volume of the whole body, in m³.
     pub fn volume_m3(&self) -> f32 {
         self.limbs.iter().map(|limb| limb.size_m().into_iter().product::<f32>()).sum()

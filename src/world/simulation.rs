@@ -60,6 +60,19 @@ pub struct WorldPlan {
     pub start_turn_rad: f32,
 }
 
+impl WorldPlan {
+    /// Position of the middle limb's centre on the y axis at the start, in metres, but for what a turn and the settling
+    /// change.
+    pub fn middle_start_y_m(&self) -> f32 {
+        if self.settles {
+            self.start_y_m + self.body.length_m() / 2.0 - self.body.front_to_middle_m()
+        } else {
+            // The middle of equal limbs, without the rounding of the sums.
+            self.start_y_m
+        }
+    }
+}
+
 /// The torques a controller commands at one joint, in N·m, positive by the right-hand rule about the
 /// joint's own axes. They act on the joint's child, and their opposites on its parent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

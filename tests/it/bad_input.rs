@@ -50,7 +50,7 @@ fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
     let message = refusal(folder.path(), "--no-render --set surface.slip_m_s_per_n=-1", 2);
     assert_eq!(message, "error: trial.surface.slip_m_s_per_n is -1; allowed: 0 to 10");
     let message = refusal(folder.path(), "--no-render --fitness speed", 2);
-    let allowed = "centre, head, centre_of_mass, height, furthest_y, steps_climbed, climb";
+    let allowed = "centre, head, centre_of_mass, height, furthest_y, steps_climbed, climb, share";
     assert_eq!(message, format!("error: --fitness is \"speed\"; allowed: {allowed}"));
     let message = refusal(folder.path(), "table1 --seeds 0", 2);
     assert_eq!(message, "error: --seeds is 0; allowed: 1 to 10000");

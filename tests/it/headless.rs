@@ -200,7 +200,8 @@ fn every_preset_runs() {
     let folder = folder();
     for preset in json_lines(folder.path(), "presets --json") {
         let name = preset["name"].as_str().expect("a name");
-        let size = "--set newborns=0 --population 20 --generations 1 --duration 1";
+        let size = "--set newborns=0 --set candidates=10 --set limbs_max=3 --population 20 --generations 1 \
+                    --duration 1";
         let arguments = format!("--no-render --json --preset {name} {size} --out out");
         let lines = json_lines(folder.path(), &arguments);
         assert_eq!(lines[0]["evaluations"], json!(20), "{name}");

@@ -44,6 +44,7 @@ impl Evolution {
         let mut fitting = strategies.filter(|strategy| strategy.controllers().any(|of| of == kind));
         let is_plain = fitting.clone().any(|strategy| strategy == StrategyKind::Ga);
         settings.evolution.strategy = match is_plain {
+            true if settings.genome.bodies.vary => StrategyKind::BodyGa,
             true => StrategyKind::Ga,
             false => fitting.next().ok_or("nothing can evolve this controller")?,
         };

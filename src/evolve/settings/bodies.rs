@@ -3,17 +3,10 @@
 use super::Settings;
 use crate::check::Invalid;
 use crate::schema::PerPart;
+use crate::score::Fitness;
 
-/// Settings that have no effect where each genome has a body of its own.
-pub(super) const REPLACED: [&str; 7] = [
-    "trial.agent.limbs",
-    "trial.agent.limb_width_m",
-    "trial.agent.limb_length_m",
-    "trial.agent.limb_height_m",
-    "trial.agent.density_kg_m3",
-    "trial.agent.bend_limit_rad",
-    "trial.agent.twist_limit_rad",
-];
+/// Room on the landing beside the longest body, in metres.
+const LANDING_ROOM_M: f32 = 2.0;
 
 impl Settings {
     /// Checks that strategy, controller and trial go with evolving bodies, if bodies evolve.
@@ -45,6 +38,18 @@ impl Settings {
                 let value = format!("a list of {}", values.len());
                 return Err(Invalid::new(field, value, "one value while bodies evolve"));
             }
+        }
+        let cfm = agent.joint_cfm_m_s_per_n.at(0);
+        if cfm > 0.0 {
+            let field = "trial.agent.joint_cfm_m_s_per_n";
+            return Err(Invalid::new(field, cfm, "0 while bodies evolve"));
+        }
+        // The longest body could not arrive as a whole on a shorter one.
+        let least_m = self.genome.bodies.longest_m + LANDING_ROOM_M;
+        if self.trial.fitness == Fitness::Share && self.trial.stairs.landing_m < least_m {
+            let (field, found) = ("trial.stairs.landing_m", self.trial.stairs.landing_m);
+            let allowed = format!("{least_m} or more, for the longest body");
+            return Err(Invalid::new(field, found, allowed));
         }
         // The engine takes one mass for all contacts, and the masses of limbs differ.
         for (field, cfm) in [
@@ -94,6 +99,7 @@ mod tests {
             "genome.controller is signal; allowed: wave, gait with evolution.strategy body_ga";
         assert_eq!(said(&settings), expected);
         settings.genome.controller = ControllerKind::Gait;
+        settings.trial.stairs.landing_m = 13.0;
         settings.check().expect("allowed");
         for (field, value, expected) in [
             (
@@ -103,6 +109,12 @@ mod tests {
             ),
             ("surface.soft_cfm_m_s_per_n", "0.001", "0.001; allowed: 0 while bodies evolve"),
             ("skin.soft_cfm_m_s_per_n", "0.001", "0.001; allowed: 0 while bodies evolve"),
+            ("joint_cfm_m_s_per_n", "0.001", "0.001; allowed: 0 while bodies evolve"),
+            (
+                "trial.fitness",
+                "share",
+                "landing_m is 13; allowed: 14 or more, for the longest body",
+            ),
         ] {
             let error = with_fields(&settings, [(field, value)]).expect_err("refused").to_string();
             assert!(error.ends_with(expected), "{error}");

@@ -1,6 +1,5 @@
 //! Settings of the strategies that vary bodies.
 
-use super::EvolutionSettings;
 use super::size::{GenomeSize, LARGEST_POPULATION};
 use crate::check::Invalid;
 use crate::schema::{choice, choices, number, setting_group, whole};
@@ -57,20 +56,21 @@ impl IslandSettings {
     /// # Errors
     /// One generation of all islands is larger than the whole run.
     pub(super) fn check_size(
-        evolution: &EvolutionSettings,
+        &self,
+        [population, generations]: [u32; 2],
         size: &GenomeSize<'_>,
     ) -> Result<(), Invalid> {
         let bodies = &size.space.bodies;
         let islands = u64::from(bodies.limbs_max.saturating_sub(bodies.limbs_min)) + 1;
-        let first = islands * u64::from(evolution.islands.candidates);
-        if evolution.budget() >= first {
+        let first = islands * u64::from(self.candidates);
+        if u64::from(population) * u64::from(generations) >= first {
             return Ok(());
         }
-        let least = first.div_ceil(u64::from(evolution.population.max(1)));
+        let least = first.div_ceil(u64::from(population.max(1)));
         let allowed = format!(
             "at least {least} at this population: one generation of islands has {first} evaluations"
         );
-        Err(Invalid::new("evolution.generations", evolution.generations, allowed))
+        Err(Invalid::new("evolution.generations", generations, allowed))
     }
 }
 

@@ -34,7 +34,7 @@ use crate::schema::{
     self, Section, SettingGroup, Walk, choice, is_default, named_by_info, setting_group, settings,
     whole,
 };
-use crate::score::Trial;
+use crate::score::{AgentSettings, Trial};
 use learning::check_learners;
 use strategy_kind::strategy_kinds;
 
@@ -228,7 +228,10 @@ strategy_kinds! {
         settings: &["islands"],
         is_budget_driven: true,
         varies_bodies: true,
-        check_size: IslandSettings::check_size,
+        check_size: |evolution, size| {
+            let EvolutionSettings { population, generations, .. } = *evolution;
+            evolution.islands.check_size([population, generations], size)
+        },
         ..StrategyInfo::PLAIN
     };
 }
@@ -339,7 +342,7 @@ impl SettingGroup for Settings {
             ]);
         }
         if genome.bodies.vary {
-            unused.extend(bodies::REPLACED);
+            unused.extend(AgentSettings::REPLACED_BY_OWN_BODIES);
         } else {
             unused.push("trial.agent.torque_budget_nm");
         }

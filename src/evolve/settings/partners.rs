@@ -56,6 +56,16 @@ impl Settings {
         changes
     }
 
+    /// Changes the strategy where it does not go with bodies as they evolve, or do not, after the space was widened for a
+    /// champion.
+    pub fn suit_strategy_to_bodies(&mut self) {
+        let varies = self.genome.bodies.vary;
+        if self.evolution.strategy.info().varies_bodies != varies {
+            self.evolution.strategy =
+                if varies { StrategyKind::BodyGa } else { StrategyKind::CmaEs };
+        }
+    }
+
     fn partner_change(&self, field: &str, text: &str) -> Option<(&'static str, &'static str)> {
         match field {
             "evolution.strategy" => {
@@ -126,6 +136,12 @@ mod tests {
         assert_eq!(all(&bodies, strategy, "islands"), []);
         assert_eq!(all(&bodies, strategy, "ga"), [(vary, "false")]);
         assert_eq!(all(&bodies, vary, "false"), [(strategy, "cma_es")]);
+        let mut suited = bodies.clone();
+        suited.suit_strategy_to_bodies();
+        assert_eq!(suited, bodies, "they go together already");
+        suited.genome.bodies.vary = false;
+        suited.suit_strategy_to_bodies();
+        assert_eq!(suited.evolution.strategy, StrategyKind::CmaEs);
         let sensing = [(strategy, "cma_es"), (vary, "false")];
         assert_eq!(all(&bodies, controller, "modular"), sensing);
         assert_eq!(partner(&settings, controller, "decisions"), Some((strategy, "q_learning")));

@@ -19,8 +19,8 @@ pub struct StrategyInfo {
     pub color: [u8; 3],
     /// The groups of settings below `evolution` that it uses, its own first.
     pub settings: &'static [&'static str],
-    /// Whether it chooses the size of each generation itself. The population is then the size of the first, and
-    /// the run ends when the evaluations are spent that population and generations allow.
+    /// Whether it chooses the size of each generation itself. The population is then the size of the first, or
+    /// only counts for the budget, and the run ends when the evaluations are spent that population and generations allow.
     pub is_budget_driven: bool,
     /// Whether its population stays the same during a run.
     pub has_fixed_population: bool,

@@ -11,7 +11,7 @@ use super::cma_es::covariance_shape;
 use crate::check::{Invalid, within};
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::{Founder, RunPlan};
-use crate::evolve::settings::{IslandSettings, RestartKind};
+use crate::evolve::settings::{IslandSettings, LARGEST_SAMPLE, RestartKind};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
 use crate::genome::{Genome, GenomeShape, GenomeSpace};
 use crate::rng::{Purpose, stream};
@@ -159,7 +159,13 @@ impl Strategy for Islands {
             let allowed = "one island for each number of blocks of the run";
             return Err(Invalid::new("islands", format!("of {limbs:?} blocks"), allowed));
         }
+        if !search.islands.iter().any(|island| island.is_active) {
+            return Err(Invalid::new("islands", "all at rest", "one active island or more"));
+        }
+        let budget = plan.settings.evolution.budget();
+        let mut coordinates = 0;
         for island in &search.islands {
+            within("evaluations", island.evaluations, 0..=budget)?;
             let Some(runs) = &island.runs else { continue };
             runs.check()?;
             let dimension = search.space.dimension(search.shape(island));
@@ -172,6 +178,8 @@ impl Strategy for Islands {
             }
             within("population", runs.population(), 2..=search.settings.candidates << 9)?;
             within("step", runs.current().step(), 0.0..=1.0e6)?;
+            coordinates += dimension * runs.population() as usize;
+            within("population · dimension", coordinates, 1..=LARGEST_SAMPLE)?;
         }
         Ok(search)
     }
@@ -323,6 +331,14 @@ mod tests {
         fewer.settings.genome.bodies.limbs_max = 11;
         let error = Islands::resume(&fewer, 2, &state).expect_err("refused").to_string();
         assert!(error.starts_with("islands is of [2, 3, "), "{error}");
+        let mut resting = search.islands.clone();
+        resting.iter_mut().for_each(|island| island.is_active = false);
+        let error = Islands::resume(&plan(), 2, &StrategyState::of(&resting)).expect_err("refused");
+        assert_eq!(error.to_string(), "islands is all at rest; allowed: one active island or more");
+        let mut spent = search.islands.clone();
+        spent[3].evaluations = u64::MAX;
+        let error = Islands::resume(&plan(), 2, &StrategyState::of(&spent)).expect_err("refused");
+        assert!(error.to_string().starts_with("evaluations is 18446744073709551615"), "{error}");
         let mut others = plan();
         others.settings.genome.controller = ControllerKind::Wave;
         let error = Islands::resume(&others, 2, &state).expect_err("refused").to_string();

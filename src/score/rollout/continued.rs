@@ -6,6 +6,7 @@ use super::Rollout;
 use crate::control::ActiveSenses;
 use crate::genome::Genome;
 use crate::score::trial::steps_in;
+use crate::score::way_up::WayUp;
 use crate::score::{Fitness, Trial};
 use crate::world::{Discontinuity, WorldPlan};
 
@@ -92,6 +93,8 @@ impl Rollout {
                 || self.conditions.world.stairs != change.to.world.stairs
             {
                 self.recent.clear();
+                let body = self.simulation.body();
+                self.way = WayUp::begin(body, &self.poses, &change.to.world.stairs);
             }
             self.control.continue_in(&change.to.world.physics, change.to.senses);
             self.conditions = change.to;

@@ -152,6 +152,7 @@ fn children_keep_the_volume_and_every_limit_over_100_000_mutations() {
         let segments = &genome.body.segments;
         genome.body.check().expect("a body that can be built");
         assert_eq!(genome.controller.joints(), segments.len() - 1);
+        space.check_genome(&genome, SHAPE).expect("within every limit of the space");
         let volume_m3: f64 = segments.iter().map(Segment::volume_m3).sum();
         worst = worst.max((volume_m3 - 10.0).abs());
         counts[segments.len()] += 1;

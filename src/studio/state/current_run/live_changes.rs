@@ -108,11 +108,12 @@ impl CurrentRun {
     /// genome are widened to include the champion. A run that has not begun is replaced at once.
     pub fn start_next_from(&mut self, champion: &Champion, name: &str) -> Result<(), String> {
         let next = &self.plan_next;
-        let settings = Settings {
+        let mut settings = Settings {
             trial: champion.trial.clone(),
             genome: next.settings.genome.widened_for(&champion.genome),
             evolution: next.settings.evolution.clone(),
         };
+        settings.suit_strategy_to_bodies();
         let founder = Founder::new(name, champion.genome.clone());
         let plan = settings
             .check()
