@@ -1,4 +1,4 @@
-//! What goes with bodies that evolve.
+//! Checks of the settings of a run in which bodies evolve.
 
 use super::Settings;
 use crate::check::Invalid;
