@@ -111,15 +111,21 @@ impl BodyGa {
                 BodyMember { age: elite.age.saturating_add(1), genome: elite.genome.clone() }
             }
             BodyVariation::Child(first, second) => {
-                let (mut age, mut genome) =
-                    (self.members[first].age, self.members[first].genome.clone());
-                if let Some(other) = second.map(|index| &self.members[index]) {
-                    let fitter = &self.members[first.min(second.unwrap_or(first))].genome;
-                    let less_fit = &self.members[first.max(second.unwrap_or(first))].genome;
-                    genome = self.space.with_crossed_bodies(fitter, less_fit, &mut rng);
-                    age = age.max(other.age);
+                let mut parent = self.members[first].clone();
+                if let Some(second) = second {
+                    // Members are in order, so the lower index is the fitter one.
+                    let [fitter, other] = [first.min(second), first.max(second)];
+                    let [fitter, other] = [fitter, other].map(|index| &self.members[index]);
+                    parent = BodyMember {
+                        genome: self.space.with_crossed_bodies(
+                            &fitter.genome,
+                            &other.genome,
+                            &mut rng,
+                        ),
+                        age: fitter.age.max(other.age),
+                    };
                 }
-                self.varied(BodyMember { genome, age }, &mut rng)
+                self.varied(parent, &mut rng)
             }
         }
     }

@@ -32,6 +32,25 @@ pub fn covariance_shape(dimension: usize) -> CovarianceShape {
     }
 }
 
+/// The points in an order, best first, each with its value.
+pub fn ranked_candidates<'a>(
+    points: &'a [Vec<f64>],
+    evaluations: &[Evaluation],
+    order: &[usize],
+) -> Vec<RankedCandidate<'a>> {
+    // A disqualified agent has no fitness. Its value is the least of those ranked before it.
+    let mut least = f64::INFINITY;
+    let candidate = |&index: &usize| {
+        let evaluation = &evaluations[index];
+        if evaluation.disqualified.is_none() {
+            least = least.min(f64::from(evaluation.fitness));
+        }
+        let value = if least.is_finite() { least } else { 0.0 };
+        RankedCandidate { point: &points[index], value }
+    };
+    order.iter().map(candidate).collect()
+}
+
 impl CmaEs {
     /// The settings of a run: random genomes take at most a quarter of its budget.
     fn settings(plan: &RunPlan) -> CmaEsSettings {
@@ -118,19 +137,7 @@ impl Strategy for CmaEs {
         let order = full_ranking(evaluations);
         match &mut self.runs {
             Some(runs) => {
-                // A disqualified agent has no fitness. Its value is the least of those ranked before it.
-                let mut least = f64::INFINITY;
-                let ranked: Vec<RankedCandidate> = order
-                    .iter()
-                    .map(|&index| {
-                        let evaluation = &evaluations[index];
-                        if evaluation.disqualified.is_none() {
-                            least = least.min(f64::from(evaluation.fitness));
-                        }
-                        let value = if least.is_finite() { least } else { 0.0 };
-                        RankedCandidate { point: &points[index], value }
-                    })
-                    .collect();
+                let ranked = ranked_candidates(&points, evaluations, &order);
                 let mut rng = self.search.stream(0, Purpose::Restart);
                 // No candidate is missing. If one is not finite, there is nothing left to learn.
                 let _ = runs.update(&ranked, &mut rng);

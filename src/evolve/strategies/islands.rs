@@ -6,8 +6,8 @@
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-use super::cma::{CmaParameters, RankedCandidate, RestartedCma};
-use super::cma_es::covariance_shape;
+use super::cma::{CmaParameters, RestartedCma};
+use super::cma_es::{covariance_shape, ranked_candidates};
 use crate::check::{Invalid, within};
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::{Founder, RunPlan};
@@ -213,16 +213,7 @@ impl Strategy for Islands {
             let fitness = best.filter(|best| best.disqualified.is_none()).map(|best| best.fitness);
             next.best = [next.best, fitness].into_iter().flatten().reduce(f32::max);
             if let Some(runs) = &mut next.runs {
-                // A disqualified agent has no fitness. Its value is the least of those ranked before it.
-                let mut least = f64::INFINITY;
-                let ranked = order.iter().map(|&index| {
-                    if own[index].disqualified.is_none() {
-                        least = least.min(f64::from(own[index].fitness));
-                    }
-                    let value = if least.is_finite() { least } else { 0.0 };
-                    RankedCandidate { point: &points[index], value }
-                });
-                let ranked: Vec<RankedCandidate> = ranked.collect();
+                let ranked = ranked_candidates(&points, own, &order);
                 let mut rng = stream(self.seed, self.generation, first as u32, Purpose::Restart);
                 // No candidate is missing. If one is not finite, there is nothing left to learn.
                 let _ = runs.update(&ranked, &mut rng);
