@@ -11,7 +11,7 @@ use crate::world::BodyPlan;
 pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
     let champion = load_champion(file)?.champion;
     let body = champion.body();
-    let is_own = !champion.genome.body.segments.is_empty();
+    let is_own = champion.genome.body.has_own_blocks();
     if json { print_lines(&body, is_own) } else { print(&table(&body, is_own)) }
 }
 

@@ -280,20 +280,24 @@ fn hinges(xml: &mut XmlText, number: usize, joint: &JointPlan, limb: &LimbPlan) 
     })
 }
 
-/// Joined limbs do not touch; the others touch with the friction of skin on skin.
+/// Joined limbs and contact-free pairs do not touch; the others touch with the friction of skin on skin.
 fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let limb = |index: usize| format!("limb {}", index + 1);
     let are_joined = |a: usize, b: usize| {
         plan.body.joints.iter().any(|joint| (joint.parent, joint.child) == (a, b))
     };
+    let is_free = |a: usize, b: usize| plan.body.contact_free_pairs.contains(&[a, b]);
     let friction = plan.skin.friction * plan.skin.friction;
     let [torsional, rolling] = OTHER_FRICTION;
     xml.element("contact", &[], |xml| {
         for joint in &plan.body.joints {
             xml.leaf("exclude", &[("body1", limb(joint.parent)), ("body2", limb(joint.child))])?;
         }
+        for &[front, rear] in &plan.body.contact_free_pairs {
+            xml.leaf("exclude", &[("body1", limb(front)), ("body2", limb(rear))])?;
+        }
         for b in 0..plan.body.limbs.len() {
-            for a in (0..b).filter(|&a| !are_joined(a, b)) {
+            for a in (0..b).filter(|&a| !are_joined(a, b) && !is_free(a, b)) {
                 xml.leaf(
                     "pair",
                     &[

@@ -1,6 +1,7 @@
 //! The genes of the body, which every genome has.
 
 use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
 
 use super::chain::{Segment, check_segments, segment_genes};
 use super::gene::{Gene, GeneRange, GeneVisitor};
@@ -33,12 +34,30 @@ impl BodyGenes {
         segments: Vec::new(),
     };
 
+    /// Whether these genes determine the blocks of the body. Otherwise the trial does.
+    pub fn has_own_blocks(&self) -> bool {
+        !self.segments.is_empty()
+    }
+
+    /// Hashes what belongs to a body of its own besides the values of its genes: the descent of its blocks, and the joint
+    /// of its head, which has no effect yet.
+    pub(super) fn hash_descent(&self, hash: &mut Xxh3Default) {
+        for segment in &self.segments {
+            hash.update(&segment.id.to_le_bytes());
+        }
+        if let Some(head) = self.segments.first() {
+            for value in [head.bend_limit_rad, head.twist_limit_rad, head.strength] {
+                hash.update(&value.to_bits().to_le_bytes());
+            }
+        }
+    }
+
     /// Checks every value.
     ///
     /// # Errors
     /// The first value out of range.
     pub fn check(&self) -> Result<(), Invalid> {
-        if !self.segments.is_empty() {
+        if self.has_own_blocks() {
             let unused = [
                 ("bend_limit_rad", self.bend_limit_rad),
                 ("twist_limit_rad", self.twist_limit_rad),
@@ -59,7 +78,7 @@ impl BodyGenes {
 
     /// Visits every gene, in a fixed order.
     pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        if !self.segments.is_empty() {
+        if self.has_own_blocks() {
             let densities = [space.density_min_kg_m3, space.density_max_kg_m3];
             segment_genes(&mut self.segments, &space.bodies, densities, visit);
             return;
@@ -77,7 +96,7 @@ impl BodyGenes {
 
     /// Widens a space so that it contains these genes.
     pub(super) fn widen(&self, space: &mut GenomeSpace) {
-        space.bodies.vary = !self.segments.is_empty();
+        space.bodies.vary = self.has_own_blocks();
         if space.bodies.vary {
             space.bodies.widen(&self.segments);
             for segment in &self.segments {

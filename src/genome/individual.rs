@@ -40,6 +40,7 @@ impl Genome {
         self.clone().genes(&GenomeSpace::default(), &mut |_, value| {
             hash.update(&value.to_bits().to_le_bytes());
         });
+        self.body.hash_descent(&mut hash);
         self.controller.encoding().hash_learned(&mut hash);
         hash.digest()
     }

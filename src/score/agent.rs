@@ -199,7 +199,7 @@ impl AgentSettings {
 
     /// The body that these settings and a genome make together: the one place where both meet.
     pub fn body_plan(&self, genome: &Genome) -> BodyPlan {
-        if !genome.body.segments.is_empty() {
+        if genome.body.has_own_blocks() {
             return own_body(self, &genome.body.segments);
         }
         let given = |part: &Option<PerPart>, index: usize, of_genome: f32| {
@@ -224,6 +224,7 @@ impl AgentSettings {
         };
         let limbs: Vec<LimbPlan> = (0..self.limbs as usize).map(limb).collect();
         BodyPlan {
+            contact_free_pairs: Vec::new(),
             middle_limb: BodyPlan::middle_of(&limbs),
             limbs,
             joints: (0..self.joints()).map(joint).collect(),

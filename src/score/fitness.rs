@@ -178,6 +178,7 @@ mod tests {
         let body = BodyPlan {
             limbs: vec![limb(4.0, 1.0), limb(4.0, 1.0), limb(2.0, 2.0)],
             joints: Vec::new(),
+            contact_free_pairs: Vec::new(),
             middle_limb: 1,
             angular_damping_per_s: 0.0,
         };

@@ -46,9 +46,88 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
         }
     }
     BodyPlan {
+        contact_free_pairs: contact_free_pairs(&limbs),
         middle_limb: BodyPlan::middle_by_mass(&limbs),
         limbs,
         joints,
         angular_damping_per_s: agent.angular_damping_per_s,
+    }
+}
+
+/// Length of a block relative to the height of its neighbours below which these pass through each other: a bend of the
+/// joints between them would press their edges together, and block them.
+const SHORT_MIDDLE: f32 = 0.6;
+
+/// The neighbours of each short block, as pairs.
+fn contact_free_pairs(limbs: &[LimbPlan]) -> Vec<[usize; 2]> {
+    let triples = limbs.windows(3).enumerate();
+    triples
+        .filter(|(_, triple)| {
+            let height_m = triple[0].height_m.max(triple[2].height_m);
+            triple[1].length_m < SHORT_MIDDLE * height_m
+        })
+        .map(|(index, _)| [index, index + 2])
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(length_m: f32, height_m: f32) -> LimbPlan {
+        LimbPlan { width_m: 1.0, length_m, height_m, density_kg_m3: 2.5 }
+    }
+
+    #[test]
+    fn neighbours_of_a_short_block_pass_through_each_other() {
+        let pairs = |lengths_m: &[f32]| {
+            let limbs: Vec<_> = lengths_m.iter().map(|&length_m| block(length_m, 1.0)).collect();
+            contact_free_pairs(&limbs)
+        };
+        assert_eq!(pairs(&[2.0, 0.7, 2.0, 0.5, 2.0]), [[2, 4]]);
+        assert_eq!(
+            pairs(&[0.5, 2.0, 0.5]),
+            Vec::<[usize; 2]>::new(),
+            "ends have no two neighbours"
+        );
+        assert_eq!(pairs(&[2.0, 0.5, 0.5, 2.0]), [[0, 2], [1, 3]]);
+        // The taller neighbour counts.
+        assert_eq!(
+            contact_free_pairs(&[block(2.0, 0.4), block(0.7, 0.4), block(2.0, 1.5)]),
+            [[0, 2]]
+        );
+    }
+
+    /// Torque and damping by the cross-section of the weaker block and its height; the gap by the smallest side.
+    #[test]
+    fn joints_are_as_strong_as_their_weaker_block() {
+        let agent = AgentSettings { torque_budget_nm: f32::INFINITY, ..AgentSettings::default() };
+        let segment = |width_m: f32, height_m: f32, strength: f32| Segment {
+            width_m,
+            length_m: 2.0,
+            height_m,
+            strength,
+            id: 0,
+            density_kg_m3: 2.5,
+            bend_limit_rad: 1.0,
+            twist_limit_rad: 0.5,
+        };
+        let body = own_body(
+            &agent,
+            &[segment(1.0, 1.0, 0.1), segment(1.0, 1.0, 1.0), segment(0.5, 0.8, 0.5)],
+        );
+        let [first, second] = &body.joints[..] else { panic!("two joints") };
+        assert_eq!(first.max_bend_torque_nm, agent.max_bend_torque_nm.at(0));
+        assert_eq!(first.damping_nms_per_rad, agent.joint_damping_nms_per_rad.at(0));
+        assert_eq!(first.gap_scale, 1.0);
+        let scale = 0.5_f32 * 0.8 * 0.8;
+        assert!(
+            (second.max_bend_torque_nm / agent.max_bend_torque_nm.at(1) - 0.5 * scale).abs() < 1e-6
+        );
+        assert!(
+            (second.damping_nms_per_rad / agent.joint_damping_nms_per_rad.at(1) - scale).abs()
+                < 1e-6
+        );
+        assert_eq!(second.gap_scale, 0.5);
     }
 }

@@ -123,7 +123,7 @@ impl Rollout {
             // The limb was drawn for the number of limbs of the trial. A body of its own is shoved at the same share of its
             // length.
             let (own, drawn_for) = (rollout.body().limbs.len(), trial.agent.limbs.max(1) as usize);
-            let is_own = !genome.body.segments.is_empty();
+            let is_own = genome.body.has_own_blocks();
             let limb = if is_own { shove.limb * own / drawn_for } else { shove.limb };
             Shove { limb, ..shove }
         });

@@ -154,7 +154,7 @@ impl Trial {
     /// The world in which this trial evaluates a genome.
     pub fn world_plan(&self, genome: &Genome) -> WorldPlan {
         let body = self.agent.body_plan(genome);
-        let has_own_body = !genome.body.segments.is_empty();
+        let has_own_body = genome.body.has_own_blocks();
         WorldPlan {
             physics: self.physics.clone(),
             stairs: self.stairs.clone(),
@@ -192,7 +192,7 @@ impl Trial {
 
     /// The same for a snake of a genome, whose body may be of its own.
     fn meaning_of(&self, genome: &Genome, y_m: f64) -> String {
-        if genome.body.segments.is_empty() {
+        if !genome.body.has_own_blocks() {
             return self.meaning(y_m);
         }
         let length_m = self.agent.body_plan(genome).length_m();
@@ -201,7 +201,7 @@ impl Trial {
 
     /// Position of the middle limb's centre on the y axis at the start, in metres.
     pub fn middle_start_y_m(&self, genome: &Genome) -> f32 {
-        if genome.body.segments.is_empty() {
+        if !genome.body.has_own_blocks() {
             self.start_y_m
         } else {
             self.start_y_m + FRONT_M - self.agent.body_plan(genome).front_to_middle_m()

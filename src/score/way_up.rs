@@ -107,6 +107,7 @@ mod tests {
         BodyPlan {
             limbs: lengths_m.iter().map(limb).collect(),
             joints: Vec::new(),
+            contact_free_pairs: Vec::new(),
             middle_limb: 0,
             angular_damping_per_s: 0.0,
         }

@@ -11,6 +11,9 @@ pub struct BodyPlan {
     pub limbs: Vec<LimbPlan>,
     /// The joints, in the order in which the world inserts them. A joint's parent comes before its child.
     pub joints: Vec<JointPlan>,
+    /// Pairs of limbs that pass through each other although no joint connects them, the front limb first. Joined limbs
+    /// always do.
+    pub contact_free_pairs: Vec<[usize; 2]>,
     /// Index of the limb whose centre counts as the centre of the snake.
     pub middle_limb: usize,
     /// Rate at which the air takes the limbs' angular velocity, in 1/s: after a time t, `exp(-rate t)` of it is left.

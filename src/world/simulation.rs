@@ -16,6 +16,7 @@ pub(super) mod patches;
 pub(super) mod sensing;
 mod settle;
 mod shove;
+mod torques;
 
 use super::bounce::{LimbVelocity, finish_bounce};
 use super::contact::{ContactHooks, ContactLaws, soften};
@@ -24,12 +25,14 @@ use super::energy::EnergyBalance;
 use super::stair_profile::StairProfile;
 use super::surface::ContactLaw;
 use super::{
-    BodyPlan, Disqualification, Effort, HealthLimits, JointPlan, PhysicsSettings, PhysicsWorld,
-    Pull, Skin, Stairs, Surface,
+    BodyPlan, Disqualification, Effort, HealthLimits, PhysicsSettings, PhysicsWorld, Pull, Skin,
+    Stairs, Surface,
 };
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 pub use continued::Discontinuity;
 pub use shove::Shove;
+use torques::AppliedTorque;
+pub use torques::JointTorque;
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
 /// in every bit.
@@ -73,16 +76,6 @@ impl WorldPlan {
     }
 }
 
-/// The torques a controller commands at one joint, in N·m, positive by the right-hand rule about the
-/// joint's own axes. They act on the joint's child, and their opposites on its parent.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct JointTorque {
-    /// About the parent's x axis.
-    pub bend_nm: f32,
-    /// About the parent's y axis.
-    pub twist_nm: f32,
-}
-
 /// A running world. A clone continues with the bits of the original.
 pub struct Simulation {
     physics: PhysicsWorld,
@@ -110,17 +103,6 @@ pub struct Simulation {
     was_pulled: bool,
     /// Forces on the limbs in another engine, if this world mirrors one; empty if not.
     mirrored: Vec<Option<Vector>>,
-}
-
-/// Torque at a joint in a step.
-#[derive(Debug, Clone, Copy, Default)]
-struct AppliedTorque {
-    /// Rotation of the parent, about whose axes the torque acts.
-    parent: Rotation,
-    /// The torque after clamping.
-    torque: JointTorque,
-    /// Joint rates at the start of the step: bend and twist, in rad/s.
-    rates_rad_s: [f32; 2],
 }
 
 /// Settings of the contacts, needed in each step.
@@ -233,25 +215,6 @@ impl Simulation {
         self.effort
     }
 
-    /// Energy that the joints spent in the last step, in J, by the trapezoidal rule. A torque acts through the
-    /// whole step about the axes at its start.
-    fn energy_j(&self) -> f32 {
-        let joints = self.body.joints.iter().zip(&self.applied);
-        let power_w = joints.map(|(joint, AppliedTorque { parent, torque, rates_rad_s })| {
-            let after = self.joint_rates(joint, *parent);
-            let [bend, twist] = [0, 1].map(|axis| (rates_rad_s[axis] + after[axis]) / 2.0);
-            (torque.bend_nm * bend).abs() + (torque.twist_nm * twist).abs()
-        });
-        power_w.sum::<f32>() * self.physics.integration_parameters.dt
-    }
-
-    /// Rates of a joint about the x and y axes of a rotation, in rad/s.
-    fn joint_rates(&self, joint: &JointPlan, axes: Rotation) -> [f32; 2] {
-        let turn = |limb: usize| self.physics.bodies[self.limbs[limb]].angvel();
-        let rate = axes.inverse() * (turn(joint.child) - turn(joint.parent));
-        [rate.x, rate.y]
-    }
-
     /// Lets the engine take one step, and then air and surfaces slow the limbs.
     pub(crate) fn advance(&mut self) {
         let ContactSettings { laws, ground, substeps, snake_kg, .. } = &self.contacts;
@@ -297,40 +260,6 @@ impl Simulation {
         self.balance.has_unknown_work = true;
         self.is_changed = true;
         &mut self.physics
-    }
-
-    /// Prepares a step: air and surfaces slow the limbs for its first half, and each limb gets its torque, the sum
-    /// of the couples of its joints.
-    pub(crate) fn apply(&mut self, torques: &[JointTorque]) {
-        self.dampen_half_step();
-        self.torques_in_world.fill(Vector::ZERO);
-        self.damping_in_world.fill(Vector::ZERO);
-        for (index, (joint, torque)) in self.body.joints.iter().zip(torques).enumerate() {
-            let bend_nm = torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
-            let twist_nm =
-                torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
-            let parent = *self.physics.bodies[self.limbs[joint.parent]].rotation();
-            let couple = parent * Vector::new(bend_nm, twist_nm, 0.0);
-            let rates_rad_s = self.joint_rates(joint, parent);
-            let [bend, twist] = rates_rad_s;
-            let damping_nms = joint.damping_nms_per_rad * self.damping_as_torque;
-            let damping = parent * (Vector::new(bend, twist, 0.0) * -damping_nms);
-            let torque = JointTorque { bend_nm, twist_nm };
-            self.applied[index] = AppliedTorque { parent, torque, rates_rad_s };
-            self.torques_in_world[joint.parent] -= couple;
-            self.torques_in_world[joint.child] += couple;
-            self.damping_in_world[joint.parent] -= damping;
-            self.damping_in_world[joint.child] += damping;
-        }
-        let torques = self.torques_in_world.iter().zip(&self.damping_in_world);
-        for (&limb, (&drives, &damping)) in self.limbs.iter().zip(torques) {
-            let body = &mut self.physics.bodies[limb];
-            body.reset_torques(false);
-            body.add_torque(drives + damping, false);
-        }
-        if self.pull.is_some() || self.was_pulled {
-            self.apply_pull();
-        }
     }
 
     /// Sets or ends the pull on a limb, from the next step on. A pulled snake is no longer in its trial.

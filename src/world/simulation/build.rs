@@ -5,7 +5,7 @@ use rapier3d::prelude::*;
 use super::WorldPlan;
 use crate::world::contact::{ContactLaws, joint_coefficients};
 use crate::world::surface::ContactLaw;
-use crate::world::{JointPlan, PhysicsWorld, Surface};
+use crate::world::{BodyPlan, JointPlan, PhysicsWorld, Surface};
 
 /// Gives the collider of the ground or of a step its material.
 fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
@@ -69,7 +69,8 @@ pub(super) fn insert_limbs(
     plan.body
         .limbs
         .iter()
-        .map(|limb| {
+        .enumerate()
+        .map(|(index, limb)| {
             let straight_y_m = front_y_m - limb.length_m / 2.0;
             front_y_m -= limb.length_m;
             let centre = if plan.start_turn_rad == 0.0 {
@@ -90,10 +91,29 @@ pub(super) fn insert_limbs(
             .friction(plan.skin.friction)
             .friction_combine_rule(CoefficientCombineRule::Multiply)
             .restitution(plan.skin.bounce)
-            .restitution_combine_rule(CoefficientCombineRule::Max);
+            .restitution_combine_rule(CoefficientCombineRule::Max)
+            .collision_groups(collision_groups(&plan.body, index));
             physics.insert(body, with_hook(collider, law)).0
         })
         .collect()
+}
+
+/// The groups of a limb's collider: a limb of a contact-free pair is a group of its own, which its partner ignores.
+fn collision_groups(body: &BodyPlan, limb: usize) -> InteractionGroups {
+    let is_free = body.contact_free_pairs.iter().any(|pair| pair.contains(&limb));
+    if !is_free {
+        return InteractionGroups::all();
+    }
+    let group = |limb: usize| Group::from_bits_retain(1 << limb);
+    let mut touched = Group::ALL;
+    for pair in &body.contact_free_pairs {
+        match *pair {
+            [front, rear] if front == limb => touched.remove(group(rear)),
+            [front, rear] if rear == limb => touched.remove(group(front)),
+            _ => {}
+        }
+    }
+    InteractionGroups::new(group(limb), touched, InteractionTestMode::And)
 }
 
 /// Inserts the joints in the order of the plan: see [`universal_joint`].

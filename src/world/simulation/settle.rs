@@ -1,6 +1,6 @@
 //! Coming to rest before a trial, so that no body gains from falling over at its start.
 
-use super::Simulation;
+use super::{JointTorque, Simulation};
 use crate::world::{Disqualification, Effort, Vector};
 
 /// Longest time to come to rest, in s.
@@ -15,7 +15,7 @@ const REST_WAY_M: f32 = 0.001;
 const LARGEST_SHIFT_M: f32 = 0.5;
 
 impl Simulation {
-    /// Steps the world without torques until the body rests; its energy and effort count from then on. After Sims (1994),
+    /// Steps the world without commanded torques, but with all damping, until the body rests; its energy and effort count from then on. After Sims (1994),
     /// whose creatures begin when their centre of mass is at rest.
     ///
     /// # Errors
@@ -25,9 +25,10 @@ impl Simulation {
         let [longest, rest] =
             [LONGEST_S, REST_S].map(|time_s| libm::roundf(time_s / step_s) as u32);
         let start_y_m = self.centre_of_mass().0.y;
+        let torques = vec![JointTorque::default(); self.body.joints.len()];
         let (mut since, mut rested) = (self.places(), 0);
         for _ in 0..longest {
-            self.apply(&[]);
+            self.apply(&torques);
             self.advance();
             self.check_health()?;
             let (centre, velocity) = self.centre_of_mass();

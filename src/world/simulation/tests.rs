@@ -5,9 +5,10 @@ mod marks;
 mod observe;
 mod patches;
 mod rates;
+mod settle;
 mod surface;
 
-use super::super::LimbPlan;
+use super::super::{JointPlan, LimbPlan};
 use super::*;
 
 /// A snake of `limbs` blocks without damping, in the world of the report.
@@ -34,6 +35,7 @@ fn plan(limbs: usize) -> WorldPlan {
         body: BodyPlan {
             limbs: vec![limb; limbs],
             joints: (0..limbs - 1).map(joint).collect(),
+            contact_free_pairs: Vec::new(),
             middle_limb: limbs / 2,
             angular_damping_per_s: 0.0,
         },
