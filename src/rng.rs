@@ -36,6 +36,8 @@ pub enum Purpose {
     Explore = 11,
     /// Learning from the episodes of a generation.
     Learn = 12,
+    /// Choosing what a study changes in a genome.
+    Study = 13,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

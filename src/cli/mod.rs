@@ -5,6 +5,7 @@
 mod args;
 mod bench;
 mod body;
+mod body_study;
 #[cfg(feature = "cluster")]
 mod cluster;
 mod compare;
@@ -79,6 +80,7 @@ fn perform(args: &Args) -> Result<(), CliError> {
         Some(Subcommand::Settings { markdown }) => lists::print_settings(args, *markdown),
         Some(Subcommand::Body { file }) => body::body(file, args.json),
         Some(Subcommand::Bench) => bench::print_bench(args),
+        Some(Subcommand::BodyStudy(wanted)) => body_study::body_study(args, wanted),
         Some(Subcommand::Verify) => verify::verify(args),
         Some(Subcommand::Robust { file, trials, range }) => {
             robust::robust(args, file, *trials, &range.into())

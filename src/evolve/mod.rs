@@ -10,17 +10,20 @@ mod settings;
 mod strategies;
 mod strategy;
 
-pub use archives::{Archive, Descriptor, Elite, Front, FrontMember};
+pub use archives::{
+    Archive, ArchiveAxis, AxisScale, Descriptor, Elite, Front, FrontMember, body_archive,
+    body_cell, feasible_cells,
+};
 pub use champion::{Champion, Origin};
 pub use parents::{IndividualId, Parents};
 pub use plan::{
     Founder, MOST_CHANGES, RunPlan, SettingChange, SettingChanges, may_change_during_run,
 };
 pub use settings::{
-    CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings, HalvingSettings,
-    LARGEST_POPULATION, MapElitesSettings, Mutation, NeatSettings, NoveltySettings,
-    ParentSelection, QLearningSettings, RestartKind, Settings, StrategyInfo, StrategyKind,
-    XcsRunSettings, ZcsRunSettings, fields, with_field, with_fields,
+    BodyProtection, CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings,
+    HalvingSettings, LARGEST_POPULATION, MapElitesSettings, Mutation, NeatSettings,
+    NoveltySettings, ParentSelection, QLearningSettings, RestartKind, Settings, StrategyInfo,
+    StrategyKind, XcsRunSettings, ZcsRunSettings, fields, with_field, with_fields,
 };
 pub use strategies::{begin, resume};
 pub use strategy::{Strategy, StrategyState, ranking};

@@ -82,8 +82,8 @@ pub trait Strategy: Send {
         &[]
     }
 
-    /// The archive of elites, if it keeps one.
-    fn archive(&self) -> Option<&Archive> {
+    /// The archive of elites without their genes, if it keeps one.
+    fn archive(&self) -> Option<Archive> {
         None
     }
 }

@@ -90,7 +90,7 @@ impl Exploration {
     pub fn of(experiment: &Experiment) -> Self {
         Self {
             front: experiment.front().clone(),
-            archive: experiment.archive().cloned(),
+            archive: experiment.archive(),
             leaders: experiment.leaders().to_vec(),
             generation: experiment.generation().cloned(),
             parents: experiment.parents(),

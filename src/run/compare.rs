@@ -205,7 +205,8 @@ impl Comparison {
             text += "\n";
         }
         text + "\nmedian [quartiles] over the seeds; a run that never reaches the landing counts as needing\n\
-         infinitely many evaluations; final mean: mean fitness of the last generation\n"
+         infinitely many evaluations; final mean: mean fitness of the last generation\n\n"
+            + &self.paired_text()
     }
 
     /// The records of the CSV file, the header first: one per run.
@@ -336,7 +337,8 @@ mod tests {
         assert_eq!(ga.curve.last().copied().flatten(), ga.best.map(|best| best.fitness));
         assert_eq!(comparison.rows().len(), plans.len());
         let text = comparison.text();
-        assert_eq!(text.lines().count(), plans.len() + 4);
+        // A line for each but the first, which the others are compared with.
+        assert_eq!(text.lines().count(), plans.len() + 5 + plans.len() - 1);
         for line in text.lines().take(plans.len() + 1) {
             let cells = line.split("  ").filter(|cell| !cell.is_empty());
             assert_eq!(cells.count(), 10, "{line}");

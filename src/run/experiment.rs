@@ -142,7 +142,7 @@ impl Experiment {
     }
 
     /// The strategy's archive of elites, if it has one.
-    pub fn archive(&self) -> Option<&Archive> {
+    pub fn archive(&self) -> Option<Archive> {
         self.strategy.archive()
     }
 

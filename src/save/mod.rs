@@ -6,6 +6,7 @@
 //! format stays readable (see `v5`).
 //! Whatever is read is checked before it is used; an error names the file, the field, the value and what is allowed.
 
+mod body_study;
 mod champion;
 mod champion_exam;
 mod change;
@@ -36,6 +37,9 @@ mod v5;
 mod whole_file;
 mod whole_folder;
 
+pub use body_study::{
+    BodyStudyRun, BodyStudyRuns, MAX_BODY_STUDY_RUNS, load_body_study, store_body_study,
+};
 pub use champion::{
     LoadedChampion, champion_text, load_champion, load_champion_and_note, parse_champion,
     shipped_champion, store_champion,

@@ -179,6 +179,11 @@ impl Trial {
         GenomeShape { joints: self.agent.joints(), duration_s: self.duration_s }
     }
 
+    /// Fitness of an agent that does not move: its start, or zero if the fitness counts no metres.
+    pub fn resting_fitness(&self) -> f32 {
+        if self.fitness.is_along_y() { self.start_y_m } else { 0.0 }
+    }
+
     /// The material of the ground.
     pub fn ground(&self) -> &Surface {
         self.ground.as_ref().unwrap_or(&self.surface)

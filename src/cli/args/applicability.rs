@@ -16,6 +16,7 @@ enum Task {
     CheckReplay,
     Bench,
     Body,
+    BodyStudy,
     Verify,
     Exam,
     Export,
@@ -35,15 +36,16 @@ enum Task {
 }
 
 use Task::{
-    Bench, Body, CheckReplay, Compare, Completions, Exam, Export, Families, Figures, Machines,
-    Manual, Presets, Render, ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown, Table1,
-    Verify, Window, Worker,
+    Bench, Body, BodyStudy, CheckReplay, Compare, Completions, Exam, Export, Families, Figures,
+    Machines, Manual, Presets, Render, ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown,
+    Table1, Verify, Window, Worker,
 };
 
 /// The tasks that compute on other machines.
-const SPREAD: &[Task] = &[Run, Exam, Robust, Compare, Families, Table1];
+const SPREAD: &[Task] = &[Run, Exam, Robust, BodyStudy, Compare, Families, Table1];
 /// These, and the tasks that need a server.
-const WITH_SERVER: &[Task] = &[Run, Exam, Robust, Compare, Families, Table1, Worker, Machines];
+const WITH_SERVER: &[Task] =
+    &[Run, Exam, Robust, BodyStudy, Compare, Families, Table1, Worker, Machines];
 
 /// The flags that have no effect without `--nats`.
 const OF_SERVER: [&str; 4] = ["creds", "tls_ca", "expect_workers", "local_threads"];
@@ -80,6 +82,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
             Exam,
             Export,
             Robust,
+            BodyStudy,
             Compare,
             Families,
             Table1,
@@ -92,7 +95,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
         "preset",
         &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
     ),
-    ("seed", &[Window, Run, ReplayInWindow, Robust, Compare, Families]),
+    ("seed", &[Window, Run, ReplayInWindow, Robust, BodyStudy, Compare, Families]),
     ("population", &[Window, Run, ReplayInWindow, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("generations", &[Window, Run, ReplayInWindow, Table1, Settings, SettingsAsMarkdown]),
     (
@@ -102,6 +105,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
             Run,
             ReplayInWindow,
             Bench,
+            BodyStudy,
             Compare,
             Families,
             Table1,
@@ -113,7 +117,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
     ("set", &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("resume", &[Window, Run, ReplayInWindow]),
     ("from", &[Window, Run]),
-    ("restart", &[Window, Run, ReplayInWindow, Compare, Families]),
+    ("restart", &[Window, Run, ReplayInWindow, BodyStudy, Compare, Families]),
     (
         "threads",
         &[
@@ -124,6 +128,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
             Verify,
             Exam,
             Robust,
+            BodyStudy,
             Compare,
             Families,
             Table1,
@@ -136,7 +141,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
     ("expect_workers", SPREAD),
     ("local_threads", SPREAD),
     ("evaluator", &[Window, Run, ReplayInWindow, Verify, Compare, Table1]),
-    ("out", &[Window, Run, ReplayInWindow, Compare, Families, Table1, Figures, Manual]),
+    ("out", &[Window, Run, ReplayInWindow, BodyStudy, Compare, Families, Table1, Figures, Manual]),
     ("saves", &[Window, Run, ReplayInWindow]),
     ("comparison", &[Window, ReplayInWindow]),
     ("window_size", &[Window, ReplayInWindow]),
@@ -157,6 +162,7 @@ impl Task {
             Some(Subcommand::Replay { .. }) => ReplayInWindow,
             Some(Subcommand::Bench) => Bench,
             Some(Subcommand::Body { .. }) => Body,
+            Some(Subcommand::BodyStudy(_)) => BodyStudy,
             Some(Subcommand::Verify) => Verify,
             Some(Subcommand::Exam { .. }) => Exam,
             Some(Subcommand::Export(_)) => Export,
@@ -185,6 +191,7 @@ impl Task {
             CheckReplay => "snakes replay --no-render",
             Bench => "snakes bench",
             Body => "snakes body",
+            BodyStudy => "snakes body-study",
             Verify => "snakes verify",
             Exam => "snakes exam",
             Export => "snakes export",

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use clap_complete::Shell;
 
+use super::body_study::BodyStudyArgs;
 use super::compare::CompareArgs;
 use super::export::ExportArgs;
 use super::families::FamiliesArgs;
@@ -30,7 +31,7 @@ pub struct Args {
     /// Name of a preset (see `snakes presets`), or path of your own preset file
     #[arg(long, global = true, value_name = "NAME", help_heading = RUN)]
     pub(super) preset: Option<String>,
-    /// Seed of the run; the same seed gives the same bits [default: 1, of families 201; in the window, the first seed without a run]
+    /// Seed of the run; the same seed gives the same bits [default: 1, of families 201, of body-study 101; in the window, the first seed without a run]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) seed: Option<String>,
     /// Snakes per generation
@@ -176,6 +177,8 @@ pub enum Subcommand {
         /// Saved champion
         file: PathBuf,
     },
+    /// Measure, over several seeds, whether protecting new bodies and an archive of bodies pay while bodies evolve
+    BodyStudy(BodyStudyArgs),
     /// Compare search strategies and controllers under equal budgets
     Compare(CompareArgs),
     /// Train every family of controllers over several seeds, examine the champions, and hold the results against demands

@@ -1,6 +1,7 @@
 //! The flags and subcommands, and how they override a preset.
 
 mod applicability;
+mod body_study;
 mod compare;
 mod completions;
 mod export;
@@ -14,6 +15,7 @@ mod robust;
 mod run;
 mod values;
 
+pub use body_study::BodyStudyArgs;
 pub use compare::CompareArgs;
 pub use completions::completions;
 pub use export::ExportArgs;

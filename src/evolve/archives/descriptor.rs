@@ -1,5 +1,6 @@
 //! Descriptors: numbers that distinguish kinds of behaviour.
 
+use super::axis::ArchiveAxis;
 use crate::schema::{Choices, choices};
 use crate::score::Evaluation;
 
@@ -66,23 +67,6 @@ impl Descriptor {
 
     /// The position of a value on the axis: 0 at its beginning, 1 at its end.
     pub fn share(self, value: f64) -> f64 {
-        let (least, most) = self.range();
-        let share = if self.is_logarithmic() {
-            let log = |x: f64| libm::log(x.clamp(least, most));
-            (log(value) - log(least)) / (log(most) - log(least))
-        } else {
-            (value - least) / (most - least)
-        };
-        share.clamp(0.0, 1.0)
-    }
-
-    /// The value at a position on the axis.
-    pub fn at_share(self, share: f64) -> f64 {
-        let (least, most) = self.range();
-        if self.is_logarithmic() {
-            least * libm::pow(most / least, share)
-        } else {
-            least + (most - least) * share
-        }
+        ArchiveAxis::of(self, 1).share(value)
     }
 }

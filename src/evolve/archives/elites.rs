@@ -1,39 +1,38 @@
-//! The archive of MAP-Elites: a grid over two descriptors with at most one elite in each cell.
+//! The archive of MAP-Elites: a grid over two axes with at most one elite in each cell.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-use super::descriptor::Descriptor;
+use super::axis::ArchiveAxis;
 use crate::check::{Invalid, within};
-use crate::score::{Evaluation, FITNESS_RANGE};
+use crate::score::FITNESS_RANGE;
 
-/// The best individual of a cell.
+/// The best individual of a cell, with its genes as the strategy keeps them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Elite {
+pub struct Elite<G = ()> {
     /// Its fitness.
     pub fitness: f32,
     /// The generation that found it; the first is 1.
     pub generation: u32,
     /// Its index in that generation.
     pub individual: u32,
-    /// Its genes, as coordinates of the unit cube.
-    pub point: Vec<f64>,
+    /// Its genes: coordinates of the unit cube, or a genome. The first version of the file had points only.
+    #[serde(rename = "point", alias = "genes")]
+    pub genes: G,
 }
 
-/// A grid of elites.
+/// A grid of elites. Without their genes it is what a chart shows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Archive {
-    /// Descriptor of the columns.
-    pub x: Descriptor,
-    /// Descriptor of the rows.
-    pub y: Descriptor,
-    /// Number of columns and of rows.
-    pub cells: u32,
+pub struct Archive<G = ()> {
+    /// The axis of the columns.
+    pub x: ArchiveAxis,
+    /// The axis of the rows.
+    pub y: ArchiveAxis,
     /// The fitness of an agent that does not move, which counts as zero in [`Self::qd_score`].
     pub floor: f32,
-    /// Elites by the number of their cell: row · cells + column.
-    elites: BTreeMap<u32, Elite>,
+    /// Elites by the number of their cell: row · columns + column.
+    elites: BTreeMap<u32, Elite<G>>,
 }
 
 /// The effect of an individual on an archive.
@@ -47,39 +46,52 @@ pub enum Addition {
     None,
 }
 
-impl Archive {
+impl<G> Archive<G> {
     /// An empty archive.
-    pub fn new(x: Descriptor, y: Descriptor, cells: u32, floor: f32) -> Self {
-        Self { x, y, cells, floor, elites: BTreeMap::new() }
+    pub fn new(x: ArchiveAxis, y: ArchiveAxis, floor: f32) -> Self {
+        Self { x, y, floor, elites: BTreeMap::new() }
     }
 
     /// Restores elites from a file.
     ///
     /// # Errors
     /// A cell does not exist, or a fitness is out of range.
-    pub fn restore(&mut self, elites: Vec<(u32, Elite)>) -> Result<(), Invalid> {
+    pub fn restore(&mut self, elites: Vec<(u32, Elite<G>)>) -> Result<(), Invalid> {
         for (cell, elite) in elites {
-            within("cell", cell, 0..=(self.cells * self.cells).saturating_sub(1))?;
+            within("cell", cell, 0..=self.cells().saturating_sub(1))?;
             within("fitness", elite.fitness, FITNESS_RANGE)?;
             self.elites.insert(cell, elite);
         }
         Ok(())
     }
 
-    /// The cell of an agent; none if it was disqualified.
-    pub fn cell(&self, evaluation: &Evaluation, start_y_m: f32) -> Option<u32> {
-        if evaluation.disqualified.is_some() {
-            return None;
-        }
-        let index = |descriptor: Descriptor| {
-            let share = descriptor.share(descriptor.value(evaluation, start_y_m)?);
-            Some(((share * f64::from(self.cells)) as u32).min(self.cells - 1))
+    /// Number of cells.
+    pub fn cells(&self) -> u32 {
+        self.x.cells * self.y.cells
+    }
+
+    /// The cell of the values of both axes.
+    pub fn cell(&self, [x, y]: [f64; 2]) -> u32 {
+        self.y.place(y) * self.x.cells + self.x.place(x)
+    }
+
+    /// The column and the row of a cell.
+    pub fn place(&self, cell: u32) -> [u32; 2] {
+        [cell % self.x.cells, cell / self.x.cells]
+    }
+
+    /// The archive without the genes.
+    pub fn without_genes(&self) -> Archive {
+        let bare = |(cell, elite): (&u32, &Elite<G>)| {
+            let &Elite { fitness, generation, individual, .. } = elite;
+            (*cell, Elite { fitness, generation, individual, genes: () })
         };
-        Some(index(self.y)? * self.cells + index(self.x)?)
+        let elites = self.elites.iter().map(bare).collect();
+        Archive { x: self.x, y: self.y, floor: self.floor, elites }
     }
 
     /// Adds an individual to its cell if it beats the elite there.
-    pub fn add(&mut self, cell: u32, elite: Elite) -> Addition {
+    pub fn add(&mut self, cell: u32, elite: Elite<G>) -> Addition {
         let addition = match self.elites.get(&cell) {
             None => Addition::New,
             Some(known) if elite.fitness > known.fitness => {
@@ -92,18 +104,18 @@ impl Archive {
     }
 
     /// All elites with their cells, in the order of the cells.
-    pub fn elites(&self) -> impl ExactSizeIterator<Item = (u32, &Elite)> {
+    pub fn elites(&self) -> impl ExactSizeIterator<Item = (u32, &Elite<G>)> {
         self.elites.iter().map(|(cell, elite)| (*cell, elite))
     }
 
     /// The elite of a cell.
-    pub fn elite(&self, cell: u32) -> Option<&Elite> {
+    pub fn elite(&self, cell: u32) -> Option<&Elite<G>> {
         self.elites.get(&cell)
     }
 
     /// Share of the cells that have an elite.
     pub fn coverage(&self) -> f64 {
-        self.elites.len() as f64 / f64::from(self.cells * self.cells)
+        self.elites.len() as f64 / f64::from(self.cells())
     }
 
     /// Quality and diversity in one number: the sum of the elites' fitness above [`Self::floor`] (Pugh and others,

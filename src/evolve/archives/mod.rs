@@ -1,9 +1,13 @@
 //! Collections of individuals worth keeping, and the axes along which they differ.
 
+mod axis;
+mod bodies;
 mod descriptor;
 mod elites;
 mod front;
 
+pub use axis::{ArchiveAxis, AxisScale};
+pub use bodies::{body_archive, body_cell, feasible_cells};
 pub use descriptor::Descriptor;
 pub use elites::{Addition, Archive, Elite};
 pub use front::{Front, FrontMember};

@@ -120,7 +120,7 @@ mod tests {
                 let asked = begin(&founded).ask();
                 assert_eq!(asked.len(), random.len());
                 let what = format!("{strategy}, {controller}");
-                if strategy == StrategyKind::BodyGa {
+                if matches!(strategy, StrategyKind::BodyGa | StrategyKind::BodyMapElites) {
                     assert_eq!(asked[0], genome, "{what}");
                     let fresh = asked[1..].iter().filter(|other| random.contains(other)).count();
                     assert_eq!(fresh, 10, "every second one");

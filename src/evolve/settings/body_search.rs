@@ -1,7 +1,8 @@
 //! Settings of the strategies that vary bodies.
 
-use super::size::{GenomeSize, LARGEST_POPULATION};
+use super::size::{GenomeSize, LARGEST_POPULATION, LARGEST_STATE_GENES};
 use crate::check::Invalid;
+use crate::evolve::archives::FIXED_LAYOUT;
 use crate::schema::{choice, choices, number, setting_group, whole};
 
 setting_group! {
@@ -38,6 +39,47 @@ setting_group! {
             whole("Elites", 0..=LARGEST_POPULATION)
                 .hint("Number of best snakes copied unchanged into the next generation")
                 .slider(0.0, 20.0);
+    }
+}
+
+setting_group! {
+    /// Settings of MAP-Elites over bodies.
+    pub struct BodyMapElitesSettings in "MAP-Elites of bodies":
+        "Keeps the best snake for each number of blocks and each length, and breeds from all of them."
+    {
+        /// Number of rows of the archive: lengths from 4 m to the longest body.
+        length_cells: u32 = 16,
+            whole("Lengths", 2..=100)
+                .hint("Number of rows of the archive, from bodies of 4 m to the longest. Its columns are the numbers of blocks")
+                .slider(2.0, 50.0)
+                .fixed(FIXED_LAYOUT);
+
+        /// Share of the children that have two parents.
+        two_parents: f32 = 0.3,
+            number("Share with two parents", 0.0..=1.0).advanced()
+                .hint("Share of children whose blocks come from two parents, aligned by descent")
+                .slider(0.0, 1.0);
+
+        /// Standard deviation of a gene's mutation, as a share of its range.
+        mutation_step: f32 = 0.08,
+            number("Step of mutation", 1.0e-4..=0.5)
+                .hint("As a share of each gene's range. About one gene in ten mutates in a child")
+                .slider(0.001, 0.5)
+                .logarithmic_from(0.001);
+    }
+}
+
+impl BodyMapElitesSettings {
+    /// Checks that a generation and the archive fit into memory.
+    pub(super) fn check_size(&self, population: u32, size: &GenomeSize<'_>) -> Result<(), Invalid> {
+        size.check_population(population, LARGEST_STATE_GENES)?;
+        let columns = size.space.bodies.limbs().count();
+        let most = LARGEST_STATE_GENES / size.coordinates().max(1) / columns.max(1);
+        if self.length_cells as usize <= most {
+            return Ok(());
+        }
+        let allowed = format!("2 to {most} with the genes of the largest body in each cell");
+        Err(Invalid::new("evolution.body_map_elites.length_cells", self.length_cells, allowed))
     }
 }
 

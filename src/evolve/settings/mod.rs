@@ -14,7 +14,7 @@ mod partners;
 mod size;
 mod strategy_kind;
 
-pub use body_search::{BodyGaSettings, BodyProtection, IslandSettings};
+pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};
 pub use by_name::{fields, with_field, with_fields};
 pub use cma_es::{CmaEsSettings, RestartKind};
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
@@ -86,6 +86,9 @@ setting_group! {
         /// The genetic algorithm over bodies.
         #[serde(default, skip_serializing_if = "is_default")]
         body_ga: BodyGaSettings = BodyGaSettings::default();
+        /// MAP-Elites over bodies.
+        #[serde(default, skip_serializing_if = "is_default")]
+        body_map_elites: BodyMapElitesSettings = BodyMapElitesSettings::default();
         /// Islands.
         #[serde(default, skip_serializing_if = "is_default")]
         islands: IslandSettings = IslandSettings::default();
@@ -219,6 +222,20 @@ strategy_kinds! {
         },
         ..StrategyInfo::PLAIN
     };
+    /// MAP-Elites over the number of blocks and the length of a body.
+    BodyMapElites = StrategyInfo {
+        name: "body_map_elites",
+        title: "MAP-Elites of bodies",
+        words: "Keeps the best snake of each number of blocks and each length, and breeds from all of them.",
+        color: [0x20, 0x60, 0x70],
+        settings: &["body_map_elites"],
+        has_archive: true,
+        varies_bodies: true,
+        check_size: |evolution, size| {
+            evolution.body_map_elites.check_size(evolution.population, size)
+        },
+        ..StrategyInfo::PLAIN
+    };
     /// A CMA-ES for each number of blocks.
     Islands = StrategyInfo {
         name: "islands",
@@ -254,6 +271,7 @@ impl SettingGroup for EvolutionSettings {
             zcs,
             neat,
             body_ga,
+            body_map_elites,
             islands,
             exploration,
         } = self;
@@ -273,7 +291,7 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 12] = [
+        let groups: [(&str, &mut dyn SettingGroup); 13] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
@@ -284,6 +302,7 @@ impl SettingGroup for EvolutionSettings {
             ("zcs", zcs),
             ("neat", neat),
             ("body_ga", body_ga),
+            ("body_map_elites", body_map_elites),
             ("islands", islands),
             ("exploration", exploration),
         ];

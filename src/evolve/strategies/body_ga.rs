@@ -9,18 +9,15 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
+use super::body_children::BodyChildren;
 use crate::check::{Invalid, within};
 use crate::evolve::parents::{IndividualId, Parents};
-use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{BodyGaSettings, BodyProtection};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::{BodyChange, Genome, GenomeShape, GenomeSpace};
-use crate::rng::{Purpose, stream};
+use crate::genome::Genome;
+use crate::rng::Purpose;
 use crate::score::Evaluation;
-use std::sync::Arc;
-
-/// Attempts to change a body within its limits, before its genes change instead.
-const ATTEMPTS: usize = 20;
 
 /// An individual of the last generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,13 +33,8 @@ struct BodyMember {
 #[derive(Debug, Clone)]
 pub struct BodyGa {
     settings: BodyGaSettings,
-    space: GenomeSpace,
-    shape: GenomeShape,
-    seed: u64,
-    /// The next generation; the first is 1.
-    generation: u32,
+    children: BodyChildren,
     population: usize,
-    founder: Option<Arc<Founder>>,
     /// The last generation, best first; empty at the beginning.
     members: Vec<BodyMember>,
     /// Their ids; empty if they are unknown.
@@ -60,24 +52,16 @@ impl BodyGa {
     fn with(plan: &RunPlan, finished: u32, members: Vec<BodyMember>) -> Self {
         Self {
             settings: plan.settings.evolution.body_ga.clone(),
-            space: plan.settings.genome.clone(),
-            shape: plan.settings.trial.genome_shape(),
-            seed: plan.seed,
-            generation: finished + 1,
+            children: BodyChildren::new(plan, finished),
             population: plan.settings.evolution.population as usize,
-            founder: plan.founder.clone().filter(|_| finished == 0),
             members,
             ids: Vec::new(),
         }
     }
 
-    fn stream(&self, individual: usize, purpose: Purpose) -> ChaCha8Rng {
-        stream(self.seed, self.generation, individual as u32, purpose)
-    }
-
     /// How an individual is made, and the stream from which its random numbers continue.
     fn variation(&self, individual: usize) -> (BodyVariation, ChaCha8Rng) {
-        let mut rng = self.stream(individual, Purpose::Mutation);
+        let mut rng = self.children.stream(individual, Purpose::Mutation);
         let count = self.members.len();
         // At least one individual has to change.
         let elites = (self.settings.kept_best as usize).min(self.population - 1).min(count);
@@ -93,7 +77,7 @@ impl BodyGa {
             };
             let first = parent();
             let second = parent();
-            let is_crossed = rng.random_range(0.0..1.0) < f64::from(self.settings.two_parents);
+            let is_crossed = BodyChildren::is_crossed(self.settings.two_parents, &mut rng);
             BodyVariation::Child(
                 first,
                 Some(second).filter(|second| is_crossed && *second != first),
@@ -105,7 +89,10 @@ impl BodyGa {
     fn individual(&self, individual: usize) -> BodyMember {
         let (variation, mut rng) = self.variation(individual);
         match variation {
-            BodyVariation::Random => self.first(individual),
+            BodyVariation::Random => {
+                let step = self.settings.mutation_step.into();
+                BodyMember { genome: self.children.first(individual, step), age: 0 }
+            }
             BodyVariation::Elite(index) => {
                 let elite = &self.members[index];
                 BodyMember { age: elite.age.saturating_add(1), genome: elite.genome.clone() }
@@ -117,7 +104,7 @@ impl BodyGa {
                     let [fitter, other] = [first.min(second), first.max(second)];
                     let [fitter, other] = [fitter, other].map(|index| &self.members[index]);
                     parent = BodyMember {
-                        genome: self.space.with_crossed_bodies(
+                        genome: self.children.space.with_crossed_bodies(
                             &fitter.genome,
                             &other.genome,
                             &mut rng,
@@ -125,39 +112,10 @@ impl BodyGa {
                         age: fitter.age.max(other.age),
                     };
                 }
-                self.varied(parent, &mut rng)
-            }
-        }
-    }
-
-    /// A child of a genome: with a change of its structure, or with small changes of its genes.
-    fn varied(&self, parent: BodyMember, rng: &mut ChaCha8Rng) -> BodyMember {
-        if let Some(change) = BodyChange::draw(rng) {
-            let changed = (0..ATTEMPTS)
-                .find_map(|_| self.space.with_body_change(&parent.genome, change, rng));
-            if let Some(genome) = changed {
-                return BodyMember { genome, age: 0 };
-            }
-        }
-        let genome =
-            self.space.with_small_changes(&parent.genome, self.settings.mutation_step.into(), rng);
-        BodyMember { genome, age: parent.age.saturating_add(1) }
-    }
-
-    /// An individual of the first generation: the founder, if there is one, every second one a child of it, the others
-    /// drawn at random.
-    fn first(&self, individual: usize) -> BodyMember {
-        match &self.founder {
-            Some(founder) if individual == 0 => {
-                BodyMember { genome: founder.genome().clone(), age: 0 }
-            }
-            Some(founder) if individual.is_multiple_of(2) => {
-                let mut rng = self.stream(individual, Purpose::Mutation);
-                self.varied(BodyMember { genome: founder.genome().clone(), age: 0 }, &mut rng)
-            }
-            _ => {
-                let mut rng = self.stream(individual, Purpose::Birth);
-                BodyMember { genome: self.space.random_genome(self.shape, &mut rng), age: 0 }
+                let step = self.settings.mutation_step.into();
+                let child = self.children.varied(&parent.genome, step, &mut rng);
+                let age = if child.is_restructured { 0 } else { parent.age.saturating_add(1) };
+                BodyMember { genome: child.genome, age }
             }
         }
     }
@@ -213,7 +171,7 @@ impl Strategy for BodyGa {
         within("members", resumed.members.len(), 0..=resumed.population)?;
         for member in &resumed.members {
             plan.settings.trial.check_genome(&member.genome)?;
-            resumed.space.check_genome(&member.genome, resumed.shape)?;
+            resumed.children.space.check_genome(&member.genome, resumed.children.shape)?;
         }
         Ok(resumed)
     }
@@ -231,8 +189,8 @@ impl Strategy for BodyGa {
         let ages: Vec<u32> = generation.iter().map(|member| member.age).collect();
         let order = self.order(&ages, evaluations);
         self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
-        self.ids = IndividualId::all(self.generation, &order);
-        self.generation += 1;
+        self.ids = IndividualId::all(self.children.generation, &order);
+        self.children.generation += 1;
     }
 
     fn state(&self) -> StrategyState {
@@ -253,7 +211,9 @@ impl Strategy for BodyGa {
                     id(index).map(Parents::One)
                 }
                 BodyVariation::Child(first, Some(second)) => {
-                    id(first).zip(id(second)).map(|(a, b)| Parents::Two(a, b))
+                    // The fitter one gives the structure; it has the lower index.
+                    let [fitter, other] = [first.min(second), first.max(second)];
+                    id(fitter).zip(id(other)).map(|(fitter, other)| Parents::Two(fitter, other))
                 }
             };
             parents.unwrap_or(Parents::Unknown)

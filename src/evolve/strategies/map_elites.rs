@@ -10,7 +10,7 @@ use super::cma::{Cma, RankedCandidate};
 use super::cma_es::covariance_shape;
 use super::search::Search;
 use crate::check::{Invalid, within};
-use crate::evolve::archives::{Addition, Archive, Elite};
+use crate::evolve::archives::{Addition, Archive, ArchiveAxis, Elite};
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::MapElitesSettings;
@@ -24,7 +24,7 @@ use crate::score::Evaluation;
 #[serde(deny_unknown_fields)]
 struct MapElitesState {
     /// The elites with the numbers of their cells.
-    elites: Vec<(u32, Elite)>,
+    elites: Vec<(u32, Elite<Vec<f64>>)>,
     /// The CMA-ES emitter, while one is active.
     emitter: Option<Cma>,
 }
@@ -34,7 +34,7 @@ struct MapElitesState {
 pub struct MapElites {
     settings: MapElitesSettings,
     search: Search,
-    archive: Archive,
+    archive: Archive<Vec<f64>>,
     emitter: Option<Cma>,
     start_y_m: f32,
 }
@@ -46,6 +46,16 @@ impl MapElites {
         if wanted < 4.0 { 0 } else { wanted as usize }
     }
 
+    /// The cell of an agent; none if it was disqualified.
+    fn cell(&self, evaluation: &Evaluation) -> Option<u32> {
+        if evaluation.disqualified.is_some() {
+            return None;
+        }
+        let [x, y] = [self.settings.x, self.settings.y]
+            .map(|descriptor| descriptor.value(evaluation, self.start_y_m));
+        Some(self.archive.cell([x?, y?]))
+    }
+
     fn points(&self) -> Vec<Vec<f64>> {
         let mut points = match &self.emitter {
             Some(cma) => {
@@ -53,7 +63,7 @@ impl MapElites {
             }
             None => Vec::new(),
         };
-        let elites: Vec<&Elite> = self.archive.elites().map(|(_, elite)| elite).collect();
+        let elites: Vec<&Elite<Vec<f64>>> = self.archive.elites().map(|(_, elite)| elite).collect();
         while points.len() < self.search.population {
             let individual = points.len();
             points.push(if elites.is_empty() {
@@ -75,12 +85,12 @@ impl MapElites {
     }
 
     /// An elite, moved by a normally distributed step in every gene and along the line to another elite.
-    fn varied(&self, individual: usize, elites: &[&Elite]) -> Vec<f64> {
+    fn varied(&self, individual: usize, elites: &[&Elite<Vec<f64>>]) -> Vec<f64> {
         let (parent, other, mut rng) = self.chosen(individual, elites.len());
         let (parent, other) = (elites[parent], elites[other]);
         let along = f64::from(self.settings.line) * normal(&mut rng);
         let step = f64::from(self.settings.step);
-        let pairs = parent.point.iter().zip(&other.point);
+        let pairs = parent.genes.iter().zip(&other.genes);
         pairs.map(|(x, to)| x + step * normal(&mut rng) + along * (to - x)).collect()
     }
 
@@ -122,12 +132,12 @@ impl MapElites {
 
     fn new_emitter(&self) -> Option<Cma> {
         let population = self.emitter_population();
-        let elites: Vec<&Elite> = self.archive.elites().map(|(_, elite)| elite).collect();
+        let elites: Vec<&Elite<Vec<f64>>> = self.archive.elites().map(|(_, elite)| elite).collect();
         if population == 0 || elites.is_empty() {
             return None;
         }
         let mut rng = self.search.stream(0, Purpose::Restart);
-        let start = elites[rng.random_range(0..elites.len())].point.clone();
+        let start = elites[rng.random_range(0..elites.len())].genes.clone();
         let shape = covariance_shape(self.search.dimension);
         // The check of the settings excludes errors. Without this emitter the other makes all individuals.
         Cma::new(start, self.settings.cma_step.into(), population as u32, shape, true).ok()
@@ -138,10 +148,10 @@ impl Strategy for MapElites {
     fn begin(plan: &RunPlan) -> Self {
         let settings = plan.settings.evolution.map_elites.clone();
         let trial = &plan.settings.trial;
-        // An agent that does not move has the fitness of its start, or zero if fitness counts no metres.
-        let floor = if trial.fitness.is_along_y() { trial.start_y_m } else { 0.0 };
+        let floor = trial.resting_fitness();
+        let axis = |descriptor| ArchiveAxis::of(descriptor, settings.cells);
         Self {
-            archive: Archive::new(settings.x, settings.y, settings.cells, floor),
+            archive: Archive::new(axis(settings.x), axis(settings.y), floor),
             settings,
             search: Search::new(plan, 0),
             emitter: None,
@@ -153,7 +163,7 @@ impl Strategy for MapElites {
         let MapElitesState { elites, emitter } = state.read()?;
         let mut search = Self { search: Search::new(plan, finished), ..Self::begin(plan) };
         for (_, elite) in &elites {
-            search.search.check(&elite.point)?;
+            search.search.check(&elite.genes)?;
         }
         search.archive.restore(elites)?;
         if let Some(emitter) = &emitter {
@@ -182,7 +192,7 @@ impl Strategy for MapElites {
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
         let points = self.points();
         let add = |(index, (point, evaluation)): (usize, (&Vec<f64>, &Evaluation))| {
-            let Some(cell) = self.archive.cell(evaluation, self.start_y_m) else {
+            let Some(cell) = self.cell(evaluation) else {
                 return Addition::None;
             };
             let elite = Elite {
@@ -190,7 +200,7 @@ impl Strategy for MapElites {
                 generation: self.search.generation,
                 individual: index as u32,
                 // Inside the cube lines between elites are short.
-                point: self.search.folded(point),
+                genes: self.search.folded(point),
             };
             self.archive.add(cell, elite)
         };
@@ -234,15 +244,15 @@ impl Strategy for MapElites {
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
-        let id = |elite: &Elite| IndividualId {
+        let id = |elite: &Elite<Vec<f64>>| IndividualId {
             generation: elite.generation,
             individual: elite.individual,
         };
         self.archive.elites().map(|(_, elite)| id(elite)).collect()
     }
 
-    fn archive(&self) -> Option<&Archive> {
-        Some(&self.archive)
+    fn archive(&self) -> Option<Archive> {
+        Some(self.archive.without_genes())
     }
 }
 

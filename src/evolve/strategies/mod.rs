@@ -3,7 +3,9 @@
 //! A new strategy is a file here and a line in [`constructors`], a row of
 //! [`StrategyKind`] and, if it has any, its settings in [`super::settings`].
 
+mod body_children;
 mod body_ga;
+mod body_map_elites;
 mod cma;
 mod cma_es;
 mod ga;
@@ -43,6 +45,7 @@ fn constructors(settings: &Settings) -> Constructors {
         }
         StrategyKind::Neat => Constructors::of::<neat::Neat>(),
         StrategyKind::BodyGa => Constructors::of::<body_ga::BodyGa>(),
+        StrategyKind::BodyMapElites => Constructors::of::<body_map_elites::BodyMapElites>(),
         StrategyKind::Islands => Constructors::of::<islands::Islands>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }

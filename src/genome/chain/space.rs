@@ -158,6 +158,17 @@ impl BodySpace {
         self.limbs_min..=self.limbs_max
     }
 
+    /// The shortest and the longest straight body of this number of blocks, in metres. None if there is no such body.
+    pub fn lengths_m(&self, limbs: u32) -> Option<[f64; 2]> {
+        let [volume_m3, longest_m] = [self.volume_m3, self.longest_m].map(f64::from);
+        let [thinnest_m, thickest_m] = [self.thickness_min_m, self.thickness_max_m].map(f64::from);
+        let [least_m, most_m] = [self.length_min_m, self.length_max_m]
+            .map(|length_m| f64::from(length_m) * f64::from(limbs));
+        let shortest_m = (volume_m3 / (thickest_m * thickest_m)).max(least_m);
+        let longest_m = (volume_m3 / (thinnest_m * thinnest_m)).min(most_m).min(longest_m);
+        (shortest_m <= longest_m).then_some([shortest_m, longest_m])
+    }
+
     /// Length, width and height of each block of a body of equal ones, in metres: as long together as the snake of five
     /// blocks, as far as the ranges allow. None if they leave no such body.
     pub(super) fn plain_block_m(&self, limbs: usize) -> Option<[f64; 3]> {

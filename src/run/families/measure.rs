@@ -2,9 +2,9 @@
 
 use super::family::Training;
 use super::results::{FamilyResults, Results};
-use super::sign_test::sign_test;
 use crate::run::report::Quartiles;
 use crate::run::robust::Share;
+use crate::run::sign_test::sign_test;
 use crate::save::{FamilyChampion, RuleUse};
 use crate::schema::Choices;
 use crate::score::ExamSuite;

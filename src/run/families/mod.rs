@@ -10,7 +10,6 @@ mod family;
 pub mod fixtures;
 mod measure;
 mod results;
-mod sign_test;
 mod table;
 mod training;
 
@@ -18,6 +17,5 @@ pub use demand::{Demand, Verdict};
 pub use family::{DEFAULT_SUITES, Family, FamilyInfo, Training};
 pub use measure::{Measure, Measured};
 pub use results::{ExaminedChampion, FamilyResults, Results, seeds_to_examine};
-pub use sign_test::sign_test;
 pub use table::{exam_records, tables};
 pub use training::{FinishedRun, PlannedFamilyRun, missing, train};

@@ -237,11 +237,17 @@ const CASES: &[Case] = &[
     (
         "bodies in other ranges, genetic algorithm",
         [3, 12, 4],
-        "controller=wave; strategy=body_ga; bodies.vary=true; protection=none; tournament_size=2; two_parents=0.8; \
-         mutation_step=0.2; kept_best=1; length_min_m=0.3; length_max_m=3; thickness_min_m=0.3; thickness_max_m=2.5; \
+        "controller=wave; strategy=body_ga; bodies.vary=true; protection=none; tournament_size=2; body_ga.two_parents=0.8; \
+         body_ga.mutation_step=0.2; kept_best=1; length_min_m=0.3; length_max_m=3; thickness_min_m=0.3; thickness_max_m=2.5; \
          bend_limit_min_rad=0.5; bend_limit_max_rad=1; twist_limit_min_rad=0.1; twist_limit_max_rad=0.5; \
          strength_min=0.1; volume_m3=8; longest_m=11; torque_budget_nm=6000; trial.fitness=share; start_y_m=-3; \
          trial.duration_s=3",
+    ),
+    (
+        "bodies, MAP-Elites",
+        [3, 12, 4],
+        "controller=gait; strategy=body_map_elites; bodies.vary=true; length_cells=5; body_map_elites.two_parents=0.7; \
+         body_map_elites.mutation_step=0.15; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
     ),
 ];
 

@@ -6,13 +6,14 @@ use clap::CommandFactory;
 use std::ffi::OsString;
 
 /// Every task, as words of the command line.
-const TASKS: [(Task, &str); 22] = [
+const TASKS: [(Task, &str); 23] = [
     (Window, ""),
     (Run, "--no-render"),
     (ReplayInWindow, "replay a.ron"),
     (CheckReplay, "replay a.ron --no-render"),
     (Bench, "bench"),
     (Body, "body a.ron"),
+    (BodyStudy, "body-study"),
     (Verify, "verify"),
     (Exam, "exam a.ron"),
     (Export, "export a.ron -o a.csv"),
@@ -121,6 +122,7 @@ fn no_render_is_refused_where_no_window_opens() {
 fn the_help_of_a_task_lists_exactly_the_flags_that_the_task_accepts() {
     for (subcommand, tasks) in [
         ("compare", &[Compare][..]),
+        ("body-study", &[BodyStudy]),
         ("families", &[Families]),
         ("robust", &[Robust]),
         ("bench", &[Bench]),

@@ -50,7 +50,16 @@ fn advance(strategy: &mut dyn Strategy, generation: u32) {
 }
 
 /// Allowed changes of each strategy.
-const ALLOWED: [(StrategyKind, &[(&str, &str)]); 8] = [
+const ALLOWED: [(StrategyKind, &[(&str, &str)]); 9] = [
+    (
+        StrategyKind::BodyMapElites,
+        &[
+            ("body_map_elites.two_parents", "0.9"),
+            ("body_map_elites.mutation_step", "0.2"),
+            ("population", "7"),
+            ("population", "30"),
+        ],
+    ),
     (
         StrategyKind::BodyGa,
         &[

@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 
 use super::legend::click_hint;
-use crate::evolve::{Archive, Descriptor, Elite};
+use crate::evolve::{Archive, ArchiveAxis, Elite};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
@@ -20,7 +20,7 @@ pub(crate) fn archive_map(
     height: f32,
     commands: &mut Vec<Command>,
 ) {
-    let cells = archive.cells * archive.cells;
+    let cells = archive.cells();
     let (elites, percent) = (archive.elites().len(), archive.coverage() * 100.0);
     let score = number(archive.qd_score());
     let floor = number(f64::from(archive.floor));
@@ -34,7 +34,7 @@ pub(crate) fn archive_map(
         return explain(ui, "All snakes so far were disqualified.");
     }
     click_hint(ui, "Click a coloured cell to replay its snake.");
-    y_title(ui, archive.y.label());
+    y_title(ui, archive.y.label);
     let size = egui::vec2(ui.available_width(), height);
     let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
     let map =
@@ -62,15 +62,16 @@ pub(crate) fn archive_map(
     }
     let line = egui::TextStyle::Small.resolve(ui.style()).size + 2.0;
     let (below, _) = ui.allocate_exact_size(egui::vec2(area.width(), line), egui::Sense::hover());
-    let end = |descriptor: Descriptor, share| number(descriptor.at_share(share));
+    let [[x_from, x_to], [y_from, y_to]] =
+        [archive.x, archive.y].map(|axis| axis.range.map(number));
     let left = map.left() - theme::GAP / 2.0;
     let y = below.top();
     for (x, y, anchor, text) in [
-        (left, map.top(), egui::Align2::RIGHT_TOP, end(archive.y, 1.0)),
-        (left, map.bottom(), egui::Align2::RIGHT_BOTTOM, end(archive.y, 0.0)),
-        (map.left(), y, egui::Align2::LEFT_TOP, end(archive.x, 0.0)),
-        (map.right(), y, egui::Align2::RIGHT_TOP, end(archive.x, 1.0)),
-        (map.center().x, y, egui::Align2::CENTER_TOP, archive.x.label().to_owned()),
+        (left, map.top(), egui::Align2::RIGHT_TOP, y_to),
+        (left, map.bottom(), egui::Align2::RIGHT_BOTTOM, y_from),
+        (map.left(), y, egui::Align2::LEFT_TOP, x_from),
+        (map.right(), y, egui::Align2::RIGHT_TOP, x_to),
+        (map.center().x, y, egui::Align2::CENTER_TOP, archive.x.label.to_owned()),
     ] {
         small_label(ui, egui::pos2(x, y), anchor, &text);
     }
@@ -123,30 +124,31 @@ fn cell_at(map: egui::Rect, archive: &Archive, at: egui::Pos2) -> Option<u32> {
     if !map.contains(at) {
         return None;
     }
-    let place = |share: f32| ((share * archive.cells as f32) as u32).min(archive.cells - 1);
-    let column = place((at.x - map.left()) / map.width());
-    let row = place((map.bottom() - at.y) / map.height());
-    Some(row * archive.cells + column)
+    let place = |share: f32, cells: u32| ((share * cells as f32) as u32).min(cells - 1);
+    let column = place((at.x - map.left()) / map.width(), archive.x.cells);
+    let row = place((map.bottom() - at.y) / map.height(), archive.y.cells);
+    Some(row * archive.x.cells + column)
 }
 
 fn cell_rect(map: egui::Rect, archive: &Archive, cell: u32) -> egui::Rect {
-    let size = map.size() / archive.cells as f32;
-    let (row, column) = (cell / archive.cells, cell % archive.cells);
+    let size = map.size() / egui::vec2(archive.x.cells as f32, archive.y.cells as f32);
+    let [column, row] = archive.place(cell);
     let corner =
         egui::pos2(map.left() + size.x * column as f32, map.bottom() - size.y * (row + 1) as f32);
     // A thin gap separates cells if they are large enough.
-    let gap = if size.x > 6.0 { 0.5 } else { 0.0 };
+    let gap = if size.min_elem() > 6.0 { 0.5 } else { 0.0 };
     egui::Rect::from_min_size(corner, size).shrink(gap)
 }
 
 /// Hover text of a cell.
 fn hover_text(archive: &Archive, cell: u32, unit: &str) -> String {
-    let span = |descriptor: Descriptor, place: u32| {
-        let [from, to] = [place, place + 1]
-            .map(|end| number(descriptor.at_share(f64::from(end) / f64::from(archive.cells))));
-        format!("{}: {from} to {to}\n", descriptor.label())
+    let span = |axis: ArchiveAxis, place: u32| {
+        let [from, to] = axis.ends(place).map(number);
+        let values = if from == to { from } else { format!("{from} to {to}") };
+        format!("{}: {values}\n", axis.label)
     };
-    let kind = span(archive.x, cell % archive.cells) + &span(archive.y, cell / archive.cells);
+    let [column, row] = archive.place(cell);
+    let kind = span(archive.x, column) + &span(archive.y, row);
     match archive.elite(cell) {
         Some(elite) => format!(
             "{kind}Fitness {:.2}{unit}\nGeneration {}, snake {}\nClick to replay",
@@ -161,6 +163,7 @@ fn hover_text(archive: &Archive, cell: u32, unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::Descriptor;
     use crate::studio::state::current_run::explored_run;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -195,16 +198,17 @@ mod tests {
             clicked(archive, cell),
             (vec![Command::Stage(StageCommand::Show(Pick::Elite(cell)))], false)
         );
-        let cells = archive.cells * archive.cells;
+        let cells = archive.cells();
         let empty = (0..cells).find(|cell| archive.elite(*cell).is_none()).expect("an empty cell");
         assert_eq!(clicked(archive, empty), (vec![], true));
     }
 
     #[test]
     fn a_click_in_a_drawn_cell_hits_that_cell() {
-        let archive = Archive::new(Descriptor::BodyHeight, Descriptor::Sideways, 7, 0.0);
+        let x = ArchiveAxis::of(Descriptor::BodyHeight, 7);
+        let archive: Archive = Archive::new(x, ArchiveAxis::of_numbers("Blocks", 2..=6), 0.0);
         let map = egui::Rect::from_min_size(egui::pos2(10.0, 20.0), egui::vec2(250.0, 250.0));
-        for cell in 0..49 {
+        for cell in 0..35 {
             let drawn = cell_rect(map, &archive, cell);
             assert_eq!(cell_at(map, &archive, drawn.center()), Some(cell));
         }

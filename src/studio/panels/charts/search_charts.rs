@@ -1,6 +1,6 @@
 //! Archive and front as figures for export. Their panels draw them on the screen.
 
-use crate::evolve::{Archive, Descriptor, Elite, Front};
+use crate::evolve::{Archive, ArchiveAxis, Elite, Front};
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::studio::ui::plot_axes::padded_range;
 
@@ -8,17 +8,17 @@ use crate::studio::ui::plot_axes::padded_range;
 pub(super) fn archive(archive: &Archive, unit: &str) -> Figure {
     let fitness = archive.elites().map(|(_, elite)| elite.fitness);
     let (min, max) = fitness.fold((f32::MAX, f32::MIN), |(l, m), x| (l.min(x), m.max(x)));
-    let ends = |descriptor: Descriptor, place: u32| {
-        [place, place + 1].map(|end| descriptor.at_share(f64::from(end) / f64::from(archive.cells)))
-    };
     let cells = archive.elites().map(|(cell, elite)| {
-        let [left, right] = ends(archive.x, cell % archive.cells);
-        let [bottom, top] = ends(archive.y, cell / archive.cells);
+        let [column, row] = archive.place(cell);
+        let [left, right] = archive.x.edges(column);
+        let [bottom, top] = archive.y.edges(row);
         let share = (elite.fitness - min) / (max - min).max(f32::MIN_POSITIVE);
         ([left, right, bottom, top], share, f64::from(elite.fitness))
     });
-    let axis = |descriptor: Descriptor| {
-        Axis::new(descriptor.label(), "", descriptor.at_share(0.0)..=descriptor.at_share(1.0))
+    let axis = |axis: ArchiveAxis| {
+        let [from, _] = axis.edges(0);
+        let [_, to] = axis.edges(axis.cells - 1);
+        Axis::new(axis.label, "", from..=to)
     };
     let name = format!("fitness from {min:.2} to {max:.2}{unit}");
     let chart = Chart {
@@ -34,21 +34,19 @@ pub(super) fn archive(archive: &Archive, unit: &str) -> Figure {
 
 /// Table with one row per elite: cell, fitness, generation and index.
 fn rows(archive: &Archive, unit: &str) -> Vec<Vec<String>> {
-    let [x, y] = [archive.x, archive.y].map(Descriptor::label);
+    let [x, y] = [archive.x.label, archive.y.label];
     let fitness =
         if unit.is_empty() { "fitness".to_owned() } else { format!("fitness ({})", unit.trim()) };
     let ends = [format!("{x}, from"), format!("{x}, to"), format!("{y}, from"), format!("{y}, to")];
     let head = ends.into_iter().chain([fitness, "generation".to_owned(), "snake".to_owned()]);
-    let end = |descriptor: Descriptor, place: u32| {
-        descriptor.at_share(f64::from(place) / f64::from(archive.cells)).to_string()
-    };
     let row = |(cell, elite): (u32, &Elite)| {
-        let (column, row) = (cell % archive.cells, cell / archive.cells);
+        let [column, row] = archive.place(cell);
+        let [[left, right], [bottom, top]] = [archive.x.ends(column), archive.y.ends(row)];
         vec![
-            end(archive.x, column),
-            end(archive.x, column + 1),
-            end(archive.y, row),
-            end(archive.y, row + 1),
+            left.to_string(),
+            right.to_string(),
+            bottom.to_string(),
+            top.to_string(),
             elite.fitness.to_string(),
             elite.generation.to_string(),
             (elite.individual + 1).to_string(),

@@ -1,0 +1,115 @@
+//! The axes of an archive.
+
+use super::descriptor::Descriptor;
+
+/// How the values of an axis are divided into cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AxisScale {
+    /// Cells of equal width.
+    Linear,
+    /// Cells of equal ratio.
+    Logarithmic,
+    /// A cell for each whole number.
+    Whole,
+}
+
+/// An axis of an archive: a number that distinguishes kinds of snakes, in cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArchiveAxis {
+    /// Its label, with the unit.
+    pub label: &'static str,
+    /// The values at both ends. Values beyond belong to the outermost cells.
+    pub range: [f64; 2],
+    /// How they are divided.
+    pub scale: AxisScale,
+    /// Number of cells.
+    pub cells: u32,
+}
+
+impl ArchiveAxis {
+    /// The axis of a descriptor.
+    pub fn of(descriptor: Descriptor, cells: u32) -> Self {
+        let (least, most) = descriptor.range();
+        let scale =
+            if descriptor.is_logarithmic() { AxisScale::Logarithmic } else { AxisScale::Linear };
+        Self { label: descriptor.label(), range: [least, most], scale, cells }
+    }
+
+    /// The axis of a whole number, with a cell for each.
+    pub fn of_numbers(label: &'static str, numbers: std::ops::RangeInclusive<u32>) -> Self {
+        let range = [f64::from(*numbers.start()), f64::from(*numbers.end())];
+        let cells = numbers.end().saturating_sub(*numbers.start()) + 1;
+        Self { label, range, scale: AxisScale::Whole, cells }
+    }
+
+    /// The cell of a value.
+    pub fn place(&self, value: f64) -> u32 {
+        ((self.share(value) * f64::from(self.cells)) as u32).min(self.cells - 1)
+    }
+
+    /// The values between which a cell lies: of a whole number that number itself.
+    pub fn ends(&self, place: u32) -> [f64; 2] {
+        if self.scale == AxisScale::Whole {
+            return [self.range[0] + f64::from(place); 2];
+        }
+        [place, place + 1].map(|end| self.at_share(f64::from(end) / f64::from(self.cells)))
+    }
+
+    /// The edges of a cell in a drawing: half a number to either side of a whole one.
+    pub fn edges(&self, place: u32) -> [f64; 2] {
+        let [from, to] = self.ends(place);
+        if self.scale == AxisScale::Whole { [from - 0.5, to + 0.5] } else { [from, to] }
+    }
+
+    /// The position of a value: 0 at the beginning, 1 at the end.
+    pub(super) fn share(&self, value: f64) -> f64 {
+        let [least, most] = self.range;
+        let share = match self.scale {
+            AxisScale::Linear => (value - least) / (most - least),
+            AxisScale::Whole => (value - least) / (most - least + 1.0),
+            AxisScale::Logarithmic => {
+                let log = |x: f64| libm::log(x.clamp(least, most));
+                (log(value) - log(least)) / (log(most) - log(least))
+            }
+        };
+        share.clamp(0.0, 1.0)
+    }
+
+    /// The value at a position.
+    fn at_share(&self, share: f64) -> f64 {
+        let [least, most] = self.range;
+        if self.scale == AxisScale::Logarithmic {
+            least * libm::pow(most / least, share)
+        } else {
+            least + (most - least) * share
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_number_has_its_own_cell() {
+        let axis = ArchiveAxis::of_numbers("Blocks", 2..=12);
+        assert_eq!(axis.cells, 11);
+        for number in 2..=12 {
+            assert_eq!(axis.place(f64::from(number)), number - 2);
+            assert_eq!(axis.ends(number - 2), [f64::from(number); 2]);
+        }
+        assert_eq!((axis.place(0.0), axis.place(40.0)), (0, 10));
+        assert_eq!(axis.edges(3), [4.5, 5.5]);
+    }
+
+    #[test]
+    fn the_middle_of_a_cell_lies_in_it() {
+        for descriptor in [Descriptor::ContactDuty, Descriptor::EnergyPerMetre] {
+            let axis = ArchiveAxis::of(descriptor, 7);
+            for place in 0..7 {
+                let [from, to] = axis.ends(place);
+                assert_eq!(axis.place((from + to) / 2.0), place, "{}", axis.label);
+            }
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! What evolving bodies gain, over several seeds: whether protection and an archive pay, and whether a split of a block
+//! changes little.
+//!
+//! All runs have the settings of the preset `bodies` and the same budget. They differ in the strategy alone.
+
+mod arm;
+mod claims;
+mod measure;
+mod splits;
+
+pub use arm::{Arm, FinishedArm, PlannedArm, train_arms};
+pub use claims::{claims, study_records};
