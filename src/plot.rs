@@ -6,6 +6,7 @@ mod figure;
 mod film_text;
 mod labels;
 mod paint;
+mod series;
 mod ticks;
 
 use std::error::Error;

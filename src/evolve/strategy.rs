@@ -82,7 +82,7 @@ pub trait Strategy: Send {
         &[]
     }
 
-    /// The archive of elites without their genes, if it keeps one.
+    /// A copy of the archive of elites, if it keeps one.
     fn archive(&self) -> Option<Archive> {
         None
     }

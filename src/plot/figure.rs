@@ -90,6 +90,8 @@ pub enum Shape {
         /// Centre and height of each bar.
         bars: Vec<[f64; 2]>,
     },
+    /// Rectangles in the colour of the series: `[left, right, bottom, top]`.
+    Boxes(Vec<[f64; 4]>),
     /// Rectangles: `[left, right, bottom, top]`, the share of the value between the least and the greatest of all
     /// (0 to 1), and the value.
     Cells(Vec<([f64; 4], f32, f64)>),
@@ -116,6 +118,10 @@ pub enum Role {
     Share(f32),
     /// A species of networks, by its number.
     Species(u32),
+    /// The first block of a snake, its third, and so on.
+    Red,
+    /// The second, the fourth, and so on.
+    Blue,
 }
 
 impl Axis {
@@ -168,6 +174,7 @@ impl Shape {
         match self {
             Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => &[""],
             Self::Band(_) | Self::Layer(_) => &[", lower end", ", upper end"],
+            Self::Boxes(_) => &[", x to", ", y from", ", y to"],
             Self::Cells(_) => &[", x to", ", y from", ", y to", ""],
         }
     }
@@ -178,6 +185,7 @@ impl Shape {
             Self::Line(points) | Self::Dashed(points) | Self::Points(points) => points.is_empty(),
             Self::Band(ends) | Self::Layer(ends) => ends.is_empty(),
             Self::Bars { bars, .. } => bars.is_empty(),
+            Self::Boxes(boxes) => boxes.is_empty(),
             Self::Cells(cells) => cells.is_empty(),
         }
     }
@@ -191,6 +199,10 @@ impl Shape {
             Self::Bars { bars, .. } => bars.iter().map(|&[x, y]| (x, vec![y])).collect(),
             Self::Band(ends) | Self::Layer(ends) => {
                 ends.iter().map(|&[x, low, high]| (x, vec![low, high])).collect()
+            }
+            Self::Boxes(boxes) => {
+                let row = |&[left, right, bottom, top]: &[f64; 4]| (left, vec![right, bottom, top]);
+                boxes.iter().map(row).collect()
             }
             Self::Cells(cells) => cells
                 .iter()

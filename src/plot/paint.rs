@@ -9,6 +9,7 @@ use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::labels::beside_line;
+use super::series::paint_series;
 use super::ticks::TickedAxis;
 use super::{Area, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
 use super::{TEXT_PIXELS, TITLE_PIXELS, draw, text};
@@ -23,7 +24,7 @@ const LEGEND_LINE: i32 = 30;
 /// Length of a sample in the legend, in pixels.
 const SAMPLE: i32 = 34;
 /// Lengths of the dashes and gaps of a dashed line, in pixels.
-const DASH: (i32, i32) = (10, 7);
+pub(super) const DASH: (i32, i32) = (10, 7);
 /// Space around the name of a mark on its plate, in pixels.
 const PLATE: f32 = 8.0;
 /// Maximum length of a name, in characters; the rest is cut off.
@@ -34,7 +35,8 @@ const MOST_Y_TICKS: f64 = 10.0;
 /// Opacity of a band between two curves, on the screen and in pictures.
 pub const BAND_OPACITY: f32 = 0.2;
 
-type FigureAxes<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
+pub(super) type FigureAxes<'a, 'b> =
+    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
 
 /// The colour of a role in the light theme, as red, green and blue.
 pub fn role_color(role: Role) -> [u8; 3] {
@@ -47,6 +49,8 @@ pub fn role_color(role: Role) -> [u8; 3] {
         Role::Strategy(kind) => kind.info().color,
         Role::Share(share) => ramp(share),
         Role::Species(number) => SPECIES[number as usize % SPECIES.len()],
+        Role::Red => [0xdb, 0x21, 0x1f],
+        Role::Blue => [0x1a, 0x45, 0xd6],
     }
 }
 
@@ -162,7 +166,7 @@ fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dy
         Shape::Band(_) => {
             area.draw(&Rectangle::new(block, color.mix(BAND_OPACITY.into()).filled()))?
         }
-        Shape::Bars { .. } | Shape::Layer(_) => {
+        Shape::Bars { .. } | Shape::Layer(_) | Shape::Boxes(_) => {
             area.draw(&Rectangle::new(block, color.filled()))?
         }
         Shape::Cells(_) => {
@@ -176,7 +180,7 @@ fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dy
     Ok(())
 }
 
-fn color_of(role: Role) -> RGBColor {
+pub(super) fn color_of(role: Role) -> RGBColor {
     let [red, green, blue] = role_color(role);
     RGBColor(red, green, blue)
 }
@@ -262,7 +266,7 @@ fn mark_labels(
             Shape::Line(points) | Shape::Dashed(points) | Shape::Points(points) => {
                 points.iter().map(|&[x, y]| pixel(x, y)).collect()
             }
-            Shape::Band(_) | Shape::Layer(_) | Shape::Bars { .. } | Shape::Cells(_) => Vec::new(),
+            _ => Vec::new(),
         })
         .collect();
     let [from, to] = [
@@ -283,57 +287,6 @@ fn mark_labels(
         area.draw(&Rectangle::new([(left, top), (right, bottom)], WHITE.mix(0.85).filled()))?;
         let corner = (left + PLATE as i32, top + PLATE as i32 / 2);
         area.draw(&Text::new(mark.name.as_str(), corner, style.clone()))?;
-    }
-    Ok(())
-}
-
-fn paint_series(axes: &mut FigureAxes<'_, '_>, series: &Series) -> Result<(), Box<dyn Error>> {
-    let color = color_of(series.role);
-    let pairs =
-        |points: &[[f64; 2]]| -> Vec<(f64, f64)> { points.iter().map(|&[x, y]| (x, y)).collect() };
-    match &series.shape {
-        Shape::Line(points) => {
-            let dot = if points.len() <= 60 { 3 } else { 0 };
-            let line = LineSeries::new(pairs(points), color.stroke_width(3)).point_size(dot);
-            axes.draw_series(line)?;
-        }
-        Shape::Dashed(points) => {
-            let style = color.stroke_width(2);
-            axes.draw_series(DashedLineSeries::new(pairs(points), DASH.0, DASH.1, style))?;
-        }
-        Shape::Points(points) => {
-            let is_crowd = series.role == Role::Others;
-            let (radius, style) =
-                if is_crowd { (2, color.mix(0.35)) } else { (5, color.to_rgba()) };
-            let dots = pairs(points).into_iter();
-            axes.draw_series(dots.map(|at| Circle::new(at, radius, style.filled())))?;
-        }
-        Shape::Band(ends) | Shape::Layer(ends) => {
-            let above = ends.iter().map(|&[x, _, high]| (x, high));
-            let below = ends.iter().rev().map(|&[x, low, _]| (x, low));
-            let edge: Vec<(f64, f64)> = above.clone().chain(below).collect();
-            let is_layer = matches!(series.shape, Shape::Layer(_));
-            let opacity = if is_layer { 1.0 } else { BAND_OPACITY.into() };
-            axes.draw_series([Polygon::new(edge, color.mix(opacity).filled())])?;
-            if is_layer {
-                // Keeps layers of similar colours apart.
-                axes.draw_series(LineSeries::new(above, WHITE.stroke_width(1)))?;
-            }
-        }
-        Shape::Bars { width, bars } => {
-            let half = width / 2.0;
-            let rectangle = |&[x, height]: &[f64; 2]| {
-                Rectangle::new([(x - half, 0.0), (x + half, height)], color.filled())
-            };
-            axes.draw_series(bars.iter().map(rectangle))?;
-        }
-        Shape::Cells(cells) => {
-            let rectangle = |&([left, right, bottom, top], share, _): &([f64; 4], f32, f64)| {
-                let color = color_of(Role::Share(share));
-                Rectangle::new([(left, bottom), (right, top)], color.filled())
-            };
-            axes.draw_series(cells.iter().map(rectangle))?;
-        }
     }
     Ok(())
 }

@@ -141,7 +141,7 @@ impl Experiment {
         self.evaluated
     }
 
-    /// The strategy's archive of elites, if it has one.
+    /// A copy of the strategy's archive of elites, if it has one.
     pub fn archive(&self) -> Option<Archive> {
         self.strategy.archive()
     }
@@ -245,12 +245,13 @@ impl Experiment {
 
         let mut ranking = ranking(&evaluations);
         ranking.retain(|&index| self.strategy.may_be_champion(index));
+        let bands = bands(&self.plan, &*self.strategy, &genomes);
         let evaluated = EvaluatedGeneration {
             plan: &self.plan,
             generation,
             genomes: &genomes,
             evaluations: &evaluations,
-            species: self.strategy.species(),
+            species: &bands,
         };
         let champion = choose_champion(&evaluated, &ranking, evaluator, control)?;
         let report = evaluated.report(champion, messages, started.elapsed());
@@ -345,6 +346,16 @@ impl Experiment {
         {
             self.best = Some(candidate.clone());
         }
+    }
+}
+
+/// The number by which each individual is counted: of its species, or of its blocks where bodies evolve. Empty if there
+/// is none.
+fn bands<'a>(plan: &RunPlan, strategy: &'a dyn Strategy, genomes: &[Genome]) -> Cow<'a, [u32]> {
+    if plan.settings.genome.bodies.vary {
+        genomes.iter().map(|genome| genome.body.segments.len() as u32).collect()
+    } else {
+        strategy.species().into()
     }
 }
 

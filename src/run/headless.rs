@@ -104,6 +104,7 @@ pub fn evolve(
     let folder = recorder.folder().to_owned();
     let settings = experiment.settings().into_owned();
     let generations = settings.evolution.generations;
+    let bodies_vary = settings.genome.bodies.vary;
     let earlier = match reports.len() {
         0 => String::new(),
         _ if experiment.is_over() => "; already finished (--restart starts over)".to_owned(),
@@ -125,7 +126,8 @@ pub fn evolve(
     let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
         landing.add(report);
-        let line = if json { report_json(report).to_string() } else { table_row(report) };
+        let line =
+            if json { report_json(report, bodies_vary).to_string() } else { table_row(report) };
         writeln!(out, "{line}")?;
         out.flush()
     };
@@ -228,7 +230,7 @@ fn table_row(report: &GenerationReport) -> String {
     format!("{generation:>10}{numbers}{disqualified:>14}  {}", report.meaning)
 }
 
-fn report_json(report: &GenerationReport) -> Value {
+fn report_json(report: &GenerationReport, bodies_vary: bool) -> Value {
     let statistics = report.statistics;
     let mut line = json!({
         "generation": report.generation,
@@ -247,8 +249,9 @@ fn report_json(report: &GenerationReport) -> Value {
         "hash": format!("{:016x}", report.hash),
     });
     if !report.species.is_empty() {
-        let of = |species: &SpeciesCount| json!({"id": species.id, "size": species.size, "best": species.best.map(short)});
-        line["species"] = report.species.iter().map(of).collect();
+        let (list, number) = if bodies_vary { ("bodies", "blocks") } else { ("species", "id") };
+        let of = |species: &SpeciesCount| json!({number: species.id, "size": species.size, "best": species.best.map(short)});
+        line[list] = report.species.iter().map(of).collect();
     }
     line
 }

@@ -33,8 +33,8 @@ pub struct GenerationReport {
     pub first_on_landing: Option<u32>,
     /// Fitness statistics over the healthy ones; none if all were disqualified.
     pub statistics: Option<Statistics>,
-    /// Its largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; empty for a strategy
-    /// without species and in logs of earlier versions of the program.
+    /// Its largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; of evolving bodies the
+    /// numbers of blocks. Empty for a strategy without both and in logs of earlier versions of the program.
     pub species: Vec<SpeciesCount>,
     /// Meaning of the mean, in the words of the report's Table 1.
     pub meaning: String,
@@ -66,7 +66,7 @@ pub(super) struct EvaluatedGeneration<'a> {
     /// In the order of the individuals, as the evaluations.
     pub genomes: &'a [Genome],
     pub evaluations: &'a [Evaluation],
-    /// The number of the species of each individual; empty for a strategy without species.
+    /// The number of the species of each individual, or of its blocks where bodies evolve; empty without both.
     pub species: &'a [u32],
 }
 

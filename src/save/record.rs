@@ -40,8 +40,8 @@ pub struct GenerationRecord {
     /// The champion's fitness over the varied trials on which the run chose it; none if it chose by the trial alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen_by: Option<f64>,
-    /// The largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; empty for a strategy
-    /// without species, and in older logs.
+    /// The largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; of evolving bodies the
+    /// numbers of blocks. Empty for a strategy without both, and in older logs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub species: Vec<SpeciesCount>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.

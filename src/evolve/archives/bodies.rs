@@ -51,11 +51,11 @@ mod tests {
     #[test]
     fn cells_that_no_body_fits_are_not_feasible() {
         let bodies = BodySpace::default();
-        let archive: Archive = body_archive(&bodies, 16, 0.0);
+        let archive: Archive<()> = body_archive(&bodies, 16, 0.0);
         assert_eq!(archive.cells(), 11 * 16);
         assert_eq!(feasible_cells(&archive, &bodies), 11 * 16 - 8 - 1);
         let narrow = BodySpace { limbs_max: 2, ..bodies };
-        let archive: Archive = body_archive(&narrow, 4, 0.0);
+        let archive: Archive<()> = body_archive(&narrow, 4, 0.0);
         assert_eq!(feasible_cells(&archive, &narrow), 2);
     }
 }

@@ -5,12 +5,32 @@ use std::collections::BTreeMap;
 
 use super::axis::ArchiveAxis;
 use crate::check::{Invalid, within};
+use crate::genome::{Genome, GenomeShape, GenomeSpace};
 use crate::score::FITNESS_RANGE;
 
-/// The best individual of a cell, with its genes as the strategy keeps them.
+/// The genes of an elite, as a strategy keeps them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EliteGenes {
+    /// Coordinates of the unit cube.
+    Point(Vec<f64>),
+    /// A genome.
+    Genome(Genome),
+}
+
+impl EliteGenes {
+    /// The genome, in the space of its run.
+    pub fn genome(&self, space: &GenomeSpace, shape: GenomeShape) -> Genome {
+        match self {
+            Self::Point(point) => space.genome_at(point, shape),
+            Self::Genome(genome) => genome.clone(),
+        }
+    }
+}
+
+/// The best individual of a cell, with its genes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Elite<G = ()> {
+pub struct Elite<G = EliteGenes> {
     /// Its fitness.
     pub fitness: f32,
     /// The generation that found it; the first is 1.
@@ -22,9 +42,9 @@ pub struct Elite<G = ()> {
     pub genes: G,
 }
 
-/// A grid of elites. Without their genes it is what a chart shows.
+/// A grid of elites, with their genes as its strategy keeps them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Archive<G = ()> {
+pub struct Archive<G = EliteGenes> {
     /// The axis of the columns.
     pub x: ArchiveAxis,
     /// The axis of the rows.
@@ -80,13 +100,13 @@ impl<G> Archive<G> {
         [cell % self.x.cells, cell / self.x.cells]
     }
 
-    /// The archive without the genes.
-    pub fn without_genes(&self) -> Archive {
-        let bare = |(cell, elite): (&u32, &Elite<G>)| {
-            let &Elite { fitness, generation, individual, .. } = elite;
-            (*cell, Elite { fitness, generation, individual, genes: () })
+    /// A copy that does not depend on how the strategy keeps genes.
+    pub fn copy_with(&self, genes: impl Fn(&G) -> EliteGenes) -> Archive {
+        let copy = |(cell, elite): (&u32, &Elite<G>)| {
+            let &Elite { fitness, generation, individual, genes: ref own } = elite;
+            (*cell, Elite { fitness, generation, individual, genes: genes(own) })
         };
-        let elites = self.elites.iter().map(bare).collect();
+        let elites = self.elites.iter().map(copy).collect();
         Archive { x: self.x, y: self.y, floor: self.floor, elites }
     }
 

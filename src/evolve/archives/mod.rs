@@ -9,7 +9,7 @@ mod front;
 pub use axis::{ArchiveAxis, AxisScale};
 pub use bodies::{body_archive, body_cell, feasible_cells};
 pub use descriptor::Descriptor;
-pub use elites::{Addition, Archive, Elite};
+pub use elites::{Addition, Archive, Elite, EliteGenes};
 pub use front::{Front, FrontMember};
 
 /// Why a run keeps the axes of its archive.

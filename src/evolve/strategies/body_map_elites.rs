@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::body_children::BodyChildren;
 use crate::check::Invalid;
-use crate::evolve::archives::{Archive, Elite, body_archive, body_cell};
+use crate::evolve::archives::{Archive, Elite, EliteGenes, body_archive, body_cell};
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::BodyMapElitesSettings;
@@ -152,7 +152,7 @@ impl Strategy for BodyMapElites {
     }
 
     fn archive(&self) -> Option<Archive> {
-        Some(self.archive.without_genes())
+        Some(self.archive.copy_with(|genome| EliteGenes::Genome(genome.clone())))
     }
 }
 

@@ -10,7 +10,7 @@ use super::cma::{Cma, RankedCandidate};
 use super::cma_es::covariance_shape;
 use super::search::Search;
 use crate::check::{Invalid, within};
-use crate::evolve::archives::{Addition, Archive, ArchiveAxis, Elite};
+use crate::evolve::archives::{Addition, Archive, ArchiveAxis, Elite, EliteGenes};
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::MapElitesSettings;
@@ -252,7 +252,7 @@ impl Strategy for MapElites {
     }
 
     fn archive(&self) -> Option<Archive> {
-        Some(self.archive.without_genes())
+        Some(self.archive.copy_with(|point| EliteGenes::Point(point.clone())))
     }
 }
 

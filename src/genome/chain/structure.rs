@@ -29,6 +29,8 @@ pub enum BodyChange {
 
 /// Standard deviation of the logarithm of a size in [`BodyChange::Resize`].
 const RESIZE: f64 = 0.4;
+/// Growth of a block's length from which the block behind it was merged into it rather than removed.
+const MERGED: f32 = 1.3;
 
 impl BodyChange {
     /// All of them, with the probability that a child has one.
@@ -51,6 +53,39 @@ impl BodyChange {
             Self::Insert => "insert",
             Self::Resize => "resize",
         }
+    }
+
+    /// What it did to a block, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Duplicate => "a block duplicated",
+            Self::Split => "a block split",
+            Self::Remove => "a block removed",
+            Self::Merge => "two blocks merged",
+            Self::Insert => "a block inserted",
+            Self::Resize => "a block resized",
+        }
+    }
+
+    /// The change that made the structure of a child from that of its parent, if it was a single one. Ids do not tell a
+    /// removed block from one that was merged with the one before it: merged it is if that one has grown much longer.
+    pub fn between(parent: &Genome, child: &Genome) -> Option<Self> {
+        let (parent, child) = (&parent.body.segments, &child.body.segments);
+        let same = parent.iter().zip(child).take_while(|(a, b)| a.id == b.id).count();
+        let are_same = |a: &[Segment], b: &[Segment]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.id == b.id)
+        };
+        if child.get(same + 1..).is_some_and(|rest| are_same(&parent[same..], rest)) {
+            let place = same.checked_sub(1)?;
+            let made = [Self::Duplicate, Self::Split, Self::Insert];
+            return made.into_iter().find(|of| new_id(parent, place, *of) == child[same].id);
+        }
+        if !are_same(parent.get(same + 1..)?, &child[same..]) {
+            return None;
+        }
+        let grown = |place: usize| child[place].length_m / parent[place].length_m;
+        let is_merged = same.checked_sub(1).is_some_and(|place| grown(place) > MERGED);
+        Some(if is_merged { Self::Merge } else { Self::Remove })
     }
 
     /// Draws a change by its probability; none for the rest.
@@ -98,6 +133,22 @@ impl GenomeSpace {
     }
 }
 
+/// The id of a new block between two others, derived from them alone: the same change of the same body has the same id
+/// in every run and on every machine.
+fn new_id(segments: &[Segment], place: usize, change: BodyChange) -> u64 {
+    let id = |index: usize| segments.get(index).map_or(0, |segment| segment.id);
+    let mut ordinal = 0_u64;
+    loop {
+        let parts = [id(place), id(place + 1), change as u64, ordinal];
+        let bytes: Vec<u8> = parts.iter().flat_map(|part| part.to_le_bytes()).collect();
+        let new = xxh3_64(&bytes);
+        if segments.iter().all(|segment| segment.id != new) {
+            return new;
+        }
+        ordinal += 1;
+    }
+}
+
 /// The waves of a controller that has them.
 pub(super) fn waves_mut(controller: &mut ControllerGenes) -> Option<&mut Waves> {
     match controller {
@@ -120,25 +171,9 @@ impl BodyEditor<'_> {
         (self.segments.len() < self.space.bodies.limbs_max as usize).then_some(())
     }
 
-    /// The id of a new block between two others, derived from them alone: the same change of the same body has the same id
-    /// in every run and on every machine.
-    fn new_id(&self, place: usize, change: BodyChange) -> u64 {
-        let id = |index: usize| self.segments.get(index).map_or(0, |segment| segment.id);
-        let mut ordinal = 0_u64;
-        loop {
-            let parts = [id(place), id(place + 1), change as u64, ordinal];
-            let bytes: Vec<u8> = parts.iter().flat_map(|part| part.to_le_bytes()).collect();
-            let new = xxh3_64(&bytes);
-            if self.segments.iter().all(|segment| segment.id != new) {
-                return new;
-            }
-            ordinal += 1;
-        }
-    }
-
     fn duplicate(&mut self, place: usize) -> Option<()> {
         self.room()?;
-        let id = self.new_id(place, BodyChange::Duplicate);
+        let id = new_id(self.segments, place, BodyChange::Duplicate);
         let copy = Segment { id, ..self.segments[place].clone() };
         let joint = self.joint_behind(place)?;
         self.segments.insert(place + 1, copy);
@@ -152,7 +187,7 @@ impl BodyEditor<'_> {
         if half_m < self.space.bodies.length_min_m {
             return None;
         }
-        let id = self.new_id(place, BodyChange::Split);
+        let id = new_id(self.segments, place, BodyChange::Split);
         self.segments[place].length_m = half_m;
         let rear = Segment { id, ..self.segments[place].clone() };
         self.segments.insert(place + 1, rear);
@@ -207,7 +242,7 @@ impl BodyEditor<'_> {
 
     fn insert(&mut self, place: usize) -> Option<()> {
         self.room()?;
-        let id = self.new_id(place, BodyChange::Insert);
+        let id = new_id(self.segments, place, BodyChange::Insert);
         let (front, rear) = (&self.segments[place], &self.segments[place + 1]);
         let size = |of: fn(&Segment) -> f32| (of(front) * of(rear)).sqrt();
         let mean = |of: fn(&Segment) -> f32| (of(front) + of(rear)) / 2.0;

@@ -119,7 +119,7 @@ fn filled(runs: &BodyStudyRuns, settings: &Settings) -> Vec<String> {
     let must = format!("{:.0} % or more", FILLED * 100.0);
     let bodies = &settings.genome.bodies;
     let rows = settings.evolution.body_map_elites.length_cells;
-    let archive: Archive = body_archive(bodies, rows, 0.0);
+    let archive: Archive<()> = body_archive(bodies, rows, 0.0);
     let feasible = feasible_cells(&archive, bodies) as f64;
     let cells = runs.of_arm(Arm::Archive.name()).into_iter().map(|run| f64::from(run.cells));
     let Some(Quartiles { low, median, high }) = Quartiles::of(cells) else {

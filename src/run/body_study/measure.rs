@@ -20,7 +20,7 @@ pub(super) fn measured(
     spent: &(dyn Fn(u64) + Sync),
 ) -> Result<BodyStudyRun, Cancelled> {
     let settings = &plan.settings;
-    let mut archive: Archive = body_archive(
+    let mut archive: Archive<()> = body_archive(
         &settings.genome.bodies,
         settings.evolution.body_map_elites.length_cells,
         settings.trial.resting_fitness(),
@@ -55,7 +55,7 @@ pub(super) fn measured(
 }
 
 /// Adds the healthy individuals of a generation to an archive of all that were evaluated.
-fn collect(archive: &mut Archive, generation: &Generation) {
+fn collect(archive: &mut Archive<()>, generation: &Generation) {
     let individuals = generation.genomes.iter().zip(&generation.evaluations);
     for (index, (genome, evaluation)) in individuals.enumerate() {
         if evaluation.disqualified.is_none() {

@@ -383,4 +383,6 @@ impl CurrentRun {
 #[cfg(test)]
 mod fixtures;
 #[cfg(test)]
-pub(crate) use fixtures::{compared_run, explored_run, landed_run, prepared_run, species_run};
+pub(crate) use fixtures::{
+    bodies_run, compared_run, explored_run, landed_run, prepared_run, species_run,
+};

@@ -200,3 +200,19 @@ fn random_bodies_keep_every_limit_and_return_from_their_points() {
     }
     assert!(counts[2..].iter().all(|count| *count > 100), "{counts:?}");
 }
+
+#[test]
+fn the_change_of_a_child_is_recognised() {
+    use BodyChange::{Duplicate, Insert, Merge, Remove, Split};
+    let parent = snake();
+    for change in [Duplicate, Split, Remove, Merge, Insert] {
+        for individual in 0..20 {
+            let child = space().with_body_change(&parent, change, &mut rng(individual));
+            let child = child.expect("the snake allows each change");
+            assert_eq!(BodyChange::between(&parent, &child), Some(change), "{}", change.name());
+        }
+    }
+    assert_eq!(BodyChange::between(&parent, &parent), None);
+    let resized = changed(BodyChange::Resize, |_| true);
+    assert_eq!(BodyChange::between(&parent, &resized), None, "the structure is the same");
+}

@@ -9,6 +9,8 @@ pub(super) enum ChartKind {
     Fitness,
     Spread,
     Species,
+    Blocks,
+    Bodies,
     Ancestors,
     Torques,
     Parents,
@@ -20,10 +22,12 @@ pub(super) enum ChartKind {
 
 impl ChartKind {
     /// In the order of their buttons.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Fitness,
         Self::Spread,
         Self::Species,
+        Self::Blocks,
+        Self::Bodies,
         Self::Ancestors,
         Self::Torques,
         Self::Parents,
@@ -35,7 +39,11 @@ impl ChartKind {
 
     /// Whether a run of this strategy has such a chart, empty or not.
     pub fn is_offered(self, strategy: StrategyKind) -> bool {
-        self != Self::Species || strategy.info().has_species
+        match self {
+            Self::Species => strategy.info().has_species,
+            Self::Blocks | Self::Bodies => strategy.info().varies_bodies,
+            _ => true,
+        }
     }
 
     /// Name on its button, and hover text.
@@ -44,6 +52,10 @@ impl ChartKind {
             Self::Fitness => ("Fitness", "Best, mean and median fitness of each generation"),
             Self::Spread => ("Spread", "Distribution of the fitness in the latest generation"),
             Self::Species => ("Species", "Snakes in each species of networks (NEAT)"),
+            Self::Blocks => ("Blocks", "Snakes with each number of blocks, where bodies evolve"),
+            Self::Bodies => {
+                ("Bodies", "Ancestry of the best body, a picture at every change of its structure")
+            }
             Self::Ancestors => ("Ancestors", "Ancestors of the best snake"),
             Self::Torques => (
                 "Torques",
@@ -63,6 +75,8 @@ impl ChartKind {
             Self::Fitness => "fitness",
             Self::Spread => "spread",
             Self::Species => "species",
+            Self::Blocks => "blocks",
+            Self::Bodies => "bodies",
             Self::Ancestors => "ancestors",
             Self::Torques => "torques",
             Self::Parents => "parents",
@@ -85,6 +99,12 @@ impl ChartKind {
             Self::Species => {
                 "The species of each generation will appear here after the first generation. Runs of earlier versions \
                  of the program have none in their logs."
+            }
+            Self::Blocks => {
+                "The numbers of blocks of each generation will appear here after the first generation."
+            }
+            Self::Bodies => {
+                "The ancestry of the best body will appear here after the first generation."
             }
             Self::Ancestors => {
                 "The ancestors of the best snake will appear here after the first generation."

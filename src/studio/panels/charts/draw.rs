@@ -237,6 +237,16 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             let bars = BarChart::new(&series.name, bars.iter().map(bar).collect());
             plot.bar_chart(bars.color(color).allow_hover(false));
         }
+        Shape::Boxes(boxes) => {
+            for [left, right, bottom, top] in boxes {
+                let corners =
+                    vec![[*left, *bottom], [*right, *bottom], [*right, *top], [*left, *top]];
+                // Keeps neighbours of the same colour apart.
+                let edge = Stroke::new(1.0, palette.field);
+                let block = Polygon::new("", corners).fill_color(color).stroke(edge);
+                plot.polygon(block.allow_hover(false));
+            }
+        }
         Shape::Cells(cells) => {
             for ([left, right, bottom, top], share, _) in cells {
                 let corners =

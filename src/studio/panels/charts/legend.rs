@@ -78,7 +78,7 @@ fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
         Shape::Band(_) => {
             painter.rect_filled(rect.shrink(1.0), 0.0, theme::of(ui).band(color));
         }
-        Shape::Bars { .. } | Shape::Layer(_) => {
+        Shape::Bars { .. } | Shape::Layer(_) | Shape::Boxes(_) => {
             painter.rect_filled(rect.shrink(1.0), 0.0, color);
         }
         Shape::Cells(_) => {

@@ -3,6 +3,9 @@
 
 mod ancestors;
 mod archive_map;
+mod bands;
+mod blocks;
+mod bodies;
 mod chart_kind;
 mod downsample;
 mod draw;
@@ -34,9 +37,11 @@ use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
 
 use archive_map::archive_map;
+use blocks::BLOCKS;
 use chart_kind::ChartKind;
 use learning_curves::CurvesPanel;
 use pareto_front::front_plot;
+use species::SPECIES;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
 
@@ -254,7 +259,9 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     match kind {
         ChartKind::Fitness => Some(fitness::view(settings, run.reports())),
         ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
-        ChartKind::Species => Some(species::view(settings, run.reports())),
+        ChartKind::Species => Some(bands::view(&SPECIES, settings, run.reports())),
+        ChartKind::Blocks => Some(bands::view(&BLOCKS, settings, run.reports())),
+        ChartKind::Bodies => Some(bodies::view(settings, run.reports(), &exploration?.ancestry)),
         ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),

@@ -9,7 +9,9 @@ use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use crate::studio::panels::shown::ShownChampion;
-use crate::studio::state::current_run::{compared_run, explored_run, prepared_run, species_run};
+use crate::studio::state::current_run::{
+    bodies_run, compared_run, explored_run, prepared_run, species_run,
+};
 
 /// Result of `act` and the commands sent, in a panel of this width.
 fn with<T>(
@@ -66,6 +68,12 @@ fn only_a_run_with_species_offers_their_chart() {
             assert_eq!(titles.next().is_some(), has_species);
         });
     }
+    for (run, has_bodies) in [(explored_run(), false), (bodies_run(), true)] {
+        with(&run, ChartKind::Blocks, 600.0, |harness| {
+            let mut titles = harness.query_all_by_label("Blocks by generation");
+            assert_eq!(titles.next().is_some(), has_bodies);
+        });
+    }
 }
 
 fn click(harness: &mut Harness<'_, Vec<Command>>, at: egui::Pos2) {
@@ -92,10 +100,13 @@ fn before_the_first_generation_every_chart_explains_its_content() {
 
 #[test]
 fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
-    let (run, neat) = (explored_run(), species_run());
+    let (run, neat, bodies) = (explored_run(), species_run(), bodies_run());
     for width in [300.0, 900.0] {
         let kinds = offered(&run).into_iter().filter(|kind| *kind != ChartKind::Methods);
         let charts = kinds.map(|kind| (&run, kind)).chain([(&neat, ChartKind::Species)]);
+        let charts = charts.chain(
+            [ChartKind::Blocks, ChartKind::Bodies, ChartKind::Archive].map(|kind| (&bodies, kind)),
+        );
         for (run, kind) in charts {
             let ((), sent) = with(run, kind, width, |harness| {
                 // The torques of waves are computed on another thread.

@@ -1,7 +1,7 @@
 //! Runs for tests of panels.
 
 use super::*;
-use crate::evolve::{RunPlan, StrategyKind};
+use crate::evolve::{IndividualId, RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Experiment, LocalPool, RunControl};
 use crate::save::{SavesFolder, shipped_champion, store_csv};
@@ -29,6 +29,15 @@ pub fn species_run() -> CurrentRun {
     settings.evolution.strategy = StrategyKind::Neat;
     settings.evolution.neat.species_threshold = 0.25;
     settings.genome.controller = ControllerKind::Grown;
+    evolved_run(settings)
+}
+
+/// Run of MAP-Elites over bodies with two finished generations.
+pub fn bodies_run() -> CurrentRun {
+    let mut settings = Settings::default();
+    settings.evolution.strategy = StrategyKind::BodyMapElites;
+    settings.genome.controller = ControllerKind::Gait;
+    settings.genome.bodies.vary = true;
     evolved_run(settings)
 }
 
@@ -131,14 +140,19 @@ fn a_reset_that_discards_finished_generations_says_so_and_offers_to_resume_them(
 
 #[test]
 fn elites_and_front_members_are_evaluated_as_they_were_found() {
+    for run in [explored_run(), bodies_run()] {
+        let archive = run.exploration().and_then(|of| of.archive.as_ref()).expect("MAP-Elites");
+        for (cell, elite) in archive.elites() {
+            let champion = run.elite(cell).expect("there");
+            assert_eq!(champion.evaluation.fitness, elite.fitness);
+            let place = IndividualId { generation: elite.generation, individual: elite.individual };
+            if let Some(genome) = run.genome_of(place) {
+                assert_eq!(champion.genome, *genome);
+            }
+        }
+    }
     let run = explored_run();
     let exploration = run.exploration().expect("explored");
-    let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
-    for (cell, elite) in archive.elites() {
-        let champion = run.elite(cell).expect("there");
-        assert_eq!(champion.evaluation.fitness, elite.fitness);
-        assert_eq!(archive.cell(&champion.evaluation, champion.trial.start_y_m), Some(cell));
-    }
     for member in exploration.front.members() {
         let champion = run.front_member(member.generation, member.individual).expect("there");
         assert_eq!(evaluate(&champion.genome, &champion.trial), member.evaluation);

@@ -40,11 +40,11 @@ impl CurrentRun {
         })
     }
 
-    /// The elite of an archive cell. The archive keeps point and fitness; the evaluation is computed again.
+    /// The elite of an archive cell. The archive keeps genes and fitness; the evaluation is computed again.
     pub fn elite(&self, cell: u32) -> Option<Champion> {
         let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
         let trial = self.trial_in(elite.generation);
-        let genome = self.settings().genome.genome_at(&elite.point, trial.genome_shape());
+        let genome = elite.genes.genome(&self.settings().genome, trial.genome_shape());
         let evaluation = caught(|| evaluate(&genome, &trial)).ok()?;
         let origin = self.origin(elite.generation, elite.individual);
         Some(Champion { genome, trial, evaluation, chosen_by: None, origin })

@@ -275,7 +275,7 @@ impl Palette {
             Role::Twist => self.twist,
             Role::Strategy(kind) => self.strategy(kind),
             Role::Share(share) => ramp(share),
-            Role::Species(_) => {
+            Role::Species(_) | Role::Red | Role::Blue => {
                 let [red, green, blue] = role_color(role);
                 Color32::from_rgb(red, green, blue)
             }

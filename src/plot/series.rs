@@ -1,0 +1,71 @@
+//! The series of a chart in a picture.
+
+use std::error::Error;
+
+use plotters::prelude::*;
+
+use super::paint::{BAND_OPACITY, DASH, FigureAxes, color_of};
+use super::{Role, Series, Shape};
+
+/// Draws a series into its axes.
+pub(super) fn paint_series(
+    axes: &mut FigureAxes<'_, '_>,
+    series: &Series,
+) -> Result<(), Box<dyn Error>> {
+    let color = color_of(series.role);
+    let pairs =
+        |points: &[[f64; 2]]| -> Vec<(f64, f64)> { points.iter().map(|&[x, y]| (x, y)).collect() };
+    match &series.shape {
+        Shape::Line(points) => {
+            let dot = if points.len() <= 60 { 3 } else { 0 };
+            let line = LineSeries::new(pairs(points), color.stroke_width(3)).point_size(dot);
+            axes.draw_series(line)?;
+        }
+        Shape::Dashed(points) => {
+            let style = color.stroke_width(2);
+            axes.draw_series(DashedLineSeries::new(pairs(points), DASH.0, DASH.1, style))?;
+        }
+        Shape::Points(points) => {
+            let is_crowd = series.role == Role::Others;
+            let (radius, style) =
+                if is_crowd { (2, color.mix(0.35)) } else { (5, color.to_rgba()) };
+            let dots = pairs(points).into_iter();
+            axes.draw_series(dots.map(|at| Circle::new(at, radius, style.filled())))?;
+        }
+        Shape::Band(ends) | Shape::Layer(ends) => {
+            let above = ends.iter().map(|&[x, _, high]| (x, high));
+            let below = ends.iter().rev().map(|&[x, low, _]| (x, low));
+            let edge: Vec<(f64, f64)> = above.clone().chain(below).collect();
+            let is_layer = matches!(series.shape, Shape::Layer(_));
+            let opacity = if is_layer { 1.0 } else { BAND_OPACITY.into() };
+            axes.draw_series([Polygon::new(edge, color.mix(opacity).filled())])?;
+            if is_layer {
+                // Keeps layers of similar colours apart.
+                axes.draw_series(LineSeries::new(above, WHITE.stroke_width(1)))?;
+            }
+        }
+        Shape::Bars { width, bars } => {
+            let half = width / 2.0;
+            let rectangle = |&[x, height]: &[f64; 2]| {
+                Rectangle::new([(x - half, 0.0), (x + half, height)], color.filled())
+            };
+            axes.draw_series(bars.iter().map(rectangle))?;
+        }
+        Shape::Boxes(boxes) => {
+            for &[left, right, bottom, top] in boxes {
+                let ends = [(left, bottom), (right, top)];
+                axes.draw_series([Rectangle::new(ends, color.filled())])?;
+                // Keeps neighbours of the same colour apart.
+                axes.draw_series([Rectangle::new(ends, WHITE.stroke_width(1))])?;
+            }
+        }
+        Shape::Cells(cells) => {
+            let rectangle = |&([left, right, bottom, top], share, _): &([f64; 4], f32, f64)| {
+                let color = color_of(Role::Share(share));
+                Rectangle::new([(left, bottom), (right, top)], color.filled())
+            };
+            axes.draw_series(cells.iter().map(rectangle))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,372 @@
+//! The snakes of each generation in bands, such as species, and two numbers of the best of them.
+
+use std::collections::BTreeMap;
+
+use super::fitness::generations;
+use super::view::{ChartHit, ChartView, HitShape};
+use crate::evolve::{IndividualId, Settings};
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use crate::run::GenerationReport;
+use crate::save::SpeciesCount;
+use crate::studio::commands::pick::Pick;
+
+/// Maximum number of generations that are drawn. Layers keep their height over a part of each, which takes two points.
+const MAX_DRAWN: usize = 600;
+/// Half of the width over which a layer keeps its height, in generations.
+const LEVEL: f64 = 0.25;
+
+/// What the bands are, and what is shown of the best snake of each generation.
+pub(super) struct Bands {
+    /// Title of the figure.
+    pub title: &'static str,
+    /// Name of the stack.
+    pub name: &'static str,
+    /// The first sentence of the note.
+    pub note: &'static str,
+    /// A band by its number, such as "Species 4".
+    pub band: fn(u32) -> String,
+    /// A number of bands, such as "3 species".
+    pub count: fn(usize) -> String,
+    /// Name of the snakes beyond the bands of the log.
+    pub rest: &'static str,
+    /// Head of the table's column of bands.
+    pub column: &'static str,
+    /// What is shown of the best snake.
+    pub best: BestNumbers,
+}
+
+/// Two numbers of the best snake of each generation.
+pub(super) struct BestNumbers {
+    /// Name of the chart.
+    pub name: &'static str,
+    /// Name of its vertical axis.
+    pub axis: &'static str,
+    /// Names of the numbers.
+    pub names: [&'static str; 2],
+    /// Heads of the table's columns.
+    pub columns: [&'static str; 2],
+    /// Both numbers; none for a generation without a best snake.
+    pub of: fn(&GenerationReport) -> Option<[f64; 2]>,
+    /// Both in words, a line for each.
+    pub words: fn([f64; 2]) -> String,
+}
+
+/// Chart of the finished generations. It is empty if their bands are not known.
+pub(super) fn view(
+    bands: &'static Bands,
+    settings: &Settings,
+    reports: &[GenerationReport],
+) -> ChartView {
+    let known: Vec<&GenerationReport> =
+        reports.iter().filter(|report| !report.species.is_empty()).collect();
+    let Some(latest) = known.last() else {
+        return ChartView::new(Figure::of_several(bands.title, Vec::new()), Vec::new());
+    };
+    let every = known.len().div_ceil(MAX_DRAWN).max(1);
+    // The latest one is always drawn.
+    let skipped = (known.len() - 1) % every;
+    let drawn: Vec<&GenerationReport> =
+        known.iter().skip(skipped).step_by(every).copied().collect();
+    let lives = lives(&known);
+    let x = Axis::count("Generation", generations(reports.len()));
+    let most = known.iter().map(|report| report.evaluations).max().unwrap_or(1);
+    let stack = Chart {
+        name: bands.name.to_owned(),
+        x: x.clone(),
+        y: Axis::count("Snakes", 0.0..=f64::from(most)),
+        series: layers(bands, &drawn, &lives),
+        marks: Vec::new(),
+    };
+    let unit = settings.trial.fitness.unit();
+    let of_report = |report: &&GenerationReport| hits(bands, report, &lives, unit, every as f64);
+    let hits = drawn.iter().flat_map(of_report).collect();
+    let (best, points) = best_numbers(&bands.best, &known, x);
+    let (now, ever) = (count_in_words(bands, latest), lives.len());
+    let note = format!(
+        "{} Generation {}: {now}. Recorded since the start: {ever}.",
+        bands.note, latest.generation
+    );
+    let figure = Figure {
+        note,
+        numbers: Some(rows(bands, &known, unit)),
+        ..Figure::of_several(bands.title, vec![stack, best])
+    };
+    ChartView::new(figure, vec![hits, points])
+}
+
+/// The first and the last generation of each band.
+type Lives = BTreeMap<u32, [u32; 2]>;
+
+fn lives(reports: &[&GenerationReport]) -> Lives {
+    let mut lives = Lives::new();
+    for report in reports {
+        for species in &report.species {
+            lives.entry(species.id).or_insert([report.generation; 2])[1] = report.generation;
+        }
+    }
+    lives
+}
+
+/// Number of snakes in bands before this one, and in it. The lower its number, the lower a band lies.
+fn place(species: &[SpeciesCount], id: u32) -> [u32; 2] {
+    let before = species.partition_point(|count| count.id < id);
+    let low = species[..before].iter().map(|count| count.size).sum();
+    let size = species.get(before).filter(|count| count.id == id).map_or(0, |count| count.size);
+    [low, size]
+}
+
+/// A layer for each band. It begins and ends with a point, in the generation before and in that after.
+fn layers(bands: &Bands, drawn: &[&GenerationReport], lives: &Lives) -> Vec<Series> {
+    let layer = |(&id, &[first, last]): (&u32, &[u32; 2])| {
+        let from = drawn.partition_point(|report| report.generation < first);
+        let to = drawn.partition_point(|report| report.generation <= last);
+        // Between two drawn generations.
+        if from == to {
+            return None;
+        }
+        let seen = drawn.get(from.saturating_sub(1)..(to + 1).min(drawn.len()))?;
+        let ends = seen.iter().flat_map(|report| {
+            let [low, size] = place(&report.species, id).map(f64::from);
+            let x = f64::from(report.generation);
+            [x - LEVEL, x + LEVEL].map(|x| [x, low, low + size])
+        });
+        Some(Series::new("", Role::Species(id), Shape::Layer(ends.collect())))
+    };
+    let species = lives.iter().filter_map(layer);
+    // The log has only the largest species of a generation.
+    let rest = drawn.iter().flat_map(|report| {
+        let low = report.species.iter().map(|count| count.size).sum::<u32>();
+        let x = f64::from(report.generation);
+        [x - LEVEL, x + LEVEL].map(|x| [x, f64::from(low), f64::from(report.evaluations.max(low))])
+    });
+    let rest: Vec<[f64; 3]> = rest.collect();
+    let has_rest = rest.iter().any(|[_, low, high]| high > low);
+    let rest = Series::new(bands.rest, Role::Others, Shape::Layer(rest));
+    species.chain(has_rest.then_some(rest)).collect()
+}
+
+/// Hover texts of the bands of a generation, which is drawn `width` generations wide.
+fn hits(
+    bands: &'static Bands,
+    report: &GenerationReport,
+    lives: &Lives,
+    unit: &'static str,
+    width: f64,
+) -> Vec<ChartHit> {
+    let (generation, evaluations) = (report.generation, report.evaluations);
+    let count = count_in_words(bands, report);
+    let x = f64::from(generation);
+    let hit = |species: &SpeciesCount| {
+        let SpeciesCount { id, size, best } = *species;
+        let [low, _] = place(&report.species, id).map(f64::from);
+        let area = [x - width / 2.0, x + width / 2.0, low, low + f64::from(size)];
+        let first = lives.get(&id).map_or(generation, |life| life[0]);
+        let (band, count) = ((bands.band)(id), count.clone());
+        let words = move || {
+            let best = match best {
+                Some(best) => format!("best {best:.2}{unit}"),
+                None => "all disqualified".to_owned(),
+            };
+            format!(
+                "{band} in generation {generation}\n{size} of {evaluations} snakes, {best}\nfirst in \
+                 generation {first}\n{count} in this generation"
+            )
+        };
+        ChartHit::new(HitShape::Area(area), words)
+    };
+    report.species.iter().map(hit).collect()
+}
+
+/// The number of bands of a generation: a record has only the largest of many.
+fn count_in_words(bands: &Bands, report: &GenerationReport) -> String {
+    let recorded: u32 = report.species.iter().map(|species| species.size).sum();
+    let count = (bands.count)(report.species.len());
+    match report.evaluations.saturating_sub(recorded) {
+        0 => count,
+        _ => format!("more than {count}"),
+    }
+}
+
+/// Two numbers of the best snake of each generation.
+fn best_numbers(
+    best: &'static BestNumbers,
+    reports: &[&GenerationReport],
+    x: Axis,
+) -> (Chart, Vec<ChartHit>) {
+    let known: Vec<(&GenerationReport, [f64; 2])> =
+        reports.iter().filter_map(|report| Some((*report, (best.of)(report)?))).collect();
+    let along = |index: usize| {
+        let point = |(report, numbers): &(&GenerationReport, [f64; 2])| {
+            [f64::from(report.generation), numbers[index]]
+        };
+        Shape::Line(known.iter().map(point).collect())
+    };
+    let most = known.iter().flat_map(|(_, numbers)| numbers).copied().fold(1.0, f64::max);
+    let hit = |(report, numbers): &(&GenerationReport, [f64; 2])| {
+        let (generation, numbers) = (report.generation, *numbers);
+        let individual = report.champion.as_ref()?.origin.individual;
+        let words =
+            move || format!("{} of generation {generation}\n{}", best.name, (best.words)(numbers));
+        let target = HitShape::Column([f64::from(generation), numbers[0]]);
+        let place = IndividualId { generation, individual };
+        Some(ChartHit::of(target, words, Pick::Generation(generation), place))
+    };
+    let hits = known.iter().filter_map(hit).collect();
+    let [first, second] = best.names;
+    let chart = Chart {
+        name: best.name.to_owned(),
+        x,
+        y: Axis::count(best.axis, -most * 0.06..=most * 1.12),
+        series: vec![
+            Series::new(first, Role::First, along(0)),
+            Series::new(second, Role::Second, along(1)),
+        ],
+        marks: Vec::new(),
+    };
+    (chart, hits)
+}
+
+/// Table with one row per band and generation.
+fn rows(bands: &Bands, reports: &[&GenerationReport], unit: &str) -> Vec<Vec<String>> {
+    let fitness = match unit.trim() {
+        "" => "best fitness".to_owned(),
+        unit => format!("best fitness ({unit})"),
+    };
+    let head = ["generation", bands.column, "snakes", &fitness];
+    let head = head.into_iter().chain(bands.best.columns).map(str::to_owned).collect();
+    let of_report = |report: &&GenerationReport| {
+        let numbers = (bands.best.of)(report);
+        let [first, second] =
+            [0, 1].map(|i| numbers.map_or(String::new(), |numbers| numbers[i].to_string()));
+        let generation = report.generation.to_string();
+        let row = move |species: &SpeciesCount| {
+            let best = species.best.map_or(String::new(), |best| best.to_string());
+            let (id, size) = (species.id.to_string(), species.size.to_string());
+            vec![generation.clone(), id, size, best, first.clone(), second.clone()]
+        };
+        report.species.iter().map(row).collect::<Vec<_>>()
+    };
+    [head].into_iter().chain(reports.iter().flat_map(of_report)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::panels::charts::species::SPECIES;
+    use crate::studio::state::current_run::species_run;
+
+    fn count(id: u32, size: u32) -> SpeciesCount {
+        SpeciesCount { id, size, best: Some(1.5) }
+    }
+
+    /// A run of 6 snakes with these species: the first number is the generation of the first report.
+    fn view_of(first: u32, generations: &[&[SpeciesCount]]) -> ChartView {
+        let run = species_run();
+        let of = |(generation, species): (u32, &&[SpeciesCount])| GenerationReport {
+            generation,
+            evaluations: 6,
+            species: species.to_vec(),
+            ..run.reports()[0].clone()
+        };
+        let reports: Vec<GenerationReport> = (first..).zip(generations).map(of).collect();
+        view(&SPECIES, run.settings(), &reports)
+    }
+
+    /// The points of the layer of a species.
+    fn layer(view: &ChartView, id: u32) -> Vec<[f64; 3]> {
+        let mut series = view.figure.charts[0].series.iter();
+        match series.find(|series| series.role == Role::Species(id)).map(|of| &of.shape) {
+            Some(Shape::Layer(ends)) => ends.clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_layer_lasts_from_birth_to_extinction_and_lies_on_the_older_ones() {
+        let generations: [&[_]; 5] = [
+            &[count(1, 6)],
+            &[count(1, 4), count(2, 2)],
+            &[count(2, 5), count(3, 1)],
+            &[count(3, 6)],
+            &[count(3, 6)],
+        ];
+        let view = view_of(1, &generations);
+        let expected = [
+            [0.75, 6.0, 6.0],
+            [1.25, 6.0, 6.0],
+            [1.75, 4.0, 6.0],
+            [2.25, 4.0, 6.0],
+            [2.75, 0.0, 5.0],
+            [3.25, 0.0, 5.0],
+            [3.75, 0.0, 0.0],
+            [4.25, 0.0, 0.0],
+        ];
+        assert_eq!(layer(&view, 2), expected);
+        assert_eq!(layer(&view, 1).last(), Some(&[3.25, 0.0, 0.0]));
+        assert_eq!(layer(&view, 3)[0], [1.75, 6.0, 6.0], "it is born in generation 3");
+        assert!(
+            view.figure.note.ends_with("Generation 5: 1 species. Recorded since the start: 3.")
+        );
+    }
+
+    #[test]
+    fn a_generation_of_neat_is_stacked_without_gaps() {
+        let run = species_run();
+        let view = view(&SPECIES, run.settings(), run.reports());
+        for report in run.reports() {
+            assert!(report.species.len() > 1, "{:?}", report.species);
+            let at = f64::from(report.generation) + LEVEL;
+            let mut top = 0.0;
+            for species in &report.species {
+                let ends = layer(&view, species.id);
+                let [_, low, high] = ends.iter().find(|end| end[0] == at).expect("there");
+                assert_eq!((*low, high - low), (top, f64::from(species.size)));
+                top = *high;
+            }
+            assert_eq!(top, f64::from(report.evaluations));
+        }
+        let [network] = &view.figure.charts[1..] else { panic!("two charts") };
+        let Shape::Line(links) = &network.series[0].shape else { panic!("a line") };
+        // In the first generation each of 21 inputs is linked to each of 4 outputs.
+        assert_eq!(links[0], [1.0, 84.0]);
+        let words = view.hits[1][0].words();
+        assert_eq!(words, "Best network of generation 1\n84 links\n0 hidden nodes");
+    }
+
+    #[test]
+    fn a_species_has_a_hover_text_and_rows_in_the_table() {
+        let few: &[_] = &[count(4, 2), SpeciesCount { best: None, ..count(9, 1) }];
+        let view = view_of(7, &[few]);
+        let words: Vec<String> = view.hits[0].iter().map(ChartHit::words).collect();
+        let expected = "Species 4 in generation 7\n2 of 6 snakes, best 1.50 m\nfirst in generation 7\n\
+                        more than 2 species in this generation";
+        assert_eq!(words[0], expected);
+        assert!(words[1].contains("1 of 6 snakes, all disqualified"));
+        let table = view.figure.table();
+        assert_eq!(table[0][..4], ["generation", "species", "snakes", "best fitness (m)"]);
+        assert_eq!(table[1][..5], ["7", "4", "2", "1.5", "84"]);
+        assert_eq!(table[2][..4], ["7", "9", "1", ""]);
+        let names: Vec<&str> = view.figure.listed().iter().map(|series| &*series.name).collect();
+        assert!(names.contains(&"smaller species"), "3 of 6 snakes are in none: {names:?}");
+    }
+
+    #[test]
+    fn logs_without_species_give_an_empty_chart_until_their_run_continues() {
+        assert!(view_of(1, &[&[], &[]]).figure.is_empty());
+        let view = view_of(1, &[&[], &[], &[count(5, 6)]]);
+        assert_eq!(layer(&view, 5), [[2.75, 0.0, 6.0], [3.25, 0.0, 6.0]]);
+    }
+
+    #[test]
+    fn ten_thousand_generations_are_thinned_out_together() {
+        let [even, odd] = [[count(1, 4), count(2, 2)], [count(1, 1), count(2, 5)]];
+        let all: Vec<&[SpeciesCount]> =
+            (0..10_000).map(|i| if i % 2 == 0 { &even[..] } else { &odd[..] }).collect();
+        let view = view_of(1, &all);
+        let (lower, upper) = (layer(&view, 1), layer(&view, 2));
+        assert!(lower.len() <= 2 * MAX_DRAWN && lower.len() > MAX_DRAWN, "{}", lower.len());
+        assert_eq!(lower.last().map(|end| end[0]), Some(10_000.0 + LEVEL));
+        assert!(lower.iter().zip(&upper).all(|(a, b)| a[0] == b[0] && a[2] == b[1]));
+        assert_eq!(view.figure.table().len(), 20_001);
+    }
+}

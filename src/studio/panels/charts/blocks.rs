@@ -1,0 +1,61 @@
+//! Numbers of blocks of evolving bodies, and the growth of the best body.
+
+use super::bands::{Bands, BestNumbers};
+use crate::run::GenerationReport;
+
+/// Numbers of blocks by generation.
+pub(super) static BLOCKS: Bands = Bands {
+    title: "Blocks by generation",
+    name: "Blocks",
+    note: "Each band is a number of blocks; its height is the number of snakes that have it.",
+    band: |blocks| format!("Bodies of {blocks} blocks"),
+    count: |count| format!("{count} {}", if count == 1 { "number" } else { "numbers" }),
+    rest: "others",
+    column: "blocks",
+    best: BestNumbers {
+        name: "Best body",
+        axis: "Blocks, and length in m",
+        names: ["blocks of the best body", "its length in m"],
+        columns: ["blocks of the best body", "length of the best body (m)"],
+        of: body_size,
+        words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
+    },
+};
+
+/// Number of blocks and length in metres of the best snake.
+fn body_size(report: &GenerationReport) -> Option<[f64; 2]> {
+    let champion = report.champion.as_ref()?;
+    let body = champion.body();
+    Some([body.limbs.len() as f64, f64::from(body.length_m())])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::panels::charts::bands::view;
+    use crate::studio::state::current_run::bodies_run;
+
+    #[test]
+    fn every_snake_is_in_the_band_of_its_number_of_blocks() {
+        let run = bodies_run();
+        let generation = run.exploration().expect("explored").generation.as_ref().expect("two");
+        let report = run.reports().last().expect("two generations");
+        for band in &report.species {
+            let blocks = generation.genomes.iter().map(|genome| genome.body.segments.len());
+            let count = blocks.filter(|blocks| *blocks == band.id as usize).count();
+            assert_eq!(band.size as usize, count, "{} blocks", band.id);
+        }
+        let all: u32 = report.species.iter().map(|band| band.size).sum();
+        assert_eq!(all, report.evaluations);
+        let view = view(&BLOCKS, run.settings(), run.reports());
+        let words = view.hits[0][0].words();
+        assert!(words.starts_with("Bodies of 2 blocks in generation 1\n"), "{words}");
+        let best = view.hits[1][0].words();
+        let blocks =
+            run.reports()[0].champion.as_ref().expect("healthy").genome.body.segments.len();
+        assert!(
+            best.starts_with(&format!("Best body of generation 1\n{blocks} blocks\n")),
+            "{best}"
+        );
+    }
+}

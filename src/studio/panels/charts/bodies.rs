@@ -1,0 +1,276 @@
+//! The ancestry of the best body as a row of pictures, one at every change of its structure.
+
+use std::sync::Arc;
+
+use super::view::{ChartHit, ChartView, HitShape};
+use crate::evolve::{IndividualId, Settings};
+use crate::genome::{BodyChange, Genome};
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use crate::run::{Ancestor, Ancestry, GenerationReport};
+use crate::studio::commands::pick::Pick;
+
+/// Maximum number of bodies that are drawn; the earliest are left out.
+const MAX_BODIES: usize = 24;
+/// Half of the width that a block of one metre has in the chart, in columns.
+const HALF_METRE: f64 = 0.2;
+
+/// The first individual with a structure.
+struct Structure {
+    place: IndividualId,
+    genome: Arc<Genome>,
+    fitness: Option<f32>,
+    /// Fitness of its parent, or of the record before.
+    before: Option<f32>,
+    /// What changed, in words.
+    change: String,
+}
+
+/// Chart of the structures in the line of the best snake, or, where snakes have no parents, of the best snakes so far.
+pub(super) fn view(
+    settings: &Settings,
+    reports: &[GenerationReport],
+    ancestry: &Ancestry,
+) -> ChartView {
+    let is_line = ancestry.line.len() > 1;
+    let mut structures = if is_line { of_line(ancestry) } else { of_records(reports) };
+    let left_out = structures.len().saturating_sub(MAX_BODIES);
+    structures.drain(..left_out);
+    let agent = &settings.trial.agent;
+    let mut blocks: [Vec<[f64; 4]>; 2] = Default::default();
+    let (mut hits, mut tallest_m) = (Vec::new(), 1.0_f64);
+    for (column, structure) in (1..).zip(&structures) {
+        let (body, x) = (agent.body_plan(&structure.genome), f64::from(column));
+        let length_m = f64::from(body.length_m());
+        tallest_m = tallest_m.max(length_m);
+        let mut top_m = length_m;
+        for (index, limb) in body.limbs.iter().enumerate() {
+            let half = HALF_METRE * f64::from(limb.width_m);
+            let bottom_m = top_m - f64::from(limb.length_m);
+            blocks[index % 2].push([x - half, x + half, bottom_m, top_m]);
+            top_m = bottom_m;
+        }
+        let unit = settings.trial.fitness.unit();
+        let words = words(structure, body.limbs.len(), length_m, unit);
+        let area = HitShape::Area([x - 0.45, x + 0.45, 0.0, length_m]);
+        let pick = Pick::Individual(structure.place);
+        hits.push(ChartHit::of(area, move || words.clone(), pick, structure.place));
+    }
+    let [red, blue] = blocks;
+    let columns = structures.len().max(4) as f64;
+    let chart = Chart {
+        name: String::new(),
+        x: Axis::count(if is_line { "Structure" } else { "Best body" }, 0.4..=columns + 0.6),
+        y: Axis::new("Length", "m", 0.0..=tallest_m * 1.05),
+        series: vec![
+            Series::new("first, third, fifth block", Role::Red, Shape::Boxes(red)),
+            Series::new("second, fourth block", Role::Blue, Shape::Boxes(blue)),
+        ],
+        marks: Vec::new(),
+    };
+    let kind = if is_line {
+        "Each column is a structure in the line of the best snake, the oldest on the left, seen from above with the head at \
+         the top."
+    } else {
+        "Each column is the best snake so far with another structure, the oldest on the left, seen from above with the head \
+         at the top."
+    };
+    let earlier = match left_out {
+        0 => String::new(),
+        count => format!(" {count} earlier ones are not shown."),
+    };
+    let figure = Figure {
+        note: format!("{kind}{earlier}"),
+        numbers: Some(rows(settings, &structures)),
+        ..Figure::of("Ancestry of the best body", chart)
+    };
+    ChartView::new(figure, vec![hits])
+}
+
+fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> String {
+    let IndividualId { generation, individual } = structure.place;
+    let fitness = match (structure.fitness, structure.before) {
+        (Some(fitness), Some(before)) => {
+            format!("fitness {fitness:.2}{unit} ({:+.2})", fitness - before)
+        }
+        (Some(fitness), None) => format!("fitness {fitness:.2}{unit}"),
+        (None, _) => "disqualified".to_owned(),
+    };
+    format!(
+        "Generation {generation}, snake {}\n{}\n{blocks} blocks, {length_m:.1} m long\n{fitness}",
+        individual + 1,
+        structure.change
+    )
+}
+
+/// The ids of the blocks.
+fn ids(genome: &Genome) -> Vec<u64> {
+    genome.body.segments.iter().map(|segment| segment.id).collect()
+}
+
+/// The structures in a line of descent, the oldest first, as far as genomes are known.
+fn of_line(ancestry: &Ancestry) -> Vec<Structure> {
+    let known = |ancestor: &Arc<Ancestor>| Some((Arc::clone(ancestor), ancestor.genome.clone()?));
+    let line: Vec<(Arc<Ancestor>, Arc<Genome>)> =
+        ancestry.line.iter().rev().filter_map(known).collect();
+    let mut structures: Vec<Structure> = Vec::new();
+    let mut parent: Option<&(Arc<Ancestor>, Arc<Genome>)> = None;
+    for child in &line {
+        let (ancestor, genome) = child;
+        let change = match parent {
+            None => Some("the first known ancestor".to_owned()),
+            Some((_, from)) if ids(from) == ids(genome) => None,
+            Some((_, from)) => Some(in_words(from, genome)),
+        };
+        if let Some(change) = change {
+            structures.push(Structure {
+                place: ancestor.place,
+                genome: Arc::clone(genome),
+                fitness: ancestor.fitness,
+                before: parent.and_then(|(parent, _)| parent.fitness),
+                change,
+            });
+        }
+        parent = Some(child);
+    }
+    structures
+}
+
+/// The change between a parent and a child of another structure.
+fn in_words(parent: &Genome, child: &Genome) -> String {
+    match BodyChange::between(parent, child) {
+        Some(change) => change.words().to_owned(),
+        None => "another structure".to_owned(),
+    }
+}
+
+/// The records of a run whose number of blocks differs from that of the record before.
+fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
+    let (mut structures, mut best): (Vec<Structure>, Option<f32>) = (Vec::new(), None);
+    for report in reports {
+        let Some(champion) = &report.champion else { continue };
+        let fitness = champion.evaluation.fitness;
+        if best.is_some_and(|best| fitness <= best) {
+            continue;
+        }
+        let last = structures.last().map(|last| ids(&last.genome));
+        if last != Some(ids(&champion.genome)) {
+            structures.push(Structure {
+                place: IndividualId {
+                    generation: champion.origin.generation,
+                    individual: champion.origin.individual,
+                },
+                genome: Arc::new(champion.genome.clone()),
+                fitness: Some(fitness),
+                before: best,
+                change: "best so far".to_owned(),
+            });
+        }
+        best = Some(fitness);
+    }
+    structures
+}
+
+/// Table with one row per structure.
+fn rows(settings: &Settings, structures: &[Structure]) -> Vec<Vec<String>> {
+    let fitness = match settings.trial.fitness.unit().trim() {
+        "" => "fitness".to_owned(),
+        unit => format!("fitness ({unit})"),
+    };
+    let head = ["generation", "snake", "change", "blocks", "length (m)", &fitness, "gain"];
+    let row = |structure: &Structure| {
+        let body = settings.trial.agent.body_plan(&structure.genome);
+        let number = |value: Option<f32>| value.map_or(String::new(), |value| value.to_string());
+        let gain =
+            structure.fitness.zip(structure.before).map(|(fitness, before)| fitness - before);
+        vec![
+            structure.place.generation.to_string(),
+            (structure.place.individual + 1).to_string(),
+            structure.change.clone(),
+            body.limbs.len().to_string(),
+            body.length_m().to_string(),
+            number(structure.fitness),
+            number(gain),
+        ]
+    };
+    [head.map(str::to_owned).to_vec()].into_iter().chain(structures.iter().map(row)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{Parents, RunPlan, StrategyKind};
+    use crate::genome::ControllerKind;
+    use crate::rng::{Purpose, stream};
+
+    fn settings() -> Settings {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::BodyGa;
+        settings.genome.controller = ControllerKind::Gait;
+        settings.genome.bodies.vary = true;
+        settings
+    }
+
+    /// A line of descent: each child changes its parent's body as the list says, or one of its genes.
+    fn line(changes: &[Option<BodyChange>]) -> Ancestry {
+        let plan = RunPlan::new("test", 1, settings());
+        let (space, shape) = (&plan.settings.genome, plan.settings.trial.genome_shape());
+        let rng = |individual| stream(5, 1, individual, Purpose::Mutation);
+        let mut drawn = (0..50).map(|individual| space.random_genome(shape, &mut rng(individual)));
+        let mut genome = drawn.find(|of| of.body.segments.len() == 5).expect("one in eleven");
+        let mut line = Vec::new();
+        for (generation, change) in (1..).zip([None].iter().chain(changes)) {
+            if let Some(change) = change {
+                let child = |individual| {
+                    space.with_body_change(
+                        &genome,
+                        *change,
+                        &mut rng(generation * 100 + individual),
+                    )
+                };
+                genome = (0..50).find_map(child).expect("allowed");
+            }
+            line.insert(
+                0,
+                Arc::new(Ancestor {
+                    place: IndividualId { generation, individual: 3 },
+                    fitness: Some(generation as f32 / 10.0),
+                    genome: Some(Arc::new(genome.clone())),
+                    parents: Parents::Unknown,
+                }),
+            );
+        }
+        Ancestry { line, ..Ancestry::default() }
+    }
+
+    #[test]
+    fn each_change_of_structure_has_its_picture_and_its_name() {
+        use BodyChange::{Duplicate, Insert, Resize, Split};
+        let changes = [None, Some(Split), Some(Resize), Some(Duplicate), None, Some(Insert)];
+        let view = view(&settings(), &[], &line(&changes));
+        let words: Vec<String> = view.hits[0].iter().map(ChartHit::words).collect();
+        let expected = ["the first known ancestor", "split", "duplicated", "inserted"];
+        assert_eq!(words.len(), expected.len(), "{words:?}");
+        for (words, expected) in words.iter().zip(expected) {
+            assert!(words.contains(expected), "{words}");
+        }
+        assert!(words[1].starts_with("Generation 3, snake 4\n"), "{}", words[1]);
+        assert!(words[1].ends_with("fitness 0.30 m (+0.10)"), "{}", words[1]);
+        assert_eq!(view.figure.table().len(), 5);
+        let Shape::Boxes(red) = &view.figure.charts[0].series[0].shape else { panic!("boxes") };
+        let Shape::Boxes(blue) = &view.figure.charts[0].series[1].shape else { panic!("boxes") };
+        let in_column = |boxes: &[[f64; 4]], column: f64| {
+            boxes.iter().filter(|of| (of[0] + of[1]) / 2.0 - column < 0.5 && of[1] > column).count()
+        };
+        let blocks = |column: f64| in_column(red, column) + in_column(blue, column);
+        assert_eq!(blocks(2.0), blocks(1.0) + 1, "a split is a block more");
+    }
+
+    #[test]
+    fn without_parents_the_records_of_the_run_are_shown() {
+        let run = crate::studio::state::current_run::bodies_run();
+        let view = view(run.settings(), run.reports(), &Ancestry::default());
+        let words = view.hits[0][0].words();
+        assert!(words.contains("best so far"), "{words}");
+        assert!(view.figure.note.contains("best snake so far"), "{}", view.figure.note);
+    }
+}
