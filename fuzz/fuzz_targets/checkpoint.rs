@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
 use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume};
+use snakes_and_stairs::genome::ControllerKind;
 use snakes_and_stairs::save::{fingerprint, parse_checkpoint};
 
 /// A plan for each strategy, and its fingerprint.
@@ -16,6 +17,13 @@ fn plan(strategy: StrategyKind) -> (RunPlan, String) {
     settings.evolution.strategy = strategy;
     if let Some(controller) = strategy.controllers().next() {
         settings.genome.controller = controller;
+    }
+    settings.genome.bodies.vary = strategy.info().varies_bodies;
+    if settings.genome.bodies.vary {
+        settings.genome.controller = ControllerKind::Gait;
+        settings.genome.bodies.limbs_max = 3;
+        settings.evolution.islands.candidates = 4;
+        settings.evolution.generations = 40;
     }
     settings.evolution.population = 3;
     settings.trial.duration_s = 0.1;

@@ -20,20 +20,23 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
     });
     bar.finish_and_clear();
     let computed = computed?;
-    let expected: Vec<&str> =
-        reference.trajectories.iter().map(|trajectory| trajectory.hash.as_str()).collect();
-    let rows = computed.trajectories.iter().zip(&expected);
-    let all = computed.trajectories.len().max(expected.len());
-    let differ = all - rows.clone().filter(|(found, expected)| found.hash == **expected).count();
+    // By their names: a case that was added would otherwise be compared with its neighbour.
+    let expected = |what: &str| -> Option<&str> {
+        let known = reference.trajectories.iter().find(|trajectory| trajectory.what == what)?;
+        Some(known.hash.as_str())
+    };
+    let rows = || computed.trajectories.iter().map(|found| (found, expected(&found.what)));
+    let all = computed.trajectories.len().max(reference.trajectories.len());
+    let differ = all - rows().filter(|(found, known)| Some(found.hash.as_str()) == *known).count();
     let fingerprint = computed.fingerprint();
     let agrees = computed == reference;
     if args.json {
-        for (found, expected) in rows {
+        for (found, known) in rows() {
             let line = serde_json::json!({
                 "what": found.what,
                 "hash": found.hash,
-                "reference": expected,
-                "agrees": found.hash == **expected,
+                "reference": known,
+                "agrees": Some(found.hash.as_str()) == known,
             });
             print(&format!("{line}\n"))?;
         }
@@ -49,8 +52,12 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
     } else {
         let width = computed.trajectories.iter().map(|t| t.what.chars().count()).max().unwrap_or(0);
         let mut text = format!("{:<width$}  hash of this machine  reference\n", "trajectory");
-        for (found, expected) in rows {
-            let verdict = if found.hash == **expected { "the same" } else { expected };
+        for (found, known) in rows() {
+            let verdict = match known {
+                Some(known) if found.hash == known => "the same",
+                Some(known) => known,
+                None => "none",
+            };
             text += &format!("{:<width$}  {:<20}  {verdict}\n", found.what, found.hash);
         }
         text += &format!("\nfingerprint  {fingerprint}  (engine {})\n", Engine::THIS);
@@ -58,7 +65,7 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
             text += &format!(
                 "This machine computes the reference's bits in all {} trajectories: champions \
                  saved on other machines replay exactly here, and yours replay exactly there.\n",
-                expected.len()
+                all
             );
         }
         print(&text)?;

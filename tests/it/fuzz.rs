@@ -8,7 +8,8 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::FileFailurePersistence;
 use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
-use snakes_and_stairs::genome::ControllerKind;
+use snakes_and_stairs::genome::{BodyChange, ControllerKind, GenomeSpace, MOST_SEGMENTS};
+use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::{
     fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_lineage,
     parse_plan, parse_preset, parse_records,
@@ -146,6 +147,34 @@ fn every_champion_file_gives_a_champion_or_one_line() {
     read_corpus("champion", parse_champion);
 }
 
+/// A champion with these blocks. Its gait has waves for the joints of five.
+fn with_blocks(blocks: &str) -> String {
+    let champion = include_str!("../../fuzz/corpus/champion/bodies");
+    let (before, rest) = champion.split_once("segments: [(").expect("blocks");
+    let (_, behind) = rest.split_once(")],").expect("their end");
+    format!("{before}segments: {blocks},{behind}")
+}
+
+/// Blocks that are accepted can be built, and every change of them stays within the limits of a space that has them.
+#[test]
+fn every_list_of_blocks_gives_a_body_or_one_line() {
+    read_corpus("body", |path, blocks| {
+        parse_champion(path, &with_blocks(blocks)).map(|loaded| {
+            let genome = &loaded.champion.genome;
+            let parts = loaded.champion.body().limbs.len();
+            assert!(parts <= MOST_SEGMENTS as usize, "{parts} parts");
+            let space = GenomeSpace { controller: ControllerKind::Gait, ..GenomeSpace::default() };
+            let space = space.widened_for(genome);
+            for (number, (change, _)) in (0..).zip(BodyChange::RATES) {
+                let mut rng = stream(1, 1, number, Purpose::Mutation);
+                if let Some(child) = space.with_body_change(genome, change, &mut rng) {
+                    child.body.check().expect("within the limits");
+                }
+            }
+        })
+    });
+}
+
 #[test]
 fn every_preset_file_gives_a_preset_or_one_line() {
     read_corpus("preset", parse_preset);
@@ -177,11 +206,20 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
         (StrategyKind::Xcs, ControllerKind::Decisions, "xcs"),
         (StrategyKind::Xcs, ControllerKind::JointDecisions, "xcs-per-joint"),
         (StrategyKind::Zcs, ControllerKind::Decisions, "zcs"),
+        (StrategyKind::BodyGa, ControllerKind::Gait, "body-ga"),
+        (StrategyKind::BodyMapElites, ControllerKind::Gait, "body-map-elites"),
+        (StrategyKind::Islands, ControllerKind::Gait, "islands"),
     ] {
         let (mut plan, _) = plan();
         plan.settings.evolution.strategy = strategy;
         plan.settings.genome.controller = controller;
         plan.settings.evolution.population = 4;
+        if strategy.info().varies_bodies {
+            plan.settings.genome.bodies.vary = true;
+            plan.settings.genome.bodies.limbs_max = 3;
+            plan.settings.evolution.islands.candidates = 4;
+            plan.settings.evolution.generations = 40;
+        }
         plan.settings.evolution.xcs.rules = 20;
         plan.settings.evolution.zcs.rules = 20;
         let fingerprint = fingerprint(&plan);

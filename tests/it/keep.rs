@@ -22,6 +22,11 @@ use super::program::{folder, json_lines, run, snakes, with_slashes};
 /// So short that most of the time goes into writing.
 const TINY: &str = "--no-render --json --preset report --population 4 --generations 40 --duration 0.2 \
                     --threads 2";
+/// What lets bodies evolve in such a run.
+const WITH_BODIES: &str = "--set controller=gait --set bodies.vary=true --set limbs_max=3";
+
+/// Number of runs that are killed: each of nine strategies seven times, three of which vary bodies.
+const ROUNDS: usize = 63;
 
 /// The only run in a folder of saves, if there is one yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
@@ -69,15 +74,26 @@ fn kill_after(generations: usize, delay: Duration, folder: &Path, arguments: &st
 #[test]
 fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let saves = folder();
+    let of_bodies = ["body_ga", "body_map_elites", "islands"];
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
-    let tiny = |strategy: &str| format!("{TINY} --set strategy={strategy}");
-    let expected = strategies.map(|strategy| {
+    let strategies: Vec<&str> = strategies.into_iter().chain(of_bodies).collect();
+    let tiny = |strategy: &str| {
+        let bodies = match strategy {
+            // Only they have settings for the number of candidates that take effect.
+            "islands" => format!("{WITH_BODIES} --set candidates=4"),
+            of if of_bodies.contains(&of) => WITH_BODIES.to_owned(),
+            _ => String::new(),
+        };
+        format!("{TINY} --set strategy={strategy} {bodies}")
+    };
+    let expected = strategies.iter().map(|strategy| {
         let lines = json_lines(saves.path(), &format!("{} --out {strategy}", tiny(strategy)));
         lines.last().expect("lines")["run_hash"].clone()
     });
+    let expected: Vec<_> = expected.collect();
     let mut rng = stream(1, 0, 0, Purpose::Calibration);
     let mut killed_on_the_way = 0;
-    for round in 0..50 {
+    for round in 0..ROUNDS {
         let out = format!("out-{round}");
         // Each strategy in turn.
         let (strategy, expected) =
@@ -111,8 +127,8 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
             unfinished.filter(|file| file.file_name().to_string_lossy().starts_with('.'));
         assert_eq!(unfinished.count(), 0, "incomplete files of a kill are removed");
     }
-    assert!(killed_on_the_way >= 40, "only {killed_on_the_way} of 50 were killed on the way");
-    println!("killed on the way: {killed_on_the_way} of 50");
+    assert!(killed_on_the_way * 5 >= ROUNDS * 4, "{killed_on_the_way} of {ROUNDS} on the way");
+    println!("killed on the way: {killed_on_the_way} of {ROUNDS}");
 }
 
 /// Changes during a tiny run: the first generation that uses it, the setting, the value.

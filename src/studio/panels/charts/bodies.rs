@@ -25,14 +25,19 @@ struct Structure {
     change: String,
 }
 
-/// Chart of the structures in the line of the best snake, or, where snakes have no parents, of the best snakes so far.
+/// Chart of the structures in the line of the best snake, or, where snakes have no known parents, of the best snakes so far.
 pub(super) fn view(
     settings: &Settings,
     reports: &[GenerationReport],
-    ancestry: &Ancestry,
+    ancestry: Option<&Ancestry>,
 ) -> ChartView {
-    let is_line = ancestry.line.len() > 1;
-    let mut structures = if is_line { of_line(ancestry) } else { of_records(reports) };
+    let ancestry = ancestry.filter(|of| of.line.len() > 1);
+    let mut structures = ancestry.map(of_line).unwrap_or_default();
+    // Genomes that an earlier session found are unknown, but those of champions.
+    let is_line = !structures.is_empty();
+    if !is_line {
+        structures = of_records(reports);
+    }
     let left_out = structures.len().saturating_sub(MAX_BODIES);
     structures.drain(..left_out);
     let agent = &settings.trial.agent;
@@ -246,7 +251,7 @@ mod tests {
     fn each_change_of_structure_has_its_picture_and_its_name() {
         use BodyChange::{Duplicate, Insert, Resize, Split};
         let changes = [None, Some(Split), Some(Resize), Some(Duplicate), None, Some(Insert)];
-        let view = view(&settings(), &[], &line(&changes));
+        let view = view(&settings(), &[], Some(&line(&changes)));
         let words: Vec<String> = view.hits[0].iter().map(ChartHit::words).collect();
         let expected = ["the first known ancestor", "split", "duplicated", "inserted"];
         assert_eq!(words.len(), expected.len(), "{words:?}");
@@ -268,7 +273,7 @@ mod tests {
     #[test]
     fn without_parents_the_records_of_the_run_are_shown() {
         let run = crate::studio::state::current_run::bodies_run();
-        let view = view(run.settings(), run.reports(), &Ancestry::default());
+        let view = view(run.settings(), run.reports(), None);
         let words = view.hits[0][0].words();
         assert!(words.contains("best so far"), "{words}");
         assert!(view.figure.note.contains("best snake so far"), "{}", view.figure.note);

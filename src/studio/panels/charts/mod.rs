@@ -261,7 +261,9 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
         ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
         ChartKind::Species => Some(bands::view(&SPECIES, settings, run.reports())),
         ChartKind::Blocks => Some(bands::view(&BLOCKS, settings, run.reports())),
-        ChartKind::Bodies => Some(bodies::view(settings, run.reports(), &exploration?.ancestry)),
+        ChartKind::Bodies => {
+            Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
+        }
         ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),
