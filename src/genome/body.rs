@@ -52,6 +52,11 @@ impl BodyGenes {
         }
     }
 
+    /// Genes of a body with these blocks of its own.
+    pub fn of_blocks(segments: Vec<Segment>) -> Self {
+        Self { segments, ..Self::ZEROED }
+    }
+
     /// Checks every value.
     ///
     /// # Errors

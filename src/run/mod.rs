@@ -28,6 +28,7 @@ pub mod robust;
 mod run_control;
 mod sign_test;
 pub mod table1;
+mod tune;
 pub mod verify;
 mod whole_runs;
 
@@ -48,3 +49,4 @@ pub use recorder::{ChangeError, RecordedRun, RunRecorder, RunSource};
 pub use replay::{difference_from_record, replay};
 pub use report::{Crash, GenerationReport, Quartiles, Statistics};
 pub use run_control::{Cancelled, RunControl};
+pub use tune::{Tuned, tune_controller};

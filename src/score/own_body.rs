@@ -1,7 +1,8 @@
 //! The built body of a genome with blocks of its own.
 
 use super::AgentSettings;
-use crate::genome::Segment;
+use crate::genome::{BodyGenes, ControllerKind, Genome, Segment};
+use crate::schema::PerPart;
 use crate::world::{BodyPlan, JointPlan, LimbPlan};
 
 /// The body of some blocks, with the torques, the damping and the softness of the agent's joints.
@@ -54,6 +55,40 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
     }
 }
 
+impl AgentSettings {
+    /// A genome with the same body as blocks of its own, if its controller follows a changing body: then every block can be
+    /// changed by itself. A genome that has its own blocks stays as it is. None for other controllers, and for joints that
+    /// differ in their torques.
+    pub fn with_own_blocks(&self, genome: &Genome) -> Option<Genome> {
+        if genome.body.has_own_blocks() {
+            return Some(genome.clone());
+        }
+        let kind = genome.controller.kind();
+        let torques = [&self.max_bend_torque_nm, &self.max_twist_torque_nm];
+        let are_alike = torques.iter().all(|torque| matches!(torque, PerPart::All(_)));
+        if !matches!(kind, ControllerKind::Wave | ControllerKind::Gait) || !are_alike {
+            return None;
+        }
+        let body = self.body_plan(genome);
+        let segment = |(index, limb): (usize, &LimbPlan)| {
+            // The head's joint waits until a block comes before it.
+            let joint = body.joints.iter().find(|joint| joint.child == index.max(1));
+            Segment {
+                id: index as u64 + 1,
+                length_m: limb.length_m,
+                width_m: limb.width_m,
+                height_m: limb.height_m,
+                density_kg_m3: limb.density_kg_m3,
+                bend_limit_rad: joint.map_or(0.0, |joint| joint.bend_limit_rad),
+                twist_limit_rad: joint.map_or(0.0, |joint| joint.twist_limit_rad),
+                strength: 1.0,
+            }
+        };
+        let segments = body.limbs.iter().enumerate().map(segment).collect();
+        Some(Genome { body: BodyGenes::of_blocks(segments), ..genome.clone() })
+    }
+}
+
 /// Length of a block relative to the height of its neighbours below which these pass through each other: a bend of the
 /// joints between them would press their edges together, and block them.
 const SHORT_MIDDLE: f32 = 0.6;
@@ -96,6 +131,18 @@ mod tests {
             contact_free_pairs(&[block(2.0, 0.4), block(0.7, 0.4), block(2.0, 1.5)]),
             [[0, 2]]
         );
+    }
+
+    #[test]
+    fn a_snake_with_blocks_of_its_own_has_the_same_body() {
+        let champion = crate::save::shipped_champion().expect("shipped").champion;
+        let agent = &champion.trial.agent;
+        let own = agent.with_own_blocks(&champion.genome).expect("a gait");
+        let (body, expected) = (agent.body_plan(&own), agent.body_plan(&champion.genome));
+        assert_eq!(body.limbs, expected.limbs);
+        assert_eq!(body.joints, expected.joints);
+        assert_eq!(own.body.check(), Ok(()));
+        assert_eq!(agent.with_own_blocks(&own), Some(own));
     }
 
     /// Torque and damping by the cross-section of the weaker block and its height; the gap by the smallest side.

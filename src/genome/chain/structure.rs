@@ -55,6 +55,12 @@ impl BodyChange {
         }
     }
 
+    /// Number of places at which a body of this number of blocks can have this change: its blocks, or pairs of neighbours.
+    fn places(self, blocks: usize) -> usize {
+        let pairs = matches!(self, Self::Merge | Self::Insert);
+        if pairs { blocks.saturating_sub(1) } else { blocks }
+    }
+
     /// What it did to a block, in words.
     pub fn words(self) -> &'static str {
         match self {
@@ -107,14 +113,26 @@ impl GenomeSpace {
         change: BodyChange,
         rng: &mut ChaCha8Rng,
     ) -> Option<Genome> {
-        let mut child = parent.clone();
-        let count = child.body.segments.len();
-        let pairs = matches!(change, BodyChange::Merge | BodyChange::Insert);
-        let places = if pairs { count.checked_sub(1)? } else { count };
+        let places = change.places(parent.body.segments.len());
         if places == 0 {
             return None;
         }
         let place = rng.random_range(0..places);
+        self.with_body_change_at(parent, change, place, rng)
+    }
+
+    /// The same at this place: the index of the block, or of the first of two.
+    pub fn with_body_change_at(
+        &self,
+        parent: &Genome,
+        change: BodyChange,
+        place: usize,
+        rng: &mut ChaCha8Rng,
+    ) -> Option<Genome> {
+        if place >= change.places(parent.body.segments.len()) {
+            return None;
+        }
+        let mut child = parent.clone();
         let mut editor = BodyEditor {
             waves: waves_mut(&mut child.controller)?,
             segments: &mut child.body.segments,

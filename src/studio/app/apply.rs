@@ -12,13 +12,14 @@ use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::share::ShareCommand;
 use crate::studio::commands::{
-    Command, ExamCommand, LessonCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand,
-    WindowCommand,
+    BodyCommand, Command, ExamCommand, LessonCommand, PlanCommand, PlayerCommand, RunCommand,
+    StageCommand, WindowCommand,
 };
 use crate::studio::panels::help::tour::highlighted_panel;
 use crate::studio::scene::view_commands::ViewParams;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::opening::OpeningChampions;
+use crate::studio::state::body_editor::BodyEditor;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::files::Files;
 use crate::studio::state::lessons::Lessons;
@@ -44,9 +45,10 @@ pub(super) fn apply(
     mut history: ResMut<UndoHistory>,
     (opening, mut quit): (Res<OpeningChampions>, ResMut<QuitRequest>),
     mut workspace: ResMut<Workspace>,
-    (mut lessons, mut exams, mut machines, mut shares): (
+    (mut lessons, mut exams, mut bodies, mut machines, mut shares): (
         ResMut<Lessons>,
         ResMut<StairsExams>,
+        ResMut<BodyEditor>,
         ResMut<MachinesLink>,
         ResMut<Shares>,
     ),
@@ -146,6 +148,13 @@ pub(super) fn apply(
                 let show = exams.apply(command, stage.selected().as_ref());
                 show.map(|show| stage.present_others(show, notices))
             }
+            Command::Body(command) => {
+                if *command == BodyCommand::Edit {
+                    workspace.open(PanelKind::Body);
+                }
+                let show = bodies.apply(command, stage.selected().as_ref(), &mut run);
+                show.map(|show| stage.present_others(show, notices))
+            }
             Command::Machines(command) => machines.apply(command, &mut run),
             // A running batch operation is not in the history yet, and an earlier step would be the wrong one.
             Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),
@@ -205,12 +214,13 @@ fn changes_own_run(command: &Command) -> bool {
                 | RunCommand::SingleGeneration
                 | RunCommand::Reset
                 | RunCommand::Continue(_)
-        ) | Command::Plan(
-            PlanCommand::StartFrom(_)
-                | PlanCommand::StartFromSave(_)
-                | PlanCommand::ForgetFounder
-                | PlanCommand::SetSeed(_)
-        )
+        ) | Command::Body(BodyCommand::Evolve)
+            | Command::Plan(
+                PlanCommand::StartFrom(_)
+                    | PlanCommand::StartFromSave(_)
+                    | PlanCommand::ForgetFounder
+                    | PlanCommand::SetSeed(_)
+            )
     )
 }
 

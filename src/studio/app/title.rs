@@ -40,6 +40,7 @@ fn update(
                     lane.staged().name().to_owned()
                 }
                 ChampionSource::Lesson => "a lesson".to_owned(),
+                ChampionSource::Edited => "an edited body".to_owned(),
                 ChampionSource::Run(number) if number == run.number() => {
                     format!("generation {generation}")
                 }

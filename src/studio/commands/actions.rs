@@ -342,6 +342,9 @@ const FIXED: &[Action] = &[
     action(Menu::Panels, "Machines", &["Ctrl 8"], |_| {
         Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Machines)))
     }),
+    action(Menu::Panels, "Body", &["Ctrl 9"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Body)))
+    }),
     action(Menu::Panels, "Close panel", &["Ctrl W"], |_| {
         Some(Command::Window(WindowCommand::ClosePanel))
     }),

@@ -18,6 +18,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 
+use crate::genome::{BodyChange, Segment};
 use crate::save::library::SavePlace;
 use crate::score::ExamSuite;
 
@@ -58,6 +59,8 @@ pub(super) enum Command {
     Lesson(LessonCommand),
     /// To the exams of champions on unseen stairs.
     Exam(ExamCommand),
+    /// To the editor of bodies.
+    Body(BodyCommand),
     /// To the connection with other computers.
     Machines(MachinesCommand),
     /// Undo the latest change of the next run's plan or of the saves.
@@ -282,6 +285,77 @@ pub(super) enum ExamCommand {
     },
     /// Show the snake on its own stairs again.
     BackToOwnStairs,
+}
+
+/// A command to the editor of bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum BodyCommand {
+    /// Edit the body of the selected snake on the stage.
+    Edit,
+    /// Set a number of a block; the head is 0.
+    Set {
+        /// The block.
+        block: usize,
+        /// The number.
+        size: BlockSize,
+        /// Its new value, in its unit.
+        value: f32,
+    },
+    /// Change the structure at a block; the head is 0.
+    Change {
+        /// The block, or the first of two.
+        block: usize,
+        /// The change.
+        change: BodyChange,
+    },
+    /// Undo the latest change of the body.
+    Undo,
+    /// Redo the latest undone change.
+    Redo,
+    /// Show the body beside the original.
+    Preview,
+    /// Adapt the gait to the body by a few evaluations, in the background.
+    Tune,
+    /// Stop adapting the gait; the best so far stays.
+    CancelTuning,
+    /// Start the next run from this body.
+    Evolve,
+    /// Close the editor, and show the original alone.
+    Close,
+}
+
+/// A number of a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum BlockSize {
+    /// Length, in metres.
+    Length,
+    /// Width, in metres.
+    Width,
+    /// Height, in metres.
+    Height,
+    /// Density, in kg/m³.
+    Density,
+    /// Largest bend of the joint in front of it, in radians.
+    BendLimit,
+    /// Largest twist of that joint, in radians.
+    TwistLimit,
+    /// Share of the torque that the joint could have.
+    Strength,
+}
+
+impl BlockSize {
+    /// The number in a block.
+    pub fn of_mut(self, segment: &mut Segment) -> &mut f32 {
+        match self {
+            Self::Length => &mut segment.length_m,
+            Self::Width => &mut segment.width_m,
+            Self::Height => &mut segment.height_m,
+            Self::Density => &mut segment.density_kg_m3,
+            Self::BendLimit => &mut segment.bend_limit_rad,
+            Self::TwistLimit => &mut segment.twist_limit_rad,
+            Self::Strength => &mut segment.strength,
+        }
+    }
 }
 
 /// A command to the connection with other computers.

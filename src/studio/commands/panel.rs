@@ -21,13 +21,15 @@ pub(crate) enum PanelKind {
     Lessons,
     /// Senses and controller of the snake on the stage.
     Senses,
+    /// The blocks of the snake on the stage, to be edited.
+    Body,
     /// Other computers that compute, too.
     Machines,
 }
 
 impl PanelKind {
     /// All panels except the stage, in the order of the menu.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Run,
         Self::World,
         Self::Charts,
@@ -35,6 +37,7 @@ impl PanelKind {
         Self::Library,
         Self::Lessons,
         Self::Senses,
+        Self::Body,
         Self::Machines,
     ];
 
@@ -61,6 +64,7 @@ impl PanelKind {
             Self::Library => "Library",
             Self::Lessons => "Lessons",
             Self::Senses => "Senses",
+            Self::Body => "Body",
             Self::Machines => "Machines",
         }
     }
@@ -76,6 +80,7 @@ impl PanelKind {
             Self::Library => "All saved champions and runs: replay, race, export (Ctrl 5)",
             Self::Lessons => "Two-minute experiments (Ctrl 6)",
             Self::Senses => "What the snake senses, and its controller at work (Ctrl 7)",
+            Self::Body => "The blocks of the snake: change, add and remove them (Ctrl 9)",
             Self::Machines => "Let other computers compute, too (Ctrl 8)",
         }
     }

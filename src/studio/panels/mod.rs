@@ -3,6 +3,7 @@
 //!
 //! A panel is a struct with a `ui` method. It reads the state and sends commands, but changes nothing itself.
 
+mod body;
 mod champions;
 mod charts;
 mod click_limits;
@@ -34,6 +35,7 @@ use super::commands::modal::Modal;
 use super::stage::lane::Lane;
 use super::stage::opening::OpeningChampions;
 use super::stage::staged_champion::ChampionSource;
+use super::state::body_editor::BodyEditor;
 use super::state::current_run::CurrentRun;
 use super::state::files::Files;
 use super::state::lessons::{LESSONS, Lessons};
@@ -48,6 +50,7 @@ use super::workspace::Workspace;
 use super::workspace::layout::style;
 use super::workspace::scale::UiScale;
 
+use body::BodyPanel;
 use champions::ChampionsPanel;
 use charts::{ChartsPanel, FitnessChart};
 use click_limits::set_click_limits;
@@ -82,6 +85,7 @@ struct Panels {
     saves: LibraryPanel,
     world: WorldPanel,
     senses: SensesPanel,
+    body: BodyPanel,
     machines: MachinesPanel,
     timeline: TimelinePanel,
     palette: CommandPalette,
@@ -104,6 +108,7 @@ impl FromWorld for Panels {
             saves: LibraryPanel::default(),
             world: WorldPanel::default(),
             senses: SensesPanel::default(),
+            body: BodyPanel::default(),
             machines: MachinesPanel::default(),
             timeline: TimelinePanel::default(),
             palette: CommandPalette::default(),
@@ -130,6 +135,7 @@ struct PanelData<'w, 's> {
     theme: Res<'w, theme::Theme>,
     lessons: Res<'w, Lessons>,
     exams: Res<'w, StairsExams>,
+    bodies: Res<'w, BodyEditor>,
     machines: Res<'w, MachinesLink>,
     saves: Res<'w, Library>,
     files: Res<'w, Files>,
@@ -356,6 +362,11 @@ impl Viewer<'_, '_, '_> {
                 let focused = focused(self.lanes, &self.data.on_stage);
                 let view = SensesView::of(self.lanes, focused, &self.data.on_stage);
                 panels.senses.ui(ui, view.as_ref(), &self.data.exams, commands);
+            }
+            PanelKind::Body => {
+                let lane = focused(self.lanes, &self.data.on_stage);
+                let limb = self.data.on_stage.selection.limb;
+                panels.body.ui(ui, self.data.bodies.edited(), lane, limb, commands);
             }
             PanelKind::Library => {
                 let history = &self.data.on_stage.history;

@@ -30,7 +30,10 @@ impl ShownChampion {
                 let Origin { generation, individual, .. } = staged.champion().origin;
                 Some(Self::Found { generation, individual })
             }
-            ChampionSource::Library(_) | ChampionSource::Run(_) | ChampionSource::Lesson => None,
+            ChampionSource::Library(_)
+            | ChampionSource::Run(_)
+            | ChampionSource::Lesson
+            | ChampionSource::Edited => None,
         }
     }
 

@@ -31,6 +31,8 @@ pub(crate) enum ChampionSource {
     Run(u32),
     /// A lesson.
     Lesson,
+    /// The editor of bodies.
+    Edited,
 }
 
 /// World and engine in which a champion is shown.
@@ -98,6 +100,11 @@ impl StagedChampion {
     /// A champion of a lesson.
     pub fn from_lesson(champion: &Champion) -> Self {
         Self { source: ChampionSource::Lesson, ..Self::from_run(champion, 0) }
+    }
+
+    /// A snake whose body was edited.
+    pub fn from_edited(champion: &Champion) -> Self {
+        Self { source: ChampionSource::Edited, ..Self::from_run(champion, 0) }
     }
 
     /// The same champion under another name.

@@ -1,5 +1,6 @@
 //! The state of the studio that is not drawn: the current run, the library, presets, undo, lessons.
 
+pub mod body_editor;
 pub mod chart_export;
 pub mod current_run;
 pub mod files;
@@ -38,6 +39,7 @@ pub(super) fn plugin(app: &mut App) {
         lessons::plugin,
         shares::plugin,
         stairs_exams::plugin,
+        body_editor::plugin,
         machines::plugin,
         turns::plugin,
     ));

@@ -210,9 +210,11 @@ impl Layout {
     /// The place for a restored panel: beside a related panel, or else beside any.
     fn home_of(&self, kind: PanelKind) -> Option<TabPath> {
         let usual: &[PanelKind] = match kind {
-            PanelKind::Charts | PanelKind::Library | PanelKind::Senses | PanelKind::Machines => {
-                &[PanelKind::Charts, PanelKind::Library, PanelKind::Senses]
-            }
+            PanelKind::Charts
+            | PanelKind::Library
+            | PanelKind::Senses
+            | PanelKind::Body
+            | PanelKind::Machines => &[PanelKind::Charts, PanelKind::Library, PanelKind::Senses],
             _ => &[PanelKind::Run, PanelKind::World, PanelKind::Lessons],
         };
         let found = |kinds: &[PanelKind]| kinds.iter().find_map(|kind| self.state.find_tab(kind));

@@ -44,6 +44,7 @@ fn app() -> App {
         .init_resource::<Workspace>()
         .init_resource::<Lessons>()
         .init_resource::<StairsExams>()
+        .init_resource::<BodyEditor>()
         .init_resource::<Shares>()
         .init_resource::<Turns>()
         .init_resource::<MachinesLink>()

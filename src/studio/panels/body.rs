@@ -1,0 +1,217 @@
+//! The blocks of the snake on the stage: a drawing, and an editor with budgets, undo and tuning of the gait.
+
+mod budgets;
+mod drawing;
+
+use bevy_egui::egui;
+
+use crate::genome::{BodyChange, Segment};
+use crate::studio::commands::{BlockSize, BodyCommand, Command};
+use crate::studio::stage::lane::Lane;
+use crate::studio::state::body_editor::EditedBody;
+use crate::studio::ui::text_rows::{explain, title, title_and};
+use crate::studio::ui::theme;
+
+use budgets::budgets;
+use drawing::drawing;
+
+/// The panel with its choice.
+#[derive(Debug, Default)]
+pub(super) struct BodyPanel {
+    /// The block whose numbers are shown; the head is 0.
+    block: usize,
+    /// The limb that was last selected on the stage.
+    limb: Option<usize>,
+}
+
+/// A number of a block: what it is, its label, its unit, the range of its slider, and its hint.
+type Size = (BlockSize, &'static str, &'static str, std::ops::RangeInclusive<f32>, &'static str);
+
+/// The numbers of every block.
+const SIZES: [Size; 4] = [
+    (BlockSize::Length, "Length", " m", 0.4..=4.0, "Size along the snake"),
+    (BlockSize::Width, "Width", " m", 0.4..=2.0, "Size across the snake"),
+    (BlockSize::Height, "Height", " m", 0.4..=2.0, "Size from bottom to top"),
+    (BlockSize::Density, "Density", " kg/m³", 1.0..=20.0, "Mass per volume"),
+];
+/// The numbers of a joint, which the head does not have.
+const OF_JOINT: [Size; 3] = [
+    (BlockSize::BendLimit, "Bend limit", " rad", 0.2..=1.8, "How far it bends, up or down"),
+    (BlockSize::TwistLimit, "Twist limit", " rad", 0.0..=1.5, "How far it twists, to either side"),
+    (BlockSize::Strength, "Strength", "", 0.25..=1.0, "Share of the torque that its blocks allow"),
+];
+/// The changes of structure: the change, its label, its hint.
+const CHANGES: [(BodyChange, &str, &str); 5] = [
+    (BodyChange::Split, "Split", "Two halves in its place. The new joint is held straight"),
+    (BodyChange::Duplicate, "Duplicate", "A copy behind it, which moves in the same rhythm"),
+    (BodyChange::Insert, "Insert", "A new block between this one and the next, the mean of both"),
+    (BodyChange::Merge, "Merge", "One block in the place of this one and the next"),
+    (BodyChange::Remove, "Remove", "The blocks beside it are joined"),
+];
+
+impl BodyPanel {
+    /// Draws the panel and collects the user's commands. `limb` is the limb that is selected on the stage.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        edited: Option<EditedBody<'_>>,
+        lane: Option<&Lane>,
+        limb: Option<usize>,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(edited) = edited else { return self.invitation(ui, lane, commands) };
+        if limb != self.limb {
+            self.limb = limb;
+            self.block = limb.unwrap_or(self.block);
+        }
+        self.block = self.block.min(edited.segments.len().saturating_sub(1));
+        self.head(ui, &edited, commands);
+        let sizes: Vec<[f32; 3]> = edited
+            .segments
+            .iter()
+            .map(|segment| [segment.length_m, segment.width_m, segment.height_m])
+            .collect();
+        if let Some(block) = drawing(ui, &sizes, Some(self.block)) {
+            self.block = block;
+        }
+        let is_busy = edited.tuning.is_some();
+        ui.add_enabled_ui(!is_busy, |ui| self.block(ui, edited.segments, commands));
+        budgets(ui, &edited);
+        if let Some(problem) = &edited.problem {
+            ui.label(egui::RichText::new(problem).color(theme::of(ui).problem));
+        }
+        end(ui, &edited, commands);
+    }
+
+    /// What the panel is for, and the body on the stage.
+    fn invitation(&mut self, ui: &mut egui::Ui, lane: Option<&Lane>, commands: &mut Vec<Command>) {
+        title(ui, "Body");
+        let Some(lane) = lane else {
+            return explain(ui, "The blocks of the snake on the stage will appear here.");
+        };
+        let body = lane.body();
+        let sizes: Vec<[f32; 3]> =
+            body.limbs.iter().map(|limb| [limb.length_m, limb.width_m, limb.height_m]).collect();
+        drawing(ui, &sizes, None);
+        let (blocks, length_m, mass_kg) = (body.limbs.len(), body.length_m(), body.mass_kg());
+        ui.label(format!("{blocks} blocks, {length_m:.1} m long, {mass_kg:.1} kg"));
+        explain(
+            ui,
+            "Change sizes, joints and strength of every block, add blocks and remove them: the stage shows the changed \
+             snake beside the original.",
+        );
+        if ui.button("Edit this body").clicked() {
+            self.block = 0;
+            commands.push(Command::Body(BodyCommand::Edit));
+        }
+    }
+
+    /// The title, and the buttons of steps.
+    fn head(&self, ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
+        let name = format!("Body of {}", edited.original.name());
+        let is_free = edited.tuning.is_none();
+        title_and(ui, &name, |ui| {
+            let [can_undo, can_redo] = edited.steps;
+            // From right to left.
+            for (label, hint, is_on, command) in [
+                (
+                    "Close",
+                    "Show the original alone. The changes are lost",
+                    true,
+                    BodyCommand::Close,
+                ),
+                ("Redo", "Redo the latest undone change", can_redo && is_free, BodyCommand::Redo),
+                (
+                    "Undo",
+                    "Undo the latest change of the body",
+                    can_undo && is_free,
+                    BodyCommand::Undo,
+                ),
+            ] {
+                if ui.add_enabled(is_on, egui::Button::new(label)).on_hover_text(hint).clicked() {
+                    commands.push(Command::Body(command));
+                }
+            }
+        });
+    }
+
+    /// The numbers of the selected block, and the changes of structure at it.
+    fn block(&self, ui: &mut egui::Ui, segments: &[Segment], commands: &mut Vec<Command>) {
+        let block = self.block;
+        let Some(segment) = segments.get(block) else { return };
+        let what = match block {
+            0 => "Head".to_owned(),
+            _ => format!("Block {} of {}", block + 1, segments.len()),
+        };
+        ui.label(egui::RichText::new(what).strong());
+        let joint: &[Size] = if block == 0 { &[] } else { &OF_JOINT };
+        egui::Grid::new("block").num_columns(2).show(ui, |ui| {
+            for (size, label, unit, range, hint) in SIZES.iter().chain(joint) {
+                let mut changed = segment.clone();
+                let value = size.of_mut(&mut changed);
+                ui.label(*label).on_hover_text(*hint);
+                let slider = egui::Slider::new(value, range.clone())
+                    .suffix(*unit)
+                    .clamping(egui::SliderClamping::Edits)
+                    .max_decimals(2);
+                let slider = ui.add(slider).on_hover_text(*hint);
+                slider.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, *label)
+                });
+                if slider.changed() {
+                    let (size, value) = (*size, *size.of_mut(&mut changed));
+                    commands.push(Command::Body(BodyCommand::Set { block, size, value }));
+                }
+                ui.end_row();
+            }
+        });
+        let is_last = block + 1 == segments.len();
+        ui.horizontal_wrapped(|ui| {
+            for (change, label, hint) in CHANGES {
+                let needs_next = matches!(change, BodyChange::Insert | BodyChange::Merge);
+                let button = ui.add_enabled(!(is_last && needs_next), egui::Button::new(label));
+                if button.on_hover_text(hint).clicked() {
+                    commands.push(Command::Body(BodyCommand::Change { block, change }));
+                }
+            }
+        });
+    }
+}
+
+/// The buttons that use the body.
+fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
+    ui.add_space(theme::GAP / 2.0);
+    if let Some([done, all]) = edited.tuning {
+        ui.horizontal(|ui| {
+            if ui.button("Cancel").on_hover_text("Keep the best gait so far").clicked() {
+                commands.push(Command::Body(BodyCommand::CancelTuning));
+            }
+            let share = done as f32 / all.max(1) as f32;
+            let words = format!("{done} of {all} gaits tried");
+            ui.add(egui::ProgressBar::new(share).text(words).fill(theme::of(ui).accent_soft));
+        });
+        return;
+    }
+    let is_allowed = edited.problem.is_none();
+    ui.horizontal_wrapped(|ui| {
+        for (label, hint, command) in [
+            (
+                "Adapt the gait",
+                "The gait fits the body that it was learned with: try 60 gaits like it, and keep the best",
+                BodyCommand::Tune,
+            ),
+            (
+                "Start next run from this body",
+                "The next run evolves it further, block by block",
+                BodyCommand::Evolve,
+            ),
+        ] {
+            if ui.add_enabled(is_allowed, egui::Button::new(label)).on_hover_text(hint).clicked() {
+                commands.push(Command::Body(command));
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests;

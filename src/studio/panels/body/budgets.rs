@@ -1,0 +1,63 @@
+//! What a body uses of what bodies that evolve may have.
+
+use bevy_egui::egui;
+
+use crate::genome::{BodySpace, MOST_SEGMENTS, Segment};
+use crate::studio::state::body_editor::EditedBody;
+use crate::studio::ui::theme;
+
+/// Share beyond a budget that rounding makes.
+const TOLERANCE: f64 = 1.0e-3;
+
+/// A use of a budget: the name, what is used and what there is, the unit with digits after the point, the hint.
+type Budget = (&'static str, [f64; 2], (&'static str, usize), &'static str);
+
+/// Draws the budgets as bars, red where a body exceeds them.
+pub(super) fn budgets(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
+    ui.add_space(theme::GAP / 2.0);
+    let agent = &edited.original.trial().agent;
+    let volume_m3 = |segments: &[Segment]| segments.iter().map(Segment::volume_m3).sum::<f64>();
+    let body = agent.body_plan(edited.genome);
+    let original = edited.original.body();
+    let torque_nm: f32 =
+        body.joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum();
+    let longest_m = f64::from(BodySpace::default().longest_m);
+    let list: [Budget; 4] = [
+        (
+            "Volume",
+            [volume_m3(edited.segments), f64::from(original.volume_m3())],
+            ("m³", 2),
+            "All bodies of a run have the same volume: adding, splitting and removing blocks scales the others",
+        ),
+        (
+            "Length",
+            [f64::from(body.length_m()), longest_m],
+            ("m", 1),
+            "A longer body would gain from its length alone",
+        ),
+        (
+            "Torque",
+            [torque_nm.into(), agent.torque_budget_nm.into()],
+            ("N·m", 0),
+            "Of all joints together. A body that would have more is made weaker in all joints alike",
+        ),
+        ("Blocks", [edited.segments.len() as f64, MOST_SEGMENTS.into()], ("", 0), "From 2 to 12"),
+    ];
+    let palette = theme::of(ui);
+    egui::Grid::new("budgets").num_columns(2).show(ui, |ui| {
+        for (name, [used, all], (unit, digits), hint) in list {
+            ui.label(name).on_hover_text(hint);
+            let is_beyond = used > all * (1.0 + TOLERANCE);
+            let fill = if is_beyond { palette.problem } else { palette.accent_soft };
+            let words = format!("{used:.digits$} of {all:.digits$} {unit}");
+            let bar = egui::ProgressBar::new((used / all.max(1.0e-9)) as f32).fill(fill);
+            ui.add(bar.text(words.trim_end())).on_hover_text(hint);
+            ui.end_row();
+        }
+    });
+    ui.label(format!(
+        "Mass {:.1} kg; the original has {:.1} kg",
+        body.mass_kg(),
+        original.mass_kg()
+    ));
+}

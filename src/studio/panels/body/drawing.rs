@@ -1,0 +1,73 @@
+//! A body as a drawing to scale, from above and from the side.
+
+use bevy_egui::egui;
+
+use crate::plot::Role;
+use crate::studio::ui::theme;
+
+/// Largest height of both views together, in points.
+const HEIGHT: f32 = 130.0;
+/// Space between the views and around them, in points.
+const SPACE: f32 = 8.0;
+
+/// Draws blocks of these lengths, widths and heights in metres, the head on the left. Returns the block that was clicked.
+pub(super) fn drawing(
+    ui: &mut egui::Ui,
+    sizes: &[[f32; 3]],
+    selected: Option<usize>,
+) -> Option<usize> {
+    let most = |of: fn(&[f32; 3]) -> f32| sizes.iter().map(of).fold(0.0_f32, f32::max);
+    let length_m: f32 = sizes.iter().map(|[length_m, ..]| length_m).sum();
+    let [width_m, height_m] = [most(|size| size[1]), most(|size| size[2])];
+    if length_m <= 0.0 || width_m + height_m <= 0.0 {
+        return None;
+    }
+    let width = ui.available_width();
+    let name = (theme::SMALL_SIZE + 2.0) * 2.0;
+    let room = HEIGHT - 2.0 * SPACE;
+    let scale = ((width - 2.0 * SPACE) / length_m).min(room / (width_m + height_m));
+    let tall = (width_m + height_m) * scale + 3.0 * SPACE + name;
+    let (area, response) = ui.allocate_exact_size(egui::vec2(width, tall), egui::Sense::click());
+    let palette = theme::of(ui);
+    let painter = ui.painter();
+    painter.rect_filled(area, 4.0, palette.field);
+    let left = area.center().x - length_m * scale / 2.0;
+    let mut clicked = None;
+    let mut top = area.top() + SPACE;
+    for (view, of_view_m, side) in [("From above", width_m, 1), ("From the side", height_m, 2)] {
+        let font = egui::FontId::proportional(theme::SMALL_SIZE);
+        let at = egui::pos2(area.left() + SPACE, top - SPACE / 2.0);
+        painter.text(at, egui::Align2::LEFT_TOP, view, font, palette.text_weak);
+        top += name / 2.0;
+        let middle = top + of_view_m * scale / 2.0;
+        let mut x = left;
+        for (block, size) in sizes.iter().enumerate() {
+            let half = size[side] * scale / 2.0;
+            let rect = egui::Rect::from_min_max(
+                egui::pos2(x, middle - half),
+                egui::pos2(x + size[0] * scale, middle + half),
+            );
+            x = rect.right();
+            let color = palette.role(if block % 2 == 0 { Role::Red } else { Role::Blue });
+            painter.rect_filled(rect.shrink(0.5), 2.0, color);
+            if selected == Some(block) {
+                let stroke = egui::Stroke::new(2.0, palette.text);
+                painter.rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
+            }
+            let hit = rect.expand2(egui::vec2(0.0, SPACE / 2.0));
+            if response.clicked()
+                && response.interact_pointer_pos().is_some_and(|at| hit.contains(at))
+            {
+                clicked = Some(block);
+            }
+        }
+        top += of_view_m * scale + SPACE;
+    }
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "Drawing of the blocks")
+    });
+    if selected.is_some() {
+        response.on_hover_text("Click a block to change it. The head is on the left");
+    }
+    clicked
+}

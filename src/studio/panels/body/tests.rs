@@ -1,0 +1,79 @@
+//! Tests of the body panel.
+
+use super::*;
+use crate::save::shipped_champion;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::state::body_editor::BodyEditor;
+use crate::studio::state::current_run::prepared_run;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+struct Edit {
+    editor: BodyEditor,
+    panel: BodyPanel,
+    commands: Vec<Command>,
+}
+
+/// The panel while the body of the built-in champion is edited.
+fn editing(width: f32) -> Harness<'static, Edit> {
+    let champion = shipped_champion().expect("well formed");
+    let staged = StagedChampion::from_file(&champion, 0, "climber");
+    let mut editor = BodyEditor::default();
+    editor.apply(&BodyCommand::Edit, Some(&staged), &mut prepared_run()).expect("a gait");
+    let state = Edit { editor, panel: BodyPanel::default(), commands: Vec::new() };
+    let mut harness = Harness::builder().with_size(egui::vec2(width, 800.0)).build_ui_state(
+        |ui, edit: &mut Edit| {
+            edit.panel.ui(ui, edit.editor.edited(), None, None, &mut edit.commands);
+        },
+        state,
+    );
+    harness.run();
+    harness
+}
+
+#[test]
+fn a_click_selects_a_block_and_its_buttons_change_it() {
+    let mut harness = editing(theme::PANEL_WIDTH);
+    assert!(harness.query_by_label("Head").is_some());
+    assert!(harness.query_by_label("Bend limit").is_none(), "the head has no joint");
+    let blocks = harness.get_by_label("Drawing of the blocks").rect();
+    // The fourth of five equal blocks.
+    let at = egui::pos2(blocks.left() + blocks.width() * 0.7, blocks.center().y - 20.0);
+    harness.drag_at(at);
+    harness.run();
+    harness.drop_at(at);
+    harness.run();
+    assert!(harness.query_by_label("Block 4 of 5").is_some());
+    assert!(harness.query_all_by_label("Bend limit").next().is_some());
+    harness.get_by_label("Split").click();
+    harness.run();
+    let split = BodyCommand::Change { block: 3, change: BodyChange::Split };
+    assert_eq!(harness.state().commands, [Command::Body(split)]);
+}
+
+#[test]
+fn budgets_are_in_words_and_nothing_is_undone_before_the_first_change() {
+    for width in [300.0, 900.0] {
+        let mut harness = editing(width);
+        for text in ["Volume", "Length", "Torque"] {
+            assert!(harness.query_all_by_label(text).next().is_some(), "{text}");
+        }
+        assert!(harness.query_by_label_contains("the original has").is_some());
+        harness.get_by_label("Undo").click();
+        harness.run();
+        assert_eq!(harness.state().commands, [], "there is nothing to undo");
+        harness.get_by_label("Adapt the gait").click();
+        harness.run();
+        assert_eq!(harness.state().commands, [Command::Body(BodyCommand::Tune)]);
+    }
+}
+
+#[test]
+fn without_a_snake_the_panel_says_what_will_be_there() {
+    let mut harness = Harness::builder().build_ui_state(
+        |ui, commands| BodyPanel::default().ui(ui, None, None, None, commands),
+        Vec::new(),
+    );
+    harness.run();
+    assert!(harness.query_by_label_contains("will appear here").is_some());
+}

@@ -1,0 +1,360 @@
+//! Editing the blocks of a snake: changes with undo, a preview beside the original, and tuning of the gait.
+
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+
+use super::current_run::CurrentRun;
+use crate::evolve::Champion;
+use crate::genome::{BodyChange, Genome, GenomeSpace, Segment};
+use crate::rng::{Purpose, stream};
+use crate::run::{BackgroundTask, Tuned, caught, tune_controller};
+use crate::score::evaluate;
+use crate::studio::commands::{BlockSize, BodyCommand, Command};
+use crate::studio::schedule::FrameSet;
+use crate::studio::stage::Show;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::ui::notifications::Notices;
+
+/// Time after the last change at which the stage shows the body.
+const PREVIEW_AFTER: Duration = Duration::from_millis(500);
+/// Evaluations of a tuning.
+const TUNING: usize = 60;
+/// Maximum number of changes that can be undone.
+const MOST_STEPS: usize = 200;
+/// Notices about the body replace each other.
+const SUBJECT: &str = "body editor";
+
+/// The body that is being edited.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct BodyEditor {
+    edited: Option<Edited>,
+}
+
+/// A body that is being edited.
+#[derive(Debug)]
+struct Edited {
+    /// The snake that the changes began with.
+    original: StagedChampion,
+    genome: Genome,
+    past: Vec<Genome>,
+    future: Vec<Genome>,
+    /// The size that the last command set, whose further changes are the same step.
+    last_set: Option<(usize, BlockSize)>,
+    /// When the body changed, if the stage does not show it yet.
+    changed_at: Option<Instant>,
+    tuning: Option<BackgroundTask<Option<Tuned>>>,
+}
+
+/// What the panel shows of the edited body.
+#[derive(Debug)]
+pub(crate) struct EditedBody<'a> {
+    /// Its blocks, from the head.
+    pub segments: &'a [Segment],
+    /// The snake in the world of the original.
+    pub genome: &'a Genome,
+    /// The snake that the changes began with.
+    pub original: &'a StagedChampion,
+    /// Whether there is a step to undo, and one to redo.
+    pub steps: [bool; 2],
+    /// Evaluations of the tuning that is under way, made and in all.
+    pub tuning: Option<[usize; 2]>,
+    /// Why the body cannot be shown, if it cannot.
+    pub problem: Option<String>,
+}
+
+impl BodyEditor {
+    /// The body that is being edited.
+    pub fn edited(&self) -> Option<EditedBody<'_>> {
+        let edited = self.edited.as_ref()?;
+        Some(EditedBody {
+            segments: &edited.genome.body.segments,
+            genome: &edited.genome,
+            original: &edited.original,
+            steps: [!edited.past.is_empty(), !edited.future.is_empty()],
+            tuning: edited.tuning.as_ref().map(|task| [task.done(), task.total()]),
+            problem: edited.problem(),
+        })
+    }
+
+    /// Executes a command, which may begin with the selected champion of the stage. Returns what the stage shows then.
+    ///
+    /// # Errors
+    /// The command cannot be executed, with the reason.
+    pub fn apply(
+        &mut self,
+        command: &BodyCommand,
+        selected: Option<&StagedChampion>,
+        run: &mut CurrentRun,
+    ) -> Result<Option<Show>, String> {
+        if *command == BodyCommand::Edit {
+            self.edited = Some(Edited::of(selected.ok_or("There is no snake on the stage.")?)?);
+            return Ok(None);
+        }
+        let Some(edited) = &mut self.edited else { return Ok(None) };
+        let is_busy = edited.tuning.is_some();
+        match command {
+            BodyCommand::CancelTuning => {
+                edited.tuning.iter().for_each(BackgroundTask::cancel);
+            }
+            BodyCommand::Close => {
+                edited.tuning.iter().for_each(BackgroundTask::cancel);
+                let original = edited.original.clone();
+                self.edited = None;
+                return Ok(Some(Show::solo(original)));
+            }
+            _ if is_busy => return Err("The gait is being tuned: wait, or cancel it.".to_owned()),
+            BodyCommand::Edit => {}
+            BodyCommand::Set { block, size, value } => edited.set(*block, *size, *value),
+            BodyCommand::Change { block, change } => edited.change(*block, *change)?,
+            BodyCommand::Undo => edited.step(true),
+            BodyCommand::Redo => edited.step(false),
+            BodyCommand::Preview => {
+                edited.changed_at = None;
+                return Ok(edited.show());
+            }
+            BodyCommand::Tune => edited.tune()?,
+            BodyCommand::Evolve => {
+                let champion = edited.champion()?;
+                run.start_next_from(&champion, &format!("{}, edited", edited.original.name()))?;
+            }
+        }
+        Ok(None)
+    }
+
+    /// Takes over a tuning that has ended.
+    fn take_in(&mut self, notices: &mut Notices) {
+        let Some(edited) = &mut self.edited else { return };
+        let Some(result) = edited.tuning.as_ref().and_then(BackgroundTask::poll) else { return };
+        edited.tuning = None;
+        match result {
+            Ok(Some(tuned)) => {
+                let unit = edited.original.trial().fitness.unit();
+                let [before, after] = [tuned.before.fitness, tuned.evaluation.fitness];
+                let text = format!("Tuning: fitness {before:.2}{unit} became {after:.2}{unit}.");
+                notices.update(SUBJECT, text);
+                if tuned.genome != edited.genome {
+                    edited.replace(tuned.genome);
+                }
+            }
+            Ok(None) => notices.problem("This body cannot be simulated.".to_owned()),
+            Err(problem) => notices.problem(format!("Tuning ended with an error: {problem}")),
+        }
+    }
+
+    /// Whether the last change is old enough for its preview.
+    fn is_preview_due(&self) -> bool {
+        let changed_at = self.edited.as_ref().and_then(|edited| edited.changed_at);
+        changed_at.is_some_and(|at| at.elapsed() >= PREVIEW_AFTER)
+    }
+}
+
+impl Edited {
+    fn of(original: &StagedChampion) -> Result<Self, String> {
+        if let Some(engine) = original.other_engine() {
+            return Err(format!("A snake of engine {engine} moves differently here."));
+        }
+        let champion = original.champion();
+        let genome = original.trial().agent.with_own_blocks(&champion.genome);
+        let genome = genome.ok_or_else(|| {
+            let kind = champion.genome.controller.kind().title();
+            format!("Only gaits and waves follow a body that changes; this snake has {kind}.")
+        })?;
+        Ok(Self {
+            original: original.simulated(),
+            genome,
+            past: Vec::new(),
+            future: Vec::new(),
+            last_set: None,
+            changed_at: None,
+            tuning: None,
+        })
+    }
+
+    /// The space of the changes: wide enough for the body, with its volume.
+    fn space(&self) -> GenomeSpace {
+        let kind = self.genome.controller.kind();
+        let space = GenomeSpace { controller: kind, ..GenomeSpace::default() };
+        space.widened_for(&self.genome)
+    }
+
+    /// Why the body cannot be shown, if it cannot.
+    fn problem(&self) -> Option<String> {
+        let checked = self.original.trial().check_genome(&self.genome);
+        checked.err().map(|error| error.to_string())
+    }
+
+    /// Puts another genome in place, as a step that can be undone.
+    fn replace(&mut self, genome: Genome) {
+        self.past.push(std::mem::replace(&mut self.genome, genome));
+        let too_many = self.past.len().saturating_sub(MOST_STEPS);
+        self.past.drain(..too_many);
+        self.future.clear();
+        self.last_set = None;
+        self.changed_at = Some(Instant::now());
+    }
+
+    fn set(&mut self, block: usize, size: BlockSize, value: f32) {
+        let mut genome = self.genome.clone();
+        let Some(segment) = genome.body.segments.get_mut(block) else { return };
+        *size.of_mut(segment) = value;
+        if genome == self.genome {
+            return;
+        }
+        if self.last_set == Some((block, size)) {
+            self.genome = genome;
+            self.changed_at = Some(Instant::now());
+        } else {
+            self.replace(genome);
+            self.last_set = Some((block, size));
+        }
+    }
+
+    fn change(&mut self, block: usize, change: BodyChange) -> Result<(), String> {
+        let mut rng = stream(self.genome.hash(), 1, block as u32, Purpose::Mutation);
+        let changed = self.space().with_body_change_at(&self.genome, change, block, &mut rng);
+        let changed = changed.ok_or_else(|| {
+            let limits = "2 to 12 blocks of at least 0.4 m, neighbours of at most 8 times the mass";
+            format!("This block cannot be changed so: a body has {limits}.")
+        })?;
+        self.replace(changed);
+        Ok(())
+    }
+
+    fn step(&mut self, is_back: bool) {
+        let (from, to) = if is_back {
+            (&mut self.past, &mut self.future)
+        } else {
+            (&mut self.future, &mut self.past)
+        };
+        if let Some(genome) = from.pop() {
+            to.push(std::mem::replace(&mut self.genome, genome));
+            self.last_set = None;
+            self.changed_at = Some(Instant::now());
+        }
+    }
+
+    /// The edited snake as a champion.
+    fn champion(&self) -> Result<Champion, String> {
+        if let Some(problem) = self.problem() {
+            return Err(problem);
+        }
+        let (genome, trial) = (self.genome.clone(), self.original.trial().clone());
+        let evaluation = caught(|| evaluate(&genome, &trial))?;
+        let origin = self.original.champion().origin.clone();
+        Ok(Champion { genome, trial, evaluation, chosen_by: None, origin })
+    }
+
+    /// The original and the edited snake side by side; none while the body is not allowed.
+    fn show(&self) -> Option<Show> {
+        let champion = self.champion().ok()?;
+        let edited = StagedChampion::from_edited(&champion).named("Edited".to_owned());
+        Some(Show::race(vec![self.original.clone(), edited]))
+    }
+
+    fn tune(&mut self) -> Result<(), String> {
+        if let Some(problem) = self.problem() {
+            return Err(problem);
+        }
+        let (genome, trial, space) =
+            (self.genome.clone(), self.original.trial().clone(), self.space());
+        let task = BackgroundTask::start_counted(TUNING, move |progress| {
+            tune_controller(&genome, &trial, &space, TUNING, progress)
+        });
+        self.tuning = Some(task.map_err(|error| format!("Tuning could not start: {error}."))?);
+        Ok(())
+    }
+}
+
+fn follow(
+    mut editor: ResMut<BodyEditor>,
+    mut notices: ResMut<Notices>,
+    mut send: MessageWriter<Command>,
+) {
+    if editor.edited.is_none() {
+        return;
+    }
+    editor.take_in(&mut notices);
+    if editor.is_preview_due() {
+        // Once for each change.
+        if let Some(edited) = &mut editor.edited {
+            edited.changed_at = None;
+        }
+        send.write(Command::Body(BodyCommand::Preview));
+    }
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<BodyEditor>().add_systems(Update, follow.in_set(FrameSet::TakeIn));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+    use crate::studio::state::current_run::prepared_run;
+
+    fn climber() -> StagedChampion {
+        StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
+    }
+
+    fn editing() -> (BodyEditor, CurrentRun) {
+        let (mut editor, mut run) = (BodyEditor::default(), prepared_run());
+        editor.apply(&BodyCommand::Edit, Some(&climber()), &mut run).expect("a gait");
+        (editor, run)
+    }
+
+    fn lengths(editor: &BodyEditor) -> Vec<f32> {
+        let edited = editor.edited().expect("editing");
+        edited.segments.iter().map(|segment| segment.length_m).collect()
+    }
+
+    #[test]
+    fn a_drag_of_a_slider_is_one_step_and_can_be_undone() {
+        let (mut editor, mut run) = editing();
+        let mut apply = |editor: &mut BodyEditor, command| {
+            editor.apply(&command, None, &mut run).expect("allowed");
+        };
+        for value in [1.9, 1.7, 1.5] {
+            let set = BodyCommand::Set { block: 1, size: BlockSize::Length, value };
+            apply(&mut editor, set);
+        }
+        apply(&mut editor, BodyCommand::Change { block: 0, change: BodyChange::Split });
+        assert_eq!(lengths(&editor).len(), 6);
+        apply(&mut editor, BodyCommand::Undo);
+        assert_eq!(lengths(&editor), [2.0, 1.5, 2.0, 2.0, 2.0]);
+        apply(&mut editor, BodyCommand::Undo);
+        assert_eq!(lengths(&editor), [2.0; 5]);
+        apply(&mut editor, BodyCommand::Redo);
+        assert_eq!(lengths(&editor)[1], 1.5);
+        assert_eq!(editor.edited().expect("editing").steps, [true, true]);
+    }
+
+    #[test]
+    fn the_preview_shows_both_snakes_and_a_forbidden_body_gives_its_reason() {
+        let (mut editor, mut run) = editing();
+        let set = |value| BodyCommand::Set { block: 2, size: BlockSize::Width, value };
+        editor.apply(&set(0.8), None, &mut run).expect("allowed");
+        let show = editor.apply(&BodyCommand::Preview, None, &mut run).expect("allowed");
+        let champions = show.expect("both").champions;
+        let blocks = |staged: &StagedChampion| staged.body().limbs[2].width_m;
+        assert_eq!(champions.iter().map(blocks).collect::<Vec<_>>(), [1.0, 0.8]);
+        // A hundredth of its neighbours' mass.
+        editor.apply(&set(0.1), None, &mut run).expect("it can be set");
+        let problem = editor.edited().expect("editing").problem.expect("refused");
+        assert!(problem.contains("segments[2]") || problem.contains("segments[1]"), "{problem}");
+        assert!(editor.apply(&BodyCommand::Evolve, None, &mut run).is_err());
+        let show = editor.apply(&BodyCommand::Preview, None, &mut run).expect("allowed");
+        assert!(show.is_none());
+    }
+
+    #[test]
+    fn the_next_run_can_begin_with_the_edited_body() {
+        let (mut editor, mut run) = editing();
+        let change = BodyCommand::Change { block: 3, change: BodyChange::Duplicate };
+        editor.apply(&change, None, &mut run).expect("allowed");
+        editor.apply(&BodyCommand::Evolve, None, &mut run).expect("a founder");
+        assert_eq!(run.next_founder(), Some("climber, edited"));
+        assert!(run.next_settings().genome.bodies.vary);
+    }
+}
