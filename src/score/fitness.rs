@@ -100,7 +100,7 @@ impl Fitness {
     pub fn text(self, fitness: f32) -> String {
         match self {
             Self::StepsClimbed => format!("{fitness:.0} steps"),
-            Self::Share => format!("{fitness:.3} of the stairs"),
+            Self::Share => format!("share {fitness:.3}"),
             other => format!("{fitness:.2}{}", other.unit()),
         }
     }

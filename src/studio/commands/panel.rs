@@ -21,10 +21,10 @@ pub(crate) enum PanelKind {
     Lessons,
     /// Senses and controller of the snake on the stage.
     Senses,
-    /// The blocks of the snake on the stage, to be edited.
-    Body,
     /// Other computers that compute, too.
     Machines,
+    /// The blocks of the snake on the stage, to be edited.
+    Body,
 }
 
 impl PanelKind {
@@ -37,8 +37,8 @@ impl PanelKind {
         Self::Library,
         Self::Lessons,
         Self::Senses,
-        Self::Body,
         Self::Machines,
+        Self::Body,
     ];
 
     /// The panels of the initial layout, in the order of their tabs. Few people have several computers, so the others open
@@ -64,8 +64,8 @@ impl PanelKind {
             Self::Library => "Library",
             Self::Lessons => "Lessons",
             Self::Senses => "Senses",
-            Self::Body => "Body",
             Self::Machines => "Machines",
+            Self::Body => "Body",
         }
     }
 

@@ -23,14 +23,28 @@ pub(crate) fn fixed_plot<'a>(id: &str, height: f32) -> Plot<'a> {
         .allow_axis_zoom_drag(false)
         .x_grid_spacer(grid(false))
         .y_grid_spacer(grid(false))
-        .custom_x_axes(vec![AxisHints::new_x().label_spacing(LABEL_POINTS)])
+        .custom_x_axes(vec![
+            AxisHints::new_x().label_spacing(LABEL_POINTS).formatter(|mark, _| tick_text(mark)),
+        ])
         .custom_y_axes(vec![
-            AxisHints::new_y().label_spacing(LABEL_POINTS).min_thickness(theme::AXIS_WIDTH),
+            AxisHints::new_y()
+                .label_spacing(LABEL_POINTS)
+                .min_thickness(theme::AXIS_WIDTH)
+                .formatter(|mark, _| tick_text(mark)),
         ])
 }
 
 /// Label spacing from which egui_plot fades labels in, in points. Small, because [`step`] already spaces them.
 const LABEL_POINTS: RangeInclusive<f32> = 4.0..=8.0;
+
+/// The number at a grid line, with the digits that tell it from its neighbours.
+fn tick_text(mark: GridMark) -> String {
+    let digits = libm::ceil(-libm::log10(mark.step_size) - 1.0e-6).clamp(0.0, 9.0) as usize;
+    let text = format!("{:.digits$}", mark.value);
+    // Rounding makes a zero of either sign.
+    let is_zero = text.chars().all(|letter| !letter.is_ascii_digit() || letter == '0');
+    if is_zero { text.trim_start_matches('-').to_owned() } else { text }
+}
 
 /// Tick step for a range: 1, 2 or 5 times a power of ten.
 pub(crate) fn step(range: f64) -> f64 {
@@ -107,6 +121,17 @@ mod tests {
     fn numbers_have_three_significant_digits() {
         let texts = [0.3, 10_000.0, 12.34, 2.0, 0.0, 0.0123].map(number);
         assert_eq!(texts, ["0.3", "10000", "12.3", "2", "0", "0.012"]);
+    }
+
+    /// With steps of one half, egui_plot's own labels were "-0", "0", "0" and "1".
+    #[test]
+    fn neighbouring_ticks_have_different_labels() {
+        let text = |value, step_size| tick_text(GridMark { value, step_size });
+        assert_eq!([-0.5, 0.0, 0.5, 1.0].map(|at| text(at, 0.5)), ["-0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!([0.0, 20.0].map(|at| text(at, 20.0)), ["0", "20"]);
+        assert_eq!([-0.0, 0.2].map(|at| text(at, 0.2)), ["0.0", "0.2"]);
+        assert_eq!([0.05, 0.1].map(|at| text(at, 0.05)), ["0.05", "0.10"]);
+        assert_eq!(text(3000.0, 1000.0), "3000");
     }
 
     #[test]
