@@ -14,7 +14,7 @@ pub enum EliteGenes {
     /// Coordinates of the unit cube.
     Point(Vec<f64>),
     /// A genome.
-    Genome(Genome),
+    Genome(Box<Genome>),
 }
 
 impl EliteGenes {
@@ -22,7 +22,7 @@ impl EliteGenes {
     pub fn genome(&self, space: &GenomeSpace, shape: GenomeShape) -> Genome {
         match self {
             Self::Point(point) => space.genome_at(point, shape),
-            Self::Genome(genome) => genome.clone(),
+            Self::Genome(genome) => Genome::clone(genome),
         }
     }
 }

@@ -152,7 +152,7 @@ impl Strategy for BodyMapElites {
     }
 
     fn archive(&self) -> Option<Archive> {
-        Some(self.archive.copy_with(|genome| EliteGenes::Genome(genome.clone())))
+        Some(self.archive.copy_with(|genome| EliteGenes::Genome(Box::new(genome.clone()))))
     }
 }
 
