@@ -8,7 +8,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use snakes_and_stairs::evolve::{Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
-use snakes_and_stairs::genome::Genome;
+use snakes_and_stairs::genome::{Genome, Segment};
 use snakes_and_stairs::run::caught;
 use snakes_and_stairs::score::{Evaluation, FITNESS_RANGE, Scored};
 use snakes_and_stairs::world::Disqualification;
@@ -262,26 +262,35 @@ impl Search {
     /// The elites of MAP-Elites; None for a strategy without an archive.
     fn archive<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         // A copy, because a warning may let other threads of Python go on, which may want the state.
-        let Some(archive) = self.state()?.strategy.archive().cloned() else { return Ok(None) };
+        let Some(archive) = self.state()?.strategy.archive() else { return Ok(None) };
         let problem = self.problem.get();
         let (space, shape) = (&problem.settings.genome, problem.settings.trial.genome_shape());
         let elites = PyList::empty(py);
         for (cell, elite) in archive.elites() {
             // The archive's own coordinates are those of the strategy, of 32 bits.
-            let genome = space.genome_at(&elite.point, shape);
+            let genome = elite.genes.genome(space, shape);
             let entry = PyDict::new(py);
-            entry.set_item("column", cell % archive.cells)?;
-            entry.set_item("row", cell / archive.cells)?;
+            let [column, row] = archive.place(cell);
+            entry.set_item("column", column)?;
+            entry.set_item("row", row)?;
             entry.set_item("fitness", f64::from(elite.fitness))?;
             entry.set_item("generation", elite.generation)?;
             entry.set_item("individual", elite.individual)?;
-            entry.set_item("genome", problem.point_of_genome(py, &genome)?.into_pyarray(py))?;
+            if genome.body.has_own_blocks() {
+                // Genomes with bodies of their own have no common length; length, width and height of each block do.
+                let sizes = |of: &Segment| [of.length_m, of.width_m, of.height_m].map(f64::from);
+                let blocks: Vec<[f64; 3]> = genome.body.segments.iter().map(sizes).collect();
+                entry.set_item("blocks", blocks)?;
+            } else {
+                entry.set_item("genome", problem.point_of_genome(py, &genome)?.into_pyarray(py))?;
+            }
             elites.append(entry)?;
         }
         let dictionary = PyDict::new(py);
-        dictionary.set_item("x", archive.x.label())?;
-        dictionary.set_item("y", archive.y.label())?;
-        dictionary.set_item("cells", archive.cells)?;
+        dictionary.set_item("x", archive.x.label)?;
+        dictionary.set_item("y", archive.y.label)?;
+        dictionary.set_item("columns", archive.x.cells)?;
+        dictionary.set_item("rows", archive.y.cells)?;
         dictionary.set_item("coverage", archive.coverage())?;
         dictionary.set_item("qd_score", archive.qd_score())?;
         dictionary.set_item("elites", elites)?;

@@ -190,12 +190,26 @@ def test_map_elites_keeps_an_archive():
     search = Search("climb", strategy="map_elites", seed=1, settings={**SMALL, "population": 20})
     search.tell(search.evaluate())
     archive = search.archive()
-    assert 0 < len(archive["elites"]) <= archive["cells"] ** 2
-    assert archive["coverage"] == pytest.approx(len(archive["elites"]) / archive["cells"] ** 2)
+    cells = archive["columns"] * archive["rows"]
+    assert 0 < len(archive["elites"]) <= cells
+    assert archive["coverage"] == pytest.approx(len(archive["elites"]) / cells)
     elite = archive["elites"][0]
     again = Problem("climb", settings=SHORT).evaluate(elite["genome"])
     assert again.fitness[0] == elite["fitness"]
     assert Search("climb", strategy="ga", settings=SMALL).archive() is None
+
+
+def test_map_elites_of_bodies_keeps_the_blocks_of_each_elite():
+    search = Search("bodies", strategy="body_map_elites", seed=2, settings=SMALL)
+    for _ in range(2):
+        search.tell(search.evaluate())
+    archive = search.archive()
+    assert (archive["x"], archive["columns"], archive["rows"]) == ("Blocks", 11, 16)
+    for elite in archive["elites"]:
+        blocks = np.array(elite["blocks"])
+        assert blocks.shape == (elite["column"] + 2, 3)
+        assert blocks.prod(axis=1).sum() == pytest.approx(10.0, rel=1e-3)
+        assert "genome" not in elite
 
 
 def test_a_founder_is_in_the_first_generation():

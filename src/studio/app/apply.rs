@@ -45,14 +45,13 @@ pub(super) fn apply(
     mut history: ResMut<UndoHistory>,
     (opening, mut quit): (Res<OpeningChampions>, ResMut<QuitRequest>),
     mut workspace: ResMut<Workspace>,
-    (mut lessons, mut exams, mut bodies, mut machines, mut shares): (
+    (mut lessons, mut exams, mut machines, mut shares): (
         ResMut<Lessons>,
         ResMut<StairsExams>,
-        ResMut<BodyEditor>,
         ResMut<MachinesLink>,
         ResMut<Shares>,
     ),
-    (mut library, mut files): (ResMut<Library>, ResMut<Files>),
+    (mut library, mut files, mut bodies): (ResMut<Library>, ResMut<Files>, ResMut<BodyEditor>),
     mut stage: StageParams,
     mut view: ViewParams,
 ) {
