@@ -1,6 +1,7 @@
 //! Plots as pictures: the report's Table 1 beside ours, a torque signal as in the report's Figure 4, and any figure
 //! that is given as data.
 
+mod colors;
 mod families;
 mod figure;
 mod film_text;
@@ -25,11 +26,12 @@ use crate::run::table1::{REPORT_MEANS, Table1};
 use crate::save::{CURVE_POINTS, Comparison, Picture};
 use crate::score::Rollout;
 
+pub use colors::{BAND_OPACITY, ink_on, ramp, role_color};
 pub use families::families;
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 pub use film_text::{FilmBand, FilmTitle, film_band, film_title};
 pub use labels::beside_line;
-pub use paint::{BAND_OPACITY, figure, ink_on, ramp, role_color};
+pub use paint::figure;
 pub use ticks::tick_step;
 
 /// A plot could not be drawn.

@@ -4,8 +4,16 @@ use std::error::Error;
 
 use plotters::prelude::*;
 
-use super::paint::{BAND_OPACITY, DASH, FigureAxes, color_of};
-use super::{Role, Series, Shape};
+use super::colors::{BAND_OPACITY, color_of};
+use super::figure::{Role, Series, Shape};
+use super::ticks::TickedAxis;
+
+/// Lengths of the dashes and gaps of a dashed line, in pixels.
+pub(super) const DASH: (i32, i32) = (10, 7);
+
+/// The axes of a chart.
+pub(super) type FigureAxes<'a, 'b> =
+    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
 
 /// Draws a series into its axes.
 pub(super) fn paint_series(

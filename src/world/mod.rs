@@ -17,6 +17,7 @@ mod simulation;
 mod stair_profile;
 mod stairs;
 mod surface;
+mod torque;
 
 pub use body::{BodyPlan, JointPlan, LimbPlan};
 pub use effort::Effort;
@@ -32,7 +33,8 @@ pub use simulation::mirror::LimbState;
 pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::sensing::{LimbReading, SnakeReading};
-pub use simulation::{Discontinuity, JointTorque, Shove, Simulation, WorldPlan};
+pub use simulation::{Discontinuity, Shove, Simulation, WorldPlan};
 pub use stair_profile::ClimbProgress;
 pub use stairs::{StairBox, Stairs};
 pub use surface::{ERP_TIME_S, Skin, Surface};
+pub use torque::JointTorque;

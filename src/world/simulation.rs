@@ -24,6 +24,7 @@ use super::damping::HalfStepDamping;
 use super::energy::EnergyBalance;
 use super::stair_profile::StairProfile;
 use super::surface::ContactLaw;
+use super::torque::{AppliedTorque, JointTorque};
 use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, PhysicsSettings, PhysicsWorld, Pull, Skin,
     Stairs, Surface,
@@ -31,8 +32,6 @@ use super::{
 use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
 pub use continued::Discontinuity;
 pub use shove::Shove;
-use torques::AppliedTorque;
-pub use torques::JointTorque;
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
 /// in every bit.

@@ -133,7 +133,7 @@ impl GenomeSpace {
             return None;
         }
         let mut child = parent.clone();
-        let mut editor = BodyEditor {
+        let mut editor = BodyInChange {
             waves: waves_mut(&mut child.controller)?,
             segments: &mut child.body.segments,
             space: self,
@@ -177,13 +177,13 @@ pub(super) fn waves_mut(controller: &mut ControllerGenes) -> Option<&mut Waves> 
 }
 
 /// A genome in the middle of a change. The joint in front of block k, counted from 0, has the waves k - 1.
-struct BodyEditor<'a> {
+struct BodyInChange<'a> {
     segments: &'a mut Vec<Segment>,
     waves: &'a mut Waves,
     space: &'a GenomeSpace,
 }
 
-impl BodyEditor<'_> {
+impl BodyInChange<'_> {
     /// None if the body has as many blocks as it may have.
     fn room(&self) -> Option<()> {
         (self.segments.len() < self.space.bodies.limbs_max as usize).then_some(())

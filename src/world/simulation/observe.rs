@@ -2,8 +2,9 @@
 
 use rapier3d::prelude::*;
 
+use super::Simulation;
 use super::patches::solved_points;
-use super::{JointTorque, Simulation};
+use crate::world::JointTorque;
 use crate::world::contact::other_collider;
 
 /// Angles and rates of a joint, as the snake senses them: those of the child relative to the parent.

@@ -1,7 +1,7 @@
 //! Coming to rest before a trial, so that no body gains from falling over at its start.
 
-use super::{JointTorque, Simulation};
-use crate::world::{Disqualification, Effort, Vector};
+use super::Simulation;
+use crate::world::{Disqualification, Effort, JointTorque, Vector};
 
 /// Longest time to come to rest, in s.
 const LONGEST_S: f32 = 2.0;

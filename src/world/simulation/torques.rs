@@ -4,27 +4,7 @@ use rapier3d::prelude::*;
 
 use super::Simulation;
 use crate::world::JointPlan;
-
-/// The torques a controller commands at one joint, in N·m, positive by the right-hand rule about the
-/// joint's own axes. They act on the joint's child, and their opposites on its parent.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct JointTorque {
-    /// About the parent's x axis.
-    pub bend_nm: f32,
-    /// About the parent's y axis.
-    pub twist_nm: f32,
-}
-
-/// Torque at a joint in a step.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct AppliedTorque {
-    /// Rotation of the parent, about whose axes the torque acts.
-    parent: Rotation,
-    /// The torque after clamping.
-    pub(super) torque: JointTorque,
-    /// Joint rates at the start of the step: bend and twist, in rad/s.
-    rates_rad_s: [f32; 2],
-}
+use crate::world::torque::{AppliedTorque, JointTorque};
 
 impl Simulation {
     /// Prepares a step: air and surfaces slow the limbs for its first half, and each limb gets its torque, the sum
