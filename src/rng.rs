@@ -36,7 +36,7 @@ pub enum Purpose {
     Explore = 11,
     /// Learning from the episodes of a generation.
     Learn = 12,
-    /// Choosing what a study changes in a genome.
+    /// Choosing what a study or a tuning changes in a genome.
     Study = 13,
 }
 

@@ -235,7 +235,9 @@ class Search:
         self._core.tell_fitness(fitness, flags)
 
     def archive(self) -> Optional[dict[str, Any]]:
-        """The archive of MAP-Elites: axes, coverage, QD score, and the elites with their cells and genomes; else None."""
+        """The archive of MAP-Elites: axes, numbers of columns and rows, coverage, QD score, and the elites with their
+        cells and genomes; elites with bodies of their own have length, width and height of each block instead. None for
+        other strategies."""
         return self._core.archive()
 
     def __repr__(self) -> str:

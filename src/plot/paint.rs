@@ -31,6 +31,7 @@ const MAX_NAME_LENGTH: usize = 32;
 
 /// Maximum number of numbers along the vertical axis.
 const MOST_Y_TICKS: f64 = 10.0;
+
 /// Draws a figure.
 ///
 /// # Errors

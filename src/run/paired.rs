@@ -1,38 +1,83 @@
 //! The rows of a comparison against its first, seed by seed.
 
 use super::compare::ComparisonRow;
-use super::sign_test::{median_difference, sign_test};
+use super::sign_test::PairedDifference;
 use crate::save::Comparison;
 
 impl Comparison {
     /// For each row but the first, how often its best fitness beats that of the first row with the same seed, and by how
-    /// much; empty without seeds in common.
+    /// much. A run whose snakes were all disqualified is beaten by any other.
     pub fn paired_text(&self) -> String {
         let rows = self.rows();
         let Some((reference, others)) = rows.split_first() else { return String::new() };
-        others.iter().filter_map(|row| against(row, reference)).collect()
+        others.iter().map(|row| against(row, reference)).collect()
     }
 }
 
-fn against(row: &ComparisonRow<'_>, reference: &ComparisonRow<'_>) -> Option<String> {
-    let fitness = |of: &ComparisonRow<'_>, seed: u64| {
-        let run = of.runs.iter().find(|run| run.seed == seed)?;
-        Some(f64::from(run.best?.fitness))
-    };
-    let pair = |seed| Some(fitness(row, seed)? - fitness(reference, seed)?);
-    let differences: Vec<f64> = row.runs.iter().filter_map(|run| pair(run.seed)).collect();
-    let count = |of: fn(f64) -> bool| differences.iter().filter(|by| of(**by)).count() as u32;
-    let (more, fewer, pairs) = (count(|by| by > 0.0), count(|by| by < 0.0), differences.len());
-    let (median, interval) = median_difference(differences)?;
+fn against(row: &ComparisonRow<'_>, reference: &ComparisonRow<'_>) -> String {
+    let mut failed = 0;
+    let mut pairs = Vec::new();
+    for run in &row.runs {
+        let Some(other) = reference.runs.iter().find(|other| other.seed == run.seed) else {
+            continue;
+        };
+        let pair = [run, other].map(|run| run.best.map(|best| f64::from(best.fitness)));
+        failed += pair.iter().filter(|fitness| fitness.is_none()).count();
+        pairs.push(pair);
+    }
     let name = |row: &ComparisonRow<'_>| format!("{}, {}", row.strategy, row.controller);
-    let interval = interval.map_or("no interval below 6 seeds".to_owned(), |[from, to]| {
-        format!("95 % interval {from:+.3} to {to:+.3}")
-    });
-    Some(format!(
-        "{} against {}: higher best fitness with {more} of {pairs} seeds (sign test p = {:.3}), median difference \
-         {median:+.3} ({interval})\n",
-        name(row),
-        name(reference),
-        sign_test(more, fewer),
-    ))
+    let words = PairedDifference::of(&pairs).words();
+    let failed = match failed {
+        0 => String::new(),
+        count => format!("; {count} runs without a healthy snake count as lower"),
+    };
+    format!("{} against {}: best fitness {words}{failed}\n", name(row), name(reference))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::StrategyKind;
+    use crate::genome::ControllerKind;
+    use crate::save::{CURVE_POINTS, ComparedBest, ComparedRun};
+
+    fn run(strategy: StrategyKind, seed: u64, fitness: Option<f32>) -> ComparedRun {
+        let best = fitness.map(|fitness| ComparedBest {
+            fitness,
+            steps_climbed: 0,
+            energy_j_per_m: None,
+            cost_of_transport: None,
+            climbing_efficiency: None,
+        });
+        ComparedRun {
+            strategy,
+            controller: ControllerKind::Gait,
+            seed,
+            evaluations: 1,
+            best,
+            first_on_landing: None,
+            last_mean: None,
+            curve: vec![fitness; CURVE_POINTS],
+            run_hash: String::new(),
+        }
+    }
+
+    #[test]
+    fn rows_are_compared_with_the_first_seed_by_seed() {
+        let mut comparison = Comparison::new("test", String::new(), 1, Default::default());
+        for seed in 1..=6 {
+            comparison.add(run(StrategyKind::Ga, seed, Some(seed as f32)));
+            comparison.add(run(StrategyKind::CmaEs, seed, Some(seed as f32 + 2.0)));
+            comparison.add(run(StrategyKind::Random, seed, (seed > 2).then_some(9.0)));
+        }
+        let text = comparison.paired_text();
+        let lines: Vec<&str> = text.lines().collect();
+        let expected = "cma_es, gait against ga, gait: best fitness higher with 6 of 6 seeds (sign test p = 0.031), median \
+                        difference +2.000 (95 % interval +2.000 to +2.000)";
+        assert_eq!(lines[0], expected);
+        assert!(
+            lines[1].starts_with("random, gait against ga, gait: best fitness higher with 4 of 6")
+        );
+        assert!(lines[1].ends_with("; 2 runs without a healthy snake count as lower"), "{text}");
+    }
 }

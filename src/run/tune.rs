@@ -33,13 +33,13 @@ fn worth(evaluation: &Evaluation) -> (bool, f32) {
     (is_healthy, if is_healthy { evaluation.fitness } else { evaluation.steps as f32 })
 }
 
-/// Changes the genes of the controller only, with this many evaluations, and returns the best. Ends early when cancelled.
-/// None if the simulation fails.
+/// Changes the genes of the controller only, with this many evaluations, the first of which is that of the beginning, and
+/// returns the best. Each attempt tries other genes. Ends early when cancelled. None if the simulation fails.
 pub fn tune_controller(
     genome: &Genome,
     trial: &Trial,
     space: &GenomeSpace,
-    evaluations: usize,
+    (evaluations, attempt): (usize, u32),
     progress: &TaskProgress,
 ) -> Option<Tuned> {
     let evaluated = |genome: &Genome| caught(|| evaluate(genome, trial)).ok();
@@ -54,7 +54,7 @@ pub fn tune_controller(
             if progress.is_cancelled() {
                 return Some(Tuned { genome: best, evaluation: best_evaluation, before });
             }
-            let mut rng = stream(genome.hash(), 1, number as u32, Purpose::Mutation);
+            let mut rng = stream(genome.hash(), attempt, number as u32, Purpose::Study);
             let mut child = space.with_small_changes(&parent, step, &mut rng);
             child.body.clone_from(&genome.body);
             if let Some(found) = evaluated(&child)
@@ -77,17 +77,18 @@ mod tests {
     fn tuning_keeps_the_body_and_never_loses() {
         let champion = crate::save::shipped_champion().expect("shipped").champion;
         let trial = Trial { duration_s: 2.0, ..champion.trial.clone() };
-        let own = trial.agent.with_own_blocks(&champion.genome).expect("a gait");
+        let own = trial.with_own_blocks(&champion.genome).expect("a gait");
         let mut changed = own.clone();
         changed.body.segments[1].length_m = 1.2;
         let space = GenomeSpace { controller: changed.controller.kind(), ..GenomeSpace::default() };
         let progress = TaskProgress::default();
-        let tuned = tune_controller(&changed, &trial, &space, 13, &progress).expect("it simulates");
+        let tuned =
+            tune_controller(&changed, &trial, &space, (13, 1), &progress).expect("it simulates");
         assert_eq!(progress.done(), 13);
         assert_eq!(tuned.genome.body, changed.body);
         assert!(worth(&tuned.evaluation) >= worth(&tuned.before));
         assert_eq!(evaluate(&tuned.genome, &trial), tuned.evaluation);
-        let again = tune_controller(&changed, &trial, &space, 13, &TaskProgress::default());
+        let again = tune_controller(&changed, &trial, &space, (13, 1), &TaskProgress::default());
         assert_eq!(again, Some(tuned), "the same each time");
     }
 }

@@ -51,7 +51,7 @@ pub struct WorldPlan {
     pub health: HealthLimits,
     /// The snake.
     pub body: BodyPlan,
-    /// Whether the snake comes to rest without torques before its trial begins.
+    /// Whether the snake comes to rest without commanded torques before its trial begins.
     pub settles: bool,
     /// Position of the middle of the straight snake on the y axis at the start, in metres.
     pub start_y_m: f32,

@@ -38,7 +38,7 @@ pub fn feasible_cells<G>(archive: &Archive<G>, bodies: &BodySpace) -> usize {
         // The outermost cells have what lies beyond the axis, too.
         let from_m = if row == 0 { 0.0 } else { from_m };
         let to_m = if row == last { f64::INFINITY } else { to_m };
-        shortest_m < to_m && longest_m > from_m
+        shortest_m < to_m && longest_m >= from_m
     };
     (0..archive.cells()).filter(is_feasible).count()
 }
@@ -47,15 +47,15 @@ pub fn feasible_cells<G>(archive: &Archive<G>, bodies: &BodySpace) -> usize {
 mod tests {
     use super::*;
 
-    /// Two blocks of at most 4 m reach 8 m of 12; twelve of at least 0.4 m begin at 4.8 m, beyond the first row.
+    /// Two blocks of at most 4 m reach 8 m of 12, which is in the row from 8 m; twelve of at least 0.4 m begin at 4.8 m, beyond the first row.
     #[test]
     fn cells_that_no_body_fits_are_not_feasible() {
         let bodies = BodySpace::default();
         let archive: Archive<()> = body_archive(&bodies, 16, 0.0);
         assert_eq!(archive.cells(), 11 * 16);
-        assert_eq!(feasible_cells(&archive, &bodies), 11 * 16 - 8 - 1);
+        assert_eq!(feasible_cells(&archive, &bodies), 11 * 16 - 7 - 1);
         let narrow = BodySpace { limbs_max: 2, ..bodies };
         let archive: Archive<()> = body_archive(&narrow, 4, 0.0);
-        assert_eq!(feasible_cells(&archive, &narrow), 2);
+        assert_eq!(feasible_cells(&archive, &narrow), 3);
     }
 }

@@ -2,7 +2,6 @@
 
 use super::Settings;
 use crate::check::Invalid;
-use crate::schema::PerPart;
 use crate::score::Fitness;
 
 /// Room on the landing beside the longest body, in metres.
@@ -26,41 +25,13 @@ impl Settings {
         if !varies {
             return Ok(());
         }
-        let agent = &self.trial.agent;
-        for (field, value) in [
-            ("max_bend_torque_nm", &agent.max_bend_torque_nm),
-            ("max_twist_torque_nm", &agent.max_twist_torque_nm),
-            ("joint_damping_nms_per_rad", &agent.joint_damping_nms_per_rad),
-            ("joint_cfm_m_s_per_n", &agent.joint_cfm_m_s_per_n),
-        ] {
-            if let PerPart::Each(values) = value {
-                let field = format!("trial.agent.{field}");
-                let value = format!("a list of {}", values.len());
-                return Err(Invalid::new(field, value, "one value while bodies evolve"));
-            }
-        }
-        let cfm = agent.joint_cfm_m_s_per_n.at(0);
-        if cfm > 0.0 {
-            let field = "trial.agent.joint_cfm_m_s_per_n";
-            return Err(Invalid::new(field, cfm, "0 while bodies evolve"));
-        }
+        self.trial.check_own_bodies().map_err(|error| error.inside("trial"))?;
         // The longest body could not arrive as a whole on a shorter one.
         let least_m = self.genome.bodies.longest_m + LANDING_ROOM_M;
         if self.trial.fitness == Fitness::Share && self.trial.stairs.landing_m < least_m {
             let (field, found) = ("trial.stairs.landing_m", self.trial.stairs.landing_m);
             let allowed = format!("{least_m} or more, for the longest body");
             return Err(Invalid::new(field, found, allowed));
-        }
-        // The engine takes one mass for all contacts, and the masses of limbs differ.
-        for (field, cfm) in [
-            ("trial.surface", self.trial.surface.soft_cfm_m_s_per_n),
-            ("trial.ground", self.trial.ground().soft_cfm_m_s_per_n),
-            ("trial.agent.skin", agent.skin.soft_cfm_m_s_per_n),
-        ] {
-            if cfm > 0.0 {
-                let field = format!("{field}.soft_cfm_m_s_per_n");
-                return Err(Invalid::new(field, cfm, "0 while bodies evolve"));
-            }
         }
         Ok(())
     }

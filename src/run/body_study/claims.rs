@@ -4,7 +4,7 @@ use super::arm::Arm;
 use crate::evolve::{Archive, Settings, body_archive, feasible_cells};
 use crate::run::markdown::markdown_table;
 use crate::run::report::Quartiles;
-use crate::run::sign_test::{median_difference, sign_test};
+use crate::run::sign_test::PairedDifference;
 use crate::save::{BodyStudyRun, BodyStudyRuns};
 use crate::schema::Choices;
 
@@ -80,16 +80,10 @@ fn pairs(
     first.iter().filter_map(pair).collect()
 }
 
-/// The paired differences in words.
-fn difference_words(pairs: &[[f64; 2]]) -> String {
-    let differences: Vec<f64> = pairs.iter().map(|[a, b]| a - b).collect();
-    let count = |of: fn(f64) -> bool| differences.iter().filter(|by| of(**by)).count() as u32;
-    let (more, fewer) = (count(|by| by > 0.0), count(|by| by < 0.0));
-    let p = sign_test(more, fewer);
-    let Some((median, interval)) = median_difference(differences) else { return String::new() };
-    let interval = interval
-        .map_or(String::new(), |[from, to]| format!(", 95 % interval {from:.3} to {to:.3}"));
-    format!("{more} higher, {fewer} lower (p = {p:.3}), median difference {median:.3}{interval}")
+/// Compares the values of both arms seed by seed.
+fn compared(pairs: &[[f64; 2]]) -> PairedDifference {
+    let known: Vec<[Option<f64>; 2]> = pairs.iter().map(|pair| pair.map(Some)).collect();
+    PairedDifference::of(&known)
 }
 
 fn protection(runs: &BodyStudyRuns) -> Vec<String> {
@@ -104,12 +98,14 @@ fn protection(runs: &BodyStudyRuns) -> Vec<String> {
     else {
         return not_measured(claim, &must);
     };
-    let is_met = sum(0) >= MORE_CHANGES * sum(1) && sum(0) > 0.0 && share >= other;
+    let difference = compared(&shares);
+    let is_not_lower = difference.median.is_some_and(|(median, _)| median >= 0.0);
+    let is_met = sum(0) >= MORE_CHANGES * sum(1) && sum(0) > 0.0 && is_not_lower;
     let measured = format!(
-        "{:.0} against {:.0}; share {share:.3} against {other:.3}: {}",
+        "{:.0} against {:.0} in all; share {share:.3} against {other:.3}: {}",
         sum(0),
         sum(1),
-        difference_words(&shares)
+        difference.words()
     );
     vec![claim.to_owned(), must, measured, verdict(is_met)]
 }
@@ -138,7 +134,7 @@ fn diversity(runs: &BodyStudyRuns) -> Vec<String> {
     let Some(Quartiles { low, median, high }) = Quartiles::of(ratios) else {
         return not_measured(claim, &must);
     };
-    let measured = format!("{median:.2} [{low:.2} {high:.2}]; {}", difference_words(&scores));
+    let measured = format!("{median:.2} [{low:.2} {high:.2}]; {}", compared(&scores).words());
     vec![claim.to_owned(), must, measured, verdict(median >= MORE_DIVERSITY)]
 }
 
@@ -157,7 +153,7 @@ fn split(runs: &BodyStudyRuns) -> Vec<String> {
     };
     let insertion = median(insertions).map_or("–".to_owned(), |median| format!("{median:.3}"));
     let measured = format!(
-        "{middle:.3} [{low:.3} {high:.3}] of {count}; an insertion: {insertion} of {others}"
+        "{middle:.3} [{low:.3} {high:.3}] ({count} splits); {insertion} ({others} insertions)"
     );
     vec![claim.to_owned(), must, measured, verdict(middle <= SPLIT_CHANGE)]
 }
@@ -237,10 +233,10 @@ mod tests {
         }
         let text = claims(&runs, &settings);
         for expected in [
-            "24 against 12; share 0.800 against 0.700: 6 higher, 0 lower (p = 0.031), median difference 0.100",
-            "66 % [66 66] of 167",
+            "24 against 12 in all; share 0.800 against 0.700: higher with 6 of 6 seeds (sign test p = 0.031), median difference +0.100",
+            "65 % [65 65] of 168",
             "1.35 [1.35 1.35]",
-            "0.030 [0.010 0.200] of 18; an insertion: 0.375 of 12",
+            "0.030 [0.010 0.200] (18 splits); 0.375 (12 insertions)",
         ] {
             assert!(text.contains(expected), "{expected} in {text}");
         }

@@ -197,7 +197,7 @@ fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) 
         for (label, hint, command) in [
             (
                 "Adapt the gait",
-                "The gait fits the body that it was learned with: try 60 gaits like it, and keep the best",
+                "The gait fits the body that it was learned with: try 59 gaits like it, and keep the best",
                 BodyCommand::Tune,
             ),
             (

@@ -41,9 +41,15 @@ struct Edited {
     future: Vec<Genome>,
     /// The size that the last command set, whose further changes are the same step.
     last_set: Option<(usize, BlockSize)>,
-    /// When the body changed, if the stage does not show it yet.
+    /// When the body changed, if its preview has not begun.
     changed_at: Option<Instant>,
+    /// The evaluation of the snake for its preview.
+    evaluation: Option<BackgroundTask<Result<Champion, String>>>,
+    /// The evaluated snake, which the stage does not show yet.
+    ready: Option<Champion>,
     tuning: Option<BackgroundTask<Option<Tuned>>>,
+    /// Number of tunings so far, each of which tries other gaits.
+    attempts: u32,
 }
 
 /// What the panel shows of the edited body.
@@ -97,6 +103,7 @@ impl BodyEditor {
             BodyCommand::CancelTuning => {
                 edited.tuning.iter().for_each(BackgroundTask::cancel);
             }
+            BodyCommand::Preview => return Ok(edited.show()),
             BodyCommand::Close => {
                 edited.tuning.iter().for_each(BackgroundTask::cancel);
                 let original = edited.original.clone();
@@ -109,22 +116,31 @@ impl BodyEditor {
             BodyCommand::Change { block, change } => edited.change(*block, *change)?,
             BodyCommand::Undo => edited.step(true),
             BodyCommand::Redo => edited.step(false),
-            BodyCommand::Preview => {
-                edited.changed_at = None;
-                return Ok(edited.show());
-            }
             BodyCommand::Tune => edited.tune()?,
             BodyCommand::Evolve => {
-                let champion = edited.champion()?;
+                let champion = edited.unevaluated()?;
                 run.start_next_from(&champion, &format!("{}, edited", edited.original.name()))?;
             }
         }
         Ok(None)
     }
 
+    /// Takes over what has ended in the background, and begins the preview of a change that is old enough. Returns whether
+    /// a preview is ready.
+    fn follow(&mut self, notices: &mut Notices) -> bool {
+        let Some(edited) = &mut self.edited else { return false };
+        edited.take_in_tuning(notices);
+        if edited.changed_at.is_some_and(|at| at.elapsed() >= PREVIEW_AFTER) {
+            edited.begin_preview(notices);
+        }
+        edited.take_in_preview(notices)
+    }
+}
+
+impl Edited {
     /// Takes over a tuning that has ended.
-    fn take_in(&mut self, notices: &mut Notices) {
-        let Some(edited) = &mut self.edited else { return };
+    fn take_in_tuning(&mut self, notices: &mut Notices) {
+        let edited = self;
         let Some(result) = edited.tuning.as_ref().and_then(BackgroundTask::poll) else { return };
         edited.tuning = None;
         match result {
@@ -142,24 +158,49 @@ impl BodyEditor {
         }
     }
 
-    /// Whether the last change is old enough for its preview.
-    fn is_preview_due(&self) -> bool {
-        let changed_at = self.edited.as_ref().and_then(|edited| edited.changed_at);
-        changed_at.is_some_and(|at| at.elapsed() >= PREVIEW_AFTER)
+    /// Begins to evaluate the snake for its preview. A body that is not allowed has none; the panel says why.
+    fn begin_preview(&mut self, notices: &mut Notices) {
+        self.changed_at = None;
+        // What follows is another step.
+        self.last_set = None;
+        self.ready = None;
+        let Ok(champion) = self.unevaluated() else { return };
+        let evaluated = move || {
+            let evaluation = caught(|| evaluate(&champion.genome, &champion.trial))?;
+            Ok(Champion { evaluation, ..champion })
+        };
+        match BackgroundTask::start(evaluated) {
+            Ok(task) => self.evaluation = Some(task),
+            Err(error) => notices.problem(format!("The preview could not start: {error}.")),
+        }
     }
-}
 
-impl Edited {
+    /// Takes over an evaluation that has ended. Returns whether a preview is ready.
+    fn take_in_preview(&mut self, notices: &mut Notices) -> bool {
+        let Some(result) = self.evaluation.as_ref().and_then(BackgroundTask::poll) else {
+            return false;
+        };
+        self.evaluation = None;
+        match result.and_then(|champion| champion) {
+            Ok(champion) => {
+                self.ready = Some(champion);
+                true
+            }
+            Err(problem) => {
+                notices.problem(format!("This body cannot be simulated: {problem}"));
+                false
+            }
+        }
+    }
+
     fn of(original: &StagedChampion) -> Result<Self, String> {
         if let Some(engine) = original.other_engine() {
             return Err(format!("A snake of engine {engine} moves differently here."));
         }
         let champion = original.champion();
-        let genome = original.trial().agent.with_own_blocks(&champion.genome);
-        let genome = genome.ok_or_else(|| {
-            let kind = champion.genome.controller.kind().title();
-            format!("Only gaits and waves follow a body that changes; this snake has {kind}.")
-        })?;
+        let genome = original.trial().with_own_blocks(&champion.genome);
+        let genome =
+            genome.map_err(|error| format!("This snake's body cannot be edited: {error}"))?;
         Ok(Self {
             original: original.simulated(),
             genome,
@@ -167,7 +208,10 @@ impl Edited {
             future: Vec::new(),
             last_set: None,
             changed_at: None,
+            evaluation: None,
+            ready: None,
             tuning: None,
+            attempts: 0,
         })
     }
 
@@ -214,8 +258,9 @@ impl Edited {
         let mut rng = stream(self.genome.hash(), 1, block as u32, Purpose::Mutation);
         let changed = self.space().with_body_change_at(&self.genome, change, block, &mut rng);
         let changed = changed.ok_or_else(|| {
-            let limits = "2 to 12 blocks of at least 0.4 m, neighbours of at most 8 times the mass";
-            format!("This block cannot be changed so: a body has {limits}.")
+            let limits = "2 to 12 blocks of 0.4 to 4 m and at most 12 m in all, and neighbours differ by a factor of 8 \
+                          in mass and of 10 in inertia at most";
+            format!("Not possible here: a body that evolves has {limits}.")
         })?;
         self.replace(changed);
         Ok(())
@@ -234,20 +279,20 @@ impl Edited {
         }
     }
 
-    /// The edited snake as a champion.
-    fn champion(&self) -> Result<Champion, String> {
+    /// The edited snake with the evaluation of the original.
+    fn unevaluated(&self) -> Result<Champion, String> {
         if let Some(problem) = self.problem() {
             return Err(problem);
         }
         let (genome, trial) = (self.genome.clone(), self.original.trial().clone());
-        let evaluation = caught(|| evaluate(&genome, &trial))?;
-        let origin = self.original.champion().origin.clone();
+        let original = self.original.champion();
+        let (evaluation, origin) = (original.evaluation, original.origin.clone());
         Ok(Champion { genome, trial, evaluation, chosen_by: None, origin })
     }
 
-    /// The original and the edited snake side by side; none while the body is not allowed.
-    fn show(&self) -> Option<Show> {
-        let champion = self.champion().ok()?;
+    /// The original and the edited snake side by side, if a preview is ready.
+    fn show(&mut self) -> Option<Show> {
+        let champion = self.ready.take()?;
         let edited = StagedChampion::from_edited(&champion).named("Edited".to_owned());
         Some(Show::race(vec![self.original.clone(), edited]))
     }
@@ -258,8 +303,10 @@ impl Edited {
         }
         let (genome, trial, space) =
             (self.genome.clone(), self.original.trial().clone(), self.space());
+        self.attempts += 1;
+        let size = (TUNING, self.attempts);
         let task = BackgroundTask::start_counted(TUNING, move |progress| {
-            tune_controller(&genome, &trial, &space, TUNING, progress)
+            tune_controller(&genome, &trial, &space, size, progress)
         });
         self.tuning = Some(task.map_err(|error| format!("Tuning could not start: {error}."))?);
         Ok(())
@@ -271,15 +318,7 @@ fn follow(
     mut notices: ResMut<Notices>,
     mut send: MessageWriter<Command>,
 ) {
-    if editor.edited.is_none() {
-        return;
-    }
-    editor.take_in(&mut notices);
-    if editor.is_preview_due() {
-        // Once for each change.
-        if let Some(edited) = &mut editor.edited {
-            edited.changed_at = None;
-        }
+    if editor.edited.is_some() && editor.follow(&mut notices) {
         send.write(Command::Body(BodyCommand::Preview));
     }
 }
@@ -309,6 +348,20 @@ mod tests {
         edited.segments.iter().map(|segment| segment.length_m).collect()
     }
 
+    /// Waits until a preview is ready or, without one, until nothing is under way; then shows it.
+    fn preview(editor: &mut BodyEditor, run: &mut CurrentRun) -> Option<Show> {
+        let mut notices = Notices::default();
+        while !editor.follow(&mut notices) {
+            let edited = editor.edited.as_ref().expect("editing");
+            let is_idle = edited.changed_at.is_none() && edited.evaluation.is_none();
+            if is_idle && edited.tuning.is_none() {
+                return None;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        editor.apply(&BodyCommand::Preview, None, run).expect("allowed at any time")
+    }
+
     #[test]
     fn a_drag_of_a_slider_is_one_step_and_can_be_undone() {
         let (mut editor, mut run) = editing();
@@ -335,8 +388,7 @@ mod tests {
         let (mut editor, mut run) = editing();
         let set = |value| BodyCommand::Set { block: 2, size: BlockSize::Width, value };
         editor.apply(&set(0.8), None, &mut run).expect("allowed");
-        let show = editor.apply(&BodyCommand::Preview, None, &mut run).expect("allowed");
-        let champions = show.expect("both").champions;
+        let champions = preview(&mut editor, &mut run).expect("both").champions;
         let blocks = |staged: &StagedChampion| staged.body().limbs[2].width_m;
         assert_eq!(champions.iter().map(blocks).collect::<Vec<_>>(), [1.0, 0.8]);
         // A hundredth of its neighbours' mass.
@@ -344,8 +396,25 @@ mod tests {
         let problem = editor.edited().expect("editing").problem.expect("refused");
         assert!(problem.contains("segments[2]") || problem.contains("segments[1]"), "{problem}");
         assert!(editor.apply(&BodyCommand::Evolve, None, &mut run).is_err());
-        let show = editor.apply(&BodyCommand::Preview, None, &mut run).expect("allowed");
-        assert!(show.is_none());
+        assert!(preview(&mut editor, &mut run).is_none());
+        // A second drag of the same slider is another step.
+        editor.apply(&BodyCommand::Undo, None, &mut run).expect("allowed");
+        let width = editor.edited().expect("editing").segments[2].width_m;
+        assert_eq!(width, 0.8);
+    }
+
+    #[test]
+    fn a_change_just_before_a_tuning_is_shown_and_the_next_tuning_tries_other_gaits() {
+        let (mut editor, mut run) = editing();
+        let set = BodyCommand::Set { block: 1, size: BlockSize::Height, value: 0.9 };
+        editor.apply(&set, None, &mut run).expect("allowed");
+        editor.apply(&BodyCommand::Tune, None, &mut run).expect("it begins");
+        let undo = editor.apply(&BodyCommand::Undo, None, &mut run).expect_err("busy");
+        assert!(undo.contains("being tuned"), "{undo}");
+        editor.apply(&BodyCommand::CancelTuning, None, &mut run).expect("allowed");
+        let champions = preview(&mut editor, &mut run).expect("both").champions;
+        assert_eq!(champions[1].body().limbs[1].height_m, 0.9);
+        assert_eq!(editor.edited.as_ref().map(|edited| edited.attempts), Some(1));
     }
 
     #[test]

@@ -15,8 +15,8 @@ const REST_WAY_M: f32 = 0.001;
 const LARGEST_SHIFT_M: f32 = 0.5;
 
 impl Simulation {
-    /// Steps the world without commanded torques, but with all damping, until the body rests; its energy and effort count from then on. After Sims (1994),
-    /// whose creatures begin when their centre of mass is at rest.
+    /// Steps the world without commanded torques, but with all damping, until the body rests; its energy and effort count
+    /// from then on. After Sims (1994), whose creatures begin when their centre of mass is at rest.
     ///
     /// # Errors
     /// The body breaks a limit, shifts along the stairs, or does not come to rest in time.

@@ -9,7 +9,10 @@ pub(super) static BLOCKS: Bands = Bands {
     name: "Blocks",
     note: "Each band is a number of blocks; its height is the number of snakes that have it.",
     band: |blocks| format!("Bodies of {blocks} blocks"),
-    count: |count| format!("{count} {}", if count == 1 { "number" } else { "numbers" }),
+    count: |count| match count {
+        1 => "one number of blocks".to_owned(),
+        _ => format!("{count} different numbers of blocks"),
+    },
     rest: "others",
     column: "blocks",
     best: BestNumbers {

@@ -148,7 +148,7 @@ fn in_words(parent: &Genome, child: &Genome) -> String {
     }
 }
 
-/// The records of a run whose number of blocks differs from that of the record before.
+/// The records of a run whose structure differs from that of the record before.
 fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
     let (mut structures, mut best): (Vec<Structure>, Option<f32>) = (Vec::new(), None);
     for report in reports {
