@@ -129,7 +129,9 @@ pub fn line_of<T: Serialize>(value: &T) -> String {
 
 /// Reads a line of JSON.
 pub fn parse_line<T: DeserializeOwned>(line: &str) -> Result<T, WireError> {
-    serde_json::from_str(line).map_err(|error| WireError::Damaged(error.to_string()))
+    // The text of the error quotes names from the message.
+    let damaged = |error: serde_json::Error| error.to_string().replace(char::is_control, " ");
+    serde_json::from_str(line).map_err(|error| WireError::Damaged(damaged(error)))
 }
 
 impl WorkBatch {

@@ -10,6 +10,7 @@ mod exam;
 mod fitness;
 mod history;
 mod mirrored;
+mod own_blocks;
 mod own_body;
 mod perturbation;
 mod recording;

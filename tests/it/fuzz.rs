@@ -288,6 +288,13 @@ fn every_message_between_machines_is_read_or_gives_one_line() {
     for file in corpus("wire") {
         assert!(kinds_of_message(&fs::read(&file).expect("read")).is_ok(), "{}", file.display());
     }
+    // A name in a message stood in its error with its line break.
+    for file in corpus("wire") {
+        let text = fs::read_to_string(&file).unwrap_or_default().replace("_s\"", "\\n_s\"");
+        if let Err(error) = kinds_of_message(text.as_bytes()) {
+            assert!(!error.to_string().contains(char::is_control), "{error}");
+        }
+    }
     proptest!(rules(3000), |(bytes in inputs("wire"))| {
         if let Err(error) = kinds_of_message(&bytes) {
             prop_assert!(!error.to_string().contains('\n'), "{error}");
