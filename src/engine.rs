@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::check::Invalid;
 use crate::schema::choices;
 
 /// Version of everything that determines the bits of a run: physics, controllers, random streams,
@@ -33,6 +34,17 @@ pub struct Engine {
 impl Engine {
     /// The engine of this program on this machine.
     pub const THIS: Self = Self { version: ENGINE_VERSION, processors: Processors::THIS };
+
+    /// Checks that results of this engine can be continued here.
+    ///
+    /// # Errors
+    /// It is another one than that of this program on this machine.
+    pub fn check_this(self) -> Result<(), Invalid> {
+        if self == Self::THIS {
+            return Ok(());
+        }
+        Err(Invalid::new("engine", self.to_string(), Self::THIS.to_string()))
+    }
 }
 
 impl Processors {

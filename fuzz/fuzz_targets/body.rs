@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::genome::{BodyChange, ControllerKind, GenomeSpace, MOST_SEGMENTS};
+use snakes_and_stairs::genome::{BodyChange, GenomeSpace, MOST_SEGMENTS};
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::parse_champion;
 use snakes_and_stairs::score::Rollout;
@@ -23,8 +23,7 @@ fuzz_target!(|blocks: &str| {
             for _ in 0..3 {
                 rollout.advance();
             }
-            let space = GenomeSpace { controller: ControllerKind::Gait, ..GenomeSpace::default() };
-            let space = space.widened_for(genome);
+            let space = GenomeSpace::default().widened_for(genome);
             for (number, (change, _)) in (0..).zip(BodyChange::RATES) {
                 let mut rng = stream(1, 1, number, Purpose::Mutation);
                 if let Some(child) = space.with_body_change(genome, change, &mut rng) {

@@ -15,11 +15,6 @@ pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
     if json { print_lines(&body, is_own) } else { print(&table(&body, is_own)) }
 }
 
-/// Greatest torque of all joints together about both axes, in N·m.
-fn torque_nm(body: &BodyPlan) -> f32 {
-    body.joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum()
-}
-
 fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
     for (index, limb) in body.limbs.iter().enumerate() {
         // The joint in front of the block; the head has none.
@@ -45,7 +40,7 @@ fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
         "length_m": body.length_m(),
         "mass_kg": body.mass_kg(),
         "volume_m3": body.volume_m3(),
-        "torque_nm": torque_nm(body),
+        "torque_nm": body.torque_nm(),
     });
     print(&format!("{line}\n"))
 }
@@ -58,7 +53,7 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
         body.length_m(),
         body.mass_kg(),
         body.volume_m3(),
-        torque_nm(body),
+        body.torque_nm(),
     );
     text +=
         "block  length  width  height    mass  joint in front: bend, twist   torque: bend, twist\n";

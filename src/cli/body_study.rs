@@ -2,13 +2,13 @@
 
 use super::args::{Args, BodyStudyArgs};
 use super::compare::seeds_from;
-use super::error::{CliError, of_flag};
+use super::error::{CliError, of_size_flag};
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings};
 use crate::run::body_study::{Arm, PlannedArm, claims, study_records, train_arms};
-use crate::run::headless::{HeadlessError, say};
+use crate::run::headless::say;
 use crate::run::progress_bar::bar_of;
 use crate::save::{
     BodyStudyRuns, MAX_BODY_STUDY_RUNS, SaveError, load_body_study, load_preset,
@@ -71,12 +71,7 @@ pub fn body_study(args: &Args, wanted: &BodyStudyArgs) -> Result<(), CliError> {
         },
     );
     bar.finish_and_clear();
-    let kept = || ron.exists().then(|| ron.clone());
-    let result = result.map_err(|error| match error {
-        HeadlessError::Cancelled { .. } => HeadlessError::Cancelled { kept: kept() },
-        other => other,
-    });
-    trusted(&*evaluator, result)?;
+    trusted(&*evaluator, result.map_err(|error| error.keeping(&ron)))?;
     store_body_study(&ron, &runs)?;
     let records = study_records(&runs);
     store_csv(&csv, &records)?;
@@ -99,11 +94,7 @@ fn plans(
     for seed in seeds_from(args.seed_or(FIRST_SEED)?, wanted.seeds)? {
         for arm in Arm::OPTIONS.iter().copied() {
             let plan = arm.plan(settings, seed, wanted.evaluations);
-            let plan = plan.map_err(|invalid| match invalid.field.as_str() {
-                "evaluations" => of_flag("--evaluations")(invalid),
-                "trial.duration_s" => of_flag("--duration")(invalid),
-                _ => invalid,
-            })?;
+            let plan = plan.map_err(of_size_flag)?;
             planned.push(PlannedArm { arm, plan });
         }
     }

@@ -13,7 +13,7 @@ use crate::evolve::{RunPlan, Settings, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::plot;
 use crate::run::compare::{PlannedRun, run_all};
-use crate::run::headless::{HeadlessError, say};
+use crate::run::headless::say;
 use crate::run::progress_bar::bar_of;
 use crate::save::{
     Comparison, MAX_COMPARED_RUNS, load_comparison, run_name, settings_fingerprint,
@@ -147,13 +147,7 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
         Ok(store_comparison(&ron, &comparison)?)
     });
     bar.finish_and_clear();
-    let result = result.map_err(|error| match error {
-        HeadlessError::Cancelled { .. } => {
-            HeadlessError::Cancelled { kept: ron.exists().then(|| ron.clone()) }
-        }
-        other => other,
-    });
-    trusted(&*evaluator, result)?;
+    trusted(&*evaluator, result.map_err(|error| error.keeping(&ron)))?;
     store_comparison(&ron, &comparison)?;
     store_csv(&csv, &comparison.records())?;
     store_picture(&png, &plot::comparison(&comparison)?)?;

@@ -86,6 +86,15 @@ pub fn of_flag(flag: &str) -> impl Fn(Invalid) -> Invalid {
     move |invalid| Invalid { field: flag.to_owned(), ..invalid }
 }
 
+/// Names the flag of a run's size, `--evaluations` or `--duration`, in the place of its field.
+pub fn of_size_flag(invalid: Invalid) -> Invalid {
+    match invalid.field.as_str() {
+        "evaluations" => of_flag("--evaluations")(invalid),
+        "trial.duration_s" => of_flag("--duration")(invalid),
+        _ => invalid,
+    }
+}
+
 impl CliError {
     /// 2 for wrong usage, 1 for failure.
     pub fn exit_code(&self) -> u8 {

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::args::{Args, FamiliesArgs};
 use super::compare::{kinds, seeds_from};
-use super::error::{CliError, of_flag};
+use super::error::{CliError, of_size_flag};
 use super::evaluators::{evaluator, trusted};
 use super::exam::chosen;
 use super::output::{cancel_on_interrupt, print};
@@ -89,11 +89,7 @@ pub fn families(args: &Args, wanted: &FamiliesArgs) -> Result<(), CliError> {
         },
     );
     bar.finish_and_clear();
-    let kept = || files.ron.exists().then(|| files.ron.clone());
-    let cancelled = |error: HeadlessError| match error {
-        HeadlessError::Cancelled { .. } => HeadlessError::Cancelled { kept: kept() },
-        other => other,
-    };
+    let cancelled = |error: HeadlessError| error.keeping(&files.ron);
     trusted(&*evaluator, result.map_err(cancelled))?;
     // The gaits that the named families are compared with, if they have been trained before.
     let mut gaits: Vec<Family> = families.iter().map(|family| family.gait()).collect();
@@ -125,11 +121,7 @@ fn plans(
     for seed in seeds {
         for (family, preset) in &presets {
             let plan = family.plan(preset, seed, wanted.evaluations, duration_s);
-            let plan = plan.map_err(|invalid| match invalid.field.as_str() {
-                "evaluations" => of_flag("--evaluations")(invalid),
-                "trial.duration_s" => of_flag("--duration")(invalid),
-                _ => invalid,
-            })?;
+            let plan = plan.map_err(of_size_flag)?;
             planned.push(PlannedFamilyRun { family: *family, plan });
         }
     }

@@ -39,6 +39,11 @@ impl BodyGenes {
         !self.segments.is_empty()
     }
 
+    /// The ids of the blocks, which tell bodies of different structures apart; empty without blocks of its own.
+    pub fn block_ids(&self) -> Vec<u64> {
+        self.segments.iter().map(|segment| segment.id).collect()
+    }
+
     /// Hashes what belongs to a body of its own besides the values of its genes: the descent of its blocks, and the joint
     /// of its head, which has no effect yet.
     pub(super) fn hash_descent(&self, hash: &mut Xxh3Default) {

@@ -1,7 +1,7 @@
 //! The program without a window: evolves a run and prints it as a table or as JSON lines.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
@@ -84,6 +84,18 @@ pub enum HeadlessError {
     /// Every agent of every generation was disqualified.
     #[error("no champion: every snake of every generation was disqualified")]
     NoChampion,
+}
+
+impl HeadlessError {
+    /// Names, in a cancellation, the file with what was finished, if it exists.
+    pub fn keeping(self, file: &Path) -> Self {
+        match self {
+            Self::Cancelled { .. } => {
+                Self::Cancelled { kept: file.exists().then(|| file.to_owned()) }
+            }
+            other => other,
+        }
+    }
 }
 
 /// Evolves a run to its end and prints a line per generation to `out`, beginning with those that earlier sessions

@@ -19,8 +19,9 @@ pub fn sign_test(more: u32, fewer: u32) -> f64 {
 /// How the first of paired values compares with the second.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairedDifference {
-    /// Number of pairs of which the first is larger, and of those of which the second is.
+    /// Number of pairs whose first value is larger.
     pub more: u32,
+    /// Number of pairs whose second value is larger.
     pub fewer: u32,
     /// Number of pairs.
     pub pairs: usize,

@@ -38,13 +38,12 @@ fn worth(evaluation: &Evaluation) -> (bool, f32) {
 pub fn tune_controller(
     genome: &Genome,
     trial: &Trial,
-    space: &GenomeSpace,
     (evaluations, attempt): (usize, u32),
     progress: &TaskProgress,
 ) -> Option<Tuned> {
     let evaluated = |genome: &Genome| caught(|| evaluate(genome, trial)).ok();
     let before = evaluated(genome)?;
-    let space = space.widened_for(genome);
+    let space = GenomeSpace::default().widened_for(genome);
     let (mut best, mut best_evaluation, mut step) = (genome.clone(), before, FIRST_STEP);
     progress.set_done(1);
     for first in (1..evaluations).step_by(CHILDREN) {
@@ -80,15 +79,13 @@ mod tests {
         let own = trial.with_own_blocks(&champion.genome).expect("a gait");
         let mut changed = own.clone();
         changed.body.segments[1].length_m = 1.2;
-        let space = GenomeSpace { controller: changed.controller.kind(), ..GenomeSpace::default() };
         let progress = TaskProgress::default();
-        let tuned =
-            tune_controller(&changed, &trial, &space, (13, 1), &progress).expect("it simulates");
+        let tuned = tune_controller(&changed, &trial, (13, 1), &progress).expect("it simulates");
         assert_eq!(progress.done(), 13);
         assert_eq!(tuned.genome.body, changed.body);
         assert!(worth(&tuned.evaluation) >= worth(&tuned.before));
         assert_eq!(evaluate(&tuned.genome, &trial), tuned.evaluation);
-        let again = tune_controller(&changed, &trial, &space, (13, 1), &TaskProgress::default());
+        let again = tune_controller(&changed, &trial, (13, 1), &TaskProgress::default());
         assert_eq!(again, Some(tuned), "the same each time");
     }
 }

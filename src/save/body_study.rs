@@ -38,7 +38,7 @@ pub struct BodyStudyRuns {
     runs: Vec<(String, BodyStudyRun)>,
 }
 
-/// What was measured in a run.
+/// The measurements of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyStudyRun {
@@ -93,10 +93,7 @@ impl BodyStudyRuns {
     }
 
     fn check(&self) -> Result<(), Invalid> {
-        let engine = Engine { version: self.engine, processors: self.processors };
-        if engine != Engine::THIS {
-            return Err(Invalid::new("engine", engine.to_string(), Engine::THIS.to_string()));
-        }
+        Engine { version: self.engine, processors: self.processors }.check_this()?;
         within("evaluations", self.evaluations, 1..=u32::MAX)?;
         within("runs", self.runs.len(), 0..=MAX_BODY_STUDY_RUNS)?;
         for (arm, run) in &self.runs {

@@ -115,10 +115,7 @@ impl Comparison {
     }
 
     fn check(&self) -> Result<(), Invalid> {
-        let engine = Engine { version: self.engine, processors: self.processors };
-        if engine != Engine::THIS {
-            return Err(Invalid::new("engine", engine.to_string(), Engine::THIS.to_string()));
-        }
+        Engine { version: self.engine, processors: self.processors }.check_this()?;
         within("evaluations", self.evaluations, 1..=u32::MAX)?;
         within("runs", self.runs.len(), 0..=MAX_COMPARED_RUNS)?;
         for run in &self.runs {

@@ -136,10 +136,7 @@ impl FamilyRuns {
     }
 
     fn check(&self) -> Result<(), Invalid> {
-        let engine = Engine { version: self.engine, processors: self.processors };
-        if engine != Engine::THIS {
-            return Err(Invalid::new("engine", engine.to_string(), Engine::THIS.to_string()));
-        }
+        Engine { version: self.engine, processors: self.processors }.check_this()?;
         let runs = || self.families.iter().flat_map(|trained| &trained.runs);
         within("runs", runs().count(), 0..=MAX_FAMILY_RUNS)?;
         for trained in &self.families {

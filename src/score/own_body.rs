@@ -35,23 +35,22 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
             cfm_m_s_per_n: agent.joint_cfm_m_s_per_n.at(index),
         }
     };
-    let mut joints: Vec<JointPlan> = limbs.windows(2).enumerate().map(joint).collect();
-    let sum_nm: f32 =
-        joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum();
+    let mut body = BodyPlan {
+        joints: limbs.windows(2).enumerate().map(joint).collect(),
+        contact_free_pairs: contact_free_pairs(&limbs),
+        middle_limb: BodyPlan::middle_by_mass(&limbs),
+        limbs,
+        angular_damping_per_s: agent.angular_damping_per_s,
+    };
+    let sum_nm = body.torque_nm();
     if sum_nm > agent.torque_budget_nm {
         let share = agent.torque_budget_nm / sum_nm;
-        for joint in &mut joints {
+        for joint in &mut body.joints {
             joint.max_bend_torque_nm *= share;
             joint.max_twist_torque_nm *= share;
         }
     }
-    BodyPlan {
-        contact_free_pairs: contact_free_pairs(&limbs),
-        middle_limb: BodyPlan::middle_by_mass(&limbs),
-        limbs,
-        joints,
-        angular_damping_per_s: agent.angular_damping_per_s,
-    }
+    body
 }
 
 /// Length of a block relative to the height of its neighbours below which these pass through each other: a bend of the

@@ -90,6 +90,11 @@ impl BodyPlan {
         self.limbs.iter().map(LimbPlan::mass_kg).sum()
     }
 
+    /// Greatest torque of all joints together about both axes, in N·m.
+    pub fn torque_nm(&self) -> f32 {
+        self.joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum()
+    }
+
     /// Distance of the middle limb's centre from the front of the straight body, in metres.
     pub fn front_to_middle_m(&self) -> f32 {
         let before: f32 = self.limbs.iter().take(self.middle_limb).map(|limb| limb.length_m).sum();

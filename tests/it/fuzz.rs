@@ -163,8 +163,7 @@ fn every_list_of_blocks_gives_a_body_or_one_line() {
             let genome = &loaded.champion.genome;
             let parts = loaded.champion.body().limbs.len();
             assert!(parts <= MOST_SEGMENTS as usize, "{parts} parts");
-            let space = GenomeSpace { controller: ControllerKind::Gait, ..GenomeSpace::default() };
-            let space = space.widened_for(genome);
+            let space = GenomeSpace::default().widened_for(genome);
             for (number, (change, _)) in (0..).zip(BodyChange::RATES) {
                 let mut rng = stream(1, 1, number, Purpose::Mutation);
                 if let Some(child) = space.with_body_change(genome, change, &mut rng) {

@@ -47,7 +47,8 @@ pub fn feasible_cells<G>(archive: &Archive<G>, bodies: &BodySpace) -> usize {
 mod tests {
     use super::*;
 
-    /// Two blocks of at most 4 m reach 8 m of 12, which is in the row from 8 m; twelve of at least 0.4 m begin at 4.8 m, beyond the first row.
+    /// Two blocks of at most 4 m reach 8 m of 12, which is in the row from 8 m; twelve of at least 0.4 m begin at 4.8 m,
+    /// beyond the first row.
     #[test]
     fn cells_that_no_body_fits_are_not_feasible() {
         let bodies = BodySpace::default();

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::axis::ArchiveAxis;
 use crate::check::{Invalid, within};
+use crate::evolve::parents::IndividualId;
 use crate::genome::{Genome, GenomeShape, GenomeSpace};
 use crate::score::FITNESS_RANGE;
 
@@ -40,6 +41,13 @@ pub struct Elite<G = EliteGenes> {
     /// Its genes: coordinates of the unit cube, or a genome. The first version of the file had points only.
     #[serde(rename = "point", alias = "genes")]
     pub genes: G,
+}
+
+impl<G> Elite<G> {
+    /// Its place in the run.
+    pub fn id(&self) -> IndividualId {
+        IndividualId { generation: self.generation, individual: self.individual }
+    }
 }
 
 /// A grid of elites, with their genes as its strategy keeps them.

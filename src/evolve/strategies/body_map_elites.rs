@@ -65,10 +65,6 @@ impl BodyMapElites {
     }
 }
 
-fn id(elite: &Elite<Genome>) -> IndividualId {
-    IndividualId { generation: elite.generation, individual: elite.individual }
-}
-
 impl Strategy for BodyMapElites {
     fn begin(plan: &RunPlan) -> Self {
         let settings = plan.settings.evolution.body_map_elites.clone();
@@ -140,15 +136,15 @@ impl Strategy for BodyMapElites {
                 return Parents::None;
             }
             match self.chosen(individual, &elites) {
-                (parent, None, _) => Parents::One(id(parent)),
-                (parent, Some(other), _) => Parents::Two(id(parent), id(other)),
+                (parent, None, _) => Parents::One(parent.id()),
+                (parent, Some(other), _) => Parents::Two(parent.id(), other.id()),
             }
         };
         (0..self.population).map(of).collect()
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
-        self.elites().into_iter().map(id).collect()
+        self.elites().into_iter().map(Elite::id).collect()
     }
 
     fn archive(&self) -> Option<Archive> {

@@ -244,11 +244,7 @@ impl Strategy for MapElites {
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
-        let id = |elite: &Elite<Vec<f64>>| IndividualId {
-            generation: elite.generation,
-            individual: elite.individual,
-        };
-        self.archive.elites().map(|(_, elite)| id(elite)).collect()
+        self.archive.elites().map(|(_, elite)| elite.id()).collect()
     }
 
     fn archive(&self) -> Option<Archive> {

@@ -61,7 +61,7 @@ impl BodyChange {
         if pairs { blocks.saturating_sub(1) } else { blocks }
     }
 
-    /// What it did to a block, in words.
+    /// The change in a text, such as "a block split".
     pub fn words(self) -> &'static str {
         match self {
             Self::Duplicate => "a block duplicated",

@@ -13,7 +13,7 @@ use crate::schema::{Choices, choices};
 use super::measure::measured;
 
 choices! {
-    /// What the runs of the study differ in.
+    /// The strategy of a run of the study.
     pub enum Arm {
         Protected = "protected", "GA, new bodies protected", "A genetic algorithm that protects new bodies by their age.";
         Unprotected = "unprotected", "GA without protection", "The same genetic algorithm, selecting by fitness alone.";
@@ -72,7 +72,7 @@ pub struct PlannedArm {
 pub struct FinishedArm {
     /// Its arm.
     pub arm: Arm,
-    /// What was measured.
+    /// Its measurements.
     pub run: BodyStudyRun,
 }
 

@@ -1,4 +1,4 @@
-//! What is measured in a run of the study.
+//! The measurements of a run of the study.
 
 use std::sync::Arc;
 
@@ -33,8 +33,9 @@ pub(super) fn measured(
         }
     }
     let best = experiment.best();
+    let ancestry = experiment.ancestry();
     let [late_changes, changes] =
-        [experiment.finished() / 2, 0].map(|after| changes_after(&experiment.ancestry(), after));
+        [experiment.finished() / 2, 0].map(|after| changes_after(&ancestry, after));
     let [split, insertion] = match experiment.generation() {
         Some(last) => split_changes(plan, last, evaluator, control)?,
         None => [Vec::new(), Vec::new()],
@@ -75,9 +76,8 @@ fn collect(archive: &mut Archive<()>, generation: &Generation) {
 fn changes_after(ancestry: &Ancestry, generation: u32) -> u32 {
     let pairs = ancestry.line.iter().zip(ancestry.line.iter().skip(1));
     let late = pairs.filter(|(child, _)| child.place.generation > generation);
-    let structure = |genome: &Option<Arc<Genome>>| -> Option<Vec<u64>> {
-        Some(genome.as_ref()?.body.segments.iter().map(|segment| segment.id).collect())
-    };
+    let structure =
+        |genome: &Option<Arc<Genome>>| genome.as_ref().map(|genome| genome.body.block_ids());
     late.filter(|(child, parent)| structure(&child.genome) != structure(&parent.genome)).count()
         as u32
 }

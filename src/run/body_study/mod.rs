@@ -1,5 +1,5 @@
-//! What evolving bodies gain, over several seeds: whether protection and an archive pay, and whether a split of a block
-//! changes little.
+//! A study of evolving bodies over several seeds: it tests whether protection and an archive pay, and whether a split of a
+//! block changes little.
 //!
 //! All runs have the settings of the preset `bodies` and the same budget. They differ in the strategy alone.
 

@@ -9,7 +9,7 @@ use crate::genome::{BodyChange, Segment};
 use crate::studio::commands::{BlockSize, BodyCommand, Command};
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::body_editor::EditedBody;
-use crate::studio::ui::text_rows::{explain, title, title_and};
+use crate::studio::ui::text_rows::{cancellable_progress, explain, title, title_and};
 use crate::studio::ui::theme;
 
 use budgets::budgets;
@@ -66,12 +66,7 @@ impl BodyPanel {
         }
         self.block = self.block.min(edited.segments.len().saturating_sub(1));
         self.head(ui, &edited, commands);
-        let sizes: Vec<[f32; 3]> = edited
-            .segments
-            .iter()
-            .map(|segment| [segment.length_m, segment.width_m, segment.height_m])
-            .collect();
-        if let Some(block) = drawing(ui, &sizes, Some(self.block)) {
+        if let Some(block) = drawing(ui, &edited.body.limbs, Some(self.block)) {
             self.block = block;
         }
         let is_busy = edited.tuning.is_some();
@@ -83,16 +78,14 @@ impl BodyPanel {
         end(ui, &edited, commands);
     }
 
-    /// What the panel is for, and the body on the stage.
+    /// The panel before an edit: the body on the stage, and the button that begins.
     fn invitation(&mut self, ui: &mut egui::Ui, lane: Option<&Lane>, commands: &mut Vec<Command>) {
         title(ui, "Body");
         let Some(lane) = lane else {
             return explain(ui, "The blocks of the snake on the stage will appear here.");
         };
         let body = lane.body();
-        let sizes: Vec<[f32; 3]> =
-            body.limbs.iter().map(|limb| [limb.length_m, limb.width_m, limb.height_m]).collect();
-        drawing(ui, &sizes, None);
+        drawing(ui, &body.limbs, None);
         let (blocks, length_m, mass_kg) = (body.limbs.len(), body.length_m(), body.mass_kg());
         ui.label(format!("{blocks} blocks, {length_m:.1} m long, {mass_kg:.1} kg"));
         explain(
@@ -182,14 +175,11 @@ impl BodyPanel {
 fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
     ui.add_space(theme::GAP / 2.0);
     if let Some([done, all]) = edited.tuning {
-        ui.horizontal(|ui| {
-            if ui.button("Cancel").on_hover_text("Keep the best gait so far").clicked() {
-                commands.push(Command::Body(BodyCommand::CancelTuning));
-            }
-            let share = done as f32 / all.max(1) as f32;
-            let words = format!("{done} of {all} gaits tried");
-            ui.add(egui::ProgressBar::new(share).text(words).fill(theme::of(ui).accent_soft));
-        });
+        let share = done as f32 / all.max(1) as f32;
+        let words = format!("{done} of {all} gaits tried");
+        if cancellable_progress(ui, "Keep the best gait so far", share, &words) {
+            commands.push(Command::Body(BodyCommand::CancelTuning));
+        }
         return;
     }
     let is_allowed = edited.problem.is_none();

@@ -27,6 +27,16 @@ pub(crate) fn explain(ui: &mut egui::Ui, text: &str) {
     ui.label(egui::RichText::new(text).color(theme::of(ui).text_weak));
 }
 
+/// Progress of work in the background beside a button that cancels it. Returns whether the button was clicked.
+pub(crate) fn cancellable_progress(ui: &mut egui::Ui, hint: &str, share: f32, words: &str) -> bool {
+    ui.horizontal(|ui| {
+        let is_cancelled = ui.button("Cancel").on_hover_text(hint).clicked();
+        ui.add(egui::ProgressBar::new(share).text(words).fill(theme::of(ui).accent_soft));
+        is_cancelled
+    })
+    .inner
+}
+
 /// A clickable row over the whole width: name at the left, details at the right.
 pub(crate) fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, about: &str) -> egui::Response {
     let color = if is_shown { theme::of(ui).text } else { theme::of(ui).text_weak };

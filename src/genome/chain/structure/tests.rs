@@ -57,10 +57,6 @@ fn assert_phases(genome: &mut Genome, expected: &[f32]) {
     assert!(found.iter().zip(expected).all(is_near), "{found:?} instead of {expected:?}");
 }
 
-fn ids(genome: &Genome) -> Vec<u64> {
-    genome.body.segments.iter().map(|segment| segment.id).collect()
-}
-
 /// Whether the new block is at this place.
 fn is_new_at(place: usize) -> impl Fn(&Genome) -> bool {
     move |genome| genome.body.segments[place].id > 100
@@ -75,7 +71,7 @@ fn halves_of_a_split_block_are_held_straight_and_equal_the_whole() {
     let joint = waves(&mut split).joints[2].clone();
     assert_eq!((joint.bend.offset, joint.bend.harmonics[0].amplitude), (0.0, 0.0));
     assert_eq!(phases(&mut split), [0.0, 1.0, 0.0, 2.0, 3.0]);
-    assert_eq!(ids(&split).iter().filter(|id| **id > 100).count(), 1);
+    assert_eq!(split.body.block_ids().iter().filter(|id| **id > 100).count(), 1);
 }
 
 #[test]
@@ -104,11 +100,12 @@ fn an_inserted_block_is_the_mean_of_its_neighbours() {
 
 #[test]
 fn the_joints_beside_a_removed_block_share_its_offset() {
-    let mut removed = changed(BodyChange::Remove, |genome| ids(genome) == [1, 2, 4, 5]);
+    let mut removed = changed(BodyChange::Remove, |genome| genome.body.block_ids() == [1, 2, 4, 5]);
     assert_eq!(phases(&mut removed), [0.0, 2.0, 3.0]);
     let offsets: Vec<f32> = waves(&mut removed).joints.iter().map(|of| of.bend.offset).collect();
     assert_eq!(offsets, [0.3, 0.3, 0.2]);
-    let mut headless = changed(BodyChange::Remove, |genome| ids(genome) == [2, 3, 4, 5]);
+    let mut headless =
+        changed(BodyChange::Remove, |genome| genome.body.block_ids() == [2, 3, 4, 5]);
     assert_eq!(phases(&mut headless), [1.0, 2.0, 3.0]);
 }
 
@@ -118,7 +115,7 @@ fn merging_undoes_a_split() {
     let merged = (0..200).filter_map(|individual| {
         space().with_body_change(&split, BodyChange::Merge, &mut rng(individual))
     });
-    let mut merged = merged.into_iter().find(|genome| ids(genome) == [1, 2, 3, 4, 5]);
+    let mut merged = merged.into_iter().find(|genome| genome.body.block_ids() == [1, 2, 3, 4, 5]);
     let merged = merged.as_mut().expect("one in 200");
     assert_eq!(phases(merged), phases(&mut snake()));
     for (merged, own) in merged.body.segments.iter().zip(&snake().body.segments) {
@@ -128,11 +125,12 @@ fn merging_undoes_a_split() {
 
 #[test]
 fn the_same_change_of_the_same_body_has_the_same_id_everywhere() {
-    let [first, second] = [0, 1].map(|_| ids(&changed(BodyChange::Duplicate, is_new_at(3))));
+    let [first, second] =
+        [0, 1].map(|_| changed(BodyChange::Duplicate, is_new_at(3)).body.block_ids());
     assert_eq!(first, second);
     let mut twice = changed(BodyChange::Duplicate, is_new_at(3));
     twice = space().with_body_change(&twice, BodyChange::Split, &mut rng(3)).expect("room");
-    let mut all = ids(&twice);
+    let mut all = twice.body.block_ids();
     all.sort_unstable();
     all.dedup();
     assert_eq!(all.len(), 7);
@@ -174,7 +172,7 @@ fn a_child_of_two_bodies_has_the_blocks_of_the_fitter_and_genes_of_both() {
     let (mut strengths, mut frequencies) = (0, 0);
     for individual in 0..100 {
         let mut child = space.with_crossed_bodies(&fitter, &other, &mut rng(individual));
-        assert_eq!(ids(&child), ids(&fitter));
+        assert_eq!(child.body.block_ids(), fitter.body.block_ids());
         assert!(space.bodies.is_within_limits(&child.body.segments));
         assert_ne!(child.body.segments[3].strength, 0.5, "only the fitter has it");
         strengths += usize::from(child.body.segments[2].strength == 0.5);

@@ -1,8 +1,8 @@
-//! What a body uses of what bodies that evolve may have.
+//! Budgets of volume, length, torque and blocks.
 
 use bevy_egui::egui;
 
-use crate::genome::{BodySpace, MOST_SEGMENTS, Segment};
+use crate::genome::{BodySpace, MOST_SEGMENTS};
 use crate::studio::state::body_editor::EditedBody;
 use crate::studio::ui::theme;
 
@@ -16,32 +16,28 @@ type Budget = (&'static str, [f64; 2], (&'static str, usize), &'static str);
 pub(super) fn budgets(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
     ui.add_space(theme::GAP / 2.0);
     let agent = &edited.original.trial().agent;
-    let volume_m3 = |segments: &[Segment]| segments.iter().map(Segment::volume_m3).sum::<f64>();
-    let body = agent.body_plan(edited.genome);
-    let original = edited.original.body();
-    let torque_nm: f32 =
-        body.joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum();
+    let (body, original) = (&edited.body, edited.original.body());
     let longest_m = f64::from(BodySpace::default().longest_m);
     let list: [Budget; 4] = [
         (
             "Volume",
-            [volume_m3(edited.segments), f64::from(original.volume_m3())],
+            [body.volume_m3().into(), original.volume_m3().into()],
             ("m³", 2),
             "All bodies of a run have the same volume: adding, splitting and removing blocks scales the others",
         ),
         (
             "Length",
-            [f64::from(body.length_m()), longest_m],
+            [body.length_m().into(), longest_m],
             ("m", 1),
             "A longer body would gain from its length alone",
         ),
         (
             "Torque",
-            [torque_nm.into(), agent.torque_budget_nm.into()],
+            [body.torque_nm().into(), agent.torque_budget_nm.into()],
             ("N·m", 0),
             "Of all joints together. A body that would have more is made weaker in all joints alike",
         ),
-        ("Blocks", [edited.segments.len() as f64, MOST_SEGMENTS.into()], ("", 0), "From 2 to 12"),
+        ("Blocks", [body.limbs.len() as f64, MOST_SEGMENTS.into()], ("", 0), "From 2 to 12"),
     ];
     let palette = theme::of(ui);
     egui::Grid::new("budgets").num_columns(2).show(ui, |ui| {

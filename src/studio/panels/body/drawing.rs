@@ -4,21 +4,22 @@ use bevy_egui::egui;
 
 use crate::plot::Role;
 use crate::studio::ui::theme;
+use crate::world::LimbPlan;
 
 /// Largest height of both views together, in points.
 const HEIGHT: f32 = 130.0;
 /// Space between the views and around them, in points.
 const SPACE: f32 = 8.0;
 
-/// Draws blocks of these lengths, widths and heights in metres, the head on the left. Returns the block that was clicked.
+/// Draws blocks, the head on the left. Returns the block that was clicked.
 pub(super) fn drawing(
     ui: &mut egui::Ui,
-    sizes: &[[f32; 3]],
+    limbs: &[LimbPlan],
     selected: Option<usize>,
 ) -> Option<usize> {
-    let most = |of: fn(&[f32; 3]) -> f32| sizes.iter().map(of).fold(0.0_f32, f32::max);
-    let length_m: f32 = sizes.iter().map(|[length_m, ..]| length_m).sum();
-    let [width_m, height_m] = [most(|size| size[1]), most(|size| size[2])];
+    let most = |of: fn(&LimbPlan) -> f32| limbs.iter().map(of).fold(0.0_f32, f32::max);
+    let length_m: f32 = limbs.iter().map(|limb| limb.length_m).sum();
+    let [width_m, height_m] = [most(|limb| limb.width_m), most(|limb| limb.height_m)];
     if length_m <= 0.0 || width_m + height_m <= 0.0 {
         return None;
     }
@@ -34,18 +35,18 @@ pub(super) fn drawing(
     let left = area.center().x - length_m * scale / 2.0;
     let mut clicked = None;
     let mut top = area.top() + SPACE;
-    for (view, of_view_m, side) in [("From above", width_m, 1), ("From the side", height_m, 2)] {
+    for (view, of_view_m, side) in [("From above", width_m, 0), ("From the side", height_m, 2)] {
         let font = egui::FontId::proportional(theme::SMALL_SIZE);
         let at = egui::pos2(area.left() + SPACE, top - SPACE / 2.0);
         painter.text(at, egui::Align2::LEFT_TOP, view, font, palette.text_weak);
         top += name / 2.0;
         let middle = top + of_view_m * scale / 2.0;
         let mut x = left;
-        for (block, size) in sizes.iter().enumerate() {
-            let half = size[side] * scale / 2.0;
+        for (block, limb) in limbs.iter().enumerate() {
+            let half = limb.size_m()[side] * scale / 2.0;
             let rect = egui::Rect::from_min_max(
                 egui::pos2(x, middle - half),
-                egui::pos2(x + size[0] * scale, middle + half),
+                egui::pos2(x + limb.length_m * scale, middle + half),
             );
             x = rect.right();
             let color = palette.role(if block % 2 == 0 { Role::Red } else { Role::Blue });

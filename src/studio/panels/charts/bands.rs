@@ -15,7 +15,7 @@ const MAX_DRAWN: usize = 600;
 /// Half of the width over which a layer keeps its height, in generations.
 const LEVEL: f64 = 0.25;
 
-/// What the bands are, and what is shown of the best snake of each generation.
+/// The texts of the bands, and the numbers of the best snake of each generation.
 pub(super) struct Bands {
     /// Title of the figure.
     pub title: &'static str,
@@ -31,7 +31,7 @@ pub(super) struct Bands {
     pub rest: &'static str,
     /// Head of the table's column of bands.
     pub column: &'static str,
-    /// What is shown of the best snake.
+    /// The numbers of the best snake.
     pub best: BestNumbers,
 }
 

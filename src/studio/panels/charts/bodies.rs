@@ -21,7 +21,7 @@ struct Structure {
     fitness: Option<f32>,
     /// Fitness of its parent, or of the record before.
     before: Option<f32>,
-    /// What changed, in words.
+    /// The change of structure in words.
     change: String,
 }
 
@@ -107,11 +107,6 @@ fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> Str
     )
 }
 
-/// The ids of the blocks.
-fn ids(genome: &Genome) -> Vec<u64> {
-    genome.body.segments.iter().map(|segment| segment.id).collect()
-}
-
 /// The structures in a line of descent, the oldest first, as far as genomes are known.
 fn of_line(ancestry: &Ancestry) -> Vec<Structure> {
     let known = |ancestor: &Arc<Ancestor>| Some((Arc::clone(ancestor), ancestor.genome.clone()?));
@@ -123,7 +118,7 @@ fn of_line(ancestry: &Ancestry) -> Vec<Structure> {
         let (ancestor, genome) = child;
         let change = match parent {
             None => Some("the first known ancestor".to_owned()),
-            Some((_, from)) if ids(from) == ids(genome) => None,
+            Some((_, from)) if from.body.block_ids() == genome.body.block_ids() => None,
             Some((_, from)) => Some(in_words(from, genome)),
         };
         if let Some(change) = change {
@@ -157,8 +152,8 @@ fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
         if best.is_some_and(|best| fitness <= best) {
             continue;
         }
-        let last = structures.last().map(|last| ids(&last.genome));
-        if last != Some(ids(&champion.genome)) {
+        let last = structures.last().map(|last| last.genome.body.block_ids());
+        if last != Some(champion.genome.body.block_ids()) {
             structures.push(Structure {
                 place: IndividualId {
                     generation: champion.origin.generation,

@@ -10,7 +10,7 @@ use crate::studio::commands::{Command, ExamCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::stairs_exams::{StairsExams, no_exam_because};
-use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::text_rows::{cancellable_progress, explain};
 use crate::studio::ui::theme;
 
 use stairs_map::{MapPlace, StairsMap, legend};
@@ -68,14 +68,11 @@ fn invitation(
 fn progress(ui: &mut egui::Ui, exams: &StairsExams, commands: &mut Vec<Command>) {
     let Some(progress) = exams.progress() else { return };
     explain(ui, &format!("Examining {}", progress.name));
-    ui.horizontal(|ui| {
-        if ui.button("Cancel").on_hover_text("Stop the exam").clicked() {
-            commands.push(Command::Exam(ExamCommand::Cancel));
-        }
-        let share = progress.done as f32 / progress.trials.max(1) as f32;
-        let words = format!("{} of {} trials", progress.done, progress.trials);
-        ui.add(egui::ProgressBar::new(share).text(words).fill(theme::of(ui).accent_soft));
-    });
+    let share = progress.done as f32 / progress.trials.max(1) as f32;
+    let words = format!("{} of {} trials", progress.done, progress.trials);
+    if cancellable_progress(ui, "Stop the exam", share, &words) {
+        commands.push(Command::Exam(ExamCommand::Cancel));
+    }
 }
 
 /// Draws the grids side by side, with one axis of the rises.

@@ -1,7 +1,7 @@
 //! Runs for tests of panels.
 
 use super::*;
-use crate::evolve::{IndividualId, RunPlan, StrategyKind};
+use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Experiment, LocalPool, RunControl};
 use crate::save::{SavesFolder, shipped_champion, store_csv};
@@ -145,8 +145,7 @@ fn elites_and_front_members_are_evaluated_as_they_were_found() {
         for (cell, elite) in archive.elites() {
             let champion = run.elite(cell).expect("there");
             assert_eq!(champion.evaluation.fitness, elite.fitness);
-            let place = IndividualId { generation: elite.generation, individual: elite.individual };
-            if let Some(genome) = run.genome_of(place) {
+            if let Some(genome) = run.genome_of(elite.id()) {
                 assert_eq!(champion.genome, *genome);
             }
         }

@@ -1,0 +1,99 @@
+//! Tests of the editor of bodies.
+
+use super::*;
+use crate::save::shipped_champion;
+use crate::studio::state::current_run::prepared_run;
+
+fn climber() -> StagedChampion {
+    StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
+}
+
+fn editing() -> (BodyEditor, CurrentRun) {
+    let (mut editor, mut run) = (BodyEditor::default(), prepared_run());
+    editor.apply(&BodyCommand::Edit, Some(&climber()), &mut run).expect("a gait");
+    (editor, run)
+}
+
+fn lengths(editor: &BodyEditor) -> Vec<f32> {
+    let edited = editor.edited().expect("editing");
+    edited.body.limbs.iter().map(|limb| limb.length_m).collect()
+}
+
+/// Waits until a preview is ready or, without one, until nothing is under way; then shows it.
+fn preview(editor: &mut BodyEditor, run: &mut CurrentRun) -> Option<Show> {
+    let mut notices = Notices::default();
+    while !editor.follow(&mut notices) {
+        let edited = editor.edited.as_ref().expect("editing");
+        let is_idle = edited.changed_at.is_none() && edited.evaluation.is_none();
+        if is_idle && edited.tuning.is_none() {
+            return None;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    editor.apply(&BodyCommand::Preview, None, run).expect("allowed at any time")
+}
+
+#[test]
+fn a_drag_of_a_slider_is_one_step_and_can_be_undone() {
+    let (mut editor, mut run) = editing();
+    let mut apply = |editor: &mut BodyEditor, command| {
+        editor.apply(&command, None, &mut run).expect("allowed");
+    };
+    for value in [1.9, 1.7, 1.5] {
+        let set = BodyCommand::Set { block: 1, size: BlockSize::Length, value };
+        apply(&mut editor, set);
+    }
+    apply(&mut editor, BodyCommand::Change { block: 0, change: BodyChange::Split });
+    assert_eq!(lengths(&editor).len(), 6);
+    apply(&mut editor, BodyCommand::Undo);
+    assert_eq!(lengths(&editor), [2.0, 1.5, 2.0, 2.0, 2.0]);
+    apply(&mut editor, BodyCommand::Undo);
+    assert_eq!(lengths(&editor), [2.0; 5]);
+    apply(&mut editor, BodyCommand::Redo);
+    assert_eq!(lengths(&editor)[1], 1.5);
+    assert_eq!(editor.edited().expect("editing").steps, [true, true]);
+}
+
+#[test]
+fn the_preview_shows_both_snakes_and_a_forbidden_body_gives_its_reason() {
+    let (mut editor, mut run) = editing();
+    let set = |value| BodyCommand::Set { block: 2, size: BlockSize::Width, value };
+    editor.apply(&set(0.8), None, &mut run).expect("allowed");
+    let champions = preview(&mut editor, &mut run).expect("both").champions;
+    let blocks = |staged: &StagedChampion| staged.body().limbs[2].width_m;
+    assert_eq!(champions.iter().map(blocks).collect::<Vec<_>>(), [1.0, 0.8]);
+    // A hundredth of its neighbours' mass.
+    editor.apply(&set(0.1), None, &mut run).expect("it can be set");
+    let problem = editor.edited().expect("editing").problem.expect("refused");
+    assert!(problem.contains("segments[2]") || problem.contains("segments[1]"), "{problem}");
+    assert!(editor.apply(&BodyCommand::Evolve, None, &mut run).is_err());
+    assert!(preview(&mut editor, &mut run).is_none());
+    // A second drag of the same slider is another step.
+    editor.apply(&BodyCommand::Undo, None, &mut run).expect("allowed");
+    let width = editor.edited().expect("editing").body.limbs[2].width_m;
+    assert_eq!(width, 0.8);
+}
+
+#[test]
+fn a_change_just_before_a_tuning_is_shown_and_the_next_tuning_tries_other_gaits() {
+    let (mut editor, mut run) = editing();
+    let set = BodyCommand::Set { block: 1, size: BlockSize::Height, value: 0.9 };
+    editor.apply(&set, None, &mut run).expect("allowed");
+    editor.apply(&BodyCommand::Tune, None, &mut run).expect("it begins");
+    let undo = editor.apply(&BodyCommand::Undo, None, &mut run).expect_err("busy");
+    assert!(undo.contains("being tuned"), "{undo}");
+    editor.apply(&BodyCommand::CancelTuning, None, &mut run).expect("allowed");
+    let champions = preview(&mut editor, &mut run).expect("both").champions;
+    assert_eq!(champions[1].body().limbs[1].height_m, 0.9);
+    assert_eq!(editor.edited.as_ref().map(|edited| edited.attempts), Some(1));
+}
+
+#[test]
+fn the_next_run_can_begin_with_the_edited_body() {
+    let (mut editor, mut run) = editing();
+    let change = BodyCommand::Change { block: 3, change: BodyChange::Duplicate };
+    editor.apply(&change, None, &mut run).expect("allowed");
+    editor.apply(&BodyCommand::Evolve, None, &mut run).expect("a founder");
+    assert_eq!(run.next_founder(), Some("climber, edited"));
+    assert!(run.next_settings().genome.bodies.vary);
+}
