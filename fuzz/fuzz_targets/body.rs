@@ -19,7 +19,7 @@ fuzz_target!(|blocks: &str| {
         Ok(loaded) => {
             let genome = &loaded.champion.genome;
             let mut rollout = Rollout::new(genome, &loaded.champion.trial);
-            assert!(rollout.body().limbs.len() <= MOST_SEGMENTS as usize);
+            assert!(rollout.body().parts.len() <= MOST_SEGMENTS as usize);
             for _ in 0..3 {
                 rollout.advance();
             }

@@ -195,7 +195,7 @@ impl Motion {
         let mut rollout = Rollout::new(&champion.genome, &champion.trial);
         let body = rollout.body();
         let mut motion =
-            Self { limbs: body.limbs.len(), joints: body.joints.len(), ..Self::default() };
+            Self { limbs: body.limbs(), joints: body.joints.len(), ..Self::default() };
         motion.observe(&rollout);
         while rollout.advance() {
             motion.observe(&rollout);
@@ -205,7 +205,7 @@ impl Motion {
 
     fn observe(&mut self, rollout: &Rollout) {
         self.time_s.push(rollout.time_s().into());
-        for pose in rollout.poses() {
+        for pose in rollout.body().limb_poses(rollout.poses()) {
             let (at, turn) = (pose.translation, pose.rotation);
             self.position_m.extend([at.x, at.y, at.z].map(f64::from));
             self.quaternion.extend([turn.x, turn.y, turn.z, turn.w].map(f64::from));

@@ -236,7 +236,7 @@ impl Worlds {
         let list = PyList::empty(py);
         let body = self.rules.body();
         let weight_n = body.mass_kg() * self.rules.trial.physics.gravity_m_s2;
-        let limb_weight_n = weight_n / body.limbs.len() as f32;
+        let limb_weight_n = weight_n / body.limbs() as f32;
         for (index, (name, info)) in self.rules.senses().into_iter().enumerate() {
             let sense = PyDict::new(py);
             sense.set_item("index", index)?;
@@ -384,7 +384,8 @@ impl Worlds {
         let Some(world) = self.worlds.get(index as usize).and_then(Option::as_ref) else {
             return Err(PyRuntimeError::new_err("poses before reset: call reset() first"));
         };
-        let poses = world.rollout().poses();
+        let rollout = world.rollout();
+        let poses = rollout.body().limb_poses(rollout.poses());
         let numbers = poses.iter().flat_map(|pose| {
             let (at, turn) = (pose.translation, pose.rotation);
             [at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w]

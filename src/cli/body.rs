@@ -16,16 +16,23 @@ pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
 }
 
 fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
-    for (index, limb) in body.limbs.iter().enumerate() {
+    for index in 0..body.limbs() {
         // The joint in front of the block; the head has none.
-        let joint = body.joints.iter().find(|joint| joint.child == index);
+        let joint = index.checked_sub(1).and_then(|joint| body.joints.get(joint));
+        let parts = body.parts_of(index);
+        let [width_m, length_m, height_m] = body.limb_size_m(index);
+        let spring = body.springs.iter().find(|spring| spring.parent == parts.start);
+        let spring = spring.filter(|_| parts.len() > 1);
         let line = serde_json::json!({
             "block": index + 1,
-            "length_m": limb.length_m,
-            "width_m": limb.width_m,
-            "height_m": limb.height_m,
-            "density_kg_m3": limb.density_kg_m3,
-            "mass_kg": limb.mass_kg(),
+            "length_m": length_m,
+            "width_m": width_m,
+            "height_m": height_m,
+            "density_kg_m3": body.parts[parts.start].density_kg_m3,
+            "mass_kg": body.limb_mass_kg(index),
+            "parts": parts.len(),
+            "spring_nm_per_rad": spring.map(|spring| spring.stiffness_nm_per_rad),
+            "spring_damping_nms_per_rad": spring.map(|spring| spring.damping_nms_per_rad),
             "bend_limit_rad": joint.map(|joint| joint.bend_limit_rad),
             "twist_limit_rad": joint.map(|joint| joint.twist_limit_rad),
             "max_bend_torque_nm": joint.map(|joint| joint.max_bend_torque_nm),
@@ -35,7 +42,8 @@ fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
     }
     let line = serde_json::json!({
         "done": true,
-        "blocks": body.limbs.len(),
+        "blocks": body.limbs(),
+        "parts": body.parts.len(),
         "evolved": is_own,
         "length_m": body.length_m(),
         "mass_kg": body.mass_kg(),
@@ -49,7 +57,7 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
     let origin = if is_own { "a body of its own" } else { "the body of its trial" };
     let mut text = format!(
         "{} blocks, {origin}: {:.2} m long, {:.1} kg, {:.2} m³, {:.0} N·m of torque in all joints\n\n",
-        body.limbs.len(),
+        body.limbs(),
         body.length_m(),
         body.mass_kg(),
         body.volume_m3(),
@@ -57,8 +65,9 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
     );
     text +=
         "block  length  width  height    mass  joint in front: bend, twist   torque: bend, twist\n";
-    for (index, limb) in body.limbs.iter().enumerate() {
-        let joint = body.joints.iter().find(|joint| joint.child == index).map(|joint| {
+    for index in 0..body.limbs() {
+        let joint = index.checked_sub(1).and_then(|joint| body.joints.get(joint));
+        let joint = joint.map(|joint| {
             let [bend, twist] =
                 [joint.bend_limit_rad, joint.twist_limit_rad].map(|limit| limit.to_degrees());
             format!(
@@ -66,13 +75,11 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
                 "", joint.max_bend_torque_nm, joint.max_twist_torque_nm
             )
         });
+        let [width_m, length_m, height_m] = body.limb_size_m(index);
         let line = format!(
-            "{:>5}  {:>4.2} m {:>4.2} m  {:>4.2} m {:>4.1} kg  {}",
+            "{:>5}  {length_m:>4.2} m {width_m:>4.2} m  {height_m:>4.2} m {:>4.1} kg  {}",
             index + 1,
-            limb.length_m,
-            limb.width_m,
-            limb.height_m,
-            limb.mass_kg(),
+            body.limb_mass_kg(index),
             joint.unwrap_or_default(),
         );
         text += line.trim_end();

@@ -109,12 +109,12 @@ impl RowReader {
         let joints: Vec<_> = world.joint_states().zip(world.applied_torques()).collect();
         let forces = world.contact_forces();
         let snake = world.read_snake();
-        let limbs = rollout.poses().iter().zip(world.velocities()).zip(&self.readings).enumerate();
+        let poses = rollout.body().limb_poses(rollout.poses());
+        let limbs = poses.iter().zip(world.limb_velocities()).zip(&self.readings).enumerate();
         limbs
             .map(|(limb, ((pose, [velocity, spin]), reading))| {
-                let joint =
-                    joints.iter().zip(&rollout.body().joints).find(|(_, plan)| plan.child == limb);
-                let of_joint = joint.map(|((state, torque), _)| {
+                let joint = limb.checked_sub(1).and_then(|joint| joints.get(joint));
+                let of_joint = joint.map(|(state, torque)| {
                     let rates = [state.bend_rad_s, state.twist_rad_s];
                     [
                         state.bend_rad,

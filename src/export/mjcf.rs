@@ -7,7 +7,7 @@ use std::io;
 
 use super::facts::{Fact, generator};
 use super::xml_text::{XmlText, spaced};
-use crate::world::{BodyPlan, JointPlan, LimbPlan, Surface, WorldPlan};
+use crate::world::{BodyPlan, JointPlan, PartPlan, SpringPlan, Surface, WorldPlan};
 
 /// Limit of a hinge that must not move, in rad: MuJoCo demands a range that is not empty.
 const LOCKED_RAD: f32 = 1.0e-4;
@@ -209,21 +209,33 @@ fn rgba([red, green, blue]: [f32; 3]) -> String {
 /// The position and rotation of the head at the start: the middle of the straight snake has the start's place.
 pub(super) fn head_start(plan: &WorldPlan) -> ([f32; 3], f32) {
     let body = &plan.body;
-    let head_length_m = body.limbs.first().map_or(0.0, |head| head.length_m);
+    let head_length_m = body.parts.first().map_or(0.0, |head| head.length_m);
     let ahead_m = (body.length_m() - head_length_m) / 2.0;
     let (sin, cos) = libm::sincosf(plan.start_turn_rad);
     let (x_m, y_m) = (plan.start_x_m - sin * ahead_m, plan.start_y_m + cos * ahead_m);
     ([x_m, y_m, body.axis_height_m()], plan.start_turn_rad)
 }
 
-/// The limbs within each other, from the head.
+/// The name of a part: that of its limb, and its number within a soft one.
+pub(super) fn part_name(body: &BodyPlan, index: usize) -> String {
+    let limb = body.parts[index].limb;
+    let parts = body.parts_of(limb);
+    let of_limb = format!("limb {}", limb + 1);
+    if parts.len() == 1 { of_limb } else { format!("{of_limb} part {}", index - parts.start + 1) }
+}
+
+/// The parts within each other, from the head.
 fn limbs(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let (at_m, turn_rad) = head_start(plan);
     let (sin, cos) = libm::sincosf(turn_rad / 2.0);
-    for (index, limb) in plan.body.limbs.iter().enumerate() {
-        let name = ("name", format!("limb {}", index + 1));
-        let joint = plan.body.joints.iter().find(|joint| joint.child == index);
-        match joint {
+    let body = &plan.body;
+    for (index, part) in body.parts.iter().enumerate() {
+        let of_part = part_name(body, index);
+        let name = ("name", of_part.clone());
+        let joint = body.joints.iter().find(|joint| joint.child == index);
+        let spring = body.springs.iter().find(|spring| spring.child == index);
+        let parent = joint.map(|joint| joint.parent).or(spring.map(|spring| spring.parent));
+        match parent {
             None => {
                 let quat = spaced([cos, 0.0, 0.0, sin]);
                 xml.open("body", &[name, ("pos", spaced(at_m)), ("quat", quat)])?;
@@ -239,30 +251,35 @@ fn limbs(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
                     ],
                 )?;
             }
-            Some(joint) => {
-                let front_m = plan.body.limbs[joint.parent].length_m;
-                let pos = spaced([0.0, -(front_m + limb.length_m) / 2.0, 0.0]);
+            Some(parent) => {
+                let front_m = body.parts[parent].length_m;
+                let pos = spaced([0.0, -(front_m + part.length_m) / 2.0, 0.0]);
                 xml.open("body", &[name, ("pos", pos)])?;
-                hinges(xml, index, joint, limb)?;
             }
+        }
+        if let Some(joint) = joint {
+            hinges(xml, part.limb, joint, part)?;
+        }
+        if let Some(spring) = spring {
+            spring_hinges(xml, &of_part, spring, part)?;
         }
         xml.leaf(
             "geom",
             &[
-                ("name", format!("limb {}", index + 1)),
+                ("name", of_part),
                 ("type", "box".into()),
-                ("size", spaced(limb.size_m().map(|size_m| size_m / 2.0))),
-                ("density", limb.density_kg_m3.to_string()),
+                ("size", spaced(part.size_m().map(|size_m| size_m / 2.0))),
+                ("density", part.density_kg_m3.to_string()),
                 ("friction", spaced([0.0, OTHER_FRICTION[0], OTHER_FRICTION[1]])),
-                ("rgba", rgba(LIMB_COLORS[index % 2])),
+                ("rgba", rgba(LIMB_COLORS[part.limb % 2])),
             ],
         )?;
     }
-    plan.body.limbs.iter().try_for_each(|_| xml.close("body"))
+    body.parts.iter().try_for_each(|_| xml.close("body"))
 }
 
 /// The hinges of a universal joint at the front face of its rear limb.
-fn hinges(xml: &mut XmlText, number: usize, joint: &JointPlan, limb: &LimbPlan) -> io::Result<()> {
+fn hinges(xml: &mut XmlText, number: usize, joint: &JointPlan, limb: &PartPlan) -> io::Result<()> {
     let axes = [("bend", "1 0 0", joint.bend_limit_rad), ("twist", "0 1 0", joint.twist_limit_rad)];
     axes.into_iter().try_for_each(|(name, axis, limit_rad)| {
         let limit_rad = limit_rad.max(LOCKED_RAD);
@@ -280,33 +297,62 @@ fn hinges(xml: &mut XmlText, number: usize, joint: &JointPlan, limb: &LimbPlan) 
     })
 }
 
-/// Joined limbs and contact-free pairs do not touch; the others touch with the friction of skin on skin.
+/// The three elastic hinges at the front face of a part of a soft limb.
+fn spring_hinges(
+    xml: &mut XmlText,
+    of_part: &str,
+    spring: &SpringPlan,
+    part: &PartPlan,
+) -> io::Result<()> {
+    let values = spring.stiffness_nm_per_rad.into_iter().zip(spring.damping_nms_per_rad);
+    let axes = [("x", "1 0 0"), ("y", "0 1 0"), ("z", "0 0 1")];
+    axes.into_iter().zip(values).try_for_each(|((name, axis), (stiffness, damping))| {
+        xml.leaf(
+            "joint",
+            &[
+                ("name", format!("spring {name} {of_part}")),
+                ("type", "hinge".into()),
+                ("axis", axis.into()),
+                ("pos", spaced([0.0, part.length_m / 2.0, 0.0])),
+                ("stiffness", stiffness.to_string()),
+                ("damping", damping.to_string()),
+            ],
+        )
+    })
+}
+
+/// Joined limbs, the parts of a soft limb, and contact-free pairs do not touch; the others touch with the friction of skin on
+/// skin.
 fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
-    let limb = |index: usize| format!("limb {}", index + 1);
-    let are_joined = |a: usize, b: usize| {
-        plan.body.joints.iter().any(|joint| (joint.parent, joint.child) == (a, b))
+    let body = &plan.body;
+    let are_joined =
+        |a: usize, b: usize| body.joints.iter().any(|joint| (joint.parent, joint.child) == (a, b));
+    let is_free = |a: usize, b: usize| {
+        let limbs = [body.parts[a].limb, body.parts[b].limb];
+        limbs[0] == limbs[1] || body.contact_free_pairs.contains(&limbs)
     };
-    let is_free = |a: usize, b: usize| plan.body.contact_free_pairs.contains(&[a, b]);
+    let pairs = || (0..body.parts.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
     let friction = plan.skin.friction * plan.skin.friction;
     let [torsional, rolling] = OTHER_FRICTION;
     xml.element("contact", &[], |xml| {
-        for joint in &plan.body.joints {
-            xml.leaf("exclude", &[("body1", limb(joint.parent)), ("body2", limb(joint.child))])?;
+        for joint in &body.joints {
+            let ends = [joint.parent, joint.child].map(|part| part_name(body, part));
+            let [front, rear] = ends;
+            xml.leaf("exclude", &[("body1", front), ("body2", rear)])?;
         }
-        for &[front, rear] in &plan.body.contact_free_pairs {
-            xml.leaf("exclude", &[("body1", limb(front)), ("body2", limb(rear))])?;
+        for (a, b) in pairs().filter(|&(a, b)| is_free(a, b)) {
+            let [front, rear] = [a, b].map(|part| part_name(body, part));
+            xml.leaf("exclude", &[("body1", front), ("body2", rear)])?;
         }
-        for b in 0..plan.body.limbs.len() {
-            for a in (0..b).filter(|&a| !are_joined(a, b) && !is_free(a, b)) {
-                xml.leaf(
-                    "pair",
-                    &[
-                        ("geom1", limb(a)),
-                        ("geom2", limb(b)),
-                        ("friction", spaced([friction, friction, torsional, rolling, rolling])),
-                    ],
-                )?;
-            }
+        for (a, b) in pairs().filter(|&(a, b)| !are_joined(a, b) && !is_free(a, b)) {
+            xml.leaf(
+                "pair",
+                &[
+                    ("geom1", part_name(body, a)),
+                    ("geom2", part_name(body, b)),
+                    ("friction", spaced([friction, friction, torsional, rolling, rolling])),
+                ],
+            )?;
         }
         Ok(())
     })

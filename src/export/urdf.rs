@@ -6,7 +6,7 @@ use std::io;
 use super::facts::{Fact, generator};
 use super::mjcf::{LIMB_COLORS, head_start, left_out};
 use super::xml_text::{XmlText, spaced};
-use crate::world::{LimbPlan, WorldPlan};
+use crate::world::{BodyPlan, WorldPlan};
 
 /// Mass in kg, and moment of inertia in kg·m², of the link between the two hinges of a universal joint.
 const BETWEEN: f32 = 1.0e-6;
@@ -35,11 +35,19 @@ pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
                 })?;
             }
             // A floating joint to the world is what only some programs know: PyBullet would fix it there.
-            let (at_m, turn_rad) = head_start(plan);
+            let body = &plan.body;
+            if !body.springs.is_empty() {
+                xml.comment("Not in this model: softness of the limbs, which are rigid here; export .xml (MJCF) for it")?;
+            }
+            let ([x_m, y_m, z_m], turn_rad) = head_start(plan);
+            // The link of a soft head is as long as all of its parts.
+            let behind_m = (body.limb_size_m(0)[1] - body.parts[0].length_m) / 2.0;
+            let (sin, cos) = libm::sincosf(turn_rad);
+            let at_m = [x_m + sin * behind_m, y_m - cos * behind_m, z_m];
             let (xyz, rpy) = (spaced(at_m), spaced([0.0, 0.0, turn_rad]));
             xml.comment(&format!("Start of limb_1 in the world: xyz {xyz}, rpy {rpy}"))?;
-            for (index, limb) in plan.body.limbs.iter().enumerate() {
-                link(xml, index, limb)?;
+            for limb in 0..plan.body.limbs() {
+                link(xml, &plan.body, limb)?;
             }
             joints(xml, plan)
         })
@@ -52,17 +60,19 @@ fn ends(xml: &mut XmlText, parent: &str, child: &str) -> io::Result<()> {
 }
 
 /// A limb. The head's frame is in its middle, that of every other limb in the middle of its front face, at the joint.
-fn link(xml: &mut XmlText, index: usize, limb: &LimbPlan) -> io::Result<()> {
-    let back_m = if index == 0 { 0.0 } else { -limb.length_m / 2.0 };
+fn link(xml: &mut XmlText, body: &BodyPlan, index: usize) -> io::Result<()> {
+    let size_m = body.limb_size_m(index);
+    let back_m = if index == 0 { 0.0 } else { -size_m[1] / 2.0 };
     let origin = |xml: &mut XmlText| xml.leaf("origin", &[("xyz", spaced([0.0, back_m, 0.0]))]);
     let shape = |xml: &mut XmlText| {
-        xml.element("geometry", &[], |xml| xml.leaf("box", &[("size", spaced(limb.size_m()))]))
+        xml.element("geometry", &[], |xml| xml.leaf("box", &[("size", spaced(size_m))]))
     };
     xml.element("link", &[("name", format!("limb_{}", index + 1))], |xml| {
         xml.element("inertial", &[], |xml| {
             origin(xml)?;
-            let [x, y, z] = limb.size_m().map(f64::from);
-            let mass_kg = x * y * z * f64::from(limb.density_kg_m3);
+            let [x, y, z] = size_m.map(f64::from);
+            let density = f64::from(body.parts[body.parts_of(index).start].density_kg_m3);
+            let mass_kg = x * y * z * density;
             let about = |a: f64, b: f64| mass_kg * (a * a + b * b) / 12.0;
             inertia(xml, mass_kg, [about(y, z), about(x, z), about(x, y)])
         })?;
@@ -98,17 +108,17 @@ fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
                 inertia(xml, f64::from(BETWEEN), [f64::from(BETWEEN); 3])
             })
         })?;
-        let front_m = plan.body.limbs[joint.parent].length_m;
+        let front_m = plan.body.limb_size_m(index)[1];
         // From the frame of the front limb to its rear face.
-        let back_m = if joint.parent == 0 { front_m / 2.0 } else { front_m };
+        let back_m = if index == 0 { front_m / 2.0 } else { front_m };
         let limb = |index: usize| format!("limb_{}", index + 1);
         let (limits, torques) = (
             [joint.bend_limit_rad, joint.twist_limit_rad],
             [joint.max_bend_torque_nm, joint.max_twist_torque_nm],
         );
         let axes = [
-            ("bend", "1 0 0", limb(joint.parent), between.clone(), -back_m),
-            ("twist", "0 1 0", between, limb(joint.child), 0.0),
+            ("bend", "1 0 0", limb(index), between.clone(), -back_m),
+            ("twist", "0 1 0", between, limb(number), 0.0),
         ];
         for ((axis, limit_rad), torque_nm) in axes.into_iter().zip(limits).zip(torques) {
             let (name, direction, parent, child, y_m) = axis;

@@ -4,3 +4,5 @@
 pub const LARGEST_LIMIT_RAD: f32 = 3.0;
 /// The range of every density, in kg/m³: from a balloon to tungsten.
 pub const DENSITY_RANGE_KG_M3: std::ops::RangeInclusive<f32> = 0.1..=20_000.0;
+/// The range of every Young's modulus, in Pa: from a soap bubble to rubber.
+pub const MODULUS_RANGE_PA: std::ops::RangeInclusive<f32> = 1.0..=1.0e7;

@@ -24,7 +24,7 @@ pub use coordinates::Coordinate;
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;
 pub use kind::ControllerKind;
-pub use limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
+pub use limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
 pub use network_space::{MOST_LIBRARY_WAVES, NetworkSpace};
 pub use space::{GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_TORQUE_NM, POINTS_PER_S_RANGE};
 pub use wave_space::{

@@ -36,7 +36,7 @@ impl From<&Recording> for PosesV5 {
     #[expect(clippy::cast_possible_truncation, reason = "rounded to whole millimetres on purpose")]
     fn from(recording: &Recording) -> Self {
         let mut bytes = Vec::new();
-        let mut before = vec![[0_i64; 3]; recording.limbs()];
+        let mut before = vec![[0_i64; 3]; recording.parts()];
         for frame in recording.frames() {
             for (pose, before) in frame.iter().zip(&mut before) {
                 for (metres, before) in pose.translation.to_array().into_iter().zip(before) {
@@ -49,7 +49,7 @@ impl From<&Recording> for PosesV5 {
         }
         Self {
             every_steps: recording.every_steps(),
-            limbs: recording.limbs() as u32,
+            limbs: recording.parts() as u32,
             frames: recording.frames().len() as u32,
             data: BASE64.encode(bytes),
         }

@@ -186,7 +186,7 @@ impl ChampionV5 {
         trial.check().map_err(|error| error.inside("trial"))?;
         let genome = self.genome;
         trial.check_genome(&genome).map_err(|error| error.inside("genome"))?;
-        let limbs = trial.agent.body_plan(&genome).limbs.len() as u32;
+        let limbs = trial.agent.body_plan(&genome).parts.len() as u32;
         let recording = self.poses.map(|poses| poses.recording(limbs));
         let recording = recording.transpose().map_err(|error| error.inside("poses"))?;
         let evaluation = self.recorded.evaluation().map_err(|error| error.inside("recorded"))?;

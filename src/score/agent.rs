@@ -1,13 +1,14 @@
 //! Settings of the snake's body: its limbs, its joints, its skin.
 
 use super::own_body::own_body;
+use crate::check::Invalid;
 use crate::control::ActiveSenses;
-use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD};
+use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
 use crate::schema::{
     Parts, PerPart, Section, SettingGroup, Walk, is_default, number, optional_per_part, per_part,
     setting_group, settings, whole,
 };
-use crate::world::{BodyPlan, JointPlan, LimbPlan, Skin};
+use crate::world::{BodyPlan, Elasticity, JointPlan, PartPlan, Skin, check_softness};
 
 setting_group! {
     /// The properties of the snake that do not evolve. Sizes have one value per limb, the rest one per joint, from
@@ -40,6 +41,16 @@ setting_group! {
         joint_damping_nms_per_rad: PerPart = 30.0.into();
         /// Constraint force mixing of the joints, in m/s per N: 0 is rigid, larger is softer.
         joint_cfm_m_s_per_n: PerPart = 0.0.into();
+        /// Young's modulus of the limbs' material, in Pa, which makes them soft. None: they are rigid, unless the genome has
+        /// limbs of its own, whose modulus may evolve.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        youngs_modulus_pa: Option<PerPart> = None;
+        /// Number of parts of a soft limb.
+        #[serde(default = "usual_soft_parts", skip_serializing_if = "are_usual_soft_parts")]
+        soft_parts: u32 = USUAL_SOFT_PARTS;
+        /// Damping of a soft limb's slowest vibration, as a share of the critical damping.
+        #[serde(default = "usual_soft_damping", skip_serializing_if = "is_usual_soft_damping")]
+        soft_damping_ratio: f32 = USUAL_SOFT_DAMPING;
         /// Rate d at which the air slows a limb's rotation, in 1/s: exp(-d t) of it is left after the time t.
         angular_damping_per_s: f32 = 2.0;
         /// The material of the limbs.
@@ -61,6 +72,28 @@ fn is_usual_torque_budget(budget_nm: &f32) -> bool {
     *budget_nm == USUAL_TORQUE_BUDGET_NM
 }
 
+/// Three parts bend like a beam within 6 %, and cost little.
+const USUAL_SOFT_PARTS: u32 = 3;
+
+fn usual_soft_parts() -> u32 {
+    USUAL_SOFT_PARTS
+}
+
+fn are_usual_soft_parts(parts: &u32) -> bool {
+    *parts == USUAL_SOFT_PARTS
+}
+
+/// Like rubber foam: a limb comes to rest after a few vibrations.
+const USUAL_SOFT_DAMPING: f32 = 0.3;
+
+fn usual_soft_damping() -> f32 {
+    USUAL_SOFT_DAMPING
+}
+
+fn is_usual_soft_damping(ratio: &f32) -> bool {
+    *ratio == USUAL_SOFT_DAMPING
+}
+
 impl SettingGroup for AgentSettings {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let (limb_count, joint_count) = (self.limbs as usize, self.joints());
@@ -78,6 +111,9 @@ impl SettingGroup for AgentSettings {
             torque_budget_nm,
             joint_damping_nms_per_rad,
             joint_cfm_m_s_per_n,
+            youngs_modulus_pa,
+            soft_parts,
+            soft_damping_ratio,
             angular_damping_per_s,
             skin,
             senses,
@@ -117,6 +153,26 @@ impl SettingGroup for AgentSettings {
                 .hint("Rate at which a block loses its spin, as in thick air")
                 .slider(0.0, 500.0)
                 .logarithmic_from(0.1);
+        }
+        walk.section(Section {
+            title: "Soft limbs",
+            about: "Elasticity of the blocks. A soft block is a row of parts with springs between them.",
+        });
+        settings! { walk,
+            youngs_modulus_pa: optional_per_part("Young's modulus", MODULUS_RANGE_PA, each_limb, 10_000.0)
+                .unit("Pa")
+                .hint(
+                    "Stiffness of the blocks' material: foam rubber has some 10,000 Pa. Blocks of 1 m bend from about \
+                     1,200 Pa, below which they fold up, to 24,000 Pa, above which they are rigid. Without a value, blocks are rigid",
+                )
+                .slider(1000.0, 50_000.0)
+                .logarithmic_from(1000.0);
+            soft_parts: whole("Parts per soft block", 2..=4).advanced()
+                .hint("Number of rigid parts of which a soft block consists. More parts bend more smoothly but take longer")
+                .slider(2.0, 4.0);
+            soft_damping_ratio: number("Damping of soft blocks", 0.0..=1.0).advanced()
+                .hint("Damping of a soft block's slowest vibration: at 0 it vibrates for long, at 1 it creeps back without a vibration")
+                .slider(0.0, 1.0);
         }
         walk.section(Section {
             title: "Joints",
@@ -177,7 +233,7 @@ impl AgentSettings {
     pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
 
     /// The settings that have no effect on a body of a genome's own, by their paths in the settings of a run.
-    pub const REPLACED_BY_OWN_BODIES: [&str; 7] = [
+    pub const REPLACED_BY_OWN_BODIES: [&str; 8] = [
         "trial.agent.limbs",
         "trial.agent.limb_width_m",
         "trial.agent.limb_length_m",
@@ -185,7 +241,11 @@ impl AgentSettings {
         "trial.agent.density_kg_m3",
         "trial.agent.bend_limit_rad",
         "trial.agent.twist_limit_rad",
+        "trial.agent.youngs_modulus_pa",
     ];
+    /// The settings that only have an effect on soft limbs.
+    pub const OF_SOFT_LIMBS: [&str; 2] =
+        ["trial.agent.soft_parts", "trial.agent.soft_damping_ratio"];
 
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {
@@ -205,7 +265,8 @@ impl AgentSettings {
         let given = |part: &Option<PerPart>, index: usize, of_genome: f32| {
             part.as_ref().map_or(of_genome, |part| part.at(index))
         };
-        let limb = |index| LimbPlan {
+        let limb = |index| PartPlan {
+            limb: index,
             width_m: self.limb_width_m.at(index),
             length_m: self.limb_length_m.at(index),
             height_m: self.limb_height_m.at(index),
@@ -222,13 +283,43 @@ impl AgentSettings {
             damping_nms_per_rad: self.joint_damping_nms_per_rad.at(index),
             cfm_m_s_per_n: self.joint_cfm_m_s_per_n.at(index),
         };
-        let limbs: Vec<LimbPlan> = (0..self.limbs as usize).map(limb).collect();
-        BodyPlan {
+        let limbs: Vec<PartPlan> = (0..self.limbs as usize).map(limb).collect();
+        let body = BodyPlan {
             contact_free_pairs: Vec::new(),
-            middle_limb: BodyPlan::middle_of(&limbs),
-            limbs,
+            middle_part: BodyPlan::middle_of(&limbs),
+            parts: limbs,
             joints: (0..self.joints()).map(joint).collect(),
+            springs: Vec::new(),
             angular_damping_per_s: self.angular_damping_per_s,
+        };
+        match &self.youngs_modulus_pa {
+            Some(modulus_pa) => {
+                body.with_soft_limbs(|limb| Some(self.elasticity(modulus_pa.at(limb))))
+            }
+            None => body,
         }
+    }
+
+    /// The elasticity of a limb with this modulus, in Pa.
+    pub(super) fn elasticity(&self, youngs_modulus_pa: f32) -> Elasticity {
+        Elasticity {
+            youngs_modulus_pa,
+            parts: self.soft_parts,
+            damping_ratio: self.soft_damping_ratio,
+        }
+    }
+
+    /// Checks that limbs of the trial's sizes do not fold up under their own weight, with the greatest density that a genome
+    /// may have, in kg/m³, unless the trial sets it.
+    ///
+    /// # Errors
+    /// A modulus is too small.
+    pub fn check_softness(&self, greatest_kg_m3: f32) -> Result<(), Invalid> {
+        let Some(modulus_pa) = &self.youngs_modulus_pa else { return Ok(()) };
+        (0..self.limbs as usize).try_for_each(|limb| {
+            let sides_m = [self.limb_width_m.at(limb), self.limb_height_m.at(limb)];
+            let density = self.density_kg_m3.as_ref().map_or(greatest_kg_m3, |of| of.at(limb));
+            check_softness(modulus_pa.at(limb), sides_m, density)
+        })
     }
 }

@@ -55,7 +55,7 @@ pub struct BehaviourObserver {
 impl BehaviourObserver {
     /// Takes in the state of the world after a healthy step.
     pub fn observe(&mut self, simulation: &Simulation, stairs: &Stairs) {
-        let middle_limb = simulation.body().middle_limb;
+        let middle_limb = simulation.body().middle_part;
         let (mut sum_z_m, mut middle, mut limbs) = (0.0, [0.0; 3], 0);
         for (index, pose) in simulation.poses().enumerate() {
             let at = pose.translation;

@@ -135,7 +135,7 @@ pub(super) struct FinalState<'a> {
 impl FinalState<'_> {
     /// The score.
     pub fn score(&self, fitness: Fitness) -> f32 {
-        let middle = self.poses[self.body.middle_limb].translation;
+        let middle = self.poses[self.body.middle_part].translation;
         match fitness {
             Fitness::Centre => middle.y,
             Fitness::Climb => {
@@ -146,7 +146,7 @@ impl FinalState<'_> {
             }
             Fitness::Head => self.poses[0].translation.y,
             Fitness::CentreOfMass => {
-                let limbs = self.poses.iter().zip(&self.body.limbs);
+                let limbs = self.poses.iter().zip(&self.body.parts);
                 let moment: f32 =
                     limbs.map(|(pose, limb)| pose.translation.y * limb.mass_kg()).sum();
                 moment / self.body.mass_kg()
@@ -164,22 +164,24 @@ impl FinalState<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{LimbPlan, Rotation, Vector};
+    use crate::world::{PartPlan, Rotation, Vector};
 
     #[test]
     fn each_fitness_follows_its_description() {
         let stairs = Stairs::default();
-        let limb = |length_m, mass_kg: f32| LimbPlan {
+        let limb = |length_m, mass_kg: f32| PartPlan {
+            limb: 0,
             width_m: 1.0,
             length_m,
             height_m: 1.0,
             density_kg_m3: mass_kg / length_m,
         };
         let body = BodyPlan {
-            limbs: vec![limb(4.0, 1.0), limb(4.0, 1.0), limb(2.0, 2.0)],
+            parts: vec![limb(4.0, 1.0), limb(4.0, 1.0), limb(2.0, 2.0)],
             joints: Vec::new(),
+            springs: Vec::new(),
             contact_free_pairs: Vec::new(),
-            middle_limb: 1,
+            middle_part: 1,
             angular_damping_per_s: 0.0,
         };
         let pose = |x, y, z| Pose::from_parts(Vector::new(x, y, z), Rotation::IDENTITY);

@@ -228,7 +228,7 @@ mod tests {
         assert!(!rollout.is_disturbed());
         let limb = 2;
         let above = rollout.poses()[limb].translation + Vector::new(0.0, 0.0, 3.0);
-        rollout.pull(Some(crate::world::Pull { limb, held_at_m: Vector::ZERO, to_m: above }));
+        rollout.pull(Some(crate::world::Pull { part: limb, held_at_m: Vector::ZERO, to_m: above }));
         for _ in 0..60 {
             assert!(rollout.advance(), "{:?}", rollout.evaluation().disqualified);
         }

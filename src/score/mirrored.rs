@@ -73,7 +73,7 @@ impl MirroredRollout {
                 && centre.x.abs() <= health.arena_half_width_m
                 && centre.y >= -health.arena_back_m
         };
-        if limbs.len() == self.plan.body.limbs.len() && limbs.iter().all(is_healthy) {
+        if limbs.len() == self.plan.body.parts.len() && limbs.iter().all(is_healthy) {
             self.world.mirror(limbs);
             self.step += 1;
         } else {
@@ -88,7 +88,7 @@ impl MirroredRollout {
 
     /// How it ends, if it ends now. When it landed is not recorded.
     pub fn end(&self) -> ExamEnd {
-        let middle = self.world.poses().nth(self.plan.body.middle_limb);
+        let middle = self.world.poses().nth(self.plan.body.middle_part);
         match middle {
             Some(middle) if !self.is_disqualified => {
                 let middle_m = middle.translation.to_array();

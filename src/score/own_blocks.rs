@@ -4,7 +4,7 @@ use super::Trial;
 use crate::check::Invalid;
 use crate::genome::{BodyGenes, ControllerKind, Genome, Segment};
 use crate::schema::PerPart;
-use crate::world::{BodyPlan, JointPlan, LimbPlan};
+use crate::world::{BodyPlan, JointPlan};
 
 impl Trial {
     /// Checks that bodies with blocks of their own can be evaluated: one value for the joints of all, and no springs.
@@ -59,21 +59,24 @@ impl Trial {
             return Ok(genome.clone());
         }
         let body = self.agent.body_plan(genome);
-        let segment = |(index, limb): (usize, &LimbPlan)| {
+        let segment = |index: usize| {
             // The head's joint waits until a block comes before it.
-            let joint = body.joints.iter().find(|joint| joint.child == index.max(1));
+            let joint = body.joints.get(index.saturating_sub(1));
+            let [width_m, length_m, height_m] = body.limb_size_m(index);
+            let part = &body.parts[body.parts_of(index).start];
             Segment {
                 id: index as u64 + 1,
-                length_m: limb.length_m,
-                width_m: limb.width_m,
-                height_m: limb.height_m,
-                density_kg_m3: limb.density_kg_m3,
+                length_m,
+                width_m,
+                height_m,
+                density_kg_m3: part.density_kg_m3,
                 bend_limit_rad: joint.map_or(0.0, |joint| joint.bend_limit_rad),
                 twist_limit_rad: joint.map_or(0.0, |joint| joint.twist_limit_rad),
                 strength: 1.0,
+                youngs_modulus_pa: self.agent.youngs_modulus_pa.as_ref().map(|of| of.at(index)),
             }
         };
-        let segments = body.limbs.iter().enumerate().map(segment).collect();
+        let segments = (0..body.limbs()).map(segment).collect();
         let own = Genome { body: BodyGenes::of_blocks(segments), ..genome.clone() };
         let built = self.agent.body_plan(&own);
         let strengths = |of: &BodyPlan| -> Vec<[f32; 3]> {

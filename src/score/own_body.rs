@@ -2,7 +2,7 @@
 
 use super::AgentSettings;
 use crate::genome::Segment;
-use crate::world::{BodyPlan, JointPlan, LimbPlan};
+use crate::world::{BodyPlan, JointPlan, PartPlan};
 
 /// The body of some blocks, with the torques, the damping and the softness of the agent's joints.
 ///
@@ -10,19 +10,20 @@ use crate::world::{BodyPlan, JointPlan, LimbPlan};
 /// `min(A1, A2) · min(h1, h2) / 1 m³`. That is 1 for the blocks of the report. The strength of a muscle grows with its
 /// cross-section (Sims 1994).
 pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan {
-    let limb = |segment: &Segment| LimbPlan {
+    let limb = |(limb, segment): (usize, &Segment)| PartPlan {
+        limb,
         width_m: segment.width_m,
         length_m: segment.length_m,
         height_m: segment.height_m,
         density_kg_m3: segment.density_kg_m3,
     };
-    let limbs: Vec<LimbPlan> = segments.iter().map(limb).collect();
-    let joint = |(index, pair): (usize, &[LimbPlan])| {
+    let limbs: Vec<PartPlan> = segments.iter().enumerate().map(limb).collect();
+    let joint = |(index, pair): (usize, &[PartPlan])| {
         let (front, rear, genes) = (&pair[0], &pair[1], &segments[index + 1]);
         let section_m2 = (front.width_m * front.height_m).min(rear.width_m * rear.height_m);
         let scale = section_m2 * front.height_m.min(rear.height_m);
         let smallest_side =
-            |limb: &LimbPlan| limb.size_m().into_iter().fold(f32::INFINITY, f32::min);
+            |limb: &PartPlan| limb.size_m().into_iter().fold(f32::INFINITY, f32::min);
         JointPlan {
             parent: index,
             child: index + 1,
@@ -38,8 +39,9 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
     let mut body = BodyPlan {
         joints: limbs.windows(2).enumerate().map(joint).collect(),
         contact_free_pairs: contact_free_pairs(&limbs),
-        middle_limb: BodyPlan::middle_by_mass(&limbs),
-        limbs,
+        middle_part: BodyPlan::middle_by_mass(&limbs),
+        parts: limbs,
+        springs: Vec::new(),
         angular_damping_per_s: agent.angular_damping_per_s,
     };
     let sum_nm = body.torque_nm();
@@ -50,7 +52,9 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
             joint.max_twist_torque_nm *= share;
         }
     }
-    body
+    body.with_soft_limbs(|limb| {
+        segments[limb].youngs_modulus_pa.map(|modulus_pa| agent.elasticity(modulus_pa))
+    })
 }
 
 /// Length of a block relative to the height of its neighbours below which these pass through each other: a bend of the
@@ -58,7 +62,7 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
 const SHORT_MIDDLE: f32 = 0.6;
 
 /// The neighbours of each short block, as pairs.
-fn contact_free_pairs(limbs: &[LimbPlan]) -> Vec<[usize; 2]> {
+fn contact_free_pairs(limbs: &[PartPlan]) -> Vec<[usize; 2]> {
     let triples = limbs.windows(3).enumerate();
     triples
         .filter(|(_, triple)| {
@@ -73,8 +77,8 @@ fn contact_free_pairs(limbs: &[LimbPlan]) -> Vec<[usize; 2]> {
 mod tests {
     use super::*;
 
-    fn block(length_m: f32, height_m: f32) -> LimbPlan {
-        LimbPlan { width_m: 1.0, length_m, height_m, density_kg_m3: 2.5 }
+    fn block(length_m: f32, height_m: f32) -> PartPlan {
+        PartPlan { limb: 0, width_m: 1.0, length_m, height_m, density_kg_m3: 2.5 }
     }
 
     #[test]
@@ -110,6 +114,7 @@ mod tests {
             density_kg_m3: 2.5,
             bend_limit_rad: 1.0,
             twist_limit_rad: 0.5,
+            youngs_modulus_pa: None,
         };
         let body = own_body(
             &agent,

@@ -178,7 +178,7 @@ impl Perturbation {
         plan.surface.friction *= self.friction;
         plan.ground.friction *= self.friction;
         plan.stairs.rise_m = plan.stairs.rise_m.map(|rise_m| rise_m * self.rise);
-        for limb in &mut plan.body.limbs {
+        for limb in &mut plan.body.parts {
             limb.density_kg_m3 *= self.density;
         }
         plan.start_y_m += self.ahead_m;

@@ -8,8 +8,8 @@ use crate::world::Pose;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     every_steps: u32,
-    limbs: usize,
-    /// Poses frame by frame, in each frame the limbs from the head.
+    parts: usize,
+    /// Poses frame by frame, in each frame the parts from the head.
     poses: Vec<Pose>,
 }
 
@@ -20,25 +20,25 @@ impl Recording {
     /// Maximum number of poses: twelve limbs for four and a half minutes, at 30 frames a second.
     pub const MOST_POSES: usize = 100_000;
 
-    /// Frames of `limbs` poses each, `every_steps` physics steps apart, the start first. `None` if the poses
+    /// Frames of `parts` poses each, `every_steps` physics steps apart, the start first. `None` if the poses
     /// do not make whole frames, or if `every_steps` is 0.
-    pub fn new(every_steps: u32, limbs: usize, poses: Vec<Pose>) -> Option<Self> {
-        let is_whole = limbs > 0 && !poses.is_empty() && poses.len().is_multiple_of(limbs);
-        (every_steps > 0 && is_whole).then_some(Self { every_steps, limbs, poses })
+    pub fn new(every_steps: u32, parts: usize, poses: Vec<Pose>) -> Option<Self> {
+        let is_whole = parts > 0 && !poses.is_empty() && poses.len().is_multiple_of(parts);
+        (every_steps > 0 && is_whole).then_some(Self { every_steps, parts, poses })
     }
 
     /// Records a rollout of a genome. Both must have passed their checks.
     pub fn of(genome: &Genome, trial: &Trial) -> Self {
         let mut rollout = Rollout::new(genome, trial);
-        let limbs = rollout.body().limbs.len();
-        let every_steps = steps_between_frames(trial, limbs);
+        let parts = rollout.body().parts.len();
+        let every_steps = steps_between_frames(trial, parts);
         let mut poses = rollout.poses().to_vec();
         while rollout.advance() {
             if rollout.step().is_multiple_of(every_steps) {
                 poses.extend_from_slice(rollout.poses());
             }
         }
-        Self { every_steps, limbs, poses }
+        Self { every_steps, parts, poses }
     }
 
     /// Physics steps from one frame to the next.
@@ -46,14 +46,14 @@ impl Recording {
         self.every_steps
     }
 
-    /// Number of limbs in each frame.
-    pub fn limbs(&self) -> usize {
-        self.limbs
+    /// Number of parts in each frame.
+    pub fn parts(&self) -> usize {
+        self.parts
     }
 
-    /// Frames from the start on, each with the limbs from the head.
+    /// Frames from the start on, each with the parts from the head.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = &[Pose]> {
-        self.poses.chunks_exact(self.limbs)
+        self.poses.chunks_exact(self.parts)
     }
 
     /// The poses at a time, in physics steps from the start; after the last frame, those of the last frame.
@@ -62,7 +62,7 @@ impl Recording {
         let last = self.frames().len() - 1;
         let before = (position as usize).min(last);
         let share = position - before as f32;
-        let frame = |index: usize| &self.poses[index * self.limbs..][..self.limbs];
+        let frame = |index: usize| &self.poses[index * self.parts..][..self.parts];
         if share == 0.0 || before == last {
             return frame(before).to_vec();
         }
@@ -72,9 +72,9 @@ impl Recording {
 }
 
 /// Physics steps from one frame of a trial's recording to the next.
-fn steps_between_frames(trial: &Trial, limbs: usize) -> u32 {
+fn steps_between_frames(trial: &Trial, parts: usize) -> u32 {
     let wanted = (trial.physics.steps_per_s / FRAMES_PER_S).max(1);
-    let max_frames = (Recording::MOST_POSES / limbs) as u32;
+    let max_frames = (Recording::MOST_POSES / parts) as u32;
     // The frame at the start is one of them.
     wanted.max(trial.steps().div_ceil(max_frames.saturating_sub(1).max(1)))
 }

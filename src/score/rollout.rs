@@ -122,7 +122,7 @@ impl Rollout {
         rollout.shove = perturbation.shove.map(|shove| {
             // The limb was drawn for the number of limbs of the trial. A body of its own is shoved at the same share of its
             // length.
-            let (own, drawn_for) = (rollout.body().limbs.len(), trial.agent.limbs.max(1) as usize);
+            let (own, drawn_for) = (rollout.body().limbs(), trial.agent.limbs.max(1) as usize);
             let is_own = genome.body.has_own_blocks();
             let limb = if is_own { shove.limb * own / drawn_for } else { shove.limb };
             Shove { limb, ..shove }
@@ -320,7 +320,7 @@ impl Rollout {
 
     /// Position of the middle limb's centre after the last healthy step, in metres.
     pub fn middle_m(&self) -> Vector {
-        self.poses[self.body().middle_limb].translation
+        self.poses[self.body().middle_part].translation
     }
 
     /// Whether all steps of the stairs are under the middle limb now.

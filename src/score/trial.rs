@@ -145,8 +145,13 @@ impl Trial {
         let body = self.agent.body_plan(genome);
         let (joints, expected) = (genome.controller.joints(), body.joints.len());
         if joints != expected {
-            let allowed = format!("{expected}, one per joint of {} limbs", body.limbs.len());
+            let allowed = format!("{expected}, one per joint of {} limbs", body.limbs());
             return Err(Invalid::new("controller joints", format!("{joints} joints"), allowed));
+        }
+        if !genome.body.has_own_blocks() {
+            self.agent
+                .check_softness(genome.body.density_kg_m3)
+                .map_err(|error| error.inside("agent"))?;
         }
         genome.controller.check()
     }
@@ -349,7 +354,7 @@ mod tests {
             .random_genome(GenomeShape { joints: 2, duration_s: 1.0 }, &mut rng);
         let body = settings.trial.world_plan(&genome).body;
         let limbs: Vec<_> =
-            body.limbs.iter().map(|limb| (limb.width_m, limb.density_kg_m3)).collect();
+            body.parts.iter().map(|limb| (limb.width_m, limb.density_kg_m3)).collect();
         assert_eq!(limbs, [(1.0, 4.0), (2.0, 5.0), (3.0, 6.0)]);
         let joints: Vec<_> = body
             .joints

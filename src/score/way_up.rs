@@ -38,7 +38,7 @@ impl WayUp {
         stairs: &Stairs,
         time_s: f32,
     ) {
-        for limb in simulation.limbs_on_stairs() {
+        for limb in simulation.parts_on_stairs() {
             let steps =
                 poses.get(limb).map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
             let tread =
@@ -83,7 +83,7 @@ impl WayUp {
 /// to the first riser. Before the first riser it is negative.
 pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f32 {
     let (mut sum, mut mass_kg) = (0.0, 0.0);
-    for (pose, limb) in poses.iter().zip(&body.limbs) {
+    for (pose, limb) in poses.iter().zip(&body.parts) {
         let at_m = pose.translation;
         let way = (at_m.y - stairs.first_riser_y_m) / stairs.tread_m;
         let most = if stairs.steps_under(at_m.to_array()) > 0 { stairs.steps as f32 } else { 0.0 };
@@ -99,16 +99,22 @@ pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{LimbPlan, Rotation, Vector};
+    use crate::world::{PartPlan, Rotation, Vector};
 
     fn body(lengths_m: &[f32]) -> BodyPlan {
-        let limb =
-            |&length_m| LimbPlan { width_m: 1.0, length_m, height_m: 1.0, density_kg_m3: 2.0 };
+        let limb = |&length_m| PartPlan {
+            limb: 0,
+            width_m: 1.0,
+            length_m,
+            height_m: 1.0,
+            density_kg_m3: 2.0,
+        };
         BodyPlan {
-            limbs: lengths_m.iter().map(limb).collect(),
+            parts: lengths_m.iter().map(limb).collect(),
             joints: Vec::new(),
+            springs: Vec::new(),
             contact_free_pairs: Vec::new(),
-            middle_limb: 0,
+            middle_part: 0,
             angular_damping_per_s: 0.0,
         }
     }

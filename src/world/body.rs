@@ -1,28 +1,39 @@
-//! The snake as a physical plan: box-shaped limbs and the universal joints between them.
+//! The snake as a physical plan: box-shaped parts, the universal joints between limbs, and the springs within soft limbs.
+//!
+//! A **part** is one body of the engine. A rigid **limb** is one part; a soft limb is several in a row, held together by
+//! springs.
 //!
 //! The built body is the only source of facts about limbs and joints: their number, sizes, masses and
-//! torque limits, and which limb represents the whole. It is made from the trial's agent settings and one
+//! torque limits, and which part represents the whole. It is made from the trial's agent settings and one
 //! genome, because either may determine any of these numbers.
 
-/// The whole body. Limb 0 is the head: the foremost limb, nearest to the stairs.
+use std::ops::Range;
+
+use super::{Pose, Rotation, Vector};
+
+/// The whole body. Part 0 is the head, or its foremost part: nearest to the stairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPlan {
-    /// The limbs. The world inserts them in this order and lays them out in a row, head first.
-    pub limbs: Vec<LimbPlan>,
-    /// The joints, in the order in which the world inserts them. A joint's parent comes before its child.
+    /// The parts, limb by limb from the head. The world inserts them in this order and lays them out in a row.
+    pub parts: Vec<PartPlan>,
+    /// The joints between limbs, which the controller drives, from the head. A joint's parent comes before its child.
     pub joints: Vec<JointPlan>,
+    /// The springs within soft limbs, from the head; empty if all limbs are rigid.
+    pub springs: Vec<SpringPlan>,
     /// Pairs of limbs that pass through each other although no joint connects them, the front limb first. Joined limbs
     /// always do.
     pub contact_free_pairs: Vec<[usize; 2]>,
-    /// Index of the limb whose centre counts as the centre of the snake.
-    pub middle_limb: usize,
-    /// Rate at which the air takes the limbs' angular velocity, in 1/s: after a time t, `exp(-rate t)` of it is left.
+    /// Index of the part whose centre counts as the centre of the snake.
+    pub middle_part: usize,
+    /// Rate at which the air takes the parts' angular velocity, in 1/s: after a time t, `exp(-rate t)` of it is left.
     pub angular_damping_per_s: f32,
 }
 
-/// One box-shaped limb.
+/// One box-shaped part: a rigid limb, or a piece of a soft one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LimbPlan {
+pub struct PartPlan {
+    /// Index of the limb that it belongs to; the head is 0.
+    pub limb: usize,
     /// Size across x, in metres.
     pub width_m: f32,
     /// Size along y, in metres.
@@ -38,9 +49,9 @@ pub struct LimbPlan {
 /// motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPlan {
-    /// Index of the limb in front of the joint.
+    /// Index of the part in front of the joint.
     pub parent: usize,
-    /// Index of the limb behind the joint; larger than `parent`.
+    /// Index of the part behind the joint; larger than `parent`.
     pub child: usize,
     /// Largest bend to either side, in radians.
     pub bend_limit_rad: f32,
@@ -62,13 +73,29 @@ pub struct JointPlan {
     pub cfm_m_s_per_n: f32,
 }
 
-impl LimbPlan {
+/// A spring between the rear face of a part and the front face of the next one of the same limb. It holds the faces together,
+/// and resists their rotation against each other about all three axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpringPlan {
+    /// Index of the part in front of the spring.
+    pub parent: usize,
+    /// Index of the part behind it.
+    pub child: usize,
+    /// Torque per angle about x (bending up and down), y (torsion) and z (bending sideways), in N·m/rad.
+    pub stiffness_nm_per_rad: [f32; 3],
+    /// Torque per rate about the same axes, in N·m·s/rad.
+    pub damping_nms_per_rad: [f32; 3],
+    /// Factor of the allowed distance between its anchors: see [`JointPlan::gap_scale`].
+    pub gap_scale: f32,
+}
+
+impl PartPlan {
     /// Size across x, along y and along z, in metres.
     pub fn size_m(&self) -> [f32; 3] {
         [self.width_m, self.length_m, self.height_m]
     }
 
-    /// Mass of the limb, in kg.
+    /// Mass of the part, in kg.
     pub fn mass_kg(&self) -> f32 {
         self.width_m * self.length_m * self.height_m * self.density_kg_m3
     }
@@ -77,17 +104,58 @@ impl LimbPlan {
 impl BodyPlan {
     /// Length of the straight body from head to tail, in metres.
     pub fn length_m(&self) -> f32 {
-        self.limbs.iter().map(|limb| limb.length_m).sum()
+        self.parts.iter().map(|part| part.length_m).sum()
+    }
+
+    /// Number of limbs.
+    pub fn limbs(&self) -> usize {
+        self.parts.last().map_or(0, |last| last.limb + 1)
+    }
+
+    /// The parts of a limb, as a range of indices.
+    pub fn parts_of(&self, limb: usize) -> Range<usize> {
+        let first = self.parts.partition_point(|part| part.limb < limb);
+        first..self.parts.partition_point(|part| part.limb <= limb)
+    }
+
+    /// Size of a limb at rest across x, along y and along z, in metres; zeros without such a limb.
+    pub fn limb_size_m(&self, limb: usize) -> [f32; 3] {
+        let parts = &self.parts[self.parts_of(limb)];
+        let length_m = parts.iter().map(|part| part.length_m).sum();
+        parts.first().map_or([0.0; 3], |first| [first.width_m, length_m, first.height_m])
+    }
+
+    /// Mass of a limb, in kg.
+    pub fn limb_mass_kg(&self, limb: usize) -> f32 {
+        self.parts[self.parts_of(limb)].iter().map(PartPlan::mass_kg).sum()
+    }
+
+    /// The poses of the limbs, given those of the parts: of a soft limb the mean of its parts' places, and the mean of the two
+    /// middle rotations.
+    pub fn limb_poses(&self, parts: &[Pose]) -> Vec<Pose> {
+        if self.springs.is_empty() {
+            return parts.to_vec();
+        }
+        let limb = |limb: usize| {
+            let parts = parts.get(self.parts_of(limb)).unwrap_or_default();
+            let places = parts.iter().map(|part| part.translation);
+            let place = places.sum::<Vector>() / parts.len().max(1) as f32;
+            let turn = |part: usize| parts.get(part).map_or(Rotation::IDENTITY, |of| of.rotation);
+            let half = parts.len() / 2;
+            let between = turn((parts.len() - 1) / 2).lerp(turn(half), 0.5);
+            Pose::from_parts(place, if parts.len() % 2 == 1 { turn(half) } else { between })
+        };
+        (0..self.limbs()).map(limb).collect()
     }
 
     /// Width of the widest limb, in metres.
     pub fn width_m(&self) -> f32 {
-        self.limbs.iter().map(|limb| limb.width_m).fold(0.0, f32::max)
+        self.parts.iter().map(|part| part.width_m).fold(0.0, f32::max)
     }
 
     /// Mass of the whole body, in kg.
     pub fn mass_kg(&self) -> f32 {
-        self.limbs.iter().map(LimbPlan::mass_kg).sum()
+        self.parts.iter().map(PartPlan::mass_kg).sum()
     }
 
     /// Greatest torque of all joints together about both axes, in N·m.
@@ -95,41 +163,44 @@ impl BodyPlan {
         self.joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum()
     }
 
-    /// Distance of the middle limb's centre from the front of the straight body, in metres.
+    /// Distance of the middle part's centre from the front of the straight body, in metres.
     pub fn front_to_middle_m(&self) -> f32 {
-        let before: f32 = self.limbs.iter().take(self.middle_limb).map(|limb| limb.length_m).sum();
-        before + self.limbs.get(self.middle_limb).map_or(0.0, |limb| limb.length_m / 2.0)
+        let before: f32 = self.parts.iter().take(self.middle_part).map(|part| part.length_m).sum();
+        before + self.parts.get(self.middle_part).map_or(0.0, |part| part.length_m / 2.0)
     }
 
     /// Volume of the whole body, in m³.
     pub fn volume_m3(&self) -> f32 {
-        self.limbs.iter().map(|limb| limb.size_m().into_iter().product::<f32>()).sum()
+        self.parts.iter().map(|part| part.size_m().into_iter().product::<f32>()).sum()
     }
 
     /// Height of the line on which the joints lie at the start, in metres: the centre of the tallest limb.
     pub fn axis_height_m(&self) -> f32 {
-        self.limbs.iter().map(|limb| limb.height_m).fold(0.0, f32::max) / 2.0
+        self.parts.iter().map(|part| part.height_m).fold(0.0, f32::max) / 2.0
     }
 
-    /// Index of the middle one of limbs that are alike: the third of five.
-    pub fn middle_of(limbs: &[LimbPlan]) -> usize {
-        limbs.len() / 2
+    /// Index of the middle part of the middle one of limbs that are alike: the third of five.
+    pub fn middle_of(parts: &[PartPlan]) -> usize {
+        let limbs = parts.last().map_or(0, |last| last.limb + 1);
+        let of_middle = |part: &&PartPlan| part.limb == limbs / 2;
+        let before = parts.partition_point(|part| part.limb < limbs / 2);
+        before + parts.iter().filter(of_middle).count() / 2
     }
 
-    /// Index of the limb in which the centre of mass of the straight body lies.
-    pub fn middle_by_mass(limbs: &[LimbPlan]) -> usize {
+    /// Index of the part in which the centre of mass of the straight body lies.
+    pub fn middle_by_mass(parts: &[PartPlan]) -> usize {
         let (mut mass_kg, mut moment_kg_m, mut end_m) = (0.0, 0.0, 0.0);
-        for limb in limbs {
-            moment_kg_m += limb.mass_kg() * (end_m + limb.length_m / 2.0);
-            mass_kg += limb.mass_kg();
-            end_m += limb.length_m;
+        for part in parts {
+            moment_kg_m += part.mass_kg() * (end_m + part.length_m / 2.0);
+            mass_kg += part.mass_kg();
+            end_m += part.length_m;
         }
         let centre_m = moment_kg_m / mass_kg;
         let mut end_m = 0.0;
-        let passed = limbs.iter().take_while(|limb| {
-            end_m += limb.length_m;
+        let passed = parts.iter().take_while(|part| {
+            end_m += part.length_m;
             end_m < centre_m
         });
-        passed.count().min(limbs.len().saturating_sub(1))
+        passed.count().min(parts.len().saturating_sub(1))
     }
 }

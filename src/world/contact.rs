@@ -7,7 +7,7 @@ use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
 
 use super::surface::{ContactLaw, ERP_TIME_S, Softness, Spring, spring};
-use super::{LimbPlan, PhysicsSettings};
+use super::{PartPlan, PhysicsSettings};
 
 /// The collider of a contact pair that is not `collider`.
 pub(super) fn other_collider(pair: &ContactPair, collider: ColliderHandle) -> ColliderHandle {
@@ -48,7 +48,7 @@ pub(super) fn soften(
     parameters: &mut IntegrationParameters,
     laws: &ContactLaws,
     physics: &PhysicsSettings,
-    reference: &LimbPlan,
+    reference: &PartPlan,
 ) {
     let (corner_kg, quarter_kg) = (corner_mass_kg(reference), reference.mass_kg() / 4.0);
     let soft = |softness| soft_coefficients(softness, physics.substep_s(), corner_kg, quarter_kg);
@@ -151,7 +151,7 @@ pub(super) const JOINT_ERP: f32 = 0.2;
 /// Effective mass, in kg, at a contact in a corner of a limb that lies flat:
 /// `1 / m_eff = (1 + 3 l² / (l² + h²) + 3 w² / (w² + h²)) / m`, from the inertia of a box. A limb of the
 /// report, 1 by 2 by 1, has 4.9 / m.
-fn corner_mass_kg(limb: &LimbPlan) -> f32 {
+fn corner_mass_kg(limb: &PartPlan) -> f32 {
     let [w2, l2, h2] = limb.size_m().map(|size| size * size);
     limb.mass_kg() / (1.0 + 3.0 * l2 / (l2 + h2) + 3.0 * w2 / (w2 + h2))
 }

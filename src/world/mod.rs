@@ -14,12 +14,13 @@ mod health;
 mod physics;
 mod pull;
 mod simulation;
+mod soft_limb;
 mod stair_profile;
 mod stairs;
 mod surface;
 mod torque;
 
-pub use body::{BodyPlan, JointPlan, LimbPlan};
+pub use body::{BodyPlan, JointPlan, PartPlan, SpringPlan};
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
@@ -34,6 +35,9 @@ pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::sensing::{LimbReading, SnakeReading};
 pub use simulation::{Discontinuity, Shove, Simulation, WorldPlan};
+pub use soft_limb::{
+    Elasticity, SOFTEST_M4_S2, STIFFEST_M4_S2, bending_m4_s2, check_softness, modulus_at_pa,
+};
 pub use stair_profile::ClimbProgress;
 pub use stairs::{StairBox, Stairs};
 pub use surface::{ERP_TIME_S, Skin, Surface};

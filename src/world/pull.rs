@@ -1,15 +1,15 @@
-//! Pulling a limb with the mouse: a damped spring between a point of the limb and a point in space.
+//! Pulling a part with the mouse: a damped spring between a point of the part and a point in space.
 
 use rapier3d::prelude::RigidBody;
 
 use super::Vector;
 
-/// A pull on a limb by the user. It is no part of any trial.
+/// A pull on a part of the snake by the user. It is no part of any trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pull {
-    /// Index of the limb; the head is 0.
-    pub limb: usize,
-    /// Point at which the spring holds the limb, in the limb's own frame, in metres from its centre.
+    /// Index of the part.
+    pub part: usize,
+    /// Point at which the spring holds the part, in the part's own frame, in metres from its centre.
     pub held_at_m: Vector,
     /// Target of the pull in the world, in metres.
     pub to_m: Vector,

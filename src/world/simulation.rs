@@ -29,7 +29,7 @@ use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, PhysicsSettings, PhysicsWorld, Pull, Skin,
     Stairs, Surface,
 };
-use build::{insert_ground, insert_joints, insert_limbs, insert_stairs};
+use build::{insert_ground, insert_joints, insert_parts, insert_stairs};
 pub use continued::Discontinuity;
 pub use shove::Shove;
 
@@ -63,7 +63,7 @@ pub struct WorldPlan {
 }
 
 impl WorldPlan {
-    /// Position of the middle limb's centre on the y axis at the start, in metres, but for what a turn and the settling
+    /// Position of the middle part's centre on the y axis at the start, in metres, but for what a turn and the settling
     /// change.
     pub fn middle_start_y_m(&self) -> f32 {
         if self.settles {
@@ -86,11 +86,11 @@ pub struct Simulation {
     /// Share of the joints' damping that acts as a torque.
     damping_as_torque: f32,
     body: BodyPlan,
-    /// The engine's bodies of the limbs, in the order of the plan.
-    limbs: Vec<RigidBodyHandle>,
+    /// The engine's bodies of the parts, in the order of the plan.
+    parts: Vec<RigidBodyHandle>,
     health: HealthLimits,
     arena_front_y_m: f32,
-    /// Torque of the joints' drives on each limb, in N·m.
+    /// Torque of the joints' drives on each part, in N·m.
     torques_in_world: Vec<Vector>,
     /// What the joints' damping adds to it.
     damping_in_world: Vec<Vector>,
@@ -100,7 +100,7 @@ pub struct Simulation {
     /// The user's pull on a limb, and whether there was one in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
-    /// Forces on the limbs in another engine, if this world mirrors one; empty if not.
+    /// Forces on the parts in another engine, if this world mirrors one; empty if not.
     mirrored: Vec<Option<Vector>>,
 }
 
@@ -116,7 +116,7 @@ struct ContactSettings {
 }
 
 impl Simulation {
-    /// Builds the world: ground, stairs from the lowest up, limbs from the head, joints from the head.
+    /// Builds the world: ground, stairs from the lowest up, parts from the head, joints and springs from the head.
     ///
     /// The order of insertion is part of the bits of every run.
     pub fn new(plan: &WorldPlan) -> Self {
@@ -136,7 +136,7 @@ impl Simulation {
             },
             ..Default::default()
         };
-        if let Some(middle) = plan.body.limbs.get(plan.body.middle_limb) {
+        if let Some(middle) = plan.body.parts.get(plan.body.middle_part) {
             soften(&mut physics.integration_parameters, &laws, &plan.physics, middle);
         }
         let bounces = [plan.surface.bounce, plan.ground.bounce, plan.skin.bounce]
@@ -148,8 +148,8 @@ impl Simulation {
         }
         let ground = insert_ground(&mut physics, plan, &laws);
         insert_stairs(&mut physics, plan, &laws.stairs);
-        let limbs = insert_limbs(&mut physics, plan, &laws.limbs);
-        insert_joints(&mut physics, &limbs, plan);
+        let parts = insert_parts(&mut physics, plan, &laws.limbs);
+        insert_joints(&mut physics, &parts, plan);
 
         let mut simulation = Self {
             physics,
@@ -169,15 +169,15 @@ impl Simulation {
                 plan.physics.step_s(),
             ),
             damping_as_torque: 1.0 - plan.physics.joint_damping_in_solver(),
-            torques_in_world: vec![Vector::ZERO; limbs.len()],
-            damping_in_world: vec![Vector::ZERO; limbs.len()],
+            torques_in_world: vec![Vector::ZERO; parts.len()],
+            damping_in_world: vec![Vector::ZERO; parts.len()],
             applied: vec![AppliedTorque::default(); plan.body.joints.len()],
             effort: Effort::default(),
             balance: EnergyBalance::default(),
             pull: None,
             was_pulled: false,
             mirrored: Vec::new(),
-            limbs,
+            parts,
             body: plan.body.clone(),
             health: plan.health.clone(),
             arena_front_y_m: plan.stairs.end_y_m() + 10.0,
@@ -204,7 +204,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The built body: its limbs, joints, sizes, masses and limits.
+    /// The built body: its parts, joints, springs, sizes, masses and limits.
     pub fn body(&self) -> &BodyPlan {
         &self.body
     }
@@ -239,10 +239,10 @@ impl Simulation {
                 let body = &self.physics.bodies[limb];
                 LimbVelocity { linear: body.linvel(), angular: body.angvel() }
             };
-            let before: Vec<LimbVelocity> = self.limbs.iter().map(velocity).collect();
+            let before: Vec<LimbVelocity> = self.parts.iter().map(velocity).collect();
             self.physics.step_with_events(&hooks, &());
             self.add_to_balance(&turns_before);
-            for (&limb, before) in self.limbs.iter().zip(before) {
+            for (&limb, before) in self.parts.iter().zip(before) {
                 finish_bounce(&mut self.physics, limb, before);
             }
         }
@@ -261,20 +261,20 @@ impl Simulation {
         &mut self.physics
     }
 
-    /// Sets or ends the pull on a limb, from the next step on. A pulled snake is no longer in its trial.
+    /// Sets or ends the pull on a part, from the next step on. A pulled snake is no longer in its trial.
     pub fn pull(&mut self, pull: Option<Pull>) {
         self.pull = pull;
     }
 
     fn apply_pull(&mut self) {
-        for &limb in &self.limbs {
+        for &limb in &self.parts {
             self.physics.bodies[limb].reset_forces(false);
         }
         self.was_pulled = false;
         let Some(pull) = self.pull else { return };
-        let Some(&limb) = self.limbs.get(pull.limb) else { return };
+        let Some(&part) = self.parts.get(pull.part) else { return };
         let step_s = self.physics.integration_parameters.dt;
-        let body = &mut self.physics.bodies[limb];
+        let body = &mut self.physics.bodies[part];
         let (force, point) = pull.force_on(body, step_s);
         body.add_force_at_point(force, point, false);
         self.was_pulled = true;
@@ -316,7 +316,7 @@ impl Clone for Simulation {
             contacts: self.contacts.clone(),
             profile: self.profile.clone(),
             body: self.body.clone(),
-            limbs: self.limbs.clone(),
+            parts: self.parts.clone(),
             health: self.health.clone(),
             arena_front_y_m: self.arena_front_y_m,
             damping: self.damping,

@@ -161,7 +161,7 @@ fn every_list_of_blocks_gives_a_body_or_one_line() {
     read_corpus("body", |path, blocks| {
         parse_champion(path, &with_blocks(blocks)).map(|loaded| {
             let genome = &loaded.champion.genome;
-            let parts = loaded.champion.body().limbs.len();
+            let parts = loaded.champion.body().parts.len();
             assert!(parts <= MOST_SEGMENTS as usize, "{parts} parts");
             let space = GenomeSpace::default().widened_for(genome);
             for (number, (change, _)) in (0..).zip(BodyChange::RATES) {

@@ -13,7 +13,7 @@ function prepared(canvas) {
 
 // The torques of all joints over time, each in a row of its own, with a line at the present moment.
 function drawStrip(canvas, champion, time) {
-  const { pen, width, height } = prepared(canvas), joints = champion.limbs.length - 1, row = height / joints;
+  const { pen, width, height } = prepared(canvas), joints = champion.limbs.at(-1), row = height / joints;
   const frames = champion.torques.length / (joints * 2), left = 34;
   for (let joint = 0; joint < joints; joint++) {
     const middle = row * (joint + 0.5);

@@ -10,12 +10,12 @@ function unpacked(champion) {
 
 // The poses at a time in seconds: between two frames they are interpolated.
 function posesAt(champion, time) {
-  const limbs = champion.limbs.length, place = Math.max(0, Math.min(champion.frames - 1, time / champion.frame_s));
+  const parts = champion.parts.length, place = Math.max(0, Math.min(champion.frames - 1, time / champion.frame_s));
   const before = Math.floor(place), after = Math.min(before + 1, champion.frames - 1), share = place - before;
-  const value = (frame, limb, part) => champion.poses[(frame * limbs + limb) * 7 + part];
-  return champion.limbs.map((_, limb) => {
-    const at = [0, 1, 2].map((part) => (value(before, limb, part) * (1 - share) + value(after, limb, part) * share) * champion.unit_m);
-    const [a, b] = [before, after].map((frame) => [3, 4, 5, 6].map((part) => value(frame, limb, part)));
+  const value = (frame, part, index) => champion.poses[(frame * parts + part) * 7 + index];
+  return champion.parts.map((_, part) => {
+    const at = [0, 1, 2].map((index) => (value(before, part, index) * (1 - share) + value(after, part, index) * share) * champion.unit_m);
+    const [a, b] = [before, after].map((frame) => [3, 4, 5, 6].map((index) => value(frame, part, index)));
     const sign = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] < 0 ? -1 : 1;
     const turn = a.map((part, i) => part * (1 - share) + sign * b[i] * share), length = Math.hypot(...turn) || 1;
     return { at, turn: turn.map((part) => part / length) };
@@ -27,7 +27,7 @@ function atTime(champion, series, time) { return series[Math.max(0, Math.min(ser
 
 // A champion that was simulated in the page: its motion as it comes from the core, step by step.
 function simulated(champion, name, { poses, steps, energy }, state) {
-  const limbs = champion.limbs.length, frames = Math.floor(poses.length / (limbs * 7)), packed = new Int16Array(poses.length);
+  const frames = Math.floor(poses.length / (champion.parts.length * 7)), packed = new Int16Array(poses.length);
   // Its own unit: it may get further than its champion.
   let furthest = 1;
   for (let i = 0; i < poses.length; i++) if (i % 7 < 3) furthest = Math.max(furthest, Math.abs(poses[i]));

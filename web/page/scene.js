@@ -152,15 +152,18 @@ class Scene {
         box([min[0] + shift, min[1], min[2]], [max[0] + shift, max[1], max[2]], colours.stair);
         box([min[0] + shift, min[1] - 0.012, max[2] - 0.06], [max[0] + shift, min[1] + 0.10, max[2] + 0.012], colours.edge);
       }
-      lane.champion.limbs.forEach((size, limb) => {
-        const { at: [x, y, z], turn } = lane.poses[limb], at = [x + shift, y, z], last = lane.champion.limbs.length - 1;
-        const cuts = [limb > 0 ? 0.07 : 0, limb < last ? 0.07 : 0], thick = Math.min(size[0], size[2]);
+      const { parts, limbs } = lane.champion;
+      parts.forEach((size, index) => {
+        const { at: [x, y, z], turn } = lane.poses[index], at = [x + shift, y, z], limb = limbs[index];
+        // A soft limb has several parts, without gaps between them.
+        const isFront = limbs[index - 1] !== limb, isRear = limbs[index + 1] !== limb, last = limbs.at(-1);
+        const cuts = [isFront && limb > 0 ? 0.07 : 0, isRear && limb < last ? 0.07 : 0], thick = Math.min(size[0], size[2]);
         const tone = limb % 2 === 0 ? colours.red : colours.blue, colour = lane.pale ? tone.map((part) => part * 0.55 + 0.42) : tone;
         const part = (offset, scale, radius, tint) => list.push({ mesh: this.mesh(scale, radius), model: placed(at, turn, offset), colour: tint });
         part([0, (cuts[1] - cuts[0]) / 2, 0], [size[0], size[1] - cuts[0] - cuts[1], size[2]], Math.min(...size) * 0.2, colour);
-        part([0, 0, size[2] / 2], [size[0] * 0.16, size[1] * 0.74, 0.02], 0.0001, colours.white);
-        if (limb > 0) part([0, size[1] / 2, 0], [size[0] * 0.86, 0.14, thick * 0.24], 0.05, colours.metal);
-        if (limb === 0) for (const side of [-1, 1]) {
+        part([0, 0, size[2] / 2], [size[0] * 0.16, size[1] * (isFront && isRear ? 0.74 : 1), 0.02], 0.0001, colours.white);
+        if (isFront && limb > 0) part([0, size[1] / 2, 0], [size[0] * 0.86, 0.14, thick * 0.24], 0.05, colours.metal);
+        if (index === 0) for (const side of [-1, 1]) {
           part([side * size[0] * 0.3, size[1] * 0.34, size[2] * 0.47], [thick * 0.26, thick * 0.26, thick * 0.26], thick * 0.13, colours.white);
           part([side * size[0] * 0.32, size[1] * 0.40, size[2] * 0.50], [thick * 0.14, thick * 0.14, thick * 0.14], thick * 0.07, colours.metal);
         }

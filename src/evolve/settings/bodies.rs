@@ -23,7 +23,10 @@ impl Settings {
             return Err(Invalid::new("evolution.strategy", strategy, allowed));
         }
         if !varies {
-            return Ok(());
+            let agent = &self.trial.agent;
+            return agent
+                .check_softness(self.genome.density_max_kg_m3)
+                .map_err(|error| error.inside("trial.agent"));
         }
         self.trial.check_own_bodies().map_err(|error| error.inside("trial"))?;
         // The longest body could not arrive as a whole on a shorter one.

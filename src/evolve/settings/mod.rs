@@ -365,6 +365,13 @@ impl SettingGroup for Settings {
         } else {
             unused.push("trial.agent.torque_budget_nm");
         }
+        let soft = match genome.bodies.vary {
+            true => genome.bodies.soft,
+            false => trial.agent.youngs_modulus_pa.is_some(),
+        };
+        if !soft {
+            unused.extend(AgentSettings::OF_SOFT_LIMBS);
+        }
         walk.without_effect(unused);
         walk.fixed(
             "Takes effect with the next run, because the fitness of earlier generations could not be compared.",

@@ -6,7 +6,7 @@ use gltf_json::scene::UnitQuaternion;
 use gltf_json::validation::Checked;
 use gltf_json::{Accessor, Index, Material, Mesh, Node};
 
-use super::super::mjcf::{LIMB_COLORS, STEP_COLORS};
+use super::super::mjcf::{LIMB_COLORS, STEP_COLORS, part_name};
 use super::super::motion::follow;
 use super::super::{ExportError, ExportProgress, ExportedChampion};
 use super::pieces::{Look, SceneParts};
@@ -113,7 +113,7 @@ fn samples(
     let champion = &exported.loaded.champion;
     let steps_per_s = champion.trial.physics.steps_per_s;
     let every = steps_per_s.div_ceil(SAMPLES_PER_S);
-    let mut samples = Samples { times_s: Vec::new(), poses: vec![Vec::new(); body.limbs.len()] };
+    let mut samples = Samples { times_s: Vec::new(), poses: vec![Vec::new(); body.parts.len()] };
     let mut last: Option<(u32, Vec<Pose>)> = None;
     let mut keep = |step: u32, poses: &[Pose]| {
         samples.times_s.push((f64::from(step) / f64::from(steps_per_s)) as f32);
@@ -153,8 +153,8 @@ fn limbs(
 ) -> Vec<Index<Node>> {
     let mut meshes: Vec<([f32; 3], usize, Index<Mesh>)> = Vec::new();
     let mut nodes = Vec::new();
-    for (index, limb) in body.limbs.iter().enumerate() {
-        let (size_m, color) = (limb.size_m(), index % 2);
+    for (index, part) in body.parts.iter().enumerate() {
+        let (size_m, color) = (part.size_m(), part.limb % 2);
         let known =
             meshes.iter().find(|(size, of, _)| index > 0 && (*size, *of) == (size_m, color));
         let mesh = match known {
@@ -175,7 +175,7 @@ fn limbs(
         };
         let start = samples.poses[index].first().copied().unwrap_or(Pose::IDENTITY);
         nodes.push(pieces.root.push(Node {
-            name: Some(format!("{name}, limb {}", index + 1)),
+            name: Some(format!("{name}, {}", part_name(body, index))),
             mesh: Some(mesh),
             translation: Some(start.translation.to_array()),
             rotation: Some(UnitQuaternion(start.rotation.to_array())),
@@ -234,7 +234,7 @@ impl Samples {
     /// How far along y a scene has to reach, in m: to where a snake lies on the landing, and at least as far as this one got.
     fn furthest_y_m(&self, trial: &Trial, body: &BodyPlan) -> f32 {
         let places = self.poses.iter().flatten().map(|pose| pose.translation.y);
-        let reach_m = body.limbs.iter().map(|limb| limb.length_m).fold(0.0, f32::max);
+        let reach_m = body.parts.iter().map(|limb| limb.length_m).fold(0.0, f32::max);
         let on_landing_m = trial.stairs.landing_y_m() + body.length_m();
         (places.fold(f32::MIN, f32::max) + reach_m).max(on_landing_m)
     }

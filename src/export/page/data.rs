@@ -43,8 +43,10 @@ pub struct PageChampion {
     step_count: u32,
     /// The boxes of its stairs, each with its lower and its upper corner, in metres.
     pub stairs: Vec<[[f32; 3]; 2]>,
-    /// The size of each limb across, along and upwards, in metres; the head first.
-    pub limbs: Vec<[f32; 3]>,
+    /// The size of each part across, along and upwards, in metres; the head first.
+    pub parts: Vec<[f32; 3]>,
+    /// The index of the limb of each part; the head is 0.
+    pub limbs: Vec<usize>,
     /// Length of a physics step, in s.
     step_s: f32,
     /// Time from one frame to the next, in s.
@@ -52,7 +54,7 @@ pub struct PageChampion {
     frames: usize,
     /// Metres per unit of the positions.
     unit_m: f32,
-    /// Frame by frame and limb by limb, seven numbers of 16 bits: position, and rotation times 32,767.
+    /// Frame by frame and part by part, seven numbers of 16 bits: position, and rotation times 32,767.
     poses: String,
     /// Frame by frame and joint by joint, bend and twist, in shares of `torque_unit_nm` times 32,767.
     torques: String,
@@ -165,7 +167,8 @@ impl PageChampion {
             width_m: stairs.width_m,
             step_count: stairs.steps,
             stairs: stairs.boxes().iter().map(|step| [step.min_m, step.max_m]).collect(),
-            limbs: champion.body().limbs.iter().map(|limb| limb.size_m()).collect(),
+            parts: champion.body().parts.iter().map(|part| part.size_m()).collect(),
+            limbs: champion.body().parts.iter().map(|part| part.limb).collect(),
             step_s: trial.physics.step_s(),
             frame_s: trial.physics.step_s() * every as f32,
             frames: frames.poses.len(),
@@ -213,7 +216,7 @@ fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
             "Body",
             format!(
                 "{} limbs, {:.1} m long, {:.1} kg",
-                body.limbs.len(),
+                body.limbs(),
                 body.length_m(),
                 body.mass_kg()
             ),

@@ -45,7 +45,7 @@ fn drawing(champion: &PageChampion) -> String {
     }
     for (moment, limbs) in moments.iter().enumerate() {
         let opacity = 0.25 + 0.75 * moment as f32 / (MOMENTS - 1) as f32;
-        for (limb, (pose, size)) in limbs.iter().zip(&champion.limbs).enumerate() {
+        for (limb, (pose, size)) in champion.limbs.iter().zip(limbs.iter().zip(&champion.parts)) {
             let [_, y, z, qx, qy, qz, qw] = *pose;
             // The limb's axes along it and upwards, seen from the side.
             let along = [1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz + qx * qw)];

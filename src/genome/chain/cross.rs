@@ -29,6 +29,7 @@ impl GenomeSpace {
                 segment.width_m = from.width_m;
                 segment.height_m = from.height_m;
                 segment.density_kg_m3 = from.density_kg_m3;
+                segment.youngs_modulus_pa = from.youngs_modulus_pa;
             }
             if of_other() {
                 segment.bend_limit_rad = from.bend_limit_rad;

@@ -16,6 +16,8 @@ impl Segment {
             bend_limit_rad: (space.bend_limit_min_rad + space.bend_limit_max_rad) / 2.0,
             twist_limit_rad: (space.twist_limit_min_rad + space.twist_limit_max_rad) / 2.0,
             strength: 1.0,
+            // A gene fills it in.
+            youngs_modulus_pa: space.soft.then_some(space.modulus_min_pa),
         }
     }
 
@@ -49,6 +51,12 @@ impl Segment {
         let field = format_args!("segments[{index}].density_kg_m3");
         let name = format_args!("block {limb}, density");
         visit(Gene { field, name, unit: "kg/m³", range }, &mut self.density_kg_m3);
+        if let Some(modulus_pa) = &mut self.youngs_modulus_pa {
+            let range = GeneRange::Ratio(space.modulus_min_pa, space.modulus_max_pa);
+            let field = format_args!("segments[{index}].youngs_modulus_pa");
+            let name = format_args!("block {limb}, Young's modulus");
+            visit(Gene { field, name, unit: "Pa", range }, modulus_pa);
+        }
         if index == 0 {
             return;
         }
@@ -102,7 +110,11 @@ impl BodySpace {
                 segment.twist_limit_rad,
             );
             self.strength_min = self.strength_min.min(segment.strength);
+            if let Some(modulus_pa) = segment.youngs_modulus_pa {
+                widen([&mut self.modulus_min_pa, &mut self.modulus_max_pa], modulus_pa);
+            }
         }
+        self.soft = segments.iter().any(|segment| segment.youngs_modulus_pa.is_some());
         self.volume_m3 = segments.iter().map(Segment::volume_m3).sum::<f64>() as f32;
         let length_m: f32 = segments.iter().map(|segment| segment.length_m).sum();
         self.longest_m = self.longest_m.max(length_m);

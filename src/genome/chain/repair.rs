@@ -4,6 +4,7 @@
 use super::limits::{EVOLVED_INERTIA_RATIO, MASS_RATIO, ratio};
 use super::segment::Segment;
 use super::space::BodySpace;
+use crate::world::{SOFTEST_M4_S2, modulus_at_pa};
 
 /// Attempts to meet all limits by changing only what exceeds them.
 const PASSES: usize = 8;
@@ -19,6 +20,11 @@ impl BodySpace {
         if segments.is_empty() {
             return;
         }
+        self.repair_sizes(segments);
+        segments.iter_mut().for_each(Segment::stiffen);
+    }
+
+    fn repair_sizes(&self, segments: &mut [Segment]) {
         for _ in 0..PASSES {
             self.fill_volume(segments);
             if self.is_within_limits(segments) {
@@ -96,6 +102,18 @@ impl BodySpace {
             segment.length_m *= share;
             segment.width_m /= share.sqrt();
             segment.height_m /= share.sqrt();
+        }
+    }
+}
+
+impl Segment {
+    /// Gives a block that would fold up under its own weight the least modulus with which it does not. It depends on the sizes,
+    /// so it comes after them.
+    fn stiffen(&mut self) {
+        let sides_m = [self.width_m, self.height_m];
+        if let Some(modulus_pa) = &mut self.youngs_modulus_pa {
+            let least_pa = modulus_at_pa(SOFTEST_M4_S2, sides_m, self.density_kg_m3);
+            *modulus_pa = modulus_pa.max(least_pa);
         }
     }
 }

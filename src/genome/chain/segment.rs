@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::limits::{check_neighbours, inertia_kg_m2};
 use crate::check::{Invalid, within};
-use crate::genome::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
+use crate::genome::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
+use crate::world::check_softness;
 
 /// Largest number of blocks in a body.
 pub const MOST_SEGMENTS: u32 = 12;
@@ -32,6 +33,9 @@ pub struct Segment {
     pub twist_limit_rad: f32,
     /// Share of the torque that its joint could have by its cross-section, from 0 to 1.
     pub strength: f32,
+    /// Young's modulus of its material, in Pa. None: it is rigid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub youngs_modulus_pa: Option<f32>,
 }
 
 impl Segment {
@@ -58,7 +62,10 @@ impl Segment {
         within("density_kg_m3", self.density_kg_m3, DENSITY_RANGE_KG_M3)?;
         within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
         within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("strength", self.strength, 0.0..=1.0)
+        within("strength", self.strength, 0.0..=1.0)?;
+        let Some(modulus_pa) = self.youngs_modulus_pa else { return Ok(()) };
+        within("youngs_modulus_pa", modulus_pa, MODULUS_RANGE_PA)?;
+        check_softness(modulus_pa, [self.width_m, self.height_m], self.density_kg_m3)
     }
 }
 

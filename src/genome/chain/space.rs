@@ -1,8 +1,10 @@
 //! The space of bodies that evolve.
 
 use crate::check::Invalid;
-use crate::genome::limits::LARGEST_LIMIT_RAD;
-use crate::schema::{Section, SettingGroup, Walk, number, setting_group, settings, switch, whole};
+use crate::genome::limits::{LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
+use crate::schema::{
+    Section, SettingGroup, Walk, is_default, number, setting_group, settings, switch, whole,
+};
 
 use super::segment::MOST_SEGMENTS;
 
@@ -37,7 +39,35 @@ setting_group! {
         volume_m3: f32 = 10.0;
         /// Greatest length of a straight body, in metres. The snake of five blocks has 10.
         longest_m: f32 = 12.0;
+        /// Whether the softness of each block evolves. Otherwise all blocks are rigid.
+        #[serde(default, skip_serializing_if = "is_default")]
+        soft: bool = false;
+        /// Least Young's modulus of a block, in Pa. A block that would fold up under its own weight has the least that does not.
+        #[serde(default = "usual_modulus_min_pa", skip_serializing_if = "is_usual_modulus_min")]
+        modulus_min_pa: f32 = USUAL_MODULUS_PA[0];
+        /// Greatest Young's modulus of a block, in Pa. Blocks that are too stiff to bend are rigid.
+        #[serde(default = "usual_modulus_max_pa", skip_serializing_if = "is_usual_modulus_max")]
+        modulus_max_pa: f32 = USUAL_MODULUS_PA[1];
     }
+}
+
+/// From blocks of 1 m that sag like a wet sponge to rigid ones.
+const USUAL_MODULUS_PA: [f32; 2] = [1000.0, 100_000.0];
+
+fn usual_modulus_min_pa() -> f32 {
+    USUAL_MODULUS_PA[0]
+}
+
+fn is_usual_modulus_min(modulus_pa: &f32) -> bool {
+    *modulus_pa == USUAL_MODULUS_PA[0]
+}
+
+fn usual_modulus_max_pa() -> f32 {
+    USUAL_MODULUS_PA[1]
+}
+
+fn is_usual_modulus_max(modulus_pa: &f32) -> bool {
+    *modulus_pa == USUAL_MODULUS_PA[1]
 }
 
 impl SettingGroup for BodySpace {
@@ -57,6 +87,9 @@ impl SettingGroup for BodySpace {
             strength_min,
             volume_m3,
             longest_m,
+            soft,
+            modulus_min_pa,
+            modulus_max_pa,
         } = self;
         walk.section(Section {
             title: "Evolving bodies",
@@ -127,6 +160,21 @@ impl SettingGroup for BodySpace {
                 .unit("m")
                 .hint("Longest straight body, from head to tail")
                 .slider(2.0, 24.0);
+            soft: switch("Evolve softness")
+                .hint("Each block has a stiffness of its own, which evolves. Soft blocks bend and spring back");
+        }
+        walk.used_if(*vary && *soft);
+        settings! { walk,
+            modulus_min_pa: number("Minimum Young's modulus", MODULUS_RANGE_PA).advanced()
+                .unit("Pa")
+                .hint("Softest material of a block")
+                .slider(1000.0, 100_000.0)
+                .logarithmic_from(1000.0);
+            modulus_max_pa: number("Maximum Young's modulus", MODULUS_RANGE_PA).advanced()
+                .unit("Pa")
+                .hint("Stiffest material of a block. A block of 1 m is rigid above about 24,000 Pa")
+                .slider(1000.0, 100_000.0)
+                .logarithmic_from(1000.0);
         }
     }
 
@@ -140,6 +188,7 @@ impl SettingGroup for BodySpace {
         ordered("thickness_max_m", self.thickness_min_m, self.thickness_max_m)?;
         ordered("bend_limit_max_rad", self.bend_limit_min_rad, self.bend_limit_max_rad)?;
         ordered("twist_limit_max_rad", self.twist_limit_min_rad, self.twist_limit_max_rad)?;
+        ordered("modulus_max_pa", self.modulus_min_pa, self.modulus_max_pa)?;
         for limbs in [self.limbs_min, self.limbs_max] {
             if self.plain_block_m(limbs as usize).is_none() {
                 let allowed = format!(

@@ -254,6 +254,11 @@ impl BodyInChange<'_> {
         front.width_m = mean(front.width_m, rear.width_m);
         front.height_m = mean(front.height_m, rear.height_m);
         front.density_kg_m3 = mean(front.density_kg_m3, rear.density_kg_m3);
+        if let (Some(of_front), Some(of_rear)) =
+            (&mut front.youngs_modulus_pa, rear.youngs_modulus_pa)
+        {
+            *of_front = mean(*of_front, of_rear);
+        }
         self.waves.joints.remove(place);
         Some(())
     }
@@ -273,6 +278,10 @@ impl BodyInChange<'_> {
             bend_limit_rad: mean(|segment| segment.bend_limit_rad),
             twist_limit_rad: mean(|segment| segment.twist_limit_rad),
             strength: mean(|segment| segment.strength),
+            youngs_modulus_pa: front
+                .youngs_modulus_pa
+                .zip(rear.youngs_modulus_pa)
+                .map(|(front, rear)| (front * rear).sqrt()),
         };
         let behind = self.waves.joints.get(place)?;
         let before = match place.checked_sub(1) {

@@ -263,7 +263,7 @@ mod tests {
                 panic!("{name} is no champion");
             };
             assert!(details.climbed >= 3, "{name} climbs {}", details.climbed);
-            assert_eq!(details.thumbnail.limbs_m.len(), 5, "{name} is on record");
+            assert_eq!(details.thumbnail.parts_m.len(), 5, "{name} is on record");
             let (loaded, generation) = load_entry(&SavePlace::Shipped(name)).expect("whole");
             assert_eq!(loaded.champion.origin, details.origin);
             assert_eq!(generation, None);

@@ -11,8 +11,8 @@ pub struct Thumbnail {
     pub stairs_m: Vec<[f32; 2]>,
     /// The path of the middle limb; empty without a recording.
     pub way_m: Vec<[f32; 2]>,
-    /// The limbs at the end, head first, each with its corners in order; empty without a recording.
-    pub limbs_m: Vec<[[f32; 2]; 4]>,
+    /// The parts at the end, head first, each with the index of its limb and its corners in order; empty without a recording.
+    pub parts_m: Vec<(usize, [[f32; 2]; 4])>,
 }
 
 /// Number of points of the path.
@@ -29,24 +29,24 @@ impl Thumbnail {
         let empty = Self::of_trial(&champion.trial);
         let Some(recording) = recording else { return empty };
         let body = champion.body();
-        let middle = body.middle_limb;
+        let middle = body.middle_part;
         let last = recording.frames().len().saturating_sub(1);
         let mut frames: Vec<usize> =
             (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();
         frames.dedup();
         let mut wanted = frames.into_iter().peekable();
         let mut way_m = Vec::with_capacity(PATH_POINTS);
-        let mut limbs_m = Vec::new();
+        let mut parts_m = Vec::new();
         for (index, frame) in recording.frames().enumerate() {
             if wanted.next_if_eq(&index).is_some() {
                 way_m.extend(frame.get(middle).map(|pose| side(pose.translation)));
             }
             if index == last {
-                let limbs = frame.iter().zip(&body.limbs);
-                limbs_m.extend(limbs.map(|(pose, limb)| quad(pose, limb.size_m())));
+                let parts = frame.iter().zip(&body.parts);
+                parts_m.extend(parts.map(|(pose, part)| (part.limb, quad(pose, part.size_m()))));
             }
         }
-        Self { way_m, limbs_m, ..empty }
+        Self { way_m, parts_m, ..empty }
     }
 
     /// The stairs and the simulated motion of a champion. It simulates up to one keyframe's distance.
@@ -58,11 +58,12 @@ impl Thumbnail {
             (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();
         samples.dedup();
         let end = history.rollout_at(history.evaluation().steps);
-        let limbs = champion.body().limbs;
-        let quads = end.poses().iter().zip(&limbs).map(|(pose, limb)| quad(pose, limb.size_m()));
+        let parts = champion.body().parts;
+        let parts = end.poses().iter().zip(&parts);
+        let quads = parts.map(|(pose, part)| (part.limb, quad(pose, part.size_m())));
         Self {
             way_m: samples.into_iter().map(|sample| side(middles[sample])).collect(),
-            limbs_m: quads.collect(),
+            parts_m: quads.collect(),
             ..empty
         }
     }
@@ -110,25 +111,28 @@ mod tests {
     fn the_shipped_champions_path_leads_from_its_start_to_the_landing() {
         let loaded = shipped_champion().expect("well formed");
         let trial = &loaded.champion.trial;
-        let Thumbnail { stairs_m, way_m, limbs_m } =
+        let Thumbnail { stairs_m, way_m, parts_m } =
             Thumbnail::of_champion(&loaded.champion, loaded.recording.as_ref());
         assert_eq!(stairs_m.len(), 22);
         assert_eq!((stairs_m[0], stairs_m[21]), ([3.0, 0.0], [trial.stairs.end_y_m(), 0.0]));
         assert_eq!(way_m.len(), 20);
         assert!((way_m[0][0] - trial.start_y_m).abs() < 0.01, "{way_m:?}");
         assert!((way_m[19][0] - loaded.champion.evaluation.centre_y_m).abs() < 0.01);
-        assert_eq!(limbs_m.len(), 5);
-        let middle = limbs_m[2].iter().fold([0.0, 0.0], |[y, z], at| [y + at[0], z + at[1]]);
+        assert_eq!(parts_m.len(), 5);
+        let middle = parts_m[2].1.iter().fold([0.0, 0.0], |[y, z], at| [y + at[0], z + at[1]]);
         assert!((middle[0] / 4.0 - way_m[19][0]).abs() < 0.01, "about its centre");
         let history = KeyframeHistory::of(&loaded.champion.genome, trial, |_| true);
         let simulated = Thumbnail::of_history(&loaded.champion, &history.expect("not cancelled"));
         assert_eq!(simulated.way_m.len(), 20);
-        for (recorded, found) in limbs_m.iter().flatten().zip(simulated.limbs_m.iter().flatten()) {
+        let corners = |parts: &[(usize, [[f32; 2]; 4])]| {
+            parts.iter().flat_map(|(_, corners)| *corners).collect::<Vec<_>>()
+        };
+        for (recorded, found) in corners(&parts_m).iter().zip(&corners(&simulated.parts_m)) {
             let is_near = recorded.iter().zip(found).all(|(a, b)| (a - b).abs() < 0.01);
             assert!(is_near, "the same end: {found:?} instead of {recorded:?}");
         }
         let without = Thumbnail::of_champion(&loaded.champion, None);
-        assert_eq!((without.way_m.len(), without.limbs_m.len()), (0, 0), "nothing is simulated");
+        assert_eq!((without.way_m.len(), without.parts_m.len()), (0, 0), "nothing is simulated");
     }
 
     #[test]

@@ -66,7 +66,7 @@ impl BodyPanel {
         }
         self.block = self.block.min(edited.segments.len().saturating_sub(1));
         self.head(ui, &edited, commands);
-        if let Some(block) = drawing(ui, &edited.body.limbs, Some(self.block)) {
+        if let Some(block) = drawing(ui, &edited.body, Some(self.block)) {
             self.block = block;
         }
         let is_busy = edited.tuning.is_some();
@@ -85,8 +85,8 @@ impl BodyPanel {
             return explain(ui, "The blocks of the snake on the stage will appear here.");
         };
         let body = lane.body();
-        drawing(ui, &body.limbs, None);
-        let (blocks, length_m, mass_kg) = (body.limbs.len(), body.length_m(), body.mass_kg());
+        drawing(ui, body, None);
+        let (blocks, length_m, mass_kg) = (body.limbs(), body.length_m(), body.mass_kg());
         ui.label(format!("{blocks} blocks, {length_m:.1} m long, {mass_kg:.1} kg"));
         explain(
             ui,

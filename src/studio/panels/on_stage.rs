@@ -43,8 +43,8 @@ impl OnStage<'_, '_> {
             let point = pixel / context.zoom_factor();
             Some(egui::pos2(point.x, point.y))
         };
-        let limbs = lane.drawn_poses().zip(&lane.body().limbs);
-        let around = limbs.map(|(pose, plan)| {
+        let parts = lane.drawn_poses().zip(&lane.body().parts);
+        let around = parts.map(|(pose, plan)| {
             let half = Vec3::from(plan.size_m()) / 2.0;
             let ends = [-1.0, 1.0];
             let corners = ends.into_iter().flat_map(|x| {
@@ -54,7 +54,13 @@ impl OnStage<'_, '_> {
                 corners.map(|corner| point_of(pose * corner)).collect();
             points.map(|points| egui::Rect::from_points(&points))
         });
-        around.collect()
+        let around: Vec<Option<egui::Rect>> = around.collect();
+        let limb = |limb: usize| {
+            let parts = around.get(lane.body().parts_of(limb)).unwrap_or_default();
+            let parts: Option<Vec<egui::Rect>> = parts.iter().copied().collect();
+            parts?.into_iter().reduce(egui::Rect::union)
+        };
+        (0..lane.body().limbs()).map(limb).collect()
     }
 
     /// Whether the setting that a command toggles is on; `None` for other commands.

@@ -25,7 +25,7 @@ pub fn thumbnail(painter: &egui::Painter, rect: Rect, of: &Thumbnail, palette: &
     }
     let way: Vec<Pos2> = of.way_m.iter().map(|at| view.at(*at)).collect();
     painter.add(Shape::line(way, Stroke::new(1.0, theme::flat(palette.trail))));
-    for (limb, corners) in of.limbs_m.iter().enumerate() {
+    for (limb, corners) in &of.parts_m {
         let color = if limb % 2 == 0 { palette.red_limb } else { palette.blue_limb };
         let color = theme::flat(color);
         let points = corners.map(|at| view.at(at)).to_vec();
@@ -45,7 +45,7 @@ struct ThumbnailView {
 
 impl ThumbnailView {
     fn new(rect: Rect, of: &Thumbnail) -> Self {
-        let limbs = of.limbs_m.iter().flatten();
+        let limbs = of.parts_m.iter().flat_map(|(_, corners)| corners);
         // Only the start of the landing is shown, because the landing may be long.
         let shown_stairs = of.stairs_m.len().saturating_sub(2);
         let stairs = of.stairs_m.iter().take(shown_stairs.max(1));
@@ -99,7 +99,12 @@ mod tests {
         };
         let rect = Rect::from_min_size(egui::pos2(10.0, 20.0), theme::THUMBNAIL_SIZE);
         let view = ThumbnailView::new(rect, &of.thumbnail);
-        for at in of.thumbnail.way_m.iter().chain(of.thumbnail.limbs_m.iter().flatten()) {
+        for at in of
+            .thumbnail
+            .way_m
+            .iter()
+            .chain(of.thumbnail.parts_m.iter().flat_map(|(_, corners)| corners))
+        {
             assert!(rect.contains(view.at(*at)), "{at:?}");
         }
         // An empty thumbnail is drawn without an error.

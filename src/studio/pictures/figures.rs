@@ -59,11 +59,11 @@ fn put_in_place(studio: &mut Offscreen, loaded: &LoadedChampion) -> Evaluation {
     let (cube, faint) = faint_props(world);
     world.spawn((lane, Transform::default(), Visibility::default())).with_children(|parent| {
         for poses in moments {
-            for (limb, (pose, plan)) in poses.into_iter().zip(&body.limbs).enumerate() {
+            for (pose, plan) in poses.into_iter().zip(&body.parts) {
                 let size = Vec3::from(plan.size_m());
                 parent.spawn((
                     Mesh3d(cube.clone()),
-                    MeshMaterial3d(faint[limb % 2].clone()),
+                    MeshMaterial3d(faint[plan.limb % 2].clone()),
                     scene::props::box_transform(pose.translation, size)
                         .with_rotation(pose.rotation),
                     bevy::light::NotShadowCaster,

@@ -111,7 +111,7 @@ fn build(lanes: Query<(Entity, &Lane), Added<Lane>>, patch: Res<Patch>, mut comm
             continue;
         }
         commands.entity(entity).with_children(|parent| {
-            for limb in 0..lane.body().limbs.len() {
+            for limb in 0..lane.body().parts.len() {
                 parent.spawn((
                     Dent(limb),
                     Mesh3d(patch.mesh.clone()),
@@ -134,7 +134,7 @@ fn place(
         let stairs = &lane.trial().stairs;
         let mut dents = dents.iter_many_mut(children);
         while let Some((dent, mut transform, mut visibility)) = dents.fetch_next() {
-            let limb = lane.drawn_poses().zip(&lane.body().limbs).nth(dent.0);
+            let limb = lane.drawn_poses().zip(&lane.body().parts).nth(dent.0);
             let sunken =
                 limb.and_then(|(pose, plan)| sunken(&pose, Vec3::from(plan.size_m()), stairs));
             let Some(sunken) = sunken else {

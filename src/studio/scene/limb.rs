@@ -19,12 +19,18 @@ pub(crate) struct LimbShape {
     pub has_front: bool,
     /// Whether another limb is behind it; false for the tail.
     pub has_rear: bool,
+    /// Number of its parts: a soft limb has several, and rounder edges.
+    pub parts: usize,
 }
 
 /// Gap at a joint on each limb, in metres.
 const CUT_M: f32 = 0.07;
 /// Radius of the edges, as a fraction of the smallest side.
 const EDGE: f32 = 0.2;
+/// The same of a soft limb.
+const SOFT_EDGE: f32 = 0.42;
+/// Pieces along a soft limb that stay straight, per part.
+const PIECES: usize = 6;
 /// Height of paint above its surface, in metres, to avoid z-fighting.
 const PAINT_M: f32 = 0.006;
 /// Length of the pin outside a limb's sides, in metres.
@@ -45,7 +51,31 @@ impl LimbShape {
     }
 
     fn edge_m(&self) -> f32 {
-        self.size.min_element() * EDGE
+        self.size.min_element() * if self.parts > 1 { SOFT_EDGE } else { EDGE }
+    }
+
+    /// The places along y of the parts' centres, from the front, in metres.
+    fn part_centres_m(&self) -> Vec<f32> {
+        let part_m = self.size.y / self.parts.max(1) as f32;
+        (0..self.parts).map(|part| self.size.y / 2.0 - part_m * (part as f32 + 0.5)).collect()
+    }
+
+    /// The mesh of a body of this shape. That of a soft limb follows its parts: see [`Self::bind_poses`].
+    pub fn mesh_of(&self, mut solid: MeshBuilder) -> Mesh {
+        if self.parts < 2 {
+            return solid.into_mesh();
+        }
+        let pieces = self.parts * PIECES;
+        let piece_m = self.size.y / pieces as f32;
+        let cuts = (1..pieces).map(|cut| self.size.y / 2.0 - piece_m * cut as f32);
+        cuts.for_each(|y_m| solid.cut_at(y_m));
+        solid.into_mesh_along(&self.part_centres_m())
+    }
+
+    /// For each part of a soft limb the way from the limb's frame to the part's at rest.
+    pub fn bind_poses(&self) -> Vec<Mat4> {
+        let to_part = |y_m: f32| Mat4::from_translation(Vec3::NEG_Y * y_m);
+        self.part_centres_m().into_iter().map(to_part).collect()
     }
 
     /// The block, in the snake's red or blue.
@@ -53,7 +83,9 @@ impl LimbShape {
         let [front, rear] = self.cuts_m();
         let size = self.size - Vec3::Y * (front + rear);
         let mut solid = MeshBuilder::default();
-        solid.rounded_box(Vec3::Y * (rear - front) / 2.0, size, self.edge_m(), 4);
+        // Wide edges need more pieces, or the belly would lie beneath them.
+        let pieces = if self.parts > 1 { 10 } else { 4 };
+        solid.rounded_box(Vec3::Y * (rear - front) / 2.0, size, self.edge_m(), pieces);
         solid
     }
 
@@ -193,7 +225,7 @@ mod tests {
     use crate::studio::scene::mesh_builder::tests::closed_volume;
 
     const SIZE: Vec3 = Vec3::new(1.0, 2.0, 1.0);
-    const HEAD: LimbShape = LimbShape { size: SIZE, has_front: false, has_rear: true };
+    const HEAD: LimbShape = LimbShape { size: SIZE, has_front: false, has_rear: true, parts: 1 };
 
     fn reach(solid: &MeshBuilder, along: impl Fn(&Vec3) -> f32) -> [f32; 2] {
         let places = || solid.positions.iter().map(&along);
@@ -205,6 +237,25 @@ mod tests {
         let [rear, front] = reach(&HEAD.block(), |at| at.y);
         assert!((front - 1.0).abs() < 1.0e-5 && (rear + 1.0 - CUT_M).abs() < 1.0e-5);
         assert!(closed_volume(&HEAD.block()) > 0.88 * SIZE.element_product());
+    }
+
+    #[test]
+    fn a_soft_limb_is_cut_into_pieces_that_follow_its_parts() {
+        let soft = LimbShape { parts: 3, ..HEAD };
+        let whole = closed_volume(&soft.block());
+        let mut pieces = soft.block();
+        (1..18).for_each(|cut| pieces.cut_at(1.0 - cut as f32 / 9.0));
+        assert!(pieces.indices.len() > 2 * soft.block().indices.len());
+        assert!((closed_volume(&pieces) - whole).abs() < 1.0e-4, "the same body");
+        let mesh = soft.mesh_of(soft.block());
+        let count = mesh.count_vertices();
+        assert_eq!(count, pieces.positions.len());
+        for attribute in [Mesh::ATTRIBUTE_JOINT_INDEX, Mesh::ATTRIBUTE_JOINT_WEIGHT] {
+            assert_eq!(mesh.attribute(attribute).map(|values| values.len()), Some(count));
+        }
+        let at_rest: Vec<f32> =
+            soft.bind_poses().iter().map(|way| way.transform_point3(Vec3::ZERO).y).collect();
+        assert!((at_rest[0] + 2.0 / 3.0).abs() < 1e-6 && at_rest[1].abs() < 1e-6);
     }
 
     #[test]
@@ -230,7 +281,7 @@ mod tests {
         let short = Vec3::new(1.0, 0.1, 1.0);
         for has_front in [false, true] {
             for has_rear in [false, true] {
-                let shape = LimbShape { size: short, has_front, has_rear };
+                let shape = LimbShape { size: short, has_front, has_rear, parts: 1 };
                 assert!(closed_volume(&shape.block()) > 0.0);
                 let parts = [shape.block(), shape.white(), shape.dark(), shape.collar()];
                 let positions = parts.iter().flat_map(|solid| &solid.positions);

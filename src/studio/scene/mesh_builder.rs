@@ -5,7 +5,7 @@
 use std::f32::consts::{PI, TAU};
 
 use bevy::asset::RenderAssetUsages;
-use bevy::mesh::{Indices, PrimitiveTopology};
+use bevy::mesh::{Indices, PrimitiveTopology, VertexAttributeValues};
 use bevy::prelude::*;
 
 /// Vertices and triangles of a body.
@@ -22,6 +22,8 @@ pub(crate) struct MeshBuilder {
 
 /// Sides of round shapes: enough for something as thick as an arm.
 const SIDES: usize = 14;
+/// Distance from a plane within which a corner counts as on it, in metres.
+const SLIVER_M: f32 = 1.0e-4;
 
 impl MeshBuilder {
     /// A patch of `columns` by `rows` cells. `at` gives the position and normal of a corner. Seen from outside, rows go
@@ -100,6 +102,69 @@ impl MeshBuilder {
         mesh.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, flat(self.positions))
             .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, flat(self.normals))
             .with_inserted_indices(Indices::U32(self.indices))
+    }
+
+    /// Cuts the triangles that cross the plane at `y_m`, so that a body can bend there.
+    pub fn cut_at(&mut self, y_m: f32) {
+        let mut cut = Vec::with_capacity(self.indices.len());
+        let triangles: Vec<[u32; 3]> = self.indices.as_chunks::<3>().0.to_vec();
+        for corners in triangles {
+            let side = |corner: u32| self.positions[corner as usize].y - y_m;
+            let sides = corners.map(side);
+            // The corner that is alone on its side of the plane.
+            let alone = (0..3).find(|&corner| {
+                let [own, next, last] = [0, 1, 2].map(|step| sides[(corner + step) % 3]);
+                (own > SLIVER_M && next < -SLIVER_M && last < -SLIVER_M)
+                    || (own < -SLIVER_M && next > SLIVER_M && last > SLIVER_M)
+                    || (own > SLIVER_M && next < -SLIVER_M && last.abs() <= SLIVER_M)
+                    || (own < -SLIVER_M && next > SLIVER_M && last.abs() <= SLIVER_M)
+            });
+            let Some(alone) = alone else {
+                cut.extend(corners);
+                continue;
+            };
+            let [own, next, last] = [0, 1, 2].map(|step| corners[(alone + step) % 3]);
+            let between = self.vertex_between(own, next, y_m);
+            if sides[(alone + 2) % 3].abs() <= SLIVER_M {
+                cut.extend([own, between, last, between, next, last]);
+                continue;
+            }
+            let other = self.vertex_between(own, last, y_m);
+            cut.extend([own, between, other, between, next, last, between, last, other]);
+        }
+        self.indices = cut;
+    }
+
+    /// Adds the vertex at `y_m` between two others, and returns its index.
+    fn vertex_between(&mut self, from: u32, to: u32, y_m: f32) -> u32 {
+        let [from, to] = [from as usize, to as usize];
+        let [start, end] = [self.positions[from], self.positions[to]];
+        let share = (y_m - start.y) / (end.y - start.y);
+        self.positions.push(start.lerp(end, share));
+        self.normals.push(self.normals[from].lerp(self.normals[to], share).normalize_or_zero());
+        self.tones.push(self.tones[from].lerp(self.tones[to], share));
+        self.positions.len() as u32 - 1
+    }
+
+    /// The mesh, each of whose vertices follows the two bones next to it, by their distances along y. `bones_m` has the bones'
+    /// places on the y axis at rest, in metres, the highest first.
+    pub fn into_mesh_along(self, bones_m: &[f32]) -> Mesh {
+        let last = bones_m.len().saturating_sub(1);
+        let bones = self.positions.iter().map(|at| {
+            let behind = bones_m.iter().position(|bone_m| *bone_m <= at.y).unwrap_or(last);
+            let ahead = behind.saturating_sub(1);
+            let apart_m = bones_m[ahead] - bones_m[behind];
+            let share = if apart_m > 0.0 { (bones_m[ahead] - at.y) / apart_m } else { 0.0 };
+            let share = share.clamp(0.0, 1.0);
+            ([ahead as u16, behind as u16, 0, 0], [1.0 - share, share, 0.0, 0.0])
+        });
+        let (indices, weights): (Vec<[u16; 4]>, Vec<[f32; 4]>) = bones.unzip();
+        self.into_mesh()
+            .with_inserted_attribute(
+                Mesh::ATTRIBUTE_JOINT_INDEX,
+                VertexAttributeValues::Uint16x4(indices),
+            )
+            .with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, weights)
     }
 
     /// The mesh with a texture that repeats every `tile_m` metres, projected along the axis that each face looks at.

@@ -108,7 +108,7 @@ fn draw(
         }
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
         if let Some(pull) = pull {
-            let from = lane.point_of(pull.limb, pull.held_at_m) + lane.offset();
+            let from = lane.point_of(pull.part, pull.held_at_m) + lane.offset();
             let to = pull.to_m + lane.offset();
             on_top.line(from, to, palette.pull);
             on_top.sphere(Isometry3d::from_translation(to), 0.12, palette.pull).resolution(12);
@@ -116,12 +116,16 @@ fn draw(
     }
 }
 
-/// Outlines the selected limb.
+/// Outlines the parts of the selected limb.
 fn outline(lane: &Lane, limb: usize, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
-    let Some((pose, plan)) = lane.drawn_poses().zip(&lane.body().limbs).nth(limb) else { return };
-    let size = Vec3::from(plan.size_m()) * 1.02;
-    let at = Transform::from_translation(pose.translation + lane.offset());
-    gizmos.cube(at.with_rotation(pose.rotation).with_scale(size), in_scene(palette.second));
+    for (pose, part) in lane.drawn_poses().zip(&lane.body().parts) {
+        if part.limb == limb {
+            let size = Vec3::from(part.size_m()) * 1.02;
+            let at = Transform::from_translation(pose.translation + lane.offset());
+            let cube = at.with_rotation(pose.rotation).with_scale(size);
+            gizmos.cube(cube, in_scene(palette.second));
+        }
+    }
 }
 
 /// A cross at every contact, and the force on the limb as an arrow from it.
@@ -143,7 +147,7 @@ fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     let poses: Vec<_> = lane.drawn_poses().collect();
     for (joint, torque) in body.joints.iter().zip(&lane.readings().torques) {
         let Some(front) = poses.get(joint.parent) else { continue };
-        let [width_m, length_m, height_m] = body.limbs[joint.parent].size_m();
+        let [width_m, length_m, height_m] = body.parts[joint.parent].size_m();
         let at = *front * Vec3::new(0.0, -length_m / 2.0, 0.0) + lane.offset();
         let radius_m = width_m.max(height_m) * TORQUE_RADIUS;
         // About x, from the top; drawn at the limb's sides, where it is visible.

@@ -2,7 +2,9 @@
 //!
 //! A ghost is only its translucent blocks: without details, shadow and collar, so that thirty of them stay cheap.
 
+use bevy::camera::visibility::NoFrustumCulling;
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
+use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::prelude::*;
 
 use super::lane_marks::{LaneColors, LaneMark};
@@ -11,10 +13,11 @@ use super::props::{Props, recolor};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
+use crate::world::Pose;
 
-/// Index of a limb in its lane's snake; the head is 0.
+/// Index of a part in its lane's snake.
 #[derive(Component, Debug)]
-struct Limb(usize);
+struct Part(usize);
 
 /// Meshes of a limb.
 #[derive(Debug, Clone)]
@@ -23,6 +26,8 @@ struct LimbMeshes {
     white: Handle<Mesh>,
     dark: Handle<Mesh>,
     collar: Handle<Mesh>,
+    /// Ways from the frame of a soft limb to those of its parts.
+    bind_poses: Handle<SkinnedMeshInverseBindposes>,
 }
 
 /// Cache of meshes by shape, shared by snakes of the same build.
@@ -47,7 +52,12 @@ pub(crate) fn plugin(app: &mut App) {
 const MAX_SHAPES: usize = 64;
 
 impl Shapes {
-    fn of(&mut self, shape: LimbShape, meshes: &mut Assets<Mesh>) -> LimbMeshes {
+    fn of(
+        &mut self,
+        shape: LimbShape,
+        meshes: &mut Assets<Mesh>,
+        bind_poses: &mut Assets<SkinnedMeshInverseBindposes>,
+    ) -> LimbMeshes {
         if let Some((_, known)) = self.0.iter().find(|(of, _)| *of == shape) {
             return known.clone();
         }
@@ -56,8 +66,9 @@ impl Shapes {
         }
         let [block, white, dark, collar] =
             [shape.block(), shape.white(), shape.dark(), shape.collar()]
-                .map(|solid| meshes.add(solid.into_mesh()));
-        let new = LimbMeshes { block, white, dark, collar };
+                .map(|solid| meshes.add(shape.mesh_of(solid)));
+        let bind_poses = bind_poses.add(shape.bind_poses());
+        let new = LimbMeshes { block, white, dark, collar, bind_poses };
         self.0.push((shape, new.clone()));
         new
     }
@@ -83,6 +94,7 @@ fn build(
     (props, trim, colors): (Res<Props>, Res<Trim>, Res<LaneColors>),
     mut shapes: ResMut<Shapes>,
     mut meshes: ResMut<Assets<Mesh>>,
+    mut bind_poses: ResMut<Assets<SkinnedMeshInverseBindposes>>,
     mut commands: Commands,
 ) {
     for (entity, lane) in &lanes {
@@ -92,55 +104,75 @@ fn build(
         } else {
             [&props.red, &props.blue]
         };
-        commands.entity(entity).with_children(|parent| {
-            for (index, (pose, plan)) in lane.drawn_poses().zip(&body.limbs).enumerate() {
-                let shape = LimbShape {
-                    size: Vec3::from(plan.size_m()),
-                    has_front: body.joints.iter().any(|joint| joint.child == index),
-                    has_rear: body.joints.iter().any(|joint| joint.parent == index),
-                };
-                let color = if index % 2 == 0 { red } else { blue };
-                let place = Transform::from_translation(pose.translation);
-                let place = place.with_rotation(pose.rotation);
-                let mut limb = parent.spawn((Limb(index), MeshMaterial3d(color.clone())));
-                if lane.is_ghost() {
-                    let cube = Mesh3d(props.ghost_cube.clone());
-                    let place = place.with_scale(shape.size);
-                    limb.insert((cube, place, NotShadowCaster, NotShadowReceiver));
-                    continue;
-                }
-                let LimbMeshes { block, white, dark, collar } = shapes.of(shape, &mut meshes);
-                limb.insert((Mesh3d(block), place));
-                limb.with_children(|limb| {
-                    for (mesh, material) in [(white, &trim.white), (dark, &trim.dark)] {
-                        limb.spawn((
-                            Mesh3d(mesh),
-                            MeshMaterial3d(material.clone()),
-                            // The block already casts the shadow.
-                            NotShadowCaster,
-                        ));
+        let poses: Vec<Pose> = lane.drawn_poses().collect();
+        for limb in 0..body.limbs() {
+            let color = MeshMaterial3d(if limb % 2 == 0 { red } else { blue }.clone());
+            let parts = body.parts_of(limb);
+            let bones: Vec<Entity> = parts
+                .clone()
+                .map(|part| {
+                    let pose = poses[part];
+                    let place = Transform::from_translation(pose.translation);
+                    let place = place.with_rotation(pose.rotation);
+                    let mut bone = commands.spawn((Part(part), place, Visibility::default()));
+                    bone.insert(ChildOf(entity));
+                    if lane.is_ghost() {
+                        let size = Vec3::from(body.parts[part].size_m());
+                        let cube = Mesh3d(props.ghost_cube.clone());
+                        let place = place.with_scale(size);
+                        bone.insert((cube, color.clone(), place));
+                        bone.insert((NotShadowCaster, NotShadowReceiver));
                     }
-                    if index == 0 {
-                        limb.spawn((
-                            LaneMark,
-                            Mesh3d(collar),
-                            MeshMaterial3d(colors.of(lane.number())),
-                            NotShadowCaster,
-                            Visibility::Hidden,
-                        ));
-                    }
-                });
+                    bone.id()
+                })
+                .collect();
+            if lane.is_ghost() {
+                continue;
             }
-        });
+            let shape = LimbShape {
+                size: Vec3::from(body.limb_size_m(limb)),
+                has_front: limb > 0,
+                has_rear: limb + 1 < body.limbs(),
+                parts: parts.len(),
+            };
+            let shapes = shapes.of(shape, &mut meshes, &mut bind_poses);
+            // A rigid limb's meshes are its part's; those of a soft limb follow all of its parts, wherever their own place is.
+            let joints = bones.clone();
+            let skin = (bones.len() > 1).then(|| {
+                let inverse_bindposes = shapes.bind_poses.clone();
+                (SkinnedMesh { inverse_bindposes, joints }, NoFrustumCulling)
+            });
+            let mut spawn = |mesh: Handle<Mesh>, material| {
+                let mut piece = commands.spawn((Mesh3d(mesh), material, Visibility::default()));
+                let holder = if skin.is_some() { entity } else { bones[0] };
+                piece.insert(ChildOf(holder));
+                if let Some(skin) = &skin {
+                    piece.insert(skin.clone());
+                }
+                piece.id()
+            };
+            spawn(shapes.block.clone(), color);
+            let white = spawn(shapes.white.clone(), MeshMaterial3d(trim.white.clone()));
+            let dark = spawn(shapes.dark.clone(), MeshMaterial3d(trim.dark.clone()));
+            let collar = (limb == 0)
+                .then(|| spawn(shapes.collar.clone(), MeshMaterial3d(colors.of(lane.number()))));
+            if let Some(collar) = collar {
+                commands.entity(collar).insert((LaneMark, Visibility::Hidden));
+            }
+            // The block already casts the shadow.
+            for piece in [Some(white), Some(dark), collar].into_iter().flatten() {
+                commands.entity(piece).insert(NotShadowCaster);
+            }
+        }
     }
 }
 
-/// Moves the limbs. Unchanged transforms are not written, so Bevy does not propagate them again.
-fn place(lanes: Query<(&Lane, &Children)>, mut limbs: Query<(&Limb, &mut Transform)>) {
+/// Moves the parts. Unchanged transforms are not written, so Bevy does not propagate them again.
+fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&Part, &mut Transform)>) {
     for (lane, children) in &lanes {
-        let mut limbs = limbs.iter_many_mut(children);
-        while let Some((limb, mut transform)) = limbs.fetch_next() {
-            if let Some(pose) = lane.drawn_poses().nth(limb.0) {
+        let mut parts = parts.iter_many_mut(children);
+        while let Some((part, mut transform)) = parts.fetch_next() {
+            if let Some(pose) = lane.drawn_poses().nth(part.0) {
                 let place = Transform::from_translation(pose.translation);
                 let size = transform.scale;
                 transform.set_if_neq(place.with_rotation(pose.rotation).with_scale(size));
@@ -162,6 +194,7 @@ mod tests {
         let mut app = App::new();
         app.init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<StandardMaterial>>()
+            .init_resource::<Assets<SkinnedMeshInverseBindposes>>()
             .init_resource::<Theme>()
             .init_resource::<Props>()
             .init_resource::<LaneColors>()
@@ -179,15 +212,15 @@ mod tests {
         let world = app.world_mut();
         let props = world.resource::<Props>();
         let ghosts = [props.red_ghost.clone(), props.blue_ghost.clone()];
-        let mut limbs = world.query::<(
-            &Limb,
-            &MeshMaterial3d<StandardMaterial>,
+        let mut parts = world.query::<(
+            &Part,
+            Option<&MeshMaterial3d<StandardMaterial>>,
             Has<NotShadowCaster>,
             Option<&Children>,
         )>();
         let (mut seen, mut of_ghost) = (0, 0);
-        for (_, material, is_without_shadow, details) in limbs.iter(world) {
-            let is_ghost = ghosts.contains(&material.0);
+        for (_, material, is_without_shadow, details) in parts.iter(world) {
+            let is_ghost = material.is_some_and(|material| ghosts.contains(&material.0));
             assert_eq!((is_without_shadow, details.is_none()), (is_ghost, is_ghost));
             seen += 1;
             of_ghost += usize::from(is_ghost);
@@ -202,8 +235,8 @@ mod tests {
         let mut app = app();
         app.init_resource::<Moved>().add_systems(
             PostUpdate,
-            |limbs: Query<(), (With<Limb>, Changed<Transform>)>, mut moved: ResMut<Moved>| {
-                moved.0 = limbs.iter().count();
+            |parts: Query<(), (With<Part>, Changed<Transform>)>, mut moved: ResMut<Moved>| {
+                moved.0 = parts.iter().count();
             },
         );
         app.update();

@@ -129,7 +129,7 @@ fn light(
     mut edges: Query<(&mut StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
 ) {
     for (lane, children) in lanes.iter().filter(|(lane, _)| !lane.is_ghost()) {
-        let middle = lane.drawn_poses().nth(lane.body().middle_limb);
+        let middle = lane.drawn_poses().nth(lane.body().middle_part);
         let stairs = &lane.trial().stairs;
         let climbed = middle.map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
         let mut edges = edges.iter_many_mut(children);

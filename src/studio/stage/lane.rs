@@ -211,9 +211,7 @@ impl Lane {
 
     /// Drawn position of the middle limb's centre, in lane coordinates.
     pub fn drawn_middle(&self) -> Vec3 {
-        let mut poses = self.drawn_poses();
-        let middle = poses.len() / 2;
-        poses.nth(middle).map_or(Vec3::ZERO, |pose| pose.translation)
+        self.drawn_poses().nth(self.body().middle_part).map_or(Vec3::ZERO, |pose| pose.translation)
     }
 
     /// Poses after the last step, from head to tail, in lane coordinates.
@@ -221,14 +219,14 @@ impl Lane {
         self.replay.poses()
     }
 
-    /// Position of a limb-local point after the last step, in lane coordinates.
-    pub fn point_of(&self, limb: usize, in_limb_m: Vector) -> Vector {
-        self.replay.poses().get(limb).map_or(in_limb_m, |pose| *pose * in_limb_m)
+    /// Position of a point in a part's frame after the last step, in lane coordinates.
+    pub fn point_of(&self, part: usize, in_part_m: Vector) -> Vector {
+        self.replay.poses().get(part).map_or(in_part_m, |pose| *pose * in_part_m)
     }
 
     /// Speed of the middle limb between the last two steps, in m/s; at the end, that of the last step.
     pub fn speed_m_s(&self) -> f32 {
-        let middle = self.before.len() / 2;
+        let middle = self.body().middle_part;
         match (self.before.get(middle), self.replay.poses().get(middle)) {
             (Some(before), Some(after)) => {
                 before.translation.distance(after.translation) / self.step_s as f32
@@ -357,7 +355,7 @@ impl Lane {
                 self.readings.meter.note(&self.replay, step);
             }
             if goes_on && self.replay.is_disturbed() {
-                let middle = self.replay.poses()[self.before.len() / 2].translation;
+                let middle = self.replay.poses()[self.body().middle_part].translation;
                 self.detour_m.push(middle);
             }
         }

@@ -43,7 +43,8 @@ impl Readings {
         self.contacts = simulation.contact_forces();
         self.torques = simulation.applied_torques().collect();
         self.joints = simulation.joint_states().collect();
-        self.speeds_m_s = simulation.speeds_m_s().collect();
+        self.speeds_m_s =
+            simulation.limb_velocities().map(|[velocity, _]| velocity.length()).collect();
         self.energy_lost = (!replay.is_disturbed()).then(|| simulation.energy_lost());
     }
 }

@@ -20,7 +20,7 @@ pub(crate) struct PendingRecording {
     step: u32,
     last_step: u32,
     poses: Vec<Pose>,
-    middle_limb: usize,
+    middle_part: usize,
 }
 
 impl Replay {
@@ -32,7 +32,7 @@ impl Replay {
                 recording: Arc::clone(recording),
                 step: 0,
                 last_step: staged.trial().steps(),
-                middle_limb: staged.body().middle_limb,
+                middle_part: staged.body().middle_part,
             }),
             None => Self::Simulated(Box::new(staged.rollout())),
         }
@@ -141,7 +141,7 @@ impl Replay {
         match self {
             Self::Simulated(rollout) => rollout.evaluation(),
             Self::Recorded(recorded) => Evaluation {
-                centre_y_m: recorded.poses[recorded.middle_limb].translation.y,
+                centre_y_m: recorded.poses[recorded.middle_part].translation.y,
                 ..staged.champion().evaluation
             },
         }
@@ -152,14 +152,14 @@ impl Replay {
         let Self::Recorded(recorded) = self else { return None };
         let shown = recorded.step / recorded.recording.every_steps() + 1;
         let frames = recorded.recording.frames().take(shown as usize);
-        Some(frames.map(|limbs| limbs[recorded.middle_limb].translation).collect())
+        Some(frames.map(|parts| parts[recorded.middle_part].translation).collect())
     }
 
     /// Step at which the middle limb of a recording first stood on the landing, if it did.
     pub fn recorded_landing(&self, stairs: &Stairs) -> Option<u32> {
         let Self::Recorded(recorded) = self else { return None };
-        let landed = |limbs: &[Pose]| {
-            let at_m = limbs[recorded.middle_limb].translation.to_array();
+        let landed = |parts: &[Pose]| {
+            let at_m = parts[recorded.middle_part].translation.to_array();
             stairs.steps > 0 && stairs.steps_under(at_m) == stairs.steps
         };
         let frame = recorded.recording.frames().position(landed)?;

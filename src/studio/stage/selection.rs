@@ -48,9 +48,9 @@ impl Selection {
         self.held.as_mut()
     }
 
-    /// Selects a limb of a lane and holds it.
-    pub fn grab(&mut self, lane: usize, held: HeldLimb) {
-        (self.lane, self.limb) = (lane, Some(held.pull.limb));
+    /// Selects a limb of a lane and holds one of its parts.
+    pub fn grab(&mut self, lane: usize, limb: usize, held: HeldLimb) {
+        (self.lane, self.limb) = (lane, Some(limb));
         self.held = Some(held);
     }
 

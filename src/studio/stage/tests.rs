@@ -168,7 +168,7 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     // The recording is shifted by a metre.
     let aside = |pose: &Pose| Pose { translation: pose.translation + Vec3::X, ..*pose };
     let poses = recording.frames().flatten().map(aside).collect();
-    loaded.recording = Recording::new(recording.every_steps(), recording.limbs(), poses);
+    loaded.recording = Recording::new(recording.every_steps(), recording.parts(), poses);
     loaded.engine.version = 1;
     let last = loaded.recording.as_ref().expect("whole frames").at(1.0e9);
     let mut app = stage_of(vec![loaded.clone()]);
@@ -275,8 +275,8 @@ fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record(
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
     let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, -2.0, 2.0);
-    let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, pulled(entity, pull));
+    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
+    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
     (0..20).for_each(|_| frame(&mut app, 0.05));
     assert!(lane(&mut app).is_disturbed());
     app.world_mut().resource_mut::<Selection>().release();
@@ -303,8 +303,8 @@ fn a_pull_that_breaks_a_limit_says_which_and_holds_the_stage() {
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
     let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(60.0, 0.0, 0.0);
-    let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, pulled(entity, pull));
+    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
+    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
     play(&mut app, &[0.1], is_over);
     (0..60).for_each(|_| frame(&mut app, 0.1));
     let notices = app.world().resource::<Notices>();
@@ -325,8 +325,8 @@ fn a_high_step_rate_can_be_pulled_without_jumping_back() {
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
     let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, 0.0, 2.0);
-    let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, pulled(entity, pull));
+    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
+    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
     frame(&mut app, 0.1);
     assert!(lane(&mut app).is_disturbed(), "pulled during all hundred steps of the frame");
 }
@@ -340,8 +340,8 @@ fn a_disturbed_lane_spreads_a_long_seek_over_several_frames() {
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
     let to_m = lane(&mut app).last_poses()[0].translation;
-    let pull = Pull { limb: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, pulled(entity, pull));
+    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
+    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
     frame(&mut app, 0.05);
     app.world_mut().resource_mut::<Selection>().release();
     let before = lane(&mut app).replay().step();

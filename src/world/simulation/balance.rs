@@ -32,7 +32,7 @@ impl Simulation {
 
     /// Rotations and rates of the limbs, to be read before a step.
     pub(super) fn limb_turns(&self) -> Vec<LimbTurn> {
-        let bodies = self.limbs.iter().map(|&limb| &self.physics.bodies[limb]);
+        let bodies = self.parts.iter().map(|&limb| &self.physics.bodies[limb]);
         bodies.map(|body| LimbTurn { rotation: *body.rotation(), rate: body.angvel() }).collect()
     }
 
@@ -45,8 +45,8 @@ impl Simulation {
         let step_s = self.physics.integration_parameters.dt;
         let substep_s = step_s / self.contacts.substeps.max(1) as f32;
         let mut work_j = 0.0;
-        let mut turns = Vec::with_capacity(self.limbs.len());
-        for ((&limb, torque), before) in self.limbs.iter().zip(&self.torques_in_world).zip(before) {
+        let mut turns = Vec::with_capacity(self.parts.len());
+        for ((&limb, torque), before) in self.parts.iter().zip(&self.torques_in_world).zip(before) {
             let body = &self.physics.bodies[limb];
             let after = body.angvel();
             let turned_rad = rotation_vector(*body.rotation() * before.rotation.inverse());
@@ -70,15 +70,31 @@ impl Simulation {
         self.balance.joint_damping_j += f64::from(joints_j);
     }
 
-    /// Kinetic and potential energy of all limbs, in J. The potential energy is 0 at z = 0.
-    fn mechanical_energy_j(&self) -> f64 {
+    /// Kinetic and potential energy of all parts, with that of the springs of soft limbs, in J. The potential energy is 0 at
+    /// z = 0.
+    pub(super) fn mechanical_energy_j(&self) -> f64 {
         let substep_s =
             self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
-        let bodies = self.limbs.iter().map(|&limb| &self.physics.bodies[limb]);
+        let bodies = self.parts.iter().map(|&limb| &self.physics.bodies[limb]);
         let energies_j = bodies.map(|body| {
             // The engine's positions are half a substep ahead of its velocities.
             let height_j = body.gravitational_potential_energy(substep_s, self.physics.gravity);
             f64::from(body.kinetic_energy()) + f64::from(height_j)
+        });
+        energies_j.sum::<f64>() + self.springs_j()
+    }
+
+    /// Energy in the springs of soft limbs, in J: `k θ² / 2` about each axis.
+    fn springs_j(&self) -> f64 {
+        let turn = |part: usize| *self.physics.bodies[self.parts[part]].rotation();
+        let energies_j = self.body.springs.iter().map(|spring| {
+            let between = turn(spring.parent).inverse() * turn(spring.child);
+            let sines = [between.x, between.y, between.z].into_iter();
+            let of_axes = sines.zip(spring.stiffness_nm_per_rad).map(|(sine, stiffness)| {
+                let angle_rad = 2.0 * f64::from(libm::asinf(sine.clamp(-1.0, 1.0)));
+                f64::from(stiffness) * angle_rad * angle_rad / 2.0
+            });
+            of_axes.sum::<f64>()
         });
         energies_j.sum()
     }

@@ -5,7 +5,7 @@ use rapier3d::prelude::*;
 use super::WorldPlan;
 use crate::world::contact::{ContactLaws, joint_coefficients};
 use crate::world::surface::ContactLaw;
-use crate::world::{BodyPlan, JointPlan, PhysicsWorld, Surface};
+use crate::world::{BodyPlan, JointPlan, PhysicsWorld, SpringPlan, Surface};
 
 /// Gives the collider of the ground or of a step its material.
 fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
@@ -54,8 +54,8 @@ pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &
     }
 }
 
-/// Inserts the limbs in the order of the plan as a straight row that lies on the ground, head first.
-pub(super) fn insert_limbs(
+/// Inserts the parts in the order of the plan as a straight row that lies on the ground, head first.
+pub(super) fn insert_parts(
     physics: &mut PhysicsWorld,
     plan: &WorldPlan,
     law: &ContactLaw,
@@ -67,12 +67,11 @@ pub(super) fn insert_limbs(
     let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
     let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
     plan.body
-        .limbs
+        .parts
         .iter()
-        .enumerate()
-        .map(|(index, limb)| {
-            let straight_y_m = front_y_m - limb.length_m / 2.0;
-            front_y_m -= limb.length_m;
+        .map(|part| {
+            let straight_y_m = front_y_m - part.length_m / 2.0;
+            front_y_m -= part.length_m;
             let centre = if plan.start_turn_rad == 0.0 {
                 // Without the detour over the middle of the snake, whose rounding would change the bits.
                 Vector::new(plan.start_x_m, straight_y_m, axis_z_m)
@@ -83,29 +82,34 @@ pub(super) fn insert_limbs(
             let body =
                 RigidBodyBuilder::dynamic().pose(Pose::from_parts(centre, turn)).can_sleep(false);
             let collider = ColliderBuilder::cuboid(
-                limb.width_m / 2.0,
-                limb.length_m / 2.0,
-                limb.height_m / 2.0,
+                part.width_m / 2.0,
+                part.length_m / 2.0,
+                part.height_m / 2.0,
             )
-            .density(limb.density_kg_m3)
+            .density(part.density_kg_m3)
             .friction(plan.skin.friction)
             .friction_combine_rule(CoefficientCombineRule::Multiply)
             .restitution(plan.skin.bounce)
             .restitution_combine_rule(CoefficientCombineRule::Max)
-            .collision_groups(collision_groups(&plan.body, index));
+            .collision_groups(collision_groups(&plan.body, part.limb));
             physics.insert(body, with_hook(collider, law)).0
         })
         .collect()
 }
 
-/// The groups of a limb's collider: a limb of a contact-free pair is a group of its own, which its partner ignores.
+/// The groups of the colliders of a limb's parts: a limb of a contact-free pair is a group of its own, which its partner
+/// ignores, and so is a limb of several parts, which ignore each other.
 fn collision_groups(body: &BodyPlan, limb: usize) -> InteractionGroups {
     let is_free = body.contact_free_pairs.iter().any(|pair| pair.contains(&limb));
-    if !is_free {
+    let is_soft = body.parts_of(limb).len() > 1;
+    if !is_free && !is_soft {
         return InteractionGroups::all();
     }
     let group = |limb: usize| Group::from_bits_retain(1 << limb);
     let mut touched = Group::ALL;
+    if is_soft {
+        touched.remove(group(limb));
+    }
     for pair in &body.contact_free_pairs {
         match *pair {
             [front, rear] if front == limb => touched.remove(group(rear)),
@@ -116,24 +120,55 @@ fn collision_groups(body: &BodyPlan, limb: usize) -> InteractionGroups {
     InteractionGroups::new(group(limb), touched, InteractionTestMode::And)
 }
 
-/// Inserts the joints in the order of the plan: see [`universal_joint`].
+/// Inserts the joints and springs in the order of their places from the head, so that the solver's sweeps follow the body:
+/// see [`universal_joint`] and [`spring_joint`].
 pub(super) fn insert_joints(
     physics: &mut PhysicsWorld,
-    limbs: &[RigidBodyHandle],
+    parts: &[RigidBodyHandle],
     plan: &WorldPlan,
 ) {
-    for joint in &plan.body.joints {
-        let [parent, child] = [joint.parent, joint.child].map(|limb| &plan.body.limbs[limb]);
-        let solved = plan.physics.joint_damping_in_solver();
-        let mut built = universal_joint(joint, solved, parent.length_m / 2.0, child.length_m / 2.0);
-        built.softness = joint_coefficients(
-            joint.cfm_m_s_per_n,
-            plan.physics.substep_s(),
-            parent.mass_kg(),
-            child.mass_kg(),
-        );
-        physics.insert_impulse_joint(limbs[joint.parent], limbs[joint.child], built);
+    let WorldPlan { body, physics: settings, .. } = plan;
+    let half_m = |part: usize| body.parts[part].length_m / 2.0;
+    let joints = body.joints.iter().map(|joint| {
+        let [parent, child] = [joint.parent, joint.child].map(|part| body.parts[part].mass_kg());
+        let solved = settings.joint_damping_in_solver();
+        let mut built = universal_joint(joint, solved, half_m(joint.parent), half_m(joint.child));
+        built.softness =
+            joint_coefficients(joint.cfm_m_s_per_n, settings.substep_s(), parent, child);
+        ([joint.parent, joint.child], built)
+    });
+    let springs = body.springs.iter().map(|spring| {
+        let built = spring_joint(spring, half_m(spring.parent), half_m(spring.child));
+        ([spring.parent, spring.child], built)
+    });
+    let mut all: Vec<_> = joints.chain(springs).collect();
+    all.sort_by_key(|([_, child], _)| *child);
+    for ([parent, child], built) in all {
+        physics.insert_impulse_joint(parts[parent], parts[child], built);
     }
+}
+
+/// The faces of two parts of a soft limb, which stay together, with an elastic motor about each axis.
+///
+/// The solver integrates these motors implicitly, so that no stiffness makes them unstable, and they never supply energy.
+/// The angle of each axis is twice the arc sine of that part of the relative quaternion.
+pub(super) fn spring_joint(
+    plan: &SpringPlan,
+    parent_half_m: f32,
+    child_half_m: f32,
+) -> GenericJoint {
+    let mut joint = GenericJointBuilder::new(JointAxesMask::LIN_AXES)
+        .local_anchor1(Vector::new(0.0, -parent_half_m, 0.0))
+        .local_anchor2(Vector::new(0.0, child_half_m, 0.0))
+        .contacts_enabled(false)
+        .build();
+    let axes = [JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
+    let values = plan.stiffness_nm_per_rad.into_iter().zip(plan.damping_nms_per_rad);
+    for (axis, (stiffness, damping)) in axes.into_iter().zip(values) {
+        joint.set_motor_model(axis, MotorModel::ForceBased);
+        joint.set_motor_position(axis, 0.0, stiffness, damping);
+    }
+    joint
 }
 
 /// A universal joint between the rear face of the parent and the front face of the child.

@@ -6,7 +6,7 @@ use crate::world::stair_profile::ClimbProgress;
 impl Simulation {
     /// The progress at this moment.
     pub fn climb(&self) -> ClimbProgress {
-        let middle = self.physics.bodies[self.limbs[self.body.middle_limb]].translation();
+        let middle = self.physics.bodies[self.parts[self.body.middle_part]].translation();
         self.profile.climb(middle.to_array())
     }
 }

@@ -54,11 +54,15 @@ impl WorldPlan {
 }
 
 impl BodyPlan {
-    /// Whether limbs have the same sizes and joints connect the same limbs.
+    /// Whether parts have the same sizes, and joints and springs connect the same parts.
     fn has_shape_of(&self, other: &Self) -> bool {
-        let sizes = |body: &Self| body.limbs.iter().map(|limb| limb.size_m()).collect::<Vec<_>>();
+        let sizes = |body: &Self| {
+            body.parts.iter().map(|part| (part.limb, part.size_m())).collect::<Vec<_>>()
+        };
         let ends = |body: &Self| {
-            body.joints.iter().map(|joint| (joint.parent, joint.child)).collect::<Vec<_>>()
+            let joints = body.joints.iter().map(|joint| (joint.parent, joint.child));
+            let springs = body.springs.iter().map(|spring| (spring.parent, spring.child));
+            (joints.collect::<Vec<_>>(), springs.collect::<Vec<_>>())
         };
         sizes(self) == sizes(other) && ends(self) == ends(other)
     }
@@ -80,7 +84,7 @@ impl Simulation {
 
     /// Largest y of any limb, in metres.
     fn front_y_m(&self) -> f32 {
-        let colliders = self.limbs.iter().map(|&limb| self.physics.bodies[limb].colliders()[0]);
+        let colliders = self.parts.iter().map(|&limb| self.physics.bodies[limb].colliders()[0]);
         let fronts = colliders.map(|limb| self.physics.colliders[limb].compute_aabb().maxs.y);
         fronts.fold(f32::MIN, f32::max)
     }
@@ -96,7 +100,7 @@ impl Simulation {
             continued
         } else {
             let mut continued = fresh.clone();
-            for (&old, &new) in self.limbs.iter().zip(&fresh.limbs) {
+            for (&old, &new) in self.parts.iter().zip(&fresh.parts) {
                 let old = &self.physics.bodies[old];
                 let new = &mut continued.physics.bodies[new];
                 new.set_position(*old.position(), true);

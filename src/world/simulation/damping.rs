@@ -13,8 +13,8 @@ impl Simulation {
         if !surfaces_damp && damping.air == 1.0 {
             return;
         }
-        for index in 0..self.limbs.len() {
-            let limb = self.limbs[index];
+        for index in 0..self.parts.len() {
+            let limb = self.parts[index];
             let surface = if surfaces_damp { self.surface_factor(limb) } else { 1.0 };
             let body = &mut self.physics.bodies[limb];
             let turning_j = rotation_energy_j(body);

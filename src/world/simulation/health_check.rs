@@ -1,23 +1,23 @@
 //! Checks the state after a step against the limits of the trial.
 
 use super::Simulation;
-use crate::world::{Disqualification, Effort, JointPlan, Vector};
+use crate::world::{Disqualification, Effort, Vector};
 
 /// Height below which a snake has fallen through the ground, in metres; only a broken contact allows that.
 const LOWEST_Z_M: f32 = -2.0;
 
 impl Simulation {
-    /// Half the length of a limb, as a vector in the world from its centre to its front face, in metres.
-    fn centre_to_front(&self, limb: usize) -> Vector {
-        let half_length = Vector::new(0.0, self.body.limbs[limb].length_m / 2.0, 0.0);
-        *self.physics.bodies[self.limbs[limb]].rotation() * half_length
+    /// Half the length of a part, as a vector in the world from its centre to its front face, in metres.
+    fn centre_to_front(&self, part: usize) -> Vector {
+        let half_length = Vector::new(0.0, self.body.parts[part].length_m / 2.0, 0.0);
+        *self.physics.bodies[self.parts[part]].rotation() * half_length
     }
 
-    /// Squared distance between the two anchors of a joint, in m².
-    fn drift_squared(&self, joint: &JointPlan) -> f32 {
-        let centre = |limb: usize| self.physics.bodies[self.limbs[limb]].translation();
-        let parent_rear = centre(joint.parent) - self.centre_to_front(joint.parent);
-        let child_front = centre(joint.child) + self.centre_to_front(joint.child);
+    /// Squared distance between the two anchors of a joint or a spring, in m².
+    fn drift_squared(&self, [parent, child]: [usize; 2]) -> f32 {
+        let centre = |part: usize| self.physics.bodies[self.parts[part]].translation();
+        let parent_rear = centre(parent) - self.centre_to_front(parent);
+        let child_front = centre(child) + self.centre_to_front(child);
         parent_rear.distance_squared(child_front)
     }
 
@@ -29,8 +29,8 @@ impl Simulation {
             return Err(Disqualification::NotFinite);
         }
         let speed_limit_squared = self.health.speed_m_s * self.health.speed_m_s;
-        for (index, &limb) in self.limbs.iter().enumerate() {
-            let body = &self.physics.bodies[limb];
+        for (index, &part) in self.parts.iter().enumerate() {
+            let body = &self.physics.bodies[part];
             let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
             if !(centre.is_finite() && speed_squared.is_finite()) {
                 return Err(Disqualification::NotFinite);
@@ -46,11 +46,13 @@ impl Simulation {
                 return Err(Disqualification::LeftArena);
             }
             // The order of these checks is part of the bits of a run: it decides which reason is reported.
-            let to_parents = self.body.joints.iter().filter(|joint| joint.child == index);
+            let joints = self.body.joints.iter().map(|of| ([of.parent, of.child], of.gap_scale));
+            let springs = self.body.springs.iter().map(|of| ([of.parent, of.child], of.gap_scale));
+            let to_parents = joints.chain(springs).filter(|([_, child], _)| *child == index);
             let mut drift_squared = 0.0_f32;
-            for joint in to_parents {
-                let limit_m = self.health.joint_drift_m * joint.gap_scale;
-                let of_joint = self.drift_squared(joint);
+            for (ends, gap_scale) in to_parents {
+                let limit_m = self.health.joint_drift_m * gap_scale;
+                let of_joint = self.drift_squared(ends);
                 if of_joint > limit_m * limit_m {
                     return Err(Disqualification::JointBroke);
                 }

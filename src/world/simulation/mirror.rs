@@ -4,7 +4,7 @@ use rapier3d::prelude::*;
 
 use super::Simulation;
 
-/// The state of a limb in another engine.
+/// The state of a part in another engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimbState {
     /// Pose of its centre in the world, in metres.
@@ -18,10 +18,10 @@ pub struct LimbState {
 }
 
 impl Simulation {
-    /// Takes over the state of the limbs from another engine, head first. From then on poses, joints and senses are those of
+    /// Takes over the state of the parts from another engine, head first. From then on poses, joints and senses are those of
     /// that engine; this world must not be stepped any more.
     pub fn mirror(&mut self, limbs: &[LimbState]) {
-        for (&limb, state) in self.limbs.iter().zip(limbs) {
+        for (&limb, state) in self.parts.iter().zip(limbs) {
             let body = &mut self.physics.bodies[limb];
             body.set_position(state.pose, false);
             body.set_linvel(state.velocity_m_s, false);
@@ -30,11 +30,11 @@ impl Simulation {
         self.mirrored = limbs.iter().map(|state| state.contact_n).collect();
     }
 
-    /// Whether a limb touches the ground or the stairs, and their force on it, in N.
-    pub(super) fn sensed_contact(&self, limb: usize) -> (bool, Vector) {
-        match self.mirrored.get(limb) {
+    /// Whether a part touches the ground or the stairs, and their force on it, in N.
+    pub(super) fn sensed_contact(&self, part: usize) -> (bool, Vector) {
+        match self.mirrored.get(part) {
             Some(force_n) => (force_n.is_some(), force_n.unwrap_or(Vector::ZERO)),
-            None => self.contact_force(self.physics.bodies[self.limbs[limb]].colliders()[0]),
+            None => self.contact_force(self.physics.bodies[self.parts[part]].colliders()[0]),
         }
     }
 }

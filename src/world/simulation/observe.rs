@@ -32,21 +32,31 @@ pub struct ContactForce {
 }
 
 impl Simulation {
-    /// The pose of each limb's centre, head first.
+    /// The pose of each part's centre, head first.
     pub fn poses(&self) -> impl ExactSizeIterator<Item = Pose> + '_ {
-        self.limbs.iter().map(|&limb| *self.physics.bodies[limb].position())
+        self.parts.iter().map(|&limb| *self.physics.bodies[limb].position())
     }
 
-    /// Speed of each limb's centre, head first, in m/s.
+    /// Speed of each part's centre, head first, in m/s.
     pub fn speeds_m_s(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
-        self.limbs.iter().map(|&limb| self.physics.bodies[limb].linvel().length())
+        self.parts.iter().map(|&limb| self.physics.bodies[limb].linvel().length())
     }
 
-    /// Velocity of each limb's centre in m/s, and its angular velocity in rad/s, both in the world, head first.
+    /// Velocity of each part's centre in m/s, and its angular velocity in rad/s, both in the world, head first.
     pub fn velocities(&self) -> impl ExactSizeIterator<Item = [Vector; 2]> + '_ {
-        self.limbs.iter().map(|&limb| {
+        self.parts.iter().map(|&limb| {
             let body = &self.physics.bodies[limb];
             [body.linvel(), body.angvel()]
+        })
+    }
+
+    /// The same of each limb: of a soft one the mean of its parts.
+    pub fn limb_velocities(&self) -> impl ExactSizeIterator<Item = [Vector; 2]> + '_ {
+        let parts: Vec<_> = self.velocities().collect();
+        (0..self.body.limbs()).map(move |limb| {
+            let parts = &parts[self.body.parts_of(limb)];
+            let sum = parts.iter().copied().reduce(|[a, b], [c, d]| [a + c, b + d]);
+            sum.unwrap_or_default().map(|sum| sum / parts.len().max(1) as f32)
         })
     }
 
@@ -54,7 +64,7 @@ impl Simulation {
     pub fn joint_states(&self) -> impl ExactSizeIterator<Item = JointState> + '_ {
         self.body.joints.iter().map(|joint| {
             let [parent, child] =
-                [joint.parent, joint.child].map(|limb| &self.physics.bodies[self.limbs[limb]]);
+                [joint.parent, joint.child].map(|limb| &self.physics.bodies[self.parts[limb]]);
             let into_parent = parent.rotation().inverse();
             let turn = into_parent * *child.rotation();
             let rate = into_parent * (child.angvel() - parent.angvel());
@@ -72,19 +82,24 @@ impl Simulation {
 
     /// Number of limbs that touch the ground or the stairs.
     pub fn limbs_in_contact(&self) -> usize {
-        let touches = |&&limb: &&RigidBodyHandle| {
-            let collider = self.physics.bodies[limb].colliders()[0];
+        let touches = |&&part: &&RigidBodyHandle| {
+            let collider = self.physics.bodies[part].colliders()[0];
             self.physics.narrow_phase.contact_pairs_with(collider).any(|pair| {
                 self.is_world(other_collider(pair, collider)) && pair.has_any_active_contact()
             })
         };
-        self.limbs.iter().filter(touches).count()
+        if self.body.springs.is_empty() {
+            return self.parts.iter().filter(touches).count();
+        }
+        let limbs = self.body.parts.chunk_by(|front, rear| front.limb == rear.limb);
+        let mut parts = self.parts.iter();
+        limbs.filter(|limb| parts.by_ref().take(limb.len()).filter(touches).count() > 0).count()
     }
 
-    /// Indices of the limbs that touch the stairs.
-    pub fn limbs_on_stairs(&self) -> impl Iterator<Item = usize> + '_ {
-        let touches = |limb: &RigidBodyHandle| {
-            let collider = self.physics.bodies[*limb].colliders()[0];
+    /// Indices of the parts that touch the stairs.
+    pub fn parts_on_stairs(&self) -> impl Iterator<Item = usize> + '_ {
+        let touches = |part: &RigidBodyHandle| {
+            let collider = self.physics.bodies[*part].colliders()[0];
             self.physics.narrow_phase.contact_pairs_with(collider).any(|pair| {
                 let other = other_collider(pair, collider);
                 other != self.contacts.ground
@@ -92,8 +107,8 @@ impl Simulation {
                     && pair.has_any_active_contact()
             })
         };
-        let all = self.limbs.iter().enumerate();
-        all.filter(move |(_, limb)| touches(limb)).map(|(index, _)| index)
+        let all = self.parts.iter().enumerate();
+        all.filter(move |(_, part)| touches(part)).map(|(index, _)| index)
     }
 
     /// The torques that acted in the last step, clamped to the joints' limits, one per joint.
@@ -110,7 +125,7 @@ impl Simulation {
         let substep_s =
             self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
         let mut forces = Vec::new();
-        for (limb, &body) in self.limbs.iter().enumerate() {
+        for (part, &body) in self.body.parts.iter().zip(&self.parts) {
             let collider = self.physics.bodies[body].colliders()[0];
             for pair in self.physics.narrow_phase.contact_pairs_with(collider) {
                 if !self.is_world(other_collider(pair, collider)) {
@@ -129,7 +144,7 @@ impl Simulation {
                         let impulse =
                             manifold.data.normal * point.data.warmstart_impulse - friction;
                         forces.push(ContactForce {
-                            limb,
+                            limb: part.limb,
                             at_m: *first * point.local_p1,
                             force_n: impulse * (side / substep_s),
                         });

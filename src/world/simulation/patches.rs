@@ -104,7 +104,8 @@ impl Simulation {
     /// solver ended that substep, before damping.
     pub fn contact_patches(&self) -> Vec<ContactPatch> {
         let mut patches = Vec::new();
-        for (limb, &body) in self.limbs.iter().enumerate() {
+        for (part, &body) in self.body.parts.iter().zip(&self.parts) {
+            let limb = part.limb;
             let collider = self.physics.bodies[body].colliders()[0];
             for pair in self.physics.narrow_phase.contact_pairs_with(collider) {
                 let touched = self.touched(other_collider(pair, collider));
@@ -124,7 +125,7 @@ impl Simulation {
     /// that with the kinetic energy E after the step the loss is `E (1/f² - 1)`.
     pub fn surface_damping(&self) -> impl Iterator<Item = SurfaceDamping> + '_ {
         let half_step_s = self.physics.integration_parameters.dt / 2.0;
-        self.limbs.iter().filter_map(move |&limb| {
+        self.parts.iter().filter_map(move |&limb| {
             let (touched, _) = self.strongest_damping(limb)?;
             let factor = self.surface_factor(limb);
             let kept_j = self.physics.bodies[limb].kinetic_energy();
@@ -178,8 +179,8 @@ impl Simulation {
             return TouchedSurface::Ground;
         }
         let parent = self.physics.colliders[collider].parent();
-        let limb = self.limbs.iter().position(|&limb| Some(limb) == parent);
-        limb.map_or(TouchedSurface::Stairs, TouchedSurface::Limb)
+        let part = self.parts.iter().position(|&part| Some(part) == parent);
+        part.map_or(TouchedSurface::Stairs, |part| TouchedSurface::Limb(self.body.parts[part].limb))
     }
 
     /// The patch of a manifold; `None` if nothing presses there.

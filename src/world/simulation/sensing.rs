@@ -26,6 +26,25 @@ pub struct LimbReading {
     pub clearance_m: f32,
 }
 
+impl LimbReading {
+    /// The reading of the first parts of a soft limb, with that of the next of its `parts`: it touches where one of them
+    /// does, loads add up, the attitude is the mean, the way to the next step that of the front, and the lowest corner counts.
+    fn and(self, next: Self, parts: usize) -> Self {
+        let share = 1.0 / parts as f32;
+        // The first part comes with its whole value, which stands for its share alone.
+        let lowered_m = (self.clearance_m - next.clearance_m).max(0.0);
+        Self {
+            is_touching: self.is_touching || next.is_touching,
+            load_n: self.load_n + next.load_n,
+            blocked_n: self.blocked_n + next.blocked_n,
+            pitch: self.pitch + next.pitch * share,
+            roll: self.roll + next.roll * share,
+            next_step: self.next_step.map(|[gap_m, up_m]| [gap_m, up_m + lowered_m]),
+            clearance_m: self.clearance_m.min(next.clearance_m),
+        }
+    }
+}
+
 /// The senses of the snake as a whole, in units of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SnakeReading {
@@ -46,13 +65,21 @@ impl Simulation {
     /// Reads the senses of all limbs, head first, into a buffer that is reused.
     pub fn read_limbs(&self, readings: &mut Vec<LimbReading>) {
         readings.clear();
-        readings.extend((0..self.limbs.len()).map(|limb| self.read_limb(limb)));
+        let mut first = 0;
+        for limb in self.body.parts.chunk_by(|front, rear| front.limb == rear.limb) {
+            let mut reading = self.read_part(first);
+            for part in first + 1..first + limb.len() {
+                reading = reading.and(self.read_part(part), limb.len());
+            }
+            readings.push(reading);
+            first += limb.len();
+        }
     }
 
     /// The senses of the snake as a whole.
     pub fn read_snake(&self) -> SnakeReading {
-        let head = &self.physics.bodies[self.limbs[0]];
-        let middle = &self.physics.bodies[self.limbs[self.body.middle_limb]];
+        let head = &self.physics.bodies[self.parts[0]];
+        let middle = &self.physics.bodies[self.parts[self.body.middle_part]];
         let velocity = middle.linvel();
         SnakeReading {
             yaw: (*head.rotation() * Vector::Y).x,
@@ -61,16 +88,16 @@ impl Simulation {
         }
     }
 
-    fn read_limb(&self, limb: usize) -> LimbReading {
-        let body = &self.physics.bodies[self.limbs[limb]];
+    fn read_part(&self, part: usize) -> LimbReading {
+        let body = &self.physics.bodies[self.parts[part]];
         let (centre, turn) = (body.translation(), *body.rotation());
         let [right, forward, up] = [Vector::X, Vector::Y, Vector::Z].map(|axis| turn * axis);
-        let half_m = self.body.limbs[limb].size_m().map(|size_m| size_m / 2.0);
+        let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
         let reach_m = [right.z, forward.z, up.z].into_iter().zip(half_m);
         let lowest_z_m = centre.z - reach_m.map(|(part, half)| part.abs() * half).sum::<f32>();
         let front = centre + forward * half_m[1];
         let next = self.profile.next_step(front.x, front.y);
-        let (is_touching, force_n) = self.sensed_contact(limb);
+        let (is_touching, force_n) = self.sensed_contact(part);
         LimbReading {
             is_touching,
             load_n: force_n.z.max(0.0),

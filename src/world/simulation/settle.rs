@@ -58,7 +58,7 @@ impl Simulation {
     /// Position of the centre of mass in metres, and its velocity in m/s.
     fn centre_of_mass(&self) -> (Vector, Vector) {
         let (mut place, mut velocity, mut mass_kg) = (Vector::ZERO, Vector::ZERO, 0.0);
-        let limbs = self.body.limbs.iter().zip(self.poses().zip(self.velocities()));
+        let limbs = self.body.parts.iter().zip(self.poses().zip(self.velocities()));
         for (limb, (pose, [linear, _])) in limbs {
             place += pose.translation * limb.mass_kg();
             velocity += linear * limb.mass_kg();

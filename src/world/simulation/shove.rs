@@ -47,8 +47,11 @@ impl Simulation {
     /// Shoves a limb now. A limb that does not exist is not shoved. The energy that the shove brings or takes is no gain
     /// and no loss in the energy balance.
     pub fn shove(&mut self, shove: &Shove) {
-        let Some(&limb) = self.limbs.get(shove.limb) else { return };
-        let body = &mut self.physics.bodies[limb];
+        let parts = self.body.parts_of(shove.limb);
+        // The middle part of a soft limb.
+        let middle = parts.start + parts.len() / 2;
+        let Some(&part) = self.parts.get(middle).filter(|_| !parts.is_empty()) else { return };
+        let body = &mut self.physics.bodies[part];
         let before_j = body.kinetic_energy();
         body.set_linvel(body.linvel() + shove.change_m_s, true);
         self.balance.start_j += f64::from(body.kinetic_energy() - before_j);

@@ -6,14 +6,16 @@ mod observe;
 mod patches;
 mod rates;
 mod settle;
+mod soft;
 mod surface;
 
-use super::super::{JointPlan, LimbPlan};
+use super::super::{JointPlan, PartPlan};
 use super::*;
 
 /// A snake of `limbs` blocks without damping, in the world of the report.
 fn plan(limbs: usize) -> WorldPlan {
-    let limb = LimbPlan { width_m: 1.0, length_m: 2.0, height_m: 1.0, density_kg_m3: 2.5 };
+    let limb =
+        |limb| PartPlan { limb, width_m: 1.0, length_m: 2.0, height_m: 1.0, density_kg_m3: 2.5 };
     let joint = |parent| JointPlan {
         parent,
         child: parent + 1,
@@ -33,10 +35,11 @@ fn plan(limbs: usize) -> WorldPlan {
         skin: Skin::default(),
         health: HealthLimits::default(),
         body: BodyPlan {
-            limbs: vec![limb; limbs],
+            parts: (0..limbs).map(limb).collect(),
             joints: (0..limbs - 1).map(joint).collect(),
+            springs: Vec::new(),
             contact_free_pairs: Vec::new(),
-            middle_limb: limbs / 2,
+            middle_part: limbs / 2,
             angular_damping_per_s: 0.0,
         },
         settles: false,
@@ -51,7 +54,7 @@ fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
     let mut plan = plan(limbs);
     plan.physics.gravity_m_s2 = 0.0;
     let mut simulation = Simulation::new(&plan);
-    for limb in simulation.limbs.clone() {
+    for limb in simulation.parts.clone() {
         let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
         body.set_translation(above, true);
@@ -61,7 +64,7 @@ fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
 
 /// Bend and twist of a joint, in radians, by the formulas of [`universal_joint`].
 fn angles(simulation: &Simulation, joint: usize) -> [f32; 3] {
-    let rotation = |limb: usize| *simulation.physics.bodies[simulation.limbs[limb]].rotation();
+    let rotation = |limb: usize| *simulation.physics.bodies[simulation.parts[limb]].rotation();
     let relative = rotation(joint).inverse() * rotation(joint + 1);
     [relative.x, relative.y, relative.z].map(|part| 2.0 * libm::atanf(part / relative.w))
 }
@@ -79,7 +82,7 @@ fn the_straight_snake_starts_at_the_position_of_table_1() {
 #[test]
 fn the_density_gives_the_mass() {
     let simulation = Simulation::new(&plan(2));
-    let mass_kg = simulation.physics.bodies[simulation.limbs[0]].mass();
+    let mass_kg = simulation.physics.bodies[simulation.parts[0]].mass();
     assert!((mass_kg - 5.0).abs() < 1e-4, "{mass_kg} kg");
 }
 
@@ -92,7 +95,7 @@ fn joint_torques_do_not_accelerate_the_snake_as_a_whole() {
     for _ in 0..30 {
         simulation.step(&torques).expect("healthy");
     }
-    let bodies = simulation.limbs.iter().map(|&limb| &simulation.physics.bodies[limb]);
+    let bodies = simulation.parts.iter().map(|&limb| &simulation.physics.bodies[limb]);
     let momentum: Vector = bodies.clone().map(|body| body.linvel() * body.mass()).sum();
     let fastest = bodies.map(|body| body.linvel().length()).fold(0.0, f32::max);
     assert!(fastest > 0.1, "it moves: {fastest} m/s");
@@ -158,7 +161,7 @@ fn joint_damping_slows_the_joint_as_its_formula_says() {
         plan.body.joints[0].damping_nms_per_rad = damping_nms_per_rad;
         plan.physics.steps_per_s = 1000;
         let mut simulation = Simulation::new(&plan);
-        let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
+        let [front, rear] = [simulation.parts[0], simulation.parts[1]];
         let spin = Vector::new(0.0, 1.0, 0.0);
         simulation.physics_mut().bodies[front].set_angvel(spin, true);
         simulation.physics_mut().bodies[rear].set_angvel(-spin, true);
@@ -188,7 +191,7 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
         plan.body.joints[0].cfm_m_s_per_n = cfm_m_s_per_n;
         plan.health.joint_drift_m = 10.0;
         let mut simulation = Simulation::new(&plan);
-        let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
+        let [front, rear] = [simulation.parts[0], simulation.parts[1]];
         for _ in 0..1200 {
             for (limb, sign) in [(front, 1.0), (rear, -1.0)] {
                 simulation.physics.bodies[limb].reset_forces(true);
@@ -216,7 +219,7 @@ fn the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs() {
     {
         let (_, mut simulation) = weightless(2);
         let gained = |simulation: &Simulation| {
-            let bodies = simulation.limbs.iter().map(|&limb| &simulation.physics.bodies[limb]);
+            let bodies = simulation.parts.iter().map(|&limb| &simulation.physics.bodies[limb]);
             bodies.map(RigidBody::kinetic_energy).sum::<f32>()
         };
         assert_eq!(simulation.effort(), Effort::default());
@@ -256,7 +259,7 @@ fn a_turned_start_turns_and_moves_the_whole_snake() {
 #[test]
 fn the_effort_of_a_thrown_snake_holds_its_maxima() {
     let (_, mut simulation) = weightless(3);
-    for limb in simulation.limbs.clone() {
+    for limb in simulation.parts.clone() {
         simulation.physics_mut().bodies[limb].set_linvel(Vector::new(3.0, 0.0, 4.0), true);
     }
     for _ in 0..60 {
@@ -270,7 +273,7 @@ fn the_effort_of_a_thrown_snake_holds_its_maxima() {
 #[test]
 fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     let (plan, mut simulation) = weightless(2);
-    let [front, rear] = [simulation.limbs[0], simulation.limbs[1]];
+    let [front, rear] = [simulation.parts[0], simulation.parts[1]];
     simulation.physics_mut().bodies[front].set_body_type(RigidBodyType::Fixed, true);
     // Down is backwards along the snake, so that straight is at rest.
     simulation.physics.gravity = Vector::new(0.0, -9.81, 0.0);
@@ -291,7 +294,7 @@ fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     let swings = crossings_s.len() as f32 - 1.0;
     let found_s = (crossings_s[crossings_s.len() - 1] - crossings_s[0]) / swings;
     // T = 2 pi sqrt(I / (m g d)), I = m (l² + h²) / 12 + m d², for small swings.
-    let limb = &plan.body.limbs[1];
+    let limb = &plan.body.parts[1];
     let own = (limb.length_m * limb.length_m + limb.height_m * limb.height_m) / 12.0;
     let expected_s = std::f32::consts::TAU * ((own + lever * lever) / (9.81 * lever)).sqrt();
     assert!((found_s / expected_s - 1.0).abs() < 0.01, "{found_s} s for {expected_s} s");
@@ -305,7 +308,7 @@ fn drift(limbs: usize) -> (f32, f32) {
         (joint.bend_limit_rad, joint.twist_limit_rad) = (3.0, 3.0);
     }
     let mut simulation = Simulation::new(&plan);
-    for limb in simulation.limbs.clone() {
+    for limb in simulation.parts.clone() {
         let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
         body.set_translation(above, true);
@@ -323,7 +326,7 @@ fn drift(limbs: usize) -> (f32, f32) {
     let still = vec![JointTorque::default(); limbs - 1];
     simulation.step(&still).expect("healthy");
     let bodies = |simulation: &Simulation| -> Vec<RigidBody> {
-        simulation.limbs.iter().map(|&limb| simulation.physics.bodies[limb].clone()).collect()
+        simulation.parts.iter().map(|&limb| simulation.physics.bodies[limb].clone()).collect()
     };
     let momentum = |simulation: &Simulation| -> Vector {
         bodies(simulation).iter().map(|body| body.linvel() * body.mass()).sum()
@@ -354,8 +357,8 @@ fn a_fall_follows_the_gravity_of_the_settings() {
         let mut plan = plan(2);
         plan.physics.gravity_m_s2 = gravity_m_s2;
         let mut simulation = Simulation::new(&plan);
-        let head = simulation.limbs[0];
-        for limb in simulation.limbs.clone() {
+        let head = simulation.parts[0];
+        for limb in simulation.parts.clone() {
             let body = &mut simulation.physics_mut().bodies[limb];
             let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
             body.set_translation(above, true);
@@ -377,7 +380,7 @@ fn each_exceeded_health_limit_disqualifies() {
         let mut plan = plan(5);
         plan.health.speed_m_s = speed_limit_m_s;
         let mut simulation = Simulation::new(&plan);
-        let head = simulation.limbs[0];
+        let head = simulation.parts[0];
         break_it(&mut simulation.physics_mut().bodies[head]);
         let still = [JointTorque::default(); 4];
         (0..600).find_map(|_| simulation.step(&still).err())

@@ -17,7 +17,7 @@ impl Simulation {
             let bend_nm = torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
             let twist_nm =
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
-            let parent = *self.physics.bodies[self.limbs[joint.parent]].rotation();
+            let parent = *self.physics.bodies[self.parts[joint.parent]].rotation();
             let couple = parent * Vector::new(bend_nm, twist_nm, 0.0);
             let rates_rad_s = self.joint_rates(joint, parent);
             let [bend, twist] = rates_rad_s;
@@ -31,7 +31,7 @@ impl Simulation {
             self.damping_in_world[joint.child] += damping;
         }
         let torques = self.torques_in_world.iter().zip(&self.damping_in_world);
-        for (&limb, (&drives, &damping)) in self.limbs.iter().zip(torques) {
+        for (&limb, (&drives, &damping)) in self.parts.iter().zip(torques) {
             let body = &mut self.physics.bodies[limb];
             body.reset_torques(false);
             body.add_torque(drives + damping, false);
@@ -55,7 +55,7 @@ impl Simulation {
 
     /// Rates of a joint about the x and y axes of a rotation, in rad/s.
     fn joint_rates(&self, joint: &JointPlan, axes: Rotation) -> [f32; 2] {
-        let turn = |limb: usize| self.physics.bodies[self.limbs[limb]].angvel();
+        let turn = |limb: usize| self.physics.bodies[self.parts[limb]].angvel();
         let rate = axes.inverse() * (turn(joint.child) - turn(joint.parent));
         [rate.x, rate.y]
     }

@@ -132,7 +132,7 @@ fn no_torques(plan: &WorldPlan) -> Vec<JointTorque> {
 
 /// Height of the centre of mass, in m.
 fn centre_m(world: &Simulation) -> [f64; 3] {
-    let limbs = || world.body().limbs.iter().map(|limb| f64::from(limb.mass_kg()));
+    let limbs = || world.body().parts.iter().map(|limb| f64::from(limb.mass_kg()));
     let mut sum = [0.0; 3];
     for (pose, kg) in world.poses().zip(limbs()) {
         for (sum, at_m) in sum.iter_mut().zip(pose.translation.to_array()) {
@@ -181,7 +181,7 @@ fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaCha8Rng) -> 
         let inertia = limb.mass_properties().local_mprops.principal_inertia();
         (limb.mass(), inertia.to_array())
     });
-    let limbs = plan.body.limbs.iter().zip(masses).zip(start.poses());
+    let limbs = plan.body.parts.iter().zip(masses).zip(start.poses());
     let limbs = limbs.map(|((limb, (kg, kg_m2)), pose)| {
         let at_m = pose.translation.to_array();
         json!({"size_m": limb.size_m(), "kg": kg, "kg_m2": kg_m2, "at_m": at_m})

@@ -37,7 +37,7 @@ pub(super) fn budgets(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
             ("N·m", 0),
             "Of all joints together. A body that would have more is made weaker in all joints alike",
         ),
-        ("Blocks", [body.limbs.len() as f64, MOST_SEGMENTS.into()], ("", 0), "From 2 to 12"),
+        ("Blocks", [body.limbs() as f64, MOST_SEGMENTS.into()], ("", 0), "From 2 to 12"),
     ];
     let palette = theme::of(ui);
     egui::Grid::new("budgets").num_columns(2).show(ui, |ui| {

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 
 use crate::plot::Role;
 use crate::studio::ui::theme;
-use crate::world::LimbPlan;
+use crate::world::{BodyPlan, PartPlan};
 
 /// Largest height of both views together, in points.
 const HEIGHT: f32 = 130.0;
@@ -14,11 +14,11 @@ const SPACE: f32 = 8.0;
 /// Draws blocks, the head on the left. Returns the block that was clicked.
 pub(super) fn drawing(
     ui: &mut egui::Ui,
-    limbs: &[LimbPlan],
+    body: &BodyPlan,
     selected: Option<usize>,
 ) -> Option<usize> {
-    let most = |of: fn(&LimbPlan) -> f32| limbs.iter().map(of).fold(0.0_f32, f32::max);
-    let length_m: f32 = limbs.iter().map(|limb| limb.length_m).sum();
+    let most = |of: fn(&PartPlan) -> f32| body.parts.iter().map(of).fold(0.0_f32, f32::max);
+    let length_m = body.length_m();
     let [width_m, height_m] = [most(|limb| limb.width_m), most(|limb| limb.height_m)];
     if length_m <= 0.0 || width_m + height_m <= 0.0 {
         return None;
@@ -42,15 +42,19 @@ pub(super) fn drawing(
         top += name / 2.0;
         let middle = top + of_view_m * scale / 2.0;
         let mut x = left;
-        for (block, limb) in limbs.iter().enumerate() {
-            let half = limb.size_m()[side] * scale / 2.0;
+        for block in 0..body.limbs() {
+            let size_m = body.limb_size_m(block);
+            let half = size_m[side] * scale / 2.0;
             let rect = egui::Rect::from_min_max(
                 egui::pos2(x, middle - half),
-                egui::pos2(x + limb.length_m * scale, middle + half),
+                egui::pos2(x + size_m[1] * scale, middle + half),
             );
             x = rect.right();
             let color = palette.role(if block % 2 == 0 { Role::Red } else { Role::Blue });
-            painter.rect_filled(rect.shrink(0.5), 2.0, color);
+            let is_soft = body.parts_of(block).len() > 1;
+            // Soft blocks are round.
+            let corner = if is_soft { half.min(rect.width() / 2.0) * 0.8 } else { 2.0 };
+            painter.rect_filled(rect.shrink(0.5), corner, color);
             if selected == Some(block) {
                 let stroke = egui::Stroke::new(2.0, palette.text);
                 painter.rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);

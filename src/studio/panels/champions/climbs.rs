@@ -120,7 +120,7 @@ mod tests {
         let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
         let climb = climbs.of(champion).expect("it is known");
         assert_eq!(LandingTime::of(champion, Some(climb)), LandingTime::Known(landed_s));
-        assert_eq!(climb.picture.limbs_m.len(), 5);
+        assert_eq!(climb.picture.parts_m.len(), 5);
         let mut below = loaded.champion;
         below.evaluation.behaviour = None;
         assert_eq!(LandingTime::of(&below, None), LandingTime::None);

@@ -29,7 +29,7 @@ pub(super) static BLOCKS: Bands = Bands {
 fn body_size(report: &GenerationReport) -> Option<[f64; 2]> {
     let champion = report.champion.as_ref()?;
     let body = champion.body();
-    Some([body.limbs.len() as f64, f64::from(body.length_m())])
+    Some([body.limbs() as f64, f64::from(body.length_m())])
 }
 
 #[cfg(test)]

@@ -48,14 +48,15 @@ pub(super) fn view(
         let length_m = f64::from(body.length_m());
         tallest_m = tallest_m.max(length_m);
         let mut top_m = length_m;
-        for (index, limb) in body.limbs.iter().enumerate() {
-            let half = HALF_METRE * f64::from(limb.width_m);
-            let bottom_m = top_m - f64::from(limb.length_m);
+        for index in 0..body.limbs() {
+            let [width_m, limb_m, _] = body.limb_size_m(index).map(f64::from);
+            let half = HALF_METRE * width_m;
+            let bottom_m = top_m - limb_m;
             blocks[index % 2].push([x - half, x + half, bottom_m, top_m]);
             top_m = bottom_m;
         }
         let unit = settings.trial.fitness.unit();
-        let words = words(structure, body.limbs.len(), length_m, unit);
+        let words = words(structure, body.limbs(), length_m, unit);
         let area = HitShape::Area([x - 0.45, x + 0.45, 0.0, length_m]);
         let pick = Pick::Individual(structure.place);
         hits.push(ChartHit::of(area, move || words.clone(), pick, structure.place));
@@ -186,7 +187,7 @@ fn rows(settings: &Settings, structures: &[Structure]) -> Vec<Vec<String>> {
             structure.place.generation.to_string(),
             (structure.place.individual + 1).to_string(),
             structure.change.clone(),
-            body.limbs.len().to_string(),
+            body.limbs().to_string(),
             body.length_m().to_string(),
             number(structure.fitness),
             number(gain),

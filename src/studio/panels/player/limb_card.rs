@@ -76,12 +76,11 @@ pub(super) fn limb_card(
     size: CardSize,
 ) {
     let body = lane.body();
-    let (Some(pose), Some(plan)) = (lane.last_poses().get(limb), body.limbs.get(limb)) else {
-        return;
-    };
+    let poses = body.limb_poses(lane.last_poses());
+    let Some(pose) = poses.get(limb) else { return };
     ui.set_min_width(size.width());
     let palette = theme::of(ui);
-    let count = body.limbs.len();
+    let count = body.limbs();
     let part = match limb {
         0 => ", the head",
         last if last + 1 == count => ", the tail",
@@ -91,9 +90,16 @@ pub(super) fn limb_card(
     ui.label(egui::RichText::new(title).size(theme::TITLE_SIZE).strong());
     let mut rows = Vec::new();
     if size == CardSize::Full {
-        let [width_m, length_m, height_m] = plan.size_m();
+        let [width_m, length_m, height_m] = body.limb_size_m(limb);
         rows.push(Reading::of("Size", format!("{width_m:.2} × {length_m:.2} × {height_m:.2} m")));
-        rows.push(Reading::of("Mass", format!("{:.2} kg", plan.mass_kg())));
+        rows.push(Reading::of("Mass", format!("{:.2} kg", body.limb_mass_kg(limb))));
+        let parts = body.parts_of(limb);
+        let spring = body.springs.iter().find(|spring| parts.contains(&spring.parent));
+        if let Some(spring) = spring {
+            let [bending, _, _] = spring.stiffness_nm_per_rad;
+            let text = format!("{} parts, {bending:.0} N·m/rad", parts.len());
+            rows.push(Reading::of("Springs", text));
+        }
     }
     if size != CardSize::Least {
         let digits = if size == CardSize::Full { 2 } else { 1 };
@@ -195,10 +201,10 @@ fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
         Some([line(state.bend_rad, torque.bend_nm), line(state.twist_rad, torque.twist_nm)])
     };
     let mut rows = Vec::new();
-    for (index, plan) in lane.body().joints.iter().enumerate() {
-        let names = if plan.child == limb {
+    for index in 0..lane.body().joints.len() {
+        let names = if index + 1 == limb {
             ["Front bend", "Front twist"]
-        } else if plan.parent == limb {
+        } else if index == limb {
             ["Rear bend", "Rear twist"]
         } else {
             continue;

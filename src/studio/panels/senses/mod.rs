@@ -64,7 +64,7 @@ impl<'l> SensesView<'l> {
         let racers: Vec<&Lane> = lanes.iter().copied().filter(|lane| !lane.is_ghost()).collect();
         Some(Self {
             lane,
-            limb: limb.unwrap_or(0).min(lane.body().limbs.len().saturating_sub(1)),
+            limb: limb.unwrap_or(0).min(lane.body().limbs().saturating_sub(1)),
             is_selected: limb.is_some(),
             others: if racers.len() > 1 { racers } else { Vec::new() },
             switched: switched.trial().agent.senses,

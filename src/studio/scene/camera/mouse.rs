@@ -33,8 +33,8 @@ struct MousePresses {
 struct RayHit {
     entity: Entity,
     lane: usize,
-    /// The limb; none for the stairs and the ground.
-    limb: Option<usize>,
+    /// The part of the snake; none for the stairs and the ground.
+    part: Option<usize>,
     /// Along the ray, in metres.
     distance_m: f32,
 }
@@ -63,14 +63,14 @@ fn first_hit(ray: Ray3d, lanes: &Query<(Entity, &Lane)>) -> Option<RayHit> {
         let ray = Ray::new(ray.origin - lane.offset(), *ray.direction);
         let nearest_m =
             |first: &Option<RayHit>| first.as_ref().map_or(f32::MAX, |hit| hit.distance_m);
-        let mut hit = |limb: Option<usize>, shape: &dyn RayCast, pose: &Pose| {
+        let mut hit = |part: Option<usize>, shape: &dyn RayCast, pose: &Pose| {
             if let Some(distance_m) = shape.cast_ray(pose, &ray, nearest_m(&first), true) {
-                first = Some(RayHit { entity, lane: lane.number(), limb, distance_m });
+                first = Some(RayHit { entity, lane: lane.number(), part, distance_m });
             }
         };
-        for (limb, (pose, plan)) in lane.drawn_poses().zip(&lane.body().limbs).enumerate() {
+        for (part, (pose, plan)) in lane.drawn_poses().zip(&lane.body().parts).enumerate() {
             let size = Vector::from(plan.size_m());
-            hit(Some(limb), &Cuboid::new(size / 2.0), &pose);
+            hit(Some(part), &Cuboid::new(size / 2.0), &pose);
         }
         for StairBox { min_m, max_m } in lane.trial().stairs.boxes() {
             let (min, max) = (Vector::from(min_m), Vector::from(max_m));
@@ -114,19 +114,20 @@ fn press(
     let is_double = presses > 1 || follows_another;
     earlier.last = (!is_double).then_some((now_s, cursor));
     if is_double && let Some(hit) = &hit {
-        let lane = hit.limb.map(|_| hit.lane);
+        let lane = hit.part.map(|_| hit.lane);
         rig.focus_on(lane, ray.get_point(hit.distance_m));
     }
-    let Some(RayHit { entity, lane, limb: Some(limb), distance_m }) = hit else {
+    let Some(RayHit { entity, lane, part: Some(part), distance_m }) = hit else {
         earlier.beside = Some(cursor);
         return;
     };
     let Ok((_, hit_lane)) = lanes.get(entity) else { return };
-    let Some(pose) = hit_lane.drawn_poses().nth(limb) else { return };
+    let Some(pose) = hit_lane.drawn_poses().nth(part) else { return };
     let point = ray.get_point(distance_m) - hit_lane.offset();
-    let pull = Pull { limb, held_at_m: pose.inverse() * point, to_m: point };
+    let pull = Pull { part, held_at_m: pose.inverse() * point, to_m: point };
     let held = HeldLimb { lane: entity, pull, pressed_at: cursor, is_pulling: false };
-    selection.grab(lane, held);
+    let limb = hit_lane.body().parts.get(part).map_or(0, |part| part.limb);
+    selection.grab(lane, limb, held);
 }
 
 /// The pointer moves the held limb in the plane that faces the camera.
@@ -154,7 +155,7 @@ fn drag(
     }
     held.is_pulling = true;
     let Some(ray) = ray_at(cursor, *camera) else { return };
-    let point: Vec3 = lane.point_of(held.pull.limb, held.pull.held_at_m) + lane.offset();
+    let point: Vec3 = lane.point_of(held.pull.part, held.pull.held_at_m) + lane.offset();
     let facing = InfinitePlane3d::new(camera.1.back());
     if let Some(distance_m) = ray.intersect_plane(point, facing) {
         held.pull.to_m = Vector::from(ray.get_point(distance_m) - lane.offset());

@@ -159,7 +159,7 @@ fn a_dent_in_the_ground_is_as_deep_as_the_lowest_corner_of_the_limb_is_below_it(
                 if patch.touched != TouchedSurface::Ground {
                     continue;
                 }
-                let half = lane.body().limbs[patch.limb].size_m().map(|size| size / 2.0);
+                let half = lane.body().parts[patch.limb].size_m().map(|size| size / 2.0);
                 let pose = lane.last_poses()[patch.limb];
                 let corners = (0..8_u8).map(|corner| {
                     let side = |axis: usize| if corner & (1 << axis) == 0 { 1.0 } else { -1.0 };

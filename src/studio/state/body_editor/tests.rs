@@ -16,7 +16,7 @@ fn editing() -> (BodyEditor, CurrentRun) {
 
 fn lengths(editor: &BodyEditor) -> Vec<f32> {
     let edited = editor.edited().expect("editing");
-    edited.body.limbs.iter().map(|limb| limb.length_m).collect()
+    edited.body.parts.iter().map(|limb| limb.length_m).collect()
 }
 
 /// Waits until a preview is ready or, without one, until nothing is under way; then shows it.
@@ -60,7 +60,7 @@ fn the_preview_shows_both_snakes_and_a_forbidden_body_gives_its_reason() {
     let set = |value| BodyCommand::Set { block: 2, size: BlockSize::Width, value };
     editor.apply(&set(0.8), None, &mut run).expect("allowed");
     let champions = preview(&mut editor, &mut run).expect("both").champions;
-    let blocks = |staged: &StagedChampion| staged.body().limbs[2].width_m;
+    let blocks = |staged: &StagedChampion| staged.body().parts[2].width_m;
     assert_eq!(champions.iter().map(blocks).collect::<Vec<_>>(), [1.0, 0.8]);
     // A hundredth of its neighbours' mass.
     editor.apply(&set(0.1), None, &mut run).expect("it can be set");
@@ -70,7 +70,7 @@ fn the_preview_shows_both_snakes_and_a_forbidden_body_gives_its_reason() {
     assert!(preview(&mut editor, &mut run).is_none());
     // A second drag of the same slider is another step.
     editor.apply(&BodyCommand::Undo, None, &mut run).expect("allowed");
-    let width = editor.edited().expect("editing").body.limbs[2].width_m;
+    let width = editor.edited().expect("editing").body.parts[2].width_m;
     assert_eq!(width, 0.8);
 }
 
@@ -84,7 +84,7 @@ fn a_change_just_before_a_tuning_is_shown_and_the_next_tuning_tries_other_gaits(
     assert!(undo.contains("being tuned"), "{undo}");
     editor.apply(&BodyCommand::CancelTuning, None, &mut run).expect("allowed");
     let champions = preview(&mut editor, &mut run).expect("both").champions;
-    assert_eq!(champions[1].body().limbs[1].height_m, 0.9);
+    assert_eq!(champions[1].body().parts[1].height_m, 0.9);
     assert_eq!(editor.edited.as_ref().map(|edited| edited.attempts), Some(1));
 }
 

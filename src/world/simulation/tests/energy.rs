@@ -68,7 +68,7 @@ fn without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_
             joint.damping_nms_per_rad = damping_nms_per_rad;
         }
         let mut simulation = Simulation::new(&plan);
-        for limb in simulation.limbs.clone() {
+        for limb in simulation.parts.clone() {
             let body = &mut simulation.physics_mut().bodies[limb];
             let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
             body.set_translation(above, true);
@@ -98,7 +98,7 @@ fn a_snake_that_gains_energy_without_its_joints_is_disqualified() {
     let still = vec![JointTorque::default(); plan.body.joints.len()];
     simulation.begin_balance();
     simulation.step(&still).expect("nothing moves");
-    let limb = simulation.limbs[0];
+    let limb = simulation.parts[0];
     // 5 kg at 1 m/s have 2.5 J, more than the limit of 1 J; at 0.5 m/s they have 0.6 J.
     for (speed_m_s, expected) in [(0.5, Ok(())), (1.0, Err(Disqualification::EnergyFromNothing))] {
         let mut pushed = simulation.clone();

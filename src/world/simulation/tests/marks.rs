@@ -35,7 +35,7 @@ fn without_marks_of_changed_bodies_the_engine_computes_the_same_bits() {
     let mut bouncing = hard.clone();
     bouncing.skin.bounce = 0.6;
     let mut heavy = hard.clone();
-    heavy.body.limbs.iter_mut().for_each(|limb| limb.density_kg_m3 *= 3.0);
+    heavy.body.parts.iter_mut().for_each(|limb| limb.density_kg_m3 *= 3.0);
     let plans = [&hard, &soft, &bouncing, &heavy];
     for (index, plan) in plans.into_iter().enumerate() {
         for then in plans {

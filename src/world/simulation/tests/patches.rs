@@ -141,8 +141,8 @@ fn patches_tell_stairs_ground_and_limbs_apart_and_air_has_none() {
 
     // Without its joints the tail can fall on the head.
     let (_, mut simulation) = weightless(3);
-    let tail = simulation.limbs[2];
-    let over = simulation.physics.bodies[simulation.limbs[0]].translation();
+    let tail = simulation.parts[2];
+    let over = simulation.physics.bodies[simulation.parts[0]].translation();
     simulation.health.joint_drift_m = 1000.0;
     let joints: Vec<_> = simulation.physics.impulse_joints.iter().map(|(of, _)| of).collect();
     for joint in joints {

@@ -26,7 +26,7 @@ fn air_takes_a_spin_at_its_rate() {
             run_with(&mut simulation, JointTorque::default(), seconds);
             let expected = libm::expf(-damping_per_s * seconds);
             assert_close(
-                simulation.physics.bodies[simulation.limbs[0]].angvel().y,
+                simulation.physics.bodies[simulation.parts[0]].angvel().y,
                 expected,
                 0.02,
                 case,
@@ -94,7 +94,7 @@ fn floating_pair(
     plan.body.joints[0].damping_nms_per_rad = damping_nms_per_rad;
     plan.body.joints[0].twist_limit_rad = 3.0;
     let mut simulation = Simulation::new(&plan);
-    for limb in simulation.limbs.clone() {
+    for limb in simulation.parts.clone() {
         let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
         body.set_translation(above, true);
@@ -109,7 +109,7 @@ fn run_with(simulation: &mut Simulation, torque: JointTorque, seconds: f32) {
 
 /// Sets the limbs of a pair to spin against each other about the long axis, in rad/s.
 fn twist(simulation: &mut Simulation, rate_rad_s: f32) {
-    for (limb, sign) in simulation.limbs.clone().into_iter().zip([1.0, -1.0]) {
+    for (limb, sign) in simulation.parts.clone().into_iter().zip([1.0, -1.0]) {
         let spin = Vector::new(0.0, sign * rate_rad_s, 0.0);
         simulation.physics_mut().bodies[limb].set_angvel(spin, true);
     }
@@ -122,7 +122,7 @@ fn joint_damping_slows_a_joint_at_its_rate() {
             let mut simulation = floating_pair(physics, 0.0, damping);
             twist(&mut simulation, 1.0);
             run_with(&mut simulation, JointTorque::default(), 0.1);
-            let found = simulation.physics.bodies[simulation.limbs[0]].angvel().y;
+            let found = simulation.physics.bodies[simulation.parts[0]].angvel().y;
             // The joint rate is 2 w and the torque on each limb c * 2 w: w decays with exp(-2 c t / I).
             let expected = libm::expf(-2.0 * damping * 0.1 / (5.0 / 6.0));
             assert_close(found, expected, 0.02, case);

@@ -5,7 +5,7 @@ use super::*;
 /// A snake of three limbs whose head is lower, so that it begins in the air.
 fn uneven() -> WorldPlan {
     let mut plan = plan(3);
-    plan.body.limbs[0].height_m = 0.4;
+    plan.body.parts[0].height_m = 0.4;
     for joint in &mut plan.body.joints {
         joint.damping_nms_per_rad = 30.0;
     }
@@ -45,8 +45,8 @@ fn all_damping_of_the_joints_acts_while_a_body_settles() {
 #[test]
 fn a_tower_that_falls_over_is_disqualified() {
     let mut plan = plan(2);
-    plan.body.limbs[0] = LimbPlan { height_m: 6.0, length_m: 0.4, ..plan.body.limbs[0].clone() };
-    plan.body.limbs[1] = LimbPlan { height_m: 0.4, ..plan.body.limbs[1].clone() };
+    plan.body.parts[0] = PartPlan { height_m: 6.0, length_m: 0.4, ..plan.body.parts[0].clone() };
+    plan.body.parts[1] = PartPlan { height_m: 0.4, ..plan.body.parts[1].clone() };
     let mut simulation = Simulation::new(&plan);
     assert_eq!(simulation.settle(), Err(Disqualification::FellOver));
 }
@@ -56,12 +56,12 @@ fn a_tower_that_falls_over_is_disqualified() {
 fn limbs_of_a_contact_free_pair_do_not_touch() {
     let touches = |pairs: Vec<[usize; 2]>| {
         let (mut plan, _) = weightless(3);
-        plan.body.limbs[1].length_m = 0.4;
+        plan.body.parts[1].length_m = 0.4;
         plan.body.contact_free_pairs = pairs;
         let mut simulation = Simulation::new(&plan);
         let bend = [JointTorque { bend_nm: 300.0, twist_nm: 0.0 }; 2];
         let ends =
-            [0, 2].map(|limb| simulation.physics.bodies[simulation.limbs[limb]].colliders()[0]);
+            [0, 2].map(|limb| simulation.physics.bodies[simulation.parts[limb]].colliders()[0]);
         (0..60).any(|_| {
             let _ = simulation.step(&bend);
             let pair = simulation.physics.narrow_phase.contact_pair(ends[0], ends[1]);

@@ -8,7 +8,7 @@ pub(super) fn block(surface: Surface) -> WorldPlan {
 }
 
 pub(super) fn body(simulation: &mut Simulation) -> &mut RigidBody {
-    let limb = simulation.limbs[0];
+    let limb = simulation.parts[0];
     &mut simulation.physics_mut().bodies[limb]
 }
 
@@ -210,7 +210,7 @@ fn the_frictions_of_surface_and_skin_multiply_and_the_larger_bounce_counts() {
         let mut plan = block(Surface { bounce: surface_bounce, ..Default::default() });
         plan.skin.bounce = skin_bounce;
         let simulation = Simulation::new(&plan);
-        let limb = simulation.physics.bodies[simulation.limbs[0]].colliders()[0];
+        let limb = simulation.physics.bodies[simulation.parts[0]].colliders()[0];
         let colliders = &simulation.physics.colliders;
         let (limb, ground) = (&colliders[limb], &colliders[simulation.contacts.ground]);
         assert_eq!(limb.restitution_combine_rule(), CoefficientCombineRule::Max);
@@ -244,7 +244,7 @@ fn energy_gained_j(surface: Surface) -> (f32, f32) {
     plan.health.joint_drift_m = 10.0;
     plan.health.speed_m_s = 1000.0;
     let mut simulation = Simulation::new(&plan);
-    for (index, limb) in simulation.limbs.clone().into_iter().enumerate() {
+    for (index, limb) in simulation.parts.clone().into_iter().enumerate() {
         let body = &mut simulation.physics_mut().bodies[limb];
         let above = body.translation() + Vector::new(0.0, 0.0, 1.0);
         body.set_translation(above, true);
@@ -252,7 +252,7 @@ fn energy_gained_j(surface: Surface) -> (f32, f32) {
         body.set_angvel(Vector::new(3.0, 2.0, if index > 2 { 1.0 } else { -1.0 }), true);
     }
     let energy_j = |simulation: &Simulation| -> f32 {
-        let bodies = simulation.limbs.iter().map(|&limb| &simulation.physics.bodies[limb]);
+        let bodies = simulation.parts.iter().map(|&limb| &simulation.physics.bodies[limb]);
         bodies.map(|b| b.kinetic_energy() + b.mass() * 9.81 * b.translation().z).sum()
     };
     let still = [JointTorque::default(); 4];

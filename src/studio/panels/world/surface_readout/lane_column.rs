@@ -63,7 +63,7 @@ impl<'l> LaneColumn<'l> {
             (_, None) => "none".to_owned(),
             (_, Some(reading)) => {
                 let unit = if ui.available_width() < WIDTH_FOR_LIMBS { "" } else { " limbs" };
-                format!("{} of {}{unit}", reading.limbs, self.lane.body().limbs.len())
+                format!("{} of {}{unit}", reading.limbs, self.lane.body().limbs())
             }
         };
         number(ui, &text);
@@ -116,7 +116,7 @@ impl<'l> LaneColumn<'l> {
         }
         let grid = egui::Grid::new("limbs").num_columns(4).spacing([theme::GAP, 0.0]);
         grid.show(ui, |ui| {
-            for limb in 0..self.lane.body().limbs.len() {
+            for limb in 0..self.lane.body().limbs() {
                 let meter = &self.lane.readings().meter;
                 let Some(reading) = meter.limb(self.is_playing, limb, &is_meant) else { continue };
                 ui.label(format!("Limb {}", limb + 1));

@@ -1,0 +1,202 @@
+//! Soft limbs compared with the theory of beams.
+
+use rapier3d::prelude::*;
+
+use super::super::build::spring_joint;
+use super::*;
+use crate::world::{Elasticity, STIFFEST_M4_S2, SpringPlan, modulus_at_pa};
+
+/// Length of the limb, in m; its cross-section is 1 m by 1 m.
+const LENGTH_M: f32 = 2.0;
+/// Second moment of area of the cross-section, in m⁴.
+const AREA_MOMENT_M4: f32 = 1.0 / 12.0;
+/// Mass per length, in kg/m.
+const LINE_KG_M: f32 = 2.5;
+
+/// A snake of one limb of this bending stiffness, in N·m², far above the ground and without gravity.
+fn beam(bending_nm2: f32, parts: u32, damping_ratio: f32) -> WorldPlan {
+    let mut plan = plan(1);
+    plan.physics.gravity_m_s2 = 0.0;
+    let youngs_modulus_pa = bending_nm2 / AREA_MOMENT_M4;
+    let elasticity = Elasticity { youngs_modulus_pa, parts, damping_ratio };
+    plan.body = plan.body.with_soft_limbs(|_| Some(elasticity));
+    assert_eq!(
+        (plan.body.parts.len(), plan.body.springs.len() as u32),
+        (parts as usize, parts - 1)
+    );
+    plan
+}
+
+/// The world of a beam, lifted to a height of 30 m.
+fn lifted(plan: &WorldPlan) -> Simulation {
+    let mut simulation = Simulation::new(plan);
+    for part in simulation.parts.clone() {
+        let body = &mut simulation.physics_mut().bodies[part];
+        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
+        body.set_translation(above, true);
+    }
+    simulation
+}
+
+/// Clamps the front face of a beam, with half a piece of it as the spring of the root.
+fn clamp(simulation: &mut Simulation) {
+    let spring = simulation.body.springs[0].clone();
+    let root = SpringPlan {
+        stiffness_nm_per_rad: spring.stiffness_nm_per_rad.map(|stiffness| 2.0 * stiffness),
+        damping_nms_per_rad: spring.damping_nms_per_rad.map(|damping| 2.0 * damping),
+        ..spring
+    };
+    let half_m = simulation.body.parts[0].length_m / 2.0;
+    let first = simulation.parts[0];
+    let at = simulation.physics.bodies[first].translation() + Vector::new(0.0, half_m, 0.0);
+    let physics = simulation.physics_mut();
+    let wall = physics.bodies.insert(RigidBodyBuilder::fixed().translation(at));
+    physics.insert_impulse_joint(wall, first, spring_joint(&root, 0.0, half_m));
+}
+
+/// Place of the middle of a beam's rear face, in m.
+fn tip(simulation: &Simulation) -> Vector {
+    let last = simulation.parts.len() - 1;
+    let half_m = simulation.body.parts[last].length_m / 2.0;
+    *simulation.physics.bodies[simulation.parts[last]].position() * Vector::new(0.0, -half_m, 0.0)
+}
+
+fn rest(simulation: &mut Simulation) {
+    (0..1200).for_each(|_| simulation.advance());
+}
+
+/// Deflection of the tip of a clamped beam under a load there, in N, along an axis, relative to the chain of hinges.
+fn under_a_load(plan: &WorldPlan, bending_nm2: f32, axis: Vector) -> f32 {
+    let mut simulation = lifted(plan);
+    clamp(&mut simulation);
+    let before = tip(&simulation);
+    let load_n = 0.04 * LENGTH_M * 3.0 * bending_nm2 / LENGTH_M.powi(3);
+    let last = *simulation.parts.last().expect("parts");
+    simulation.physics_mut().bodies[last].add_force_at_point(axis * -load_n, before, true);
+    rest(&mut simulation);
+    let parts = plan.body.parts.len() as f32;
+    let chain_m = load_n * LENGTH_M.powi(3) / (3.0 * bending_nm2) * (1.0 + 0.5 / (parts * parts));
+    (before - tip(&simulation)).dot(axis) / chain_m
+}
+
+/// Deflection of the tip of a clamped beam under its own weight, relative to the chain of hinges.
+fn under_its_weight(plan: &WorldPlan, bending_nm2: f32) -> f32 {
+    let of_gravity = LINE_KG_M * LENGTH_M.powi(4) / (8.0 * bending_nm2);
+    let mut plan = plan.clone();
+    plan.physics.gravity_m_s2 = 0.04 * LENGTH_M / of_gravity;
+    let mut simulation = lifted(&plan);
+    clamp(&mut simulation);
+    let before = tip(&simulation);
+    rest(&mut simulation);
+    let parts = plan.body.parts.len() as f32;
+    let chain_m = plan.physics.gravity_m_s2 * of_gravity * (1.0 + 1.0 / (parts * parts));
+    (before - tip(&simulation)).z / chain_m
+}
+
+/// The hinge chain's formulas, over the allowed band of stiffness, with four iterations for 2 and 3 parts and eight for 4.
+#[test]
+fn a_clamped_limb_bends_like_a_beam() {
+    for (parts, iterations, tolerance) in [(2, 4, 0.03), (3, 4, 0.03), (4, 8, 0.05)] {
+        for bending_nm2 in [100.0, 500.0, 2000.0] {
+            let mut plan = beam(bending_nm2, parts, 0.5);
+            (plan.physics.substeps, plan.physics.iterations) = (4, iterations);
+            let found = [
+                under_a_load(&plan, bending_nm2, Vector::Z),
+                under_a_load(&plan, bending_nm2, Vector::X),
+                under_its_weight(&plan, bending_nm2),
+            ];
+            println!("{parts} parts, EI {bending_nm2}: {found:?}");
+            for ratio in found {
+                assert!(
+                    (ratio - 1.0).abs() < tolerance,
+                    "{parts} parts, EI {bending_nm2}: {ratio}"
+                );
+            }
+        }
+    }
+}
+
+/// Greatest mechanical energy of a free beam within 3 s after a kick, and the energy that is left then, as shares of that at
+/// the start. Both ends are turned in opposite directions: about the x axis for bending, about the y axis for torsion.
+fn after_a_kick(plan: &WorldPlan, is_torsion: bool) -> [f64; 2] {
+    let mut simulation = lifted(plan);
+    let [front, rear] = [simulation.parts[0], simulation.parts[simulation.parts.len() - 1]];
+    let bodies = &mut simulation.physics_mut().bodies;
+    for (part, side) in [(front, 1.0), (rear, -1.0)] {
+        let axis = if is_torsion { Vector::Y } else { Vector::X };
+        bodies[part].set_angvel(axis * (side * 0.8), true);
+    }
+    let start_j = simulation.mechanical_energy_j();
+    let mut most_j = 0.0_f64;
+    for _ in 0..180 {
+        simulation.advance();
+        most_j = most_j.max(simulation.mechanical_energy_j());
+    }
+    [most_j / start_j, simulation.mechanical_energy_j() / start_j]
+}
+
+/// Springs never supply energy, with and without damping of their own.
+#[test]
+fn a_kicked_limb_gains_no_energy() {
+    for parts in [2, 3, 4] {
+        for bending_nm2 in [100.0, 500.0, 2000.0] {
+            for damping_ratio in [0.0, 0.3] {
+                for is_torsion in [false, true] {
+                    let plan = beam(bending_nm2, parts, damping_ratio);
+                    let [most, left] = after_a_kick(&plan, is_torsion);
+                    let case = format!("{parts} parts, EI {bending_nm2}, torsion {is_torsion}");
+                    assert!(most <= 1.001, "{case}: {most} of its energy");
+                    assert!(left < 1.0, "{case}: vibrations fade");
+                }
+            }
+        }
+    }
+}
+
+/// The implicit springs take energy from vibrations even without damping, the more the longer a substep is.
+#[test]
+fn shorter_substeps_lose_less_of_a_vibration() {
+    let left = [2, 4, 8, 16].map(|substeps| {
+        let mut plan = beam(100.0, 3, 0.0);
+        plan.physics.substeps = substeps;
+        after_a_kick(&plan, false)[1]
+    });
+    println!("of the energy left after 3 s: {left:?}");
+    assert!(left.is_sorted_by(|longer, shorter| longer < shorter), "{left:?}");
+}
+
+/// Limbs of the stiffest material that still bends move like rigid ones, until small differences have grown. Full torque
+/// bends even these by a fifth of a radian at each spring, so gaits that strain against their joints part earlier.
+#[test]
+fn the_stiffest_snake_moves_like_a_rigid_one_at_first() {
+    let champions = crate::save::library::shipped_champions();
+    for wanted in ["fast", "robust"] {
+        let (_, loaded) = champions.iter().find(|(name, _)| *name == wanted).expect("shipped");
+        let champion = &loaded.champion;
+        let mut trial = champion.trial.clone();
+        (trial.physics.substeps, trial.physics.iterations) = (4, 4);
+        let rigid = trial.clone();
+        let density = rigid.agent.body_plan(&champion.genome).parts[0].density_kg_m3;
+        let stiffest_pa = modulus_at_pa(STIFFEST_M4_S2, [1.0; 2], density);
+        trial.agent.youngs_modulus_pa = Some((stiffest_pa * 0.999).into());
+        let [rigid, soft] = [&rigid, &trial].map(|trial| {
+            let mut rollout = crate::score::Rollout::new(&champion.genome, trial);
+            let centre = |rollout: &crate::score::Rollout| {
+                let body = rollout.body();
+                let parts = rollout.poses().iter().zip(&body.parts);
+                let moment: Vector =
+                    parts.map(|(pose, part)| pose.translation * part.mass_kg()).sum();
+                moment / body.mass_kg()
+            };
+            let path = (0..60).map(|_| rollout.advance().then(|| centre(&rollout)));
+            let path: Vec<Vector> = path.map(|centre| centre.expect("healthy")).collect();
+            (rollout.body().parts.len(), path)
+        });
+        assert_eq!((rigid.0, soft.0), (5, 15));
+        let moved_m = rigid.1[0].distance(rigid.1[59]);
+        let ways = rigid.1.iter().zip(&soft.1);
+        let apart_m = ways.map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        println!("{wanted}: at most {apart_m} m apart within 1 s, of {moved_m} m");
+        assert!(moved_m > 1.0 && apart_m < 0.25, "{wanted}: {apart_m} m apart of {moved_m} m");
+    }
+}
