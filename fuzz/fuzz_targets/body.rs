@@ -19,7 +19,8 @@ fuzz_target!(|blocks: &str| {
         Ok(loaded) => {
             let genome = &loaded.champion.genome;
             let mut rollout = Rollout::new(genome, &loaded.champion.trial);
-            assert!(rollout.body().parts.len() <= MOST_SEGMENTS as usize);
+            assert!(rollout.body().limbs() <= MOST_SEGMENTS as usize);
+            assert!(rollout.body().parts.len() <= 4 * MOST_SEGMENTS as usize);
             for _ in 0..3 {
                 rollout.advance();
             }

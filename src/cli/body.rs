@@ -21,8 +21,7 @@ fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
         let joint = index.checked_sub(1).and_then(|joint| body.joints.get(joint));
         let parts = body.parts_of(index);
         let [width_m, length_m, height_m] = body.limb_size_m(index);
-        let spring = body.springs.iter().find(|spring| spring.parent == parts.start);
-        let spring = spring.filter(|_| parts.len() > 1);
+        let spring = body.springs.iter().find(|spring| parts.contains(&spring.parent));
         let line = serde_json::json!({
             "block": index + 1,
             "length_m": length_m,
@@ -76,6 +75,15 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
             )
         });
         let [width_m, length_m, height_m] = body.limb_size_m(index);
+        let parts = body.parts_of(index);
+        let spring = body.springs.iter().find(|spring| parts.contains(&spring.parent));
+        let soft = spring.map(|spring| {
+            let [bending, torsion, sideways] = spring.stiffness_nm_per_rad;
+            format!(
+                "\n       soft: {} parts, springs of {bending:.0} N·m/rad (bend), {torsion:.0} (twist), {sideways:.0} (sideways)",
+                parts.len()
+            )
+        });
         let line = format!(
             "{:>5}  {length_m:>4.2} m {width_m:>4.2} m  {height_m:>4.2} m {:>4.1} kg  {}",
             index + 1,
@@ -83,6 +91,7 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
             joint.unwrap_or_default(),
         );
         text += line.trim_end();
+        text += &soft.unwrap_or_default();
         text.push('\n');
     }
     text

@@ -23,7 +23,7 @@ pub use settings::{
     BodyProtection, CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings,
     HalvingSettings, LARGEST_POPULATION, MapElitesSettings, Mutation, NeatSettings,
     NoveltySettings, ParentSelection, QLearningSettings, RestartKind, Settings, StrategyInfo,
-    StrategyKind, XcsRunSettings, ZcsRunSettings, fields, with_field, with_fields,
+    StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields, with_field, with_fields,
 };
 pub use strategies::{begin, resume};
 pub use strategy::{Strategy, StrategyState, ranking};

@@ -67,6 +67,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "limb-neurons",
     "neat",
     "bodies",
+    "squishy",
 ];
 
 /// The shipped presets, the default first.

@@ -159,13 +159,13 @@ impl SettingGroup for AgentSettings {
             about: "Elasticity of the blocks. A soft block is a row of parts with springs between them.",
         });
         settings! { walk,
-            youngs_modulus_pa: optional_per_part("Young's modulus", MODULUS_RANGE_PA, each_limb, 10_000.0)
+            youngs_modulus_pa: optional_per_part("Young's modulus", MODULUS_RANGE_PA, each_limb, 40_000.0)
                 .unit("Pa")
                 .hint(
-                    "Stiffness of the blocks' material: foam rubber has some 10,000 Pa. Blocks of 1 m bend from about \
-                     1,200 Pa, below which they fold up, to 24,000 Pa, above which they are rigid. Without a value, blocks are rigid",
+                    "Stiffness of the blocks' material: soft foam has some 10,000 Pa. Blocks of 1 m and 9 kg/m³ fold up under \
+                     their own weight below 4,300 Pa, and are rigid above 86,000 Pa. Without a value, blocks are rigid",
                 )
-                .slider(1000.0, 50_000.0)
+                .slider(1000.0, 100_000.0)
                 .logarithmic_from(1000.0);
             soft_parts: whole("Parts per soft block", 2..=4).advanced()
                 .hint("Number of rigid parts of which a soft block consists. More parts bend more smoothly but take longer")

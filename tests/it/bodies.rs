@@ -8,6 +8,7 @@ use snakes_and_stairs::genome::Genome;
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::load_preset;
 use snakes_and_stairs::score::{Evaluation, Rollout, evaluate};
+use snakes_and_stairs::world::Disqualification;
 
 /// Seed of the random bodies. No setting was chosen on them.
 const SEED: u64 = 101;
@@ -71,6 +72,36 @@ fn a_body_without_torques_scores_nothing_whatever_its_length() {
     println!("rank correlation with length {:.3}", rank_correlation(&lengths, &shares));
     assert!(largest <= 0.02, "a body gains or loses {largest} without torques");
     assert!(not_at_rest * 10 <= genomes.len(), "{not_at_rest} did not come to rest");
+}
+
+/// Soft bodies stay together: none has a state that is not finite, and at most one in twenty comes apart, which disqualifies it.
+#[test]
+#[ignore = "simulates 1000 soft bodies for 15 s each"]
+fn soft_bodies_stay_together() {
+    let soft = [
+        ("bodies.soft", "true"),
+        ("steps_per_s", "240"),
+        ("substeps", "1"),
+        ("trial.duration_s", "15"),
+    ];
+    let settings = settings(&soft);
+    let genomes = random_bodies(&settings, 1000);
+    let are_soft = |genome: &&Genome| !settings.trial.agent.body_plan(genome).springs.is_empty();
+    let soft = genomes.iter().filter(are_soft).count();
+    let ends = evaluated(&settings, &genomes);
+    let mut reasons = std::collections::BTreeMap::<&str, u32>::new();
+    for end in &ends {
+        *reasons.entry(end.disqualified.map_or("healthy", |of| of.words())).or_default() += 1;
+    }
+    println!("{soft:>5}  of {} bodies have soft blocks", genomes.len());
+    for (reason, count) in &reasons {
+        println!("{count:>5}  {reason}");
+    }
+    let of = |reason: Disqualification| reasons.get(reason.words()).copied().unwrap_or(0);
+    assert!(soft * 2 > genomes.len(), "only {soft} bodies have soft blocks");
+    assert_eq!(of(Disqualification::NotFinite), 0);
+    assert_eq!(of(Disqualification::EnergyFromNothing), 0);
+    assert!(of(Disqualification::JointBroke) <= 50, "{reasons:?}");
 }
 
 /// No body creates energy unnoticed: what moves is paid by the joints, up to 5 % and 1 J, or the body is disqualified.

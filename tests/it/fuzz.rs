@@ -161,8 +161,9 @@ fn every_list_of_blocks_gives_a_body_or_one_line() {
     read_corpus("body", |path, blocks| {
         parse_champion(path, &with_blocks(blocks)).map(|loaded| {
             let genome = &loaded.champion.genome;
-            let parts = loaded.champion.body().parts.len();
-            assert!(parts <= MOST_SEGMENTS as usize, "{parts} parts");
+            let body = loaded.champion.body();
+            assert!(body.limbs() <= MOST_SEGMENTS as usize, "{} blocks", body.limbs());
+            assert!(body.parts.len() <= 4 * MOST_SEGMENTS as usize, "{} parts", body.parts.len());
             let space = GenomeSpace::default().widened_for(genome);
             for (number, (change, _)) in (0..).zip(BodyChange::RATES) {
                 let mut rng = stream(1, 1, number, Purpose::Mutation);

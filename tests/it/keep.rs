@@ -25,8 +25,13 @@ const TINY: &str = "--no-render --json --preset report --population 4 --generati
 /// What lets bodies evolve in such a run.
 const WITH_BODIES: &str = "--set controller=gait --set bodies.vary=true --set limbs_max=3";
 
-/// Number of runs that are killed: each of nine strategies seven times, three of which vary bodies.
-const ROUNDS: usize = 63;
+/// What makes blocks soft in such a run, without and with bodies that evolve.
+const WITH_SOFT_BLOCKS: &str = "--set youngs_modulus_pa=40000";
+const WITH_SOFT_BODIES: &str = "--set bodies.soft=true";
+
+/// Number of runs that are killed: each of nine strategies seven times, three of which vary bodies, and two of them again with
+/// soft blocks.
+const ROUNDS: usize = 77;
 
 /// The only run in a folder of saves, if there is one yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
@@ -76,18 +81,29 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let saves = folder();
     let of_bodies = ["body_ga", "body_map_elites", "islands"];
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
-    let strategies: Vec<&str> = strategies.into_iter().chain(of_bodies).collect();
+    let soft = ["soft cma_es", "soft body_ga"];
+    let strategies: Vec<&str> = strategies.into_iter().chain(of_bodies).chain(soft).collect();
     let tiny = |strategy: &str| {
+        let (strategy, is_soft) =
+            strategy.strip_prefix("soft ").map_or((strategy, false), |strategy| (strategy, true));
+        let softness = match strategy {
+            _ if !is_soft => "",
+            "body_ga" => WITH_SOFT_BODIES,
+            _ => WITH_SOFT_BLOCKS,
+        };
         let bodies = match strategy {
             // Only they have settings for the number of candidates that take effect.
             "islands" => format!("{WITH_BODIES} --set candidates=4"),
             of if of_bodies.contains(&of) => WITH_BODIES.to_owned(),
             _ => String::new(),
         };
-        format!("{TINY} --set strategy={strategy} {bodies}")
+        format!("{TINY} --set strategy={strategy} {bodies} {softness}")
     };
     let expected = strategies.iter().map(|strategy| {
-        let lines = json_lines(saves.path(), &format!("{} --out {strategy}", tiny(strategy)));
+        let lines = json_lines(
+            saves.path(),
+            &format!("{} --out {}", tiny(strategy), strategy.replace(' ', "-")),
+        );
         lines.last().expect("lines")["run_hash"].clone()
     });
     let expected: Vec<_> = expected.collect();

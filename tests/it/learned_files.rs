@@ -196,6 +196,16 @@ fn hostile_bodies_are_refused_with_field_value_and_range() {
         ("width_m: ", "inf", ["segments[0].width_m is inf", "allowed: 0.1 to 10"]),
         ("height_m: ", "1.0e-30", ["segments[0].height_m is ", "allowed: 0.1 to 10"]),
         ("strength: ", "1.5", ["segments[0].strength is 1.5", "allowed: 0 to 1"]),
+        (
+            "strength: ",
+            "1.0,youngs_modulus_pa:Some(NaN)",
+            ["segments[0].youngs_modulus_pa is NaN", "allowed: 1 to 10000000"],
+        ),
+        (
+            "strength: ",
+            "1.0,youngs_modulus_pa:Some(20.0)",
+            ["segments[0].youngs_modulus_pa is 20", "would fold up under their own weight"],
+        ),
         ("bend_limit_rad: ", "0.5", ["bend_limit_rad is 0.5", "allowed: 0, because"]),
         ("id: ", "2", ["segments[1].id is 2", "no other block of the body"]),
         ("id: ", "-1", ["out of bounds", "line"]),

@@ -7,7 +7,7 @@ use super::values::number;
 use crate::check::Invalid;
 use crate::cli::error::{CliError, of_flag};
 use crate::cli::resume::run_in;
-use crate::evolve::{Champion, Founder, RunPlan, Settings, with_fields};
+use crate::evolve::{Champion, Founder, RunPlan, Settings, check_effects, with_fields};
 use crate::run::RunSource;
 use crate::save::{
     DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, shipped_presets,
@@ -56,6 +56,7 @@ impl Args {
             Some(file) => self.plan_from(file)?,
             None => {
                 let (preset, settings) = self.settings()?;
+                self.check_effects(&settings)?;
                 RunPlan::new(&preset, self.seed()?, settings)
             }
         };
@@ -87,6 +88,7 @@ impl Args {
         }
         preset.settings.genome = preset.settings.genome.widened_for(&genome);
         let (preset, settings) = self.flags_over(preset)?;
+        self.check_effects(&settings)?;
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let founder = Founder::new(&name, genome);
         Ok(RunPlan::new(&preset, self.seed()?, settings).starting_from(founder)?)
@@ -95,6 +97,12 @@ impl Args {
     /// The preset's name and its settings, with the flags' values put in and everything checked.
     pub fn settings(&self) -> Result<(String, Settings), CliError> {
         self.flags_over(self.preset()?)
+    }
+
+    /// Refuses `--set` of a field that nothing in a run with these settings uses.
+    fn check_effects(&self, settings: &Settings) -> Result<(), Invalid> {
+        let paths = self.set.iter().filter_map(|text| Some(text.split_once('=')?.0.trim()));
+        check_effects(settings, paths)
     }
 
     fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
@@ -225,6 +233,22 @@ mod tests {
         ] {
             assert_eq!(refusal(words), message, "{words}");
         }
+    }
+
+    #[test]
+    fn a_setting_without_effect_is_refused() {
+        for (words, start) in [
+            ("--preset climb --set torque_budget_nm=100", "trial.agent.torque_budget_nm is 100; "),
+            ("--preset climb --set soft_parts=4", "trial.agent.soft_parts is 4; "),
+            ("--preset climb --set ga.step=0.1", "evolution.ga.step is 0.1; "),
+            ("--preset bodies --set limbs=7", "trial.agent.limbs is 7; "),
+        ] {
+            let refusal = args_of(words).run_source().map(|_| ()).expect_err("refused");
+            let text = refusal.to_string();
+            assert!(text.starts_with(start) && text.contains("no effect"), "{text}");
+        }
+        let used = "--preset climb --set youngs_modulus_pa=20000 --set soft_parts=4";
+        assert!(args_of(used).run_source().is_ok());
     }
 
     #[test]

@@ -48,6 +48,27 @@ pub fn with_fields<'a>(
     Ok(settings)
 }
 
+/// Checks that each of these fields has an effect on a run with these settings. A path that is no field, such as that of a
+/// whole group, is not checked.
+///
+/// # Errors
+/// The first field that the strategy, the controller or the bodies of the run do not use.
+pub fn check_effects<'a>(
+    settings: &Settings,
+    paths: impl IntoIterator<Item = &'a str>,
+) -> Result<(), Invalid> {
+    let listed = list(settings);
+    for path in paths {
+        let Ok(path) = find(settings, path) else { continue };
+        let setting = listed.iter().find(|listed| listed.path == path);
+        if let Some(setting) = setting.filter(|setting| !setting.is_used) {
+            let allowed = "only settings that this run uses: it would have no effect with this strategy, controller and body";
+            return Err(Invalid::new(&path, setting.value.to_string(), allowed));
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

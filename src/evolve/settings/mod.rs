@@ -15,7 +15,7 @@ mod size;
 mod strategy_kind;
 
 pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};
-pub use by_name::{fields, with_field, with_fields};
+pub use by_name::{check_effects, fields, with_field, with_fields};
 pub use cma_es::{CmaEsSettings, RestartKind};
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
 pub use halving::HalvingSettings;

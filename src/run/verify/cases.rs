@@ -249,6 +249,18 @@ const CASES: &[Case] = &[
         "controller=gait; strategy=body_map_elites; bodies.vary=true; length_cells=5; body_map_elites.two_parents=0.7; \
          body_map_elites.mutation_step=0.15; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
     ),
+    (
+        "soft blocks of four parts and rigid ones, CMA-ES",
+        [3, 8, 3],
+        "controller=gait; strategy=cma_es; youngs_modulus_pa=[3000, 1000000, 6000, 20000, 3000]; soft_parts=4; \
+         soft_damping_ratio=0.2; agent.density_kg_m3=3; substeps=4; start_y_m=-3; trial.duration_s=3",
+    ),
+    (
+        "soft bodies, genetic algorithm",
+        [3, 8, 3],
+        "controller=gait; strategy=body_ga; bodies.vary=true; limbs_max=4; bodies.soft=true; modulus_min_pa=500; \
+         modulus_max_pa=30000; substeps=4; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
+    ),
 ];
 
 /// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.

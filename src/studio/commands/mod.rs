@@ -301,6 +301,11 @@ pub(super) enum BodyCommand {
         /// Its new value, in its unit.
         value: f32,
     },
+    /// Make a block rigid; the head is 0.
+    MakeRigid {
+        /// The block.
+        block: usize,
+    },
     /// Change the structure at a block; the head is 0.
     Change {
         /// The block, or the first of two.
@@ -341,9 +346,14 @@ pub(super) enum BlockSize {
     TwistLimit,
     /// Share of the torque that the joint could have.
     Strength,
+    /// Young's modulus, in Pa. To set it makes a rigid block soft.
+    Modulus,
 }
 
 impl BlockSize {
+    /// Young's modulus of a block that has just become soft, in Pa: that of the preset `squishy`.
+    pub const USUAL_MODULUS_PA: f32 = 40_000.0;
+
     /// The number in a block.
     pub fn of_mut(self, segment: &mut Segment) -> &mut f32 {
         match self {
@@ -354,6 +364,7 @@ impl BlockSize {
             Self::BendLimit => &mut segment.bend_limit_rad,
             Self::TwistLimit => &mut segment.twist_limit_rad,
             Self::Strength => &mut segment.strength,
+            Self::Modulus => segment.youngs_modulus_pa.get_or_insert(Self::USUAL_MODULUS_PA),
         }
     }
 }

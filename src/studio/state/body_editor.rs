@@ -114,6 +114,7 @@ impl BodyEditor {
             _ if is_busy => return Err("The gait is being tuned: wait, or cancel it.".to_owned()),
             BodyCommand::Edit => {}
             BodyCommand::Set { block, size, value } => edited.set(*block, *size, *value),
+            BodyCommand::MakeRigid { block } => edited.make_rigid(*block),
             BodyCommand::Change { block, change } => edited.change(*block, *change)?,
             BodyCommand::Undo => edited.step(true),
             BodyCommand::Redo => edited.step(false),
@@ -249,6 +250,16 @@ impl Edited {
         } else {
             self.replace(genome);
             self.last_set = Some((block, size));
+        }
+    }
+
+    fn make_rigid(&mut self, block: usize) {
+        let mut genome = self.genome.clone();
+        if let Some(segment) = genome.body.segments.get_mut(block) {
+            segment.youngs_modulus_pa = None;
+        }
+        if genome != self.genome {
+            self.replace(genome);
         }
     }
 
