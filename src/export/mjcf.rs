@@ -79,18 +79,24 @@ fn settings(xml: &mut XmlText, plan: &WorldPlan, facts: &[Fact]) -> io::Result<(
         "compiler",
         &[("angle", "radian".into()), ("autolimits", yes()), ("inertiafromgeom", yes())],
     )?;
-    xml.comment("A step of MuJoCo is a substep of the champion's world.")?;
+    let steps = match plan.explicit_steps() == plan.physics.substeps {
+        true => "A step of MuJoCo is a substep of the champion's world.",
+        false => {
+            "A step of MuJoCo is shorter than a substep of the champion's world, for the springs of its soft limbs."
+        }
+    };
+    xml.comment(steps)?;
     xml.leaf(
         "option",
         &[
-            ("timestep", substep_s(plan).to_string()),
+            ("timestep", step_s(plan).to_string()),
             ("integrator", "implicitfast".into()),
             ("cone", "elliptic".into()),
             ("gravity", spaced([0.0, 0.0, -plan.physics.gravity_m_s2])),
         ],
     )?;
     xml.element("custom", &[], |xml| {
-        let steps = [plan.physics.steps_per_s, plan.physics.substeps];
+        let steps = [plan.physics.steps_per_s, plan.explicit_steps()];
         for (name, number) in ["controls_per_s", "steps_per_control"].into_iter().zip(steps) {
             xml.leaf("numeric", &[("name", name.into()), ("data", number.to_string())])?;
         }
@@ -142,10 +148,9 @@ fn settings(xml: &mut XmlText, plan: &WorldPlan, facts: &[Fact]) -> io::Result<(
     })
 }
 
-/// Length of a substep, in s.
-pub(super) fn substep_s(plan: &WorldPlan) -> f64 {
-    let physics = &plan.physics;
-    1.0 / (f64::from(physics.steps_per_s) * f64::from(physics.substeps.max(1)))
+/// Length of a step of MuJoCo, in s.
+fn step_s(plan: &WorldPlan) -> f64 {
+    1.0 / (f64::from(plan.physics.steps_per_s) * f64::from(plan.explicit_steps()))
 }
 
 fn surroundings(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
@@ -340,7 +345,7 @@ fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
             let [front, rear] = ends;
             xml.leaf("exclude", &[("body1", front), ("body2", rear)])?;
         }
-        for (a, b) in pairs().filter(|&(a, b)| is_free(a, b)) {
+        for (a, b) in pairs().filter(|&(a, b)| is_free(a, b) && !are_joined(a, b)) {
             let [front, rear] = [a, b].map(|part| part_name(body, part));
             xml.leaf("exclude", &[("body1", front), ("body2", rear)])?;
         }

@@ -188,7 +188,7 @@ impl Mujoco {
         let mut rollout = MirroredRollout::new(&champion.genome, condition);
         let plan = rollout.plan();
         let text = model(plan).map_err(|error| MujocoError::Failed(error.to_string()))?;
-        let (substeps, air_per_s) = (plan.physics.substeps, plan.body.angular_damping_per_s);
+        let (substeps, air_per_s) = (plan.explicit_steps(), plan.body.angular_damping_per_s);
         self.send(&Order::Model { model: &text, substeps, air_per_s })?;
         // The start is the same in both.
         self.limbs()?;

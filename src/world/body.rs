@@ -20,8 +20,8 @@ pub struct BodyPlan {
     pub joints: Vec<JointPlan>,
     /// The springs within soft limbs, from the head; empty if all limbs are rigid.
     pub springs: Vec<SpringPlan>,
-    /// Pairs of limbs that pass through each other although no joint connects them, the front limb first. Joined limbs
-    /// always do.
+    /// Pairs of limbs that pass through each other, the front limb first: neighbours of a short limb, and joined limbs of which
+    /// one is soft. Joined rigid limbs always do.
     pub contact_free_pairs: Vec<[usize; 2]>,
     /// Index of the part whose centre counts as the centre of the snake.
     pub middle_part: usize,

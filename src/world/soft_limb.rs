@@ -5,6 +5,7 @@
 //! cross-section, and `G J / d` for torsion. The deflection of a clamped beam then differs from that of Euler and Bernoulli
 //! by the factor `1 + 1 / (2 n²)` under a load at its tip, if half a piece of beam clamps its root.
 
+use super::WorldPlan;
 use super::body::{BodyPlan, PartPlan, SpringPlan};
 use crate::check::Invalid;
 
@@ -116,12 +117,40 @@ impl BodyPlan {
             }
             last_of.push(self.parts.len() - 1);
         }
+        let is_soft = |limb: usize| first_of[limb] != last_of[limb];
+        for joint in &self.joints {
+            // The joint keeps the parts at its ends apart from contacts; the others beside it would touch in a sharp bend.
+            if is_soft(joint.parent) || is_soft(joint.child) {
+                self.contact_free_pairs.push([joint.parent, joint.child]);
+            }
+        }
         for joint in &mut self.joints {
             (joint.parent, joint.child) = (last_of[joint.parent], first_of[joint.child]);
         }
         let middle = first_of.get(self.middle_part).zip(last_of.get(self.middle_part));
         self.middle_part = middle.map_or(0, |(first, last)| (first + last).div_ceil(2));
         self
+    }
+}
+
+impl WorldPlan {
+    /// Number of steps into which an engine that integrates springs explicitly has to divide each physics step: that of the
+    /// substeps, or as many times more as the fastest spring of a soft limb calls for. A part between two springs swings at
+    /// most at `2 √(k / I)`, for the stiffness k and the part's moment of inertia I about its centre, and a step lasts at most
+    /// half of the inverse of that.
+    pub fn explicit_steps(&self) -> u32 {
+        let parts = &self.body.parts;
+        let fastest = self.body.springs.iter().flat_map(|spring| {
+            let part = &parts[spring.child];
+            let [x2, y2, z2] = part.size_m().map(|size_m| size_m * size_m);
+            let inertia = [y2 + z2, x2 + z2, x2 + y2].map(|sum| part.mass_kg() * sum / 12.0);
+            let stiffness = spring.stiffness_nm_per_rad.into_iter();
+            stiffness.zip(inertia).map(|(stiffness, inertia)| 2.0 * (stiffness / inertia).sqrt())
+        });
+        let most_per_s = 2.0 * fastest.fold(0.0_f32, f32::max);
+        let substeps = self.physics.substeps.max(1);
+        let per_s = (self.physics.steps_per_s * substeps) as f32;
+        substeps * (most_per_s / per_s).ceil().max(1.0) as u32
     }
 }
 

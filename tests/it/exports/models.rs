@@ -13,7 +13,9 @@ use snakes_and_stairs::export::{ExportOrder, ExportProgress, ExportSource, Expor
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::LoadedChampion;
 use snakes_and_stairs::score::{Trial, evaluate};
-use snakes_and_stairs::world::{JointTorque, Simulation, Vector, WorldPlan};
+use snakes_and_stairs::world::{
+    JointTorque, SOFTEST_M4_S2, STIFFEST_M4_S2, Simulation, Vector, WorldPlan, modulus_at_pa,
+};
 
 use super::{peer_python, peer_script, succeed};
 use crate::program::{folder, snakes};
@@ -102,6 +104,23 @@ fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
     ];
     let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
     with_fields(&Settings::default(), fields).expect("allowed").trial
+}
+
+/// The same trial with soft limbs: each of a random modulus, from as soft as allowed to rigid.
+fn softened(trial: &Trial, rng: &mut ChaCha8Rng) -> Trial {
+    let agent = &trial.agent;
+    let modulus = |limb: usize| {
+        let sides_m = [agent.limb_width_m.at(limb), agent.limb_height_m.at(limb)];
+        let density = agent.density_kg_m3.as_ref().map_or(2.5, |density| density.at(limb));
+        let bending_m4_s2 = log_between(rng, [SOFTEST_M4_S2 * 1.01, STIFFEST_M4_S2 * 1.5]);
+        modulus_at_pa(bending_m4_s2, sides_m, density)
+    };
+    let moduli: Vec<f32> = (0..agent.limbs as usize).map(modulus).collect();
+    let settings = Settings { trial: trial.clone(), ..Settings::default() };
+    let moduli = format!("{moduli:?}");
+    let parts = rng.random_range(2..=4).to_string();
+    let fields = [("youngs_modulus_pa", moduli.as_str()), ("soft_parts", parts.as_str())];
+    with_fields(&settings, fields).expect("allowed").trial
 }
 
 /// Moves all limbs of a world upwards.
@@ -241,6 +260,53 @@ fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaCha8Rng) -> 
     })
 }
 
+/// The expected model of a body with soft limbs, and its motion in this engine without gravity.
+fn soft_description(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
+    let body = &plan.body;
+    let names: Vec<String> = (0..body.parts.len())
+        .map(|index| {
+            let limb = body.parts[index].limb;
+            let parts = body.parts_of(limb);
+            match parts.len() {
+                1 => format!("limb {}", limb + 1),
+                _ => format!("limb {} part {}", limb + 1, index - parts.start + 1),
+            }
+        })
+        .collect();
+    let hinges = body.parts.iter().enumerate().flat_map(|(index, part)| {
+        let spring = body.springs.iter().find(|spring| spring.child == index);
+        let of_spring = spring.into_iter().flat_map(|spring| {
+            let name = &names[index];
+            ["x", "y", "z"].into_iter().enumerate().map(move |(axis, letter)| {
+                let [stiffness, damping] =
+                    [spring.stiffness_nm_per_rad[axis], spring.damping_nms_per_rad[axis]];
+                json!([format!("spring {letter} {name}"), stiffness, damping])
+            })
+        });
+        let joint = body.joints.iter().find(|joint| joint.child == index);
+        let of_joint = joint.into_iter().flat_map(|joint| {
+            ["bend", "twist"].map(|axis| {
+                json!([format!("{axis} {}", part.limb), 0.0, joint.damping_nms_per_rad])
+            })
+        });
+        of_joint.chain(of_spring).collect::<Vec<_>>()
+    });
+    let hinges: Vec<Value> = hinges.collect();
+    let apart = |a: usize, b: usize| {
+        let is_joined = body.joints.iter().any(|joint| (joint.parent, joint.child) == (a, b));
+        let limbs = [body.parts[a].limb, body.parts[b].limb];
+        limbs[0] != limbs[1] && !is_joined && !body.contact_free_pairs.contains(&limbs)
+    };
+    let count = body.parts.len();
+    let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
+    let mut expected = description(plan, plan, rng);
+    expected["substeps"] = json!(plan.explicit_steps());
+    expected["bodies"] = json!(names);
+    expected["hinges"] = json!(hinges);
+    expected["pairs"] = json!(pairs.filter(|&(a, b)| apart(a, b)).count());
+    expected
+}
+
 /// Exports a genome's body in a trial.
 fn export(name: &str, champion: &Champion, path: &Path) {
     let loaded = LoadedChampion {
@@ -309,6 +375,26 @@ fn a_hundred_random_bodies_move_in_mujoco_as_here() {
         export(&name, &pendulum, &path("-pendulum.xml"));
         let expected = description(&plan(&champion), &plan(&pendulum), &mut rng);
         fs::write(path(".json"), expected.to_string()).expect("written");
+    }
+    let said = succeed(python.arg(peer_script("models.py")).arg(folder.path()));
+    println!("{said}");
+    assert!(said.contains(&format!("{BODIES} bodies")), "{said}");
+}
+
+#[test]
+fn a_hundred_random_soft_bodies_move_in_mujoco_as_here() {
+    let test = "a_hundred_random_soft_bodies_move_in_mujoco_as_here";
+    let Some(mut python) = peer_python("mujoco, numpy", test) else { return };
+    let folder = folder();
+    for body in 0..BODIES {
+        let mut rng = stream(2, 1, body, Purpose::Birth);
+        let rigid = random_trial(&mut rng);
+        let champion = champion(softened(&rigid, &mut rng), &mut rng);
+        let name = format!("body {body}");
+        let path = |ending: &str| folder.path().join(format!("{name}{ending}"));
+        export(&name, &champion, &path(".xml"));
+        let plan = champion.trial.world_plan(&champion.genome);
+        fs::write(path(".json"), soft_description(&plan, &mut rng).to_string()).expect("written");
     }
     let said = succeed(python.arg(peer_script("models.py")).arg(folder.path()));
     println!("{said}");

@@ -52,6 +52,31 @@ fn a_click_selects_a_block_and_its_buttons_change_it() {
 }
 
 #[test]
+fn a_block_becomes_soft_and_rigid_again() {
+    let mut harness = editing(theme::PANEL_WIDTH);
+    assert!(harness.query_by_label("Young's modulus").is_none());
+    harness.get_by_label("Soft").click();
+    harness.run();
+    let (size, value) = (BlockSize::Modulus, BlockSize::USUAL_MODULUS_PA);
+    let soften = BodyCommand::Set { block: 0, size, value };
+    let Edit { editor, commands, .. } = harness.state_mut();
+    assert_eq!(*commands, [Command::Body(soften.clone())]);
+    commands.clear();
+    editor.apply(&soften, None, &mut prepared_run()).expect("allowed");
+    assert_eq!(editor.edited().expect("editing").body.parts_of(0).len(), 3);
+    harness.run();
+    assert!(harness.query_by_label("Young's modulus").is_some());
+    harness.get_by_label("Soft").click();
+    harness.run();
+    let rigid = BodyCommand::MakeRigid { block: 0 };
+    let Edit { editor, commands, .. } = harness.state_mut();
+    assert_eq!(*commands, [Command::Body(rigid.clone())]);
+    editor.apply(&rigid, None, &mut prepared_run()).expect("allowed");
+    let edited = editor.edited().expect("editing");
+    assert_eq!((edited.body.springs.len(), edited.steps), (0, [true, false]));
+}
+
+#[test]
 fn budgets_are_in_words_and_nothing_is_undone_before_the_first_change() {
     for width in [300.0, 900.0] {
         let mut harness = editing(width);
