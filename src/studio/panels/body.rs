@@ -157,8 +157,8 @@ impl BodyPanel {
                 }
                 ui.end_row();
             }
+            softness(ui, block, segment, commands);
         });
-        softness(ui, block, segment, commands);
         let is_last = block + 1 == segments.len();
         ui.horizontal_wrapped(|ui| {
             for (change, label, hint) in CHANGES {
@@ -172,39 +172,35 @@ impl BodyPanel {
     }
 }
 
-/// Whether a block is soft, and how soft.
+/// The row that says whether a block is soft, and how soft.
 fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment, commands: &mut Vec<Command>) {
-    const HINT: &str =
-        "Stiffness of its material. A soft block bends and springs back; a very stiff one is rigid";
-    let mut set = |value| {
-        let size = BlockSize::Modulus;
-        commands.push(Command::Body(BodyCommand::Set { block, size, value }));
-    };
-    let Some(mut modulus_pa) = segment.youngs_modulus_pa else {
-        if ui.checkbox(&mut false, "Soft").on_hover_text(HINT).clicked() {
-            set(BlockSize::USUAL_MODULUS_PA);
-        }
-        return;
-    };
-    let mut is_rigid = false;
-    ui.horizontal(|ui| {
-        is_rigid = ui.checkbox(&mut true, "Soft").on_hover_text(HINT).clicked();
-        let slider = egui::Slider::new(&mut modulus_pa, 1000.0..=100_000.0)
+    const HINT: &str = "A soft block bends and springs back";
+    const MODULUS_HINT: &str =
+        "Young's modulus of its material. A block that is too stiff to bend is rigid";
+    let mut is_soft = segment.youngs_modulus_pa.is_some();
+    if ui.checkbox(&mut is_soft, "Soft").on_hover_text(HINT).clicked() {
+        let (size, value) = (BlockSize::Modulus, BlockSize::USUAL_MODULUS_PA);
+        commands.push(Command::Body(match is_soft {
+            true => BodyCommand::Set { block, size, value },
+            false => BodyCommand::MakeRigid { block },
+        }));
+    }
+    if let Some(mut value) = segment.youngs_modulus_pa {
+        let slider = egui::Slider::new(&mut value, 1000.0..=100_000.0)
             .logarithmic(true)
             .suffix(" Pa")
             .clamping(egui::SliderClamping::Edits)
             .max_decimals(0);
-        let slider = ui.add(slider).on_hover_text(HINT);
+        let slider = ui.add(slider).on_hover_text(MODULUS_HINT);
         slider.widget_info(|| {
             egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, "Young's modulus")
         });
         if slider.changed() {
-            set(modulus_pa);
+            let size = BlockSize::Modulus;
+            commands.push(Command::Body(BodyCommand::Set { block, size, value }));
         }
-    });
-    if is_rigid {
-        commands.push(Command::Body(BodyCommand::MakeRigid { block }));
     }
+    ui.end_row();
 }
 
 /// The buttons that use the body.

@@ -111,8 +111,8 @@ impl LimbShape {
 
     /// A light band around the lower part, which follows the block's round edges.
     fn belly(&self, solid: &mut MeshBuilder) {
-        /// Strips of the band from one side over the bottom to the other.
-        const STRIPS: usize = 14;
+        // Strips of the band from one side over the bottom to the other. Wide edges need more, or the band would cut into them.
+        let strips = if self.parts > 1 { 40 } else { 14 };
         let [front, rear] = self.cuts_m();
         let edge_m = self.edge_m();
         let half_length = ((self.size.y - front - rear) / 2.0 - edge_m).max(0.0);
@@ -121,7 +121,7 @@ impl LimbShape {
         let inner = Vec2::new(half_x - edge_m, half_z - edge_m).max(Vec2::ZERO);
         // From the right end of the band to the left one: up the side, around the edge, along the bottom.
         let place = |strip: usize| {
-            let share = strip as f32 / STRIPS as f32;
+            let share = strip as f32 / strips as f32;
             let side = if share < 0.5 { 1.0 } else { -1.0 };
             let along = 1.0 - (share - 0.5).abs() * 2.0;
             let (out, normal) = if along < 0.2 {
@@ -138,8 +138,8 @@ impl LimbShape {
             let at = out + normal * PAINT_M;
             (Vec2::new(at.x * side, at.y), Vec2::new(normal.x * side, normal.y))
         };
-        solid.patch(1, STRIPS, |end, strip| {
-            let (at, normal) = place(STRIPS - strip);
+        solid.patch(1, strips, |end, strip| {
+            let (at, normal) = place(strips - strip);
             let y = middle_y + half_length * (end as f32 * 2.0 - 1.0);
             (Vec3::new(at.x, y, at.y), Vec3::new(normal.x, 0.0, normal.y))
         });
@@ -211,8 +211,11 @@ impl LimbShape {
     /// Positions of the eyes: at the upper edges of the head, standing out at the top and at the side.
     fn eyes(&self) -> [Vec3; 2] {
         let radius = self.eye_m();
-        let (y, z) = (self.size.y / 2.0 - radius * 1.9, self.size.z / 2.0 - radius * 0.2);
-        [-1.0, 1.0].map(|side| Vec3::new(side * (self.size.x / 2.0 - radius * 0.35), y, z))
+        // Where edges are rounder, the block ends further inside.
+        let inwards = (self.edge_m() - self.size.min_element() * EDGE) * 0.3;
+        let (y, z) = (self.size.y / 2.0 - radius * 1.9, self.size.z / 2.0 - radius * 0.2 - inwards);
+        let x = self.size.x / 2.0 - radius * 0.35 - inwards;
+        [-1.0, 1.0].map(|side| Vec3::new(side * x, y, z))
     }
 }
 
