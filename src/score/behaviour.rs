@@ -55,18 +55,19 @@ pub struct BehaviourObserver {
 impl BehaviourObserver {
     /// Takes in the state of the world after a healthy step.
     pub fn observe(&mut self, simulation: &Simulation, stairs: &Stairs) {
-        let middle_limb = simulation.body().middle_part;
-        let (mut sum_z_m, mut middle, mut limbs) = (0.0, [0.0; 3], 0);
+        let body = simulation.body();
+        let (mut sum_z_m, mut middle, mut parts) = (0.0, [0.0; 3], 0);
         for (index, pose) in simulation.poses().enumerate() {
             let at = pose.translation;
             sum_z_m += f64::from(at.z);
-            limbs += 1;
-            if index == middle_limb {
+            parts += 1;
+            if index == body.middle_part {
                 middle = at.to_array();
             }
         }
-        let limbs = f64::from(limbs.max(1));
-        self.height_m += sum_z_m / limbs - f64::from(stairs.surface_z_m(middle[0], middle[1]));
+        let parts = f64::from(parts.max(1));
+        let limbs = body.limbs().max(1) as f64;
+        self.height_m += sum_z_m / parts - f64::from(stairs.surface_z_m(middle[0], middle[1]));
         self.sideways_m += f64::from(middle[0].abs());
         self.contacts += simulation.limbs_in_contact() as f64 / limbs;
         self.steps += 1;
@@ -96,6 +97,20 @@ impl BehaviourObserver {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_contact_duty_of_soft_limbs_counts_limbs_and_not_their_parts() {
+        let champion = crate::save::shipped_champion().expect("shipped").champion;
+        let duty = |trial: &crate::score::Trial| {
+            let mut rollout = crate::score::Rollout::new(&champion.genome, trial);
+            // It still lies on the ground with all limbs.
+            (0..6).for_each(|_| assert!(rollout.advance()));
+            rollout.evaluation().behaviour.expect("measured").contact_duty
+        };
+        let mut soft = champion.trial.clone();
+        soft.agent.youngs_modulus_pa = Some(60_000.0.into());
+        assert!(duty(&champion.trial) > 0.8 && duty(&soft) > 0.8, "{}", duty(&soft));
+    }
 
     #[test]
     fn transport_costs_energy_per_weight_and_way_and_climbing_lifts_the_weight() {
