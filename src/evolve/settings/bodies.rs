@@ -2,10 +2,27 @@
 
 use super::Settings;
 use crate::check::Invalid;
-use crate::score::Fitness;
+use crate::genome::BodySpace;
+use crate::score::{AgentSettings, Fitness};
 
 /// Room on the landing beside the longest body, in metres.
 const LANDING_ROOM_M: f32 = 2.0;
+
+/// The settings of the body that have no effect, by their paths in the settings of a run.
+pub(super) fn unused_of_body(bodies: &BodySpace, agent: &AgentSettings) -> Vec<&'static str> {
+    let mut unused = Vec::new();
+    let are_soft = if bodies.vary {
+        unused.extend(AgentSettings::REPLACED_BY_OWN_BODIES);
+        bodies.soft
+    } else {
+        unused.push("trial.agent.torque_budget_nm");
+        agent.youngs_modulus_pa.is_some()
+    };
+    if !are_soft {
+        unused.extend(AgentSettings::OF_SOFT_LIMBS);
+    }
+    unused
+}
 
 impl Settings {
     /// Checks that strategy, controller and trial go with evolving bodies, if bodies evolve.

@@ -34,7 +34,7 @@ use crate::schema::{
     self, Section, SettingGroup, Walk, choice, is_default, named_by_info, setting_group, settings,
     whole,
 };
-use crate::score::{AgentSettings, Trial};
+use crate::score::Trial;
 use learning::check_learners;
 use strategy_kind::strategy_kinds;
 
@@ -360,18 +360,7 @@ impl SettingGroup for Settings {
                 "trial.agent.senses.balance",
             ]);
         }
-        if genome.bodies.vary {
-            unused.extend(AgentSettings::REPLACED_BY_OWN_BODIES);
-        } else {
-            unused.push("trial.agent.torque_budget_nm");
-        }
-        let soft = match genome.bodies.vary {
-            true => genome.bodies.soft,
-            false => trial.agent.youngs_modulus_pa.is_some(),
-        };
-        if !soft {
-            unused.extend(AgentSettings::OF_SOFT_LIMBS);
-        }
+        unused.extend(bodies::unused_of_body(&genome.bodies, &trial.agent));
         walk.without_effect(unused);
         walk.fixed(
             "Takes effect with the next run, because the fitness of earlier generations could not be compared.",
