@@ -16,7 +16,7 @@ const BENCH_DURATION: Duration = Duration::from_secs(6);
 
 /// Measures, and prints the figures.
 pub fn print_bench(args: &Args) -> Result<(), CliError> {
-    let (_, settings) = args.settings()?;
+    let (_, settings) = args.settings_of_run()?;
     let bar = ProgressBar::new(100);
     let report = bench(&settings, args.threads()?, BENCH_DURATION, |share| {
         bar.set_position((share * 100.0) as u64);

@@ -19,7 +19,7 @@ pub fn table1(args: &Args, first_seed: u64, count: u64) -> Result<(), CliError> 
     within("--seeds", count, 1..=10_000)?;
     within("--first-seed", first_seed, 0..=u64::MAX - count)?;
     let seeds = first_seed..=first_seed + count - 1;
-    let (preset, settings) = args.settings()?;
+    let (preset, settings) = args.settings_of_run()?;
     check_fitness(&settings).map_err(|invalid| args.of_its_flag(invalid))?;
     let folder = args.results_folder();
     folder.prepare()?;

@@ -104,6 +104,14 @@ impl BodyGenes {
         visit(Gene { field, name, unit: "kg/m³", range }, &mut self.density_kg_m3);
     }
 
+    /// Gives every block the gene of its softness, as bodies have it whose softness evolves. A rigid block stays rigid.
+    pub(super) fn with_softness(mut self) -> Self {
+        for segment in &mut self.segments {
+            segment.youngs_modulus_pa = Some(segment.modulus_or_rigid_pa());
+        }
+        self
+    }
+
     /// Widens a space so that it contains these genes.
     pub(super) fn widen(&self, space: &mut GenomeSpace) {
         space.bodies.vary = self.has_own_blocks();

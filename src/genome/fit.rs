@@ -93,6 +93,14 @@ impl GenomeSpace {
         result
     }
 
+    /// A genome with all genes that bodies of this space have: a founder may lack that of softness.
+    pub fn with_all_genes(&self, mut genome: Genome) -> Genome {
+        if self.bodies.vary && self.bodies.soft {
+            genome.body = genome.body.with_softness();
+        }
+        genome
+    }
+
     /// This space, widened as far as necessary to contain a genome. Settings that the genome says nothing about
     /// stay.
     #[must_use]

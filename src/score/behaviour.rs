@@ -56,18 +56,22 @@ impl BehaviourObserver {
     /// Takes in the state of the world after a healthy step.
     pub fn observe(&mut self, simulation: &Simulation, stairs: &Stairs) {
         let body = simulation.body();
-        let (mut sum_z_m, mut middle, mut parts) = (0.0, [0.0; 3], 0);
+        let (mut sum_z_m, mut middle) = (0.0, [0.0; 3]);
         for (index, pose) in simulation.poses().enumerate() {
             let at = pose.translation;
-            sum_z_m += f64::from(at.z);
-            parts += 1;
+            // Each limb counts alike, whatever its number of parts.
+            let parts = if body.springs.is_empty() {
+                1
+            } else {
+                body.parts_of(body.parts[index].limb).len()
+            };
+            sum_z_m += f64::from(at.z) / parts as f64;
             if index == body.middle_part {
                 middle = at.to_array();
             }
         }
-        let parts = f64::from(parts.max(1));
         let limbs = body.limbs().max(1) as f64;
-        self.height_m += sum_z_m / parts - f64::from(stairs.surface_z_m(middle[0], middle[1]));
+        self.height_m += sum_z_m / limbs - f64::from(stairs.surface_z_m(middle[0], middle[1]));
         self.sideways_m += f64::from(middle[0].abs());
         self.contacts += simulation.limbs_in_contact() as f64 / limbs;
         self.steps += 1;

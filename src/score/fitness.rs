@@ -122,7 +122,7 @@ pub fn arrived_y_m(stairs: &Stairs, body: &BodyPlan) -> f32 {
 pub(super) struct FinalState<'a> {
     /// The built body.
     pub body: &'a BodyPlan,
-    /// Poses of the limbs, head first.
+    /// Poses of the parts, from the head.
     pub poses: &'a [Pose],
     /// The furthest y that the middle limb's centre had, in m.
     pub furthest_y_m: f32,

@@ -7,7 +7,8 @@ use crate::schema::PerPart;
 use crate::world::{BodyPlan, JointPlan};
 
 impl Trial {
-    /// Checks that bodies with blocks of their own can be evaluated: one value for the joints of all, and no springs.
+    /// Checks that bodies with blocks of their own can be evaluated: one value for the joints of all, and no softness of
+    /// joints and surfaces.
     ///
     /// # Errors
     /// The first setting that does not go with them.
@@ -25,7 +26,7 @@ impl Trial {
                 return Err(Invalid::new(field, value, "one value while bodies evolve"));
             }
         }
-        // The engine takes one mass for all springs, and the masses of limbs differ.
+        // The engine takes one mass for all soft joints and surfaces, and the masses of limbs differ.
         for (field, cfm) in [
             ("agent.joint_cfm_m_s_per_n", agent.joint_cfm_m_s_per_n.at(0)),
             ("surface.soft_cfm_m_s_per_n", self.surface.soft_cfm_m_s_per_n),

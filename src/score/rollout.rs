@@ -222,7 +222,7 @@ impl Rollout {
         self.step >= self.last_step() || self.disqualified.is_some()
     }
 
-    /// The poses of the limbs after the last healthy step, head first.
+    /// The poses of the parts after the last healthy step, from the head.
     pub fn poses(&self) -> &[Pose] {
         &self.poses
     }

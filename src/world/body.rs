@@ -85,7 +85,7 @@ pub struct SpringPlan {
     pub stiffness_nm_per_rad: [f32; 3],
     /// Torque per rate about the same axes, in N·m·s/rad.
     pub damping_nms_per_rad: [f32; 3],
-    /// Factor of the allowed distance between its anchors: see [`JointPlan::gap_scale`].
+    /// Factor of the allowed distance between its anchors: the smallest side of the parts in metres, but at most 1.
     pub gap_scale: f32,
 }
 

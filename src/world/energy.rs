@@ -39,7 +39,8 @@ pub(super) struct LimbTurn {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EnergyLost {
     /// Everything that turned into heat, in J: `E(0) + W - E(t)`, with the kinetic and potential energy E of all limbs, the
-    /// springs of soft ones included, and the work W of the joint torques. A dent or a soft joint under load holds a little of it, which may come back.
+    /// springs of soft ones included, and the work W of the joint torques. A dent or a soft joint under load holds a little
+    /// of it, which may come back.
     pub total_j: f32,
     /// The part of the joints' damping, in J: the integral of `c ω²` over all joint axes, for the damping c and the
     /// rate ω.
@@ -51,8 +52,8 @@ pub struct EnergyLost {
 
 impl EnergyLost {
     /// What neither damping took, in J: the loss in contacts (friction, impacts, dents, damping of surfaces), at the
-    /// stops of the joints, and in the springs of soft limbs. The balance cannot separate these; [`super::Simulation::contact_patches`] has the power of
-    /// friction.
+    /// stops of the joints, and in the springs of soft limbs. The balance cannot separate these;
+    /// [`super::Simulation::contact_patches`] has the power of friction.
     pub fn elsewhere_j(&self) -> f32 {
         self.total_j - self.joint_damping_j - self.rotation_damping_j
     }

@@ -170,8 +170,9 @@ pub fn check_softness(
     }
     let [width_m, height_m] = sides_m;
     let allowed = format!(
-        "{least_pa:.0} Pa or more for limbs of {width_m} m by {height_m} m and {density_kg_m3} kg/m³, which would fold up \
-         under their own weight"
+        "{} Pa or more, because softer limbs of {width_m} m by {height_m} m and {density_kg_m3} kg/m³ would fold up under \
+         their own weight",
+        least_pa.ceil()
     );
     Err(Invalid::new("youngs_modulus_pa", youngs_modulus_pa, allowed))
 }

@@ -1,6 +1,8 @@
 //! The program without a window, run as a child process.
 
 use serde_json::json;
+use snakes_and_stairs::evolve::StrategyKind;
+use snakes_and_stairs::save::load_preset;
 
 use super::program::{folder, json_lines, run, stdout_of, with_slashes};
 
@@ -103,7 +105,7 @@ const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 #[test]
 fn a_run_from_a_champion_is_at_least_as_good_and_can_be_resumed() {
     let folder = folder();
-    let small = "--set newborns=0 --population 6 --generations 2 --out out";
+    let small = "--population 6 --generations 2 --out out";
     let arguments = format!("--no-render --json --from {CLIMBER} --set strategy=halving {small}");
     let output = run(folder.path(), &arguments);
     let stderr = String::from_utf8_lossy(&output.stderr);
@@ -200,9 +202,14 @@ fn every_preset_runs() {
     let folder = folder();
     for preset in json_lines(folder.path(), "presets --json") {
         let name = preset["name"].as_str().expect("a name");
-        let size = "--set newborns=0 --set candidates=10 --set limbs_max=3 --population 20 --generations 1 \
-                    --duration 1";
-        let arguments = format!("--no-render --json --preset {name} {size} --out out");
+        let size = "--population 20 --generations 1 --duration 1";
+        let strategy = load_preset(name).expect("shipped").settings.evolution.strategy;
+        let small = match strategy {
+            StrategyKind::CmaEs => "--set newborns=0",
+            StrategyKind::Islands => "--set candidates=10 --set limbs_max=3",
+            _ => "",
+        };
+        let arguments = format!("--no-render --json --preset {name} {size} {small} --out out");
         let lines = json_lines(folder.path(), &arguments);
         assert_eq!(lines[0]["evaluations"], json!(20), "{name}");
         assert_eq!(lines[1]["done"], json!(true), "{name}");

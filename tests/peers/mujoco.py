@@ -8,7 +8,7 @@ a JSON object, and so is each answer on standard output:
     {"torques": [[bend, twist], ...]}                   -> {"limbs": [...]}, after one step of control,
                                                            or "broken", if MuJoCo cannot go on
 
-A limb is [x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz, touches, fx, fy, fz]: pose, velocity and angular velocity of
+A limb, or a part of a soft one, is [x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz, touches, fx, fy, fz]: pose, velocity and angular velocity of
 its centre in the world, and the force of ground and stairs on it, in m, rad, s and N. The controller runs in `snakes`,
 so that any of them can be played, also those that sense their surroundings.
 
@@ -29,7 +29,7 @@ sys.path = [entry for entry in sys.path if os.path.abspath(entry or os.getcwd())
 
 
 def limb_bodies(mujoco, model):
-    """The numbers of the limbs' bodies, head first."""
+    """The numbers of the bodies of limbs and of parts of soft ones, head first."""
     names = [model.body(index).name for index in range(model.nbody)]
     return [index for index, name in enumerate(names) if name.startswith("limb ")]
 
@@ -42,6 +42,11 @@ class World:
         self.model = mujoco.MjModel.from_xml_string(text)
         self.data = mujoco.MjData(self.model)
         self.limbs = limb_bodies(mujoco, self.model)
+        # For each joint the places in that list of what it connects: a soft limb is several bodies.
+        places = {body: place for place, body in enumerate(self.limbs)}
+        hinges = range(self.model.njnt)
+        rears = [self.model.jnt_bodyid[hinge] for hinge in hinges if self.model.joint(hinge).name.startswith("bend ")]
+        self.joints = [(places[self.model.body_parentid[rear]], places[rear]) for rear in rears]
         self.substeps = substeps
         # Share of the angular momentum that the air takes in a substep.
         self.air = -math.expm1(-air_per_s * self.model.opt.timestep) / self.model.opt.timestep
@@ -65,11 +70,11 @@ class World:
         of MuJoCo's hinges acts about the rear limb's axis. That is why the motors of the model are not used."""
         data, numpy = self.data, self.numpy
         couples = numpy.zeros((len(self.limbs), 3))
-        for joint, (bend, twist) in enumerate(torques):
-            axes = data.xmat[self.limbs[joint]].reshape(3, 3)
+        for (front, rear), (bend, twist) in zip(self.joints, torques):
+            axes = data.xmat[self.limbs[front]].reshape(3, 3)
             couple = axes @ (bend, twist, 0.0)
-            couples[joint] -= couple
-            couples[joint + 1] += couple
+            couples[front] -= couple
+            couples[rear] += couple
         for _ in range(self.substeps):
             for limb, body in enumerate(self.limbs):
                 torque = couples[limb]
@@ -156,6 +161,8 @@ def draw(mujoco, numpy, arguments):
             poses = [row for row in rows if float(row["time_s"]) == nearest]
             mujoco.mj_resetData(model, data)
             mujoco.mj_forward(model, data)
+            if len(poses) != len(limbs):
+                sys.exit(f"{motion_path} has {len(poses)} limbs, {model_path} {len(limbs)} parts: soft limbs cannot be drawn")
             for body, row in zip(limbs, poses):
                 x, y, z, w = (float(row[f"rotation_{axis}"]) for axis in "xyzw")
                 geom = model.body_geomadr[body]

@@ -55,8 +55,7 @@ impl Args {
         let plan = match &self.from {
             Some(file) => self.plan_from(file)?,
             None => {
-                let (preset, settings) = self.settings()?;
-                self.check_effects(&settings)?;
+                let (preset, settings) = self.settings_of_run()?;
                 RunPlan::new(&preset, self.seed()?, settings)
             }
         };
@@ -97,6 +96,13 @@ impl Args {
     /// The preset's name and its settings, with the flags' values put in and everything checked.
     pub fn settings(&self) -> Result<(String, Settings), CliError> {
         self.flags_over(self.preset()?)
+    }
+
+    /// The same for runs with these very settings: each `--set` has to have an effect on them.
+    pub fn settings_of_run(&self) -> Result<(String, Settings), CliError> {
+        let (preset, settings) = self.settings()?;
+        self.check_effects(&settings)?;
+        Ok((preset, settings))
     }
 
     /// Refuses `--set` of a field that nothing in a run with these settings uses.
@@ -218,7 +224,7 @@ mod tests {
             ),
             (
                 "--preset nosuch",
-                "--preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, or a file",
+                "--preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, or a file",
             ),
             ("--threads 0", "--threads is 0; allowed: 1 to 1024"),
             (
@@ -245,7 +251,7 @@ mod tests {
         ] {
             let refusal = args_of(words).run_source().map(|_| ()).expect_err("refused");
             let text = refusal.to_string();
-            assert!(text.starts_with(start) && text.contains("no effect"), "{text}");
+            assert!(text.starts_with(start) && text.contains("do not use it"), "{text}");
         }
         let used = "--preset climb --set youngs_modulus_pa=20000 --set soft_parts=4";
         assert!(args_of(used).run_source().is_ok());

@@ -51,6 +51,8 @@ impl RunPlan {
     /// # Errors
     /// It does not fit the trial or the space of genomes; the message names the gene or setting.
     pub fn starting_from(self, founder: Founder) -> Result<Self, Invalid> {
+        let genome = self.settings.genome.with_all_genes(founder.genome);
+        let founder = Founder { genome, ..founder };
         let plan = Self { founder: Some(Arc::new(founder)), ..self };
         plan.check_founder()?;
         Ok(plan)

@@ -4,6 +4,7 @@ use super::Settings;
 use crate::check::Invalid;
 use crate::genome::BodySpace;
 use crate::score::{AgentSettings, Fitness};
+use crate::world::{SOFTEST_M4_S2, modulus_at_pa};
 
 /// Room on the landing beside the longest body, in metres.
 const LANDING_ROOM_M: f32 = 2.0;
@@ -46,6 +47,17 @@ impl Settings {
                 .map_err(|error| error.inside("trial.agent"));
         }
         self.trial.check_own_bodies().map_err(|error| error.inside("trial"))?;
+        if self.genome.bodies.soft {
+            let sides_m = [self.genome.bodies.thickness_min_m; 2];
+            let least_pa = modulus_at_pa(SOFTEST_M4_S2, sides_m, self.genome.density_max_kg_m3);
+            if self.genome.bodies.modulus_max_pa < least_pa {
+                let (field, found) =
+                    ("genome.bodies.modulus_max_pa", self.genome.bodies.modulus_max_pa);
+                let allowed =
+                    format!("{:.0} or more, which the thinnest blocks need", least_pa.ceil());
+                return Err(Invalid::new(field, found, allowed));
+            }
+        }
         // The longest body could not arrive as a whole on a shorter one.
         let least_m = self.genome.bodies.longest_m + LANDING_ROOM_M;
         if self.trial.fitness == Fitness::Share && self.trial.stairs.landing_m < least_m {

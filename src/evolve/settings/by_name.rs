@@ -62,7 +62,7 @@ pub fn check_effects<'a>(
         let Ok(path) = find(settings, path) else { continue };
         let setting = listed.iter().find(|listed| listed.path == path);
         if let Some(setting) = setting.filter(|setting| !setting.is_used) {
-            let allowed = "only settings that this run uses: it would have no effect with this strategy, controller and body";
+            let allowed = "no value, because this strategy, controller and body do not use it";
             return Err(Invalid::new(&path, setting.value.to_string(), allowed));
         }
     }

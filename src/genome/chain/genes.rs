@@ -3,6 +3,7 @@
 use super::segment::Segment;
 use super::space::BodySpace;
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
+use crate::world::{STIFFEST_M4_S2, modulus_at_pa};
 
 impl Segment {
     /// A block of a body without ancestors, by its place from the head.
@@ -19,6 +20,13 @@ impl Segment {
             // A gene fills it in.
             youngs_modulus_pa: space.soft.then_some(space.modulus_min_pa),
         }
+    }
+
+    /// Its Young's modulus, in Pa; of a rigid block the least at which a block is rigid.
+    pub(in crate::genome) fn modulus_or_rigid_pa(&self) -> f32 {
+        let sides_m = [self.width_m, self.height_m];
+        let rigid_pa = modulus_at_pa(1.01 * STIFFEST_M4_S2, sides_m, self.density_kg_m3);
+        self.youngs_modulus_pa.unwrap_or(rigid_pa)
     }
 
     /// Visits the genes that have an effect. The joint of the head has none.
@@ -110,11 +118,14 @@ impl BodySpace {
                 segment.twist_limit_rad,
             );
             self.strength_min = self.strength_min.min(segment.strength);
-            if let Some(modulus_pa) = segment.youngs_modulus_pa {
+        }
+        self.soft = segments.iter().any(|segment| segment.youngs_modulus_pa.is_some());
+        if self.soft {
+            for segment in segments {
+                let modulus_pa = segment.modulus_or_rigid_pa();
                 widen([&mut self.modulus_min_pa, &mut self.modulus_max_pa], modulus_pa);
             }
         }
-        self.soft = segments.iter().any(|segment| segment.youngs_modulus_pa.is_some());
         self.volume_m3 = segments.iter().map(Segment::volume_m3).sum::<f64>() as f32;
         let length_m: f32 = segments.iter().map(|segment| segment.length_m).sum();
         self.longest_m = self.longest_m.max(length_m);

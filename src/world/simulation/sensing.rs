@@ -1,5 +1,7 @@
 //! What the limbs feel and see: touch and load, attitude, and the way to the next step.
 
+use std::ops::Range;
+
 use rapier3d::prelude::*;
 
 use super::Simulation;
@@ -26,25 +28,6 @@ pub struct LimbReading {
     pub clearance_m: f32,
 }
 
-impl LimbReading {
-    /// The reading of the first parts of a soft limb, with that of the next of its `parts`: it touches where one of them
-    /// does, loads add up, the attitude is the mean, the way to the next step that of the front, and the lowest corner counts.
-    fn and(self, next: Self, parts: usize) -> Self {
-        let share = 1.0 / parts as f32;
-        // The first part comes with its whole value, which stands for its share alone.
-        let lowered_m = (self.clearance_m - next.clearance_m).max(0.0);
-        Self {
-            is_touching: self.is_touching || next.is_touching,
-            load_n: self.load_n + next.load_n,
-            blocked_n: self.blocked_n + next.blocked_n,
-            pitch: self.pitch + next.pitch * share,
-            roll: self.roll + next.roll * share,
-            next_step: self.next_step.map(|[gap_m, up_m]| [gap_m, up_m + lowered_m]),
-            clearance_m: self.clearance_m.min(next.clearance_m),
-        }
-    }
-}
-
 /// The senses of the snake as a whole, in units of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SnakeReading {
@@ -67,13 +50,49 @@ impl Simulation {
         readings.clear();
         let mut first = 0;
         for limb in self.body.parts.chunk_by(|front, rear| front.limb == rear.limb) {
-            let mut reading = self.read_part(first);
-            for part in first + 1..first + limb.len() {
-                reading = reading.and(self.read_part(part), limb.len());
-            }
-            readings.push(reading);
-            first += limb.len();
+            let parts = first..first + limb.len();
+            first = parts.end;
+            readings.push(if limb.len() == 1 {
+                self.read_part(parts.start)
+            } else {
+                self.read_soft_limb(parts)
+            });
         }
+    }
+
+    /// The senses of a soft limb: it touches where one of its parts does, loads add up, pitch and roll are means, the way to
+    /// the next step is that of the front part, and the lowest corner is that of all parts.
+    fn read_soft_limb(&self, parts: Range<usize>) -> LimbReading {
+        let lowest_z_m =
+            parts.clone().map(|part| self.lowest_z_m(part)).fold(f32::INFINITY, f32::min);
+        let count = parts.len() as f32;
+        let middle = parts.start + parts.len() / 2;
+        let middle_m = self.physics.bodies[self.parts[middle]].translation();
+        let front = self.read_part(parts.start);
+        let raised_m = self.lowest_z_m(parts.start) - lowest_z_m;
+        let mut limb = LimbReading {
+            next_step: front.next_step.map(|[gap_m, up_m]| [gap_m, up_m + raised_m]),
+            clearance_m: lowest_z_m - self.profile.surface_z_m(middle_m.x, middle_m.y),
+            ..LimbReading::default()
+        };
+        for part in parts.map(|part| self.read_part(part)) {
+            limb.is_touching |= part.is_touching;
+            limb.load_n += part.load_n;
+            limb.blocked_n += part.blocked_n;
+            limb.pitch += part.pitch / count;
+            limb.roll += part.roll / count;
+        }
+        limb
+    }
+
+    /// Height of the lowest corner of a part, in metres.
+    fn lowest_z_m(&self, part: usize) -> f32 {
+        let body = &self.physics.bodies[self.parts[part]];
+        let (centre, turn) = (body.translation(), *body.rotation());
+        let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
+        let reach_m = [Vector::X, Vector::Y, Vector::Z].map(|axis| (turn * axis).z);
+        let reach_m = reach_m.into_iter().zip(half_m);
+        centre.z - reach_m.map(|(part, half)| part.abs() * half).sum::<f32>()
     }
 
     /// The senses of the snake as a whole.
@@ -91,11 +110,9 @@ impl Simulation {
     fn read_part(&self, part: usize) -> LimbReading {
         let body = &self.physics.bodies[self.parts[part]];
         let (centre, turn) = (body.translation(), *body.rotation());
-        let [right, forward, up] = [Vector::X, Vector::Y, Vector::Z].map(|axis| turn * axis);
-        let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
-        let reach_m = [right.z, forward.z, up.z].into_iter().zip(half_m);
-        let lowest_z_m = centre.z - reach_m.map(|(part, half)| part.abs() * half).sum::<f32>();
-        let front = centre + forward * half_m[1];
+        let [right, forward] = [Vector::X, Vector::Y].map(|axis| turn * axis);
+        let lowest_z_m = self.lowest_z_m(part);
+        let front = centre + forward * (self.body.parts[part].length_m / 2.0);
         let next = self.profile.next_step(front.x, front.y);
         let (is_touching, force_n) = self.sensed_contact(part);
         LimbReading {
@@ -170,6 +187,39 @@ mod tests {
             }
         }
         assert!(touches > 100);
+    }
+
+    #[test]
+    fn a_soft_limb_feels_as_a_rigid_one_at_rest() {
+        let champion = crate::save::shipped_champion().expect("shipped").champion;
+        let mut soft = champion.trial.clone();
+        soft.agent.youngs_modulus_pa = Some(60_000.0.into());
+        let [rigid, soft] = [&champion.trial, &soft].map(|trial| {
+            let mut plan = trial.world_plan(&champion.genome);
+            // Turned upwards about the x axis as a whole, and away from the ground.
+            plan.physics.gravity_m_s2 = 0.0;
+            let mut world = Simulation::new(&plan);
+            let turn = Rotation::from_xyzw(libm::sinf(0.2), 0.0, 0.0, libm::cosf(0.2));
+            for part in world.parts.clone() {
+                let body = &mut world.physics_mut().bodies[part];
+                let at = turn * body.translation() + Vector::new(0.0, 0.0, 20.0);
+                body.set_position(Pose::from_parts(at, turn), true);
+            }
+            let mut readings = Vec::new();
+            world.read_limbs(&mut readings);
+            readings
+        });
+        assert_eq!((rigid.len(), soft.len()), (5, 5));
+        for (rigid, soft) in rigid.iter().zip(&soft) {
+            let values = |of: &LimbReading| {
+                let [gap_m, up_m] = of.next_step.expect("a riser ahead");
+                [of.pitch, of.roll, of.clearance_m, gap_m, up_m]
+            };
+            for (a, b) in values(rigid).into_iter().zip(values(soft)) {
+                assert!((a - b).abs() < 1e-4, "{rigid:?} {soft:?}");
+            }
+            assert!((rigid.pitch - libm::sinf(0.4)).abs() < 1e-5);
+        }
     }
 
     #[test]

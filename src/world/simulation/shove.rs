@@ -47,14 +47,12 @@ impl Simulation {
     /// Shoves a limb now. A limb that does not exist is not shoved. The energy that the shove brings or takes is no gain
     /// and no loss in the energy balance.
     pub fn shove(&mut self, shove: &Shove) {
-        let parts = self.body.parts_of(shove.limb);
-        // The middle part of a soft limb.
-        let middle = parts.start + parts.len() / 2;
-        let Some(&part) = self.parts.get(middle).filter(|_| !parts.is_empty()) else { return };
-        let body = &mut self.physics.bodies[part];
-        let before_j = body.kinetic_energy();
-        body.set_linvel(body.linvel() + shove.change_m_s, true);
-        self.balance.start_j += f64::from(body.kinetic_energy() - before_j);
+        for &part in &self.parts[self.body.parts_of(shove.limb)] {
+            let body = &mut self.physics.bodies[part];
+            let before_j = body.kinetic_energy();
+            body.set_linvel(body.linvel() + shove.change_m_s, true);
+            self.balance.start_j += f64::from(body.kinetic_energy() - before_j);
+        }
     }
 }
 
@@ -64,6 +62,17 @@ mod tests {
     use crate::rng::{Purpose, stream};
     use crate::score::Trial;
     use crate::world::{JointTorque, Shove, Simulation, Vector};
+
+    #[test]
+    fn a_shove_moves_all_parts_of_a_soft_limb() {
+        let champion = crate::save::shipped_champion().expect("shipped").champion;
+        let mut trial = champion.trial.clone();
+        trial.agent.youngs_modulus_pa = Some(60_000.0.into());
+        let mut world = Simulation::new(&trial.world_plan(&champion.genome));
+        world.shove(&Shove { limb: 1, at_s: 0.0, change_m_s: Vector::new(0.0, -2.0, 0.0) });
+        let speeds: Vec<f32> = world.speeds_m_s().collect();
+        assert_eq!(speeds[2..7], [0.0, 2.0, 2.0, 2.0, 0.0]);
+    }
 
     #[test]
     fn a_shove_changes_the_speed_of_one_limb_and_is_no_gain_of_energy() {

@@ -376,7 +376,8 @@ fn a_hundred_random_bodies_move_in_mujoco_as_here() {
         let expected = description(&plan(&champion), &plan(&pendulum), &mut rng);
         fs::write(path(".json"), expected.to_string()).expect("written");
     }
-    let said = succeed(python.arg(peer_script("models.py")).arg(folder.path()));
+    let said =
+        succeed(python.current_dir(folder.path()).arg(peer_script("models.py")).arg(folder.path()));
     println!("{said}");
     assert!(said.contains(&format!("{BODIES} bodies")), "{said}");
 }
@@ -396,7 +397,8 @@ fn a_hundred_random_soft_bodies_move_in_mujoco_as_here() {
         let plan = champion.trial.world_plan(&champion.genome);
         fs::write(path(".json"), soft_description(&plan, &mut rng).to_string()).expect("written");
     }
-    let said = succeed(python.arg(peer_script("models.py")).arg(folder.path()));
+    let said =
+        succeed(python.current_dir(folder.path()).arg(peer_script("models.py")).arg(folder.path()));
     println!("{said}");
     assert!(said.contains(&format!("{BODIES} bodies")), "{said}");
 }

@@ -26,7 +26,7 @@ fn pandas_and_duckdb_read_the_same_values_from_csv_and_parquet() {
     let rows: u32 = [&folder.path().join(format!("{first}.ron")), &file]
         .into_iter()
         .map(|file| load_champion(file).expect("well formed").champion)
-        .map(|champion| (champion.evaluation.steps + 1) * champion.body().parts.len() as u32)
+        .map(|champion| (champion.evaluation.steps + 1) * champion.body().limbs() as u32)
         .sum();
     for ending in ["csv", "parquet"] {
         let mut export = crate::program::snakes(folder.path(), "export climber.ron");
