@@ -263,8 +263,9 @@ mod tests {
                 panic!("{name} is no champion");
             };
             assert!(details.climbed >= 3, "{name} climbs {}", details.climbed);
-            assert_eq!(details.thumbnail.parts_m.len(), 5, "{name} is on record");
             let (loaded, generation) = load_entry(&SavePlace::Shipped(name)).expect("whole");
+            let parts = loaded.champion.body().parts.len();
+            assert_eq!(details.thumbnail.parts_m.len(), parts, "{name} is on record");
             assert_eq!(loaded.champion.origin, details.origin);
             assert_eq!(generation, None);
         }

@@ -14,6 +14,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "fast",
     "feeler",
     "first-climber",
+    "foam",
     "learner",
     "rearer",
     "reflexes",
