@@ -17,7 +17,7 @@ use crate::world::Pose;
 
 /// Index of a part in its lane's snake.
 #[derive(Component, Debug)]
-struct Part(usize);
+struct SnakePart(usize);
 
 /// Meshes of a limb.
 #[derive(Debug, Clone)]
@@ -114,7 +114,7 @@ fn build(
                     let pose = poses[part];
                     let place = Transform::from_translation(pose.translation);
                     let place = place.with_rotation(pose.rotation);
-                    let mut bone = commands.spawn((Part(part), place, Visibility::default()));
+                    let mut bone = commands.spawn((SnakePart(part), place, Visibility::default()));
                     bone.insert(ChildOf(entity));
                     if lane.is_ghost() {
                         let size = Vec3::from(body.parts[part].size_m());
@@ -168,7 +168,7 @@ fn build(
 }
 
 /// Moves the parts. Unchanged transforms are not written, so Bevy does not propagate them again.
-fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&Part, &mut Transform)>) {
+fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&SnakePart, &mut Transform)>) {
     for (lane, children) in &lanes {
         let mut parts = parts.iter_many_mut(children);
         while let Some((part, mut transform)) = parts.fetch_next() {
@@ -213,7 +213,7 @@ mod tests {
         let props = world.resource::<Props>();
         let ghosts = [props.red_ghost.clone(), props.blue_ghost.clone()];
         let mut parts = world.query::<(
-            &Part,
+            &SnakePart,
             Option<&MeshMaterial3d<StandardMaterial>>,
             Has<NotShadowCaster>,
             Option<&Children>,
@@ -235,7 +235,7 @@ mod tests {
         let mut app = app();
         app.init_resource::<Moved>().add_systems(
             PostUpdate,
-            |parts: Query<(), (With<Part>, Changed<Transform>)>, mut moved: ResMut<Moved>| {
+            |parts: Query<(), (With<SnakePart>, Changed<Transform>)>, mut moved: ResMut<Moved>| {
                 moved.0 = parts.iter().count();
             },
         );

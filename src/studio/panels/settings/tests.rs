@@ -41,6 +41,7 @@ fn run_with_all_given() -> CurrentRun {
         ("trial.agent.density_kg_m3", "2"),
         ("trial.agent.bend_limit_rad", "1"),
         ("trial.agent.twist_limit_rad", "1"),
+        ("trial.agent.youngs_modulus_pa", "40000"),
         ("genome.density_min_kg_m3", "0.1"),
         ("genome.wave.frequency_min_hz", "0.01"),
         ("genome.wave.stiffness_min_nm_per_rad", "0"),
