@@ -25,7 +25,7 @@ const TINY: &str = "--no-render --json --preset report --population 4 --generati
 /// What lets bodies evolve in such a run.
 const WITH_BODIES: &str = "--set controller=gait --set bodies.vary=true --set limbs_max=3";
 
-/// What makes blocks soft in such a run, without and with bodies that evolve. The report's snake weighs half a kilogram per m³,
+/// Settings for soft blocks in such a run, without and with bodies that evolve. The report's snake weighs half a kilogram per m³,
 /// and its blocks are rigid from 4,600 Pa on.
 const WITH_SOFT_BLOCKS: &str = "--set youngs_modulus_pa=2000";
 const WITH_SOFT_BODIES: &str = "--set bodies.soft=true";
