@@ -194,8 +194,7 @@ impl Motion {
     fn of(champion: &snakes_and_stairs::evolve::Champion) -> Self {
         let mut rollout = Rollout::new(&champion.genome, &champion.trial);
         let body = rollout.body();
-        let mut motion =
-            Self { limbs: body.limbs(), joints: body.joints.len(), ..Self::default() };
+        let mut motion = Self { limbs: body.limbs(), joints: body.joints.len(), ..Self::default() };
         motion.observe(&rollout);
         while rollout.advance() {
             motion.observe(&rollout);
