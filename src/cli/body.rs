@@ -19,17 +19,16 @@ fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
     for index in 0..body.limbs() {
         // The joint in front of the block; the head has none.
         let joint = index.checked_sub(1).and_then(|joint| body.joints.get(joint));
-        let parts = body.parts_of(index);
         let [width_m, length_m, height_m] = body.limb_size_m(index);
-        let spring = body.springs.iter().find(|spring| parts.contains(&spring.parent));
+        let spring = body.spring_of(index);
         let line = serde_json::json!({
             "block": index + 1,
             "length_m": length_m,
             "width_m": width_m,
             "height_m": height_m,
-            "density_kg_m3": body.parts[parts.start].density_kg_m3,
+            "density_kg_m3": body.limb_density_kg_m3(index),
             "mass_kg": body.limb_mass_kg(index),
-            "parts": parts.len(),
+            "parts": body.parts_of(index).len(),
             "spring_nm_per_rad": spring.map(|spring| spring.stiffness_nm_per_rad),
             "spring_damping_nms_per_rad": spring.map(|spring| spring.damping_nms_per_rad),
             "bend_limit_rad": joint.map(|joint| joint.bend_limit_rad),
@@ -75,13 +74,11 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
             )
         });
         let [width_m, length_m, height_m] = body.limb_size_m(index);
-        let parts = body.parts_of(index);
-        let spring = body.springs.iter().find(|spring| parts.contains(&spring.parent));
-        let soft = spring.map(|spring| {
+        let soft = body.spring_of(index).map(|spring| {
             let [bending, torsion, sideways] = spring.stiffness_nm_per_rad;
             format!(
                 "\n       soft: {} parts, springs of {bending:.0} N·m/rad (bend), {torsion:.0} (twist), {sideways:.0} (sideways)",
-                parts.len()
+                body.parts_of(index).len()
             )
         });
         let line = format!(

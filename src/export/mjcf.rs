@@ -341,8 +341,7 @@ fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let [torsional, rolling] = OTHER_FRICTION;
     xml.element("contact", &[], |xml| {
         for joint in &body.joints {
-            let ends = [joint.parent, joint.child].map(|part| part_name(body, part));
-            let [front, rear] = ends;
+            let [front, rear] = [joint.parent, joint.child].map(|part| part_name(body, part));
             xml.leaf("exclude", &[("body1", front), ("body2", rear)])?;
         }
         for (a, b) in pairs().filter(|&(a, b)| is_free(a, b) && !are_joined(a, b)) {

@@ -46,8 +46,8 @@ pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
             let at_m = [x_m + sin * behind_m, y_m - cos * behind_m, z_m];
             let (xyz, rpy) = (spaced(at_m), spaced([0.0, 0.0, turn_rad]));
             xml.comment(&format!("Start of limb_1 in the world: xyz {xyz}, rpy {rpy}"))?;
-            for limb in 0..plan.body.limbs() {
-                link(xml, &plan.body, limb)?;
+            for limb in 0..body.limbs() {
+                link(xml, body, limb)?;
             }
             joints(xml, plan)
         })
@@ -71,7 +71,7 @@ fn link(xml: &mut XmlText, body: &BodyPlan, index: usize) -> io::Result<()> {
         xml.element("inertial", &[], |xml| {
             origin(xml)?;
             let [x, y, z] = size_m.map(f64::from);
-            let density = f64::from(body.parts[body.parts_of(index).start].density_kg_m3);
+            let density = f64::from(body.limb_density_kg_m3(index));
             let mass_kg = x * y * z * density;
             let about = |a: f64, b: f64| mass_kg * (a * a + b * b) / 12.0;
             inertia(xml, mass_kg, [about(y, z), about(x, z), about(x, y)])

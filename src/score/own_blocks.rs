@@ -64,13 +64,12 @@ impl Trial {
             // The head's joint waits until a block comes before it.
             let joint = body.joints.get(index.saturating_sub(1));
             let [width_m, length_m, height_m] = body.limb_size_m(index);
-            let part = &body.parts[body.parts_of(index).start];
             Segment {
                 id: index as u64 + 1,
                 length_m,
                 width_m,
                 height_m,
-                density_kg_m3: part.density_kg_m3,
+                density_kg_m3: body.limb_density_kg_m3(index),
                 bend_limit_rad: joint.map_or(0.0, |joint| joint.bend_limit_rad),
                 twist_limit_rad: joint.map_or(0.0, |joint| joint.twist_limit_rad),
                 strength: 1.0,

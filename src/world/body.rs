@@ -125,6 +125,17 @@ impl BodyPlan {
         parts.first().map_or([0.0; 3], |first| [first.width_m, length_m, first.height_m])
     }
 
+    /// The first spring within a limb, which is like its others; none in a rigid one.
+    pub fn spring_of(&self, limb: usize) -> Option<&SpringPlan> {
+        let parts = self.parts_of(limb);
+        self.springs.iter().find(|spring| parts.contains(&spring.parent))
+    }
+
+    /// Density of a limb, in kg/m³.
+    pub fn limb_density_kg_m3(&self, limb: usize) -> f32 {
+        self.parts[self.parts_of(limb).start].density_kg_m3
+    }
+
     /// Mass of a limb, in kg.
     pub fn limb_mass_kg(&self, limb: usize) -> f32 {
         self.parts[self.parts_of(limb)].iter().map(PartPlan::mass_kg).sum()
@@ -179,12 +190,9 @@ impl BodyPlan {
         self.parts.iter().map(|part| part.height_m).fold(0.0, f32::max) / 2.0
     }
 
-    /// Index of the middle part of the middle one of limbs that are alike: the third of five.
+    /// Index of the middle one of parts that are alike: the third of five.
     pub fn middle_of(parts: &[PartPlan]) -> usize {
-        let limbs = parts.last().map_or(0, |last| last.limb + 1);
-        let of_middle = |part: &&PartPlan| part.limb == limbs / 2;
-        let before = parts.partition_point(|part| part.limb < limbs / 2);
-        before + parts.iter().filter(of_middle).count() / 2
+        parts.len() / 2
     }
 
     /// Index of the part in which the centre of mass of the straight body lies.

@@ -93,11 +93,9 @@ pub(super) fn limb_card(
         let [width_m, length_m, height_m] = body.limb_size_m(limb);
         rows.push(Reading::of("Size", format!("{width_m:.2} × {length_m:.2} × {height_m:.2} m")));
         rows.push(Reading::of("Mass", format!("{:.2} kg", body.limb_mass_kg(limb))));
-        let parts = body.parts_of(limb);
-        let spring = body.springs.iter().find(|spring| parts.contains(&spring.parent));
-        if let Some(spring) = spring {
+        if let Some(spring) = body.spring_of(limb) {
             let [bending, _, _] = spring.stiffness_nm_per_rad;
-            let text = format!("{} parts, {bending:.0} N·m/rad", parts.len());
+            let text = format!("{} parts, {bending:.0} N·m/rad", body.parts_of(limb).len());
             rows.push(Reading::of("Springs", text));
         }
     }
