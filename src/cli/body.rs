@@ -5,7 +5,7 @@ use std::path::Path;
 use super::error::CliError;
 use super::output::print;
 use crate::save::load_champion;
-use crate::world::BodyPlan;
+use crate::world::{BodyPlan, JointPlan};
 
 /// Prints the blocks and joints of a champion, from the head.
 pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
@@ -17,12 +17,12 @@ pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
 
 fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
     for index in 0..body.limbs() {
-        // The joint in front of the block; the head has none.
-        let joint = index.checked_sub(1).and_then(|joint| body.joints.get(joint));
+        let joint = joint_before(body, index);
         let [width_m, length_m, height_m] = body.limb_size_m(index);
         let spring = body.spring_of(index);
         let line = serde_json::json!({
             "block": index + 1,
+            "joined_to": joint.map(|joint| body.parts[joint.parent].limb + 1),
             "length_m": length_m,
             "width_m": width_m,
             "height_m": height_m,
@@ -51,8 +51,18 @@ fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
     print(&format!("{line}\n"))
 }
 
+/// The joint in front of a block; the head has none.
+fn joint_before(body: &BodyPlan, limb: usize) -> Option<&JointPlan> {
+    let first = body.parts_of(limb).start;
+    body.joints.iter().find(|joint| joint.child == first)
+}
+
 fn table(body: &BodyPlan, is_own: bool) -> String {
-    let origin = if is_own { "a body of its own" } else { "the body of its trial" };
+    let origin = match (body.is_branching(), is_own) {
+        (true, _) => "a creature",
+        (false, true) => "a body of its own",
+        (false, false) => "the body of its trial",
+    };
     let mut text = format!(
         "{} blocks, {origin}: {:.2} m long, {:.1} kg, {:.2} m³, {:.0} N·m of torque in all joints\n\n",
         body.limbs(),
@@ -61,10 +71,14 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
         body.volume_m3(),
         body.torque_nm(),
     );
-    text +=
-        "block  length  width  height    mass  joint in front: bend, twist   torque: bend, twist\n";
+    let to = |text: &str| if body.is_branching() { format!("{text:>9}  ") } else { String::new() };
+    text += &format!(
+        "block  length  width  height    mass  {}joint in front: bend, twist   torque: bend, twist\n",
+        to("joined to")
+    );
     for index in 0..body.limbs() {
-        let joint = index.checked_sub(1).and_then(|joint| body.joints.get(joint));
+        let joint = joint_before(body, index);
+        let joined_to = joint.map_or(String::new(), |joint| (joint.parent + 1).to_string());
         let joint = joint.map(|joint| {
             let [bend, twist] =
                 [joint.bend_limit_rad, joint.twist_limit_rad].map(|limit| limit.to_degrees());
@@ -82,9 +96,10 @@ fn table(body: &BodyPlan, is_own: bool) -> String {
             )
         });
         let line = format!(
-            "{:>5}  {length_m:>4.2} m {width_m:>4.2} m  {height_m:>4.2} m {:>4.1} kg  {}",
+            "{:>5}  {length_m:>4.2} m {width_m:>4.2} m  {height_m:>4.2} m {:>4.1} kg  {}{}",
             index + 1,
             body.limb_mass_kg(index),
+            to(&joined_to),
             joint.unwrap_or_default(),
         );
         text += line.trim_end();

@@ -75,7 +75,8 @@ mod tests {
             limb.set_translation(above, true);
             limb.set_angvel(Vector::new(0.0, if index == 0 { 1.0 } else { -1.0 }, 0.0), true);
         }
-        let mut control = ControlLoop::new(&genome.controller, physics, ActiveSenses::default());
+        let mut control =
+            ControlLoop::new(&genome, &trial.world_plan(&genome), ActiveSenses::default());
         let mut torques = [JointTorque::default()];
         let step = |step| {
             control.act(step, &world, &mut torques);

@@ -17,6 +17,7 @@ mod limb_activity;
 mod limb_neurons;
 mod network;
 mod observation;
+mod part_neurons;
 mod perception;
 mod posture_choice;
 mod postures;
@@ -46,13 +47,13 @@ pub use sense::{ActiveSenses, SenseInfo, SenseKind, SenseOrgan, SensePlace};
 pub use wave_choice::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 pub use wave_uses::WaveUses;
 
-use crate::genome::ControllerGenes;
+use crate::genome::{ControllerGenes, Genome};
 use crate::learn::Episode;
-use crate::world::{JointTorque, PhysicsSettings, Simulation};
+use crate::world::{BodyPlan, JointTorque, PhysicsSettings, Simulation, WorldPlan};
 
-/// The controller that genes encode, in its state before the first step.
-fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
-    match genes {
+/// The controller that a genome encodes for its body, in its state before the first step.
+fn controller_of(genome: &Genome, body: &BodyPlan) -> Box<dyn Controller> {
+    match &genome.controller {
         ControllerGenes::Signal(signals) => Box::new(signal::SignalPlayer(signals.clone())),
         ControllerGenes::Wave(waves) => Box::new(wave::WavePlayer(waves.clone())),
         ControllerGenes::Gait(gait) => Box::new(gait::GaitFollower::new(gait.clone())),
@@ -64,6 +65,9 @@ fn controller_of(genes: &ControllerGenes) -> Box<dyn Controller> {
         ControllerGenes::Grown(genes) => Box::new(grown::GrownController::new(genes.clone())),
         ControllerGenes::LimbNeurons(genes) => {
             Box::new(limb_neurons::LimbNeuronController::new(genes.clone()))
+        }
+        ControllerGenes::PartNeurons(genes) => {
+            Box::new(part_neurons::PartNeuronController::new(genes.clone(), genome, body))
         }
         ControllerGenes::Decisions(genes) => {
             Box::new(decisions::DecisionController::new(genes.clone()))
@@ -83,9 +87,9 @@ pub struct ControlLoop {
 }
 
 impl ControlLoop {
-    /// The control loop of a genome in a world with these settings of the engine, with the senses that work.
-    pub fn new(genes: &ControllerGenes, physics: &PhysicsSettings, active: ActiveSenses) -> Self {
-        Self::of(controller_of(genes), physics, active)
+    /// The control loop of a genome in a world of this plan, with the senses that work.
+    pub fn new(genome: &Genome, plan: &WorldPlan, active: ActiveSenses) -> Self {
+        Self::of(controller_of(genome, &plan.body), &plan.physics, active)
     }
 
     fn of(

@@ -1,13 +1,16 @@
 //! The body and its world as a model for MuJoCo (MJCF).
 //!
 //! A universal joint becomes two hinges in the rear limb, first the bend, then the twist. Lengths, masses, inertias,
-//! limits, damping, torques, friction and stairs are the same; [`left_out`] lists what MJCF cannot say.
+//! limits, damping, torques, friction and stairs are the same; [`left_out`] lists what MJCF cannot say. The joints of a
+//! branching body are at 0 in the middle of their ranges; a key frame has the angles at the start.
 
 use std::io;
 
 use super::facts::{Fact, generator};
 use super::xml_text::{XmlText, spaced};
-use crate::world::{BodyPlan, JointPlan, PartPlan, SpringPlan, Surface, WorldPlan};
+use crate::world::{
+    BodyPlan, JointPlan, PartPlan, Rotation, SpringPlan, Surface, Vector, WorldPlan,
+};
 
 /// Limit of a hinge that must not move, in rad: MuJoCo demands a range that is not empty.
 const LOCKED_RAD: f32 = 1.0e-4;
@@ -37,7 +40,8 @@ pub fn mjcf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
                 limbs(xml, plan)
             })?;
             contacts(xml, plan)?;
-            motors(xml, &plan.body)
+            motors(xml, &plan.body)?;
+            start(xml, plan)
         })
     })
 }
@@ -214,6 +218,14 @@ fn rgba([red, green, blue]: [f32; 3]) -> String {
 /// The position and rotation of the head at the start: the middle of the straight snake has the start's place.
 pub(super) fn head_start(plan: &WorldPlan) -> ([f32; 3], f32) {
     let body = &plan.body;
+    if body.is_branching() {
+        let head = body.rest_poses()[0].translation;
+        let (sin, cos) = libm::sincosf(plan.start_turn_rad);
+        let (aside_m, ahead_m) = (head.x, head.y + body.length_m() / 2.0);
+        let x_m = plan.start_x_m + cos * aside_m - sin * ahead_m;
+        let y_m = plan.start_y_m + sin * aside_m + cos * ahead_m;
+        return ([x_m, y_m, head.z], plan.start_turn_rad);
+    }
     let head_length_m = body.parts.first().map_or(0.0, |head| head.length_m);
     let ahead_m = (body.length_m() - head_length_m) / 2.0;
     let (sin, cos) = libm::sincosf(plan.start_turn_rad);
@@ -231,56 +243,67 @@ pub(super) fn part_name(body: &BodyPlan, index: usize) -> String {
 
 /// The parts within each other, from the head.
 fn limbs(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
+    let name = part_name(&plan.body, 0);
     let (at_m, turn_rad) = head_start(plan);
     let (sin, cos) = libm::sincosf(turn_rad / 2.0);
+    let place = [("pos", spaced(at_m)), ("quat", spaced([cos, 0.0, 0.0, sin]))];
+    let [pos, quat] = place;
+    xml.open("body", &[("name", name), pos, quat])?;
+    xml.leaf("freejoint", &[("name", "free".into())])?;
+    // It follows the snake from its right-hand side.
+    xml.leaf(
+        "camera",
+        &[
+            ("name", "follow".into()),
+            ("mode", "trackcom".into()),
+            ("pos", "13 -9 6".into()),
+            ("xyaxes", "0.33 0.944 0 -0.4 0.14 0.905".into()),
+        ],
+    )?;
+    part(xml, plan, 0)?;
+    xml.close("body")
+}
+
+/// The box of a part, and all parts that are joined to it from behind, in the order of the plan.
+fn part(xml: &mut XmlText, plan: &WorldPlan, index: usize) -> io::Result<()> {
     let body = &plan.body;
-    for (index, part) in body.parts.iter().enumerate() {
-        let of_part = part_name(body, index);
-        let name = ("name", of_part.clone());
-        let joint = body.joints.iter().find(|joint| joint.child == index);
-        let spring = body.springs.iter().find(|spring| spring.child == index);
-        let parent = joint.map(|joint| joint.parent).or(spring.map(|spring| spring.parent));
-        match parent {
-            None => {
-                let quat = spaced([cos, 0.0, 0.0, sin]);
-                xml.open("body", &[name, ("pos", spaced(at_m)), ("quat", quat)])?;
-                xml.leaf("freejoint", &[("name", "free".into())])?;
-                // It follows the snake from its right-hand side.
-                xml.leaf(
-                    "camera",
-                    &[
-                        ("name", "follow".into()),
-                        ("mode", "trackcom".into()),
-                        ("pos", "13 -9 6".into()),
-                        ("xyaxes", "0.33 0.944 0 -0.4 0.14 0.905".into()),
-                    ],
-                )?;
-            }
-            Some(parent) => {
-                let front_m = body.parts[parent].length_m;
-                let pos = spaced([0.0, -(front_m + part.length_m) / 2.0, 0.0]);
-                xml.open("body", &[name, ("pos", pos)])?;
-            }
+    let part_plan = &body.parts[index];
+    xml.leaf(
+        "geom",
+        &[
+            ("name", part_name(body, index)),
+            ("type", "box".into()),
+            ("size", spaced(part_plan.size_m().map(|size_m| size_m / 2.0))),
+            ("density", part_plan.density_kg_m3.to_string()),
+            ("friction", spaced([0.0, OTHER_FRICTION[0], OTHER_FRICTION[1]])),
+            ("rgba", rgba(LIMB_COLORS[part_plan.limb % 2])),
+        ],
+    )?;
+    for (number, joint) in (1..).zip(&body.joints).filter(|(_, joint)| joint.parent == index) {
+        let child = &body.parts[joint.child];
+        let half = Vector::new(0.0, child.length_m / 2.0, 0.0);
+        let turn = joint.axes(Rotation::IDENTITY);
+        let pos = joint.anchor_m(part_plan.length_m) - turn * half;
+        let mut place =
+            vec![("name", part_name(body, joint.child)), ("pos", spaced(pos.to_array()))];
+        if joint.mount.is_some() {
+            place.push(("quat", spaced([turn.w, turn.x, turn.y, turn.z])));
         }
-        if let Some(joint) = joint {
-            hinges(xml, part.limb, joint, part)?;
-        }
-        if let Some(spring) = spring {
-            spring_hinges(xml, &of_part, spring, part)?;
-        }
-        xml.leaf(
-            "geom",
-            &[
-                ("name", of_part),
-                ("type", "box".into()),
-                ("size", spaced(part.size_m().map(|size_m| size_m / 2.0))),
-                ("density", part.density_kg_m3.to_string()),
-                ("friction", spaced([0.0, OTHER_FRICTION[0], OTHER_FRICTION[1]])),
-                ("rgba", rgba(LIMB_COLORS[part.limb % 2])),
-            ],
-        )?;
+        xml.open("body", &place)?;
+        hinges(xml, number, joint, child)?;
+        part(xml, plan, joint.child)?;
+        xml.close("body")?;
     }
-    body.parts.iter().try_for_each(|_| xml.close("body"))
+    for spring in body.springs.iter().filter(|spring| spring.parent == index) {
+        let child = &body.parts[spring.child];
+        let name = part_name(body, spring.child);
+        let pos = spaced([0.0, -(part_plan.length_m + child.length_m) / 2.0, 0.0]);
+        xml.open("body", &[("name", name.clone()), ("pos", pos)])?;
+        spring_hinges(xml, &name, spring, child)?;
+        part(xml, plan, spring.child)?;
+        xml.close("body")?;
+    }
+    Ok(())
 }
 
 /// The hinges of a universal joint at the front face of its rear limb.
@@ -359,6 +382,28 @@ fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
             )?;
         }
         Ok(())
+    })
+}
+
+/// A key frame with the angles of the joints at the start, if they are not all 0.
+fn start(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
+    let start_rad = |joint: &JointPlan| joint.mount.map_or([0.0; 2], |mount| mount.start_rad);
+    if plan.body.joints.iter().all(|joint| start_rad(joint) == [0.0; 2]) {
+        return Ok(());
+    }
+    let (at_m, turn_rad) = head_start(plan);
+    let (sin, cos) = libm::sincosf(turn_rad / 2.0);
+    let mut numbers = vec![at_m[0], at_m[1], at_m[2], cos, 0.0, 0.0, sin];
+    // MuJoCo follows one branch to its end before the next.
+    let mut left = vec![0];
+    while let Some(part) = left.pop() {
+        let of_part = plan.body.joints.iter().find(|joint| joint.child == part);
+        numbers.extend(of_part.map(start_rad).into_iter().flatten());
+        let children = plan.body.joints.iter().filter(|joint| joint.parent == part);
+        left.extend(children.rev().map(|joint| joint.child));
+    }
+    xml.element("keyframe", &[], |xml| {
+        xml.leaf("key", &[("name", "start".into()), ("qpos", spaced(numbers))])
     })
 }
 

@@ -6,7 +6,7 @@ use std::io;
 use super::facts::{Fact, generator};
 use super::mjcf::{LIMB_COLORS, head_start, left_out};
 use super::xml_text::{XmlText, spaced};
-use crate::world::{BodyPlan, WorldPlan};
+use crate::world::{BodyPlan, Rotation, WorldPlan};
 
 /// Mass in kg, and moment of inertia in kg·m², of the link between the two hinges of a universal joint.
 const BETWEEN: f32 = 1.0e-6;
@@ -38,6 +38,12 @@ pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
             let body = &plan.body;
             if !body.springs.is_empty() {
                 xml.comment("Not in this model: softness of the limbs, which are rigid here; export .xml (MJCF) for it")?;
+            }
+            for (number, joint) in (1..).zip(&body.joints) {
+                let [bend, twist] = joint.mount.map_or([0.0; 2], |mount| mount.start_rad);
+                if [bend, twist] != [0.0; 2] {
+                    xml.comment(&format!("Start of bend_{number} and twist_{number}: {bend} {twist} rad"))?;
+                }
             }
             let ([x_m, y_m, z_m], turn_rad) = head_start(plan);
             // The link of a soft head is as long as all of its parts.
@@ -98,6 +104,17 @@ fn inertia(xml: &mut XmlText, mass_kg: f64, about_kg_m2: [f64; 3]) -> io::Result
     xml.leaf("inertia", &moments)
 }
 
+/// The angles of a rotation about the fixed axes x, y and z, one after the other, in radians: what URDF calls roll, pitch and
+/// yaw.
+fn roll_pitch_yaw(turn: Rotation) -> [f32; 3] {
+    let [x, y, z, w] = turn.to_array();
+    [
+        libm::atan2f(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        libm::asinf((2.0 * (w * y - z * x)).clamp(-1.0, 1.0)),
+        libm::atan2f(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+    ]
+}
+
 /// Each universal joint as two: the bend between the front limb and a link of almost no mass, and the twist behind it.
 fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     for (index, joint) in plan.body.joints.iter().enumerate() {
@@ -108,24 +125,34 @@ fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
                 inertia(xml, f64::from(BETWEEN), [f64::from(BETWEEN); 3])
             })
         })?;
-        let front_m = plan.body.limb_size_m(index)[1];
-        // From the frame of the front limb to its rear face.
-        let back_m = if index == 0 { front_m / 2.0 } else { front_m };
+        let [front, rear] = [joint.parent, joint.child].map(|part| plan.body.parts[part].limb);
+        // From the frame of the front limb to the joint; a soft limb is as long as all of its parts.
+        let front_m = plan.body.limb_size_m(front)[1];
+        let mut at_m = joint.anchor_m(front_m);
+        if front > 0 {
+            at_m.y -= front_m / 2.0;
+        }
+        let turn = joint.axes(Rotation::IDENTITY);
         let limb = |index: usize| format!("limb_{}", index + 1);
         let (limits, torques) = (
             [joint.bend_limit_rad, joint.twist_limit_rad],
             [joint.max_bend_torque_nm, joint.max_twist_torque_nm],
         );
+        let here = (at_m.to_array(), roll_pitch_yaw(turn));
         let axes = [
-            ("bend", "1 0 0", limb(index), between.clone(), -back_m),
-            ("twist", "0 1 0", between, limb(number), 0.0),
+            ("bend", "1 0 0", limb(front), between.clone(), here),
+            ("twist", "0 1 0", between, limb(rear), ([0.0; 3], [0.0; 3])),
         ];
         for ((axis, limit_rad), torque_nm) in axes.into_iter().zip(limits).zip(torques) {
-            let (name, direction, parent, child, y_m) = axis;
+            let (name, direction, parent, child, (at_m, rpy_rad)) = axis;
             let head = [("name", format!("{name}_{number}")), ("type", "revolute".to_owned())];
             xml.element("joint", &head, |xml| {
                 ends(xml, &parent, &child)?;
-                xml.leaf("origin", &[("xyz", spaced([0.0, y_m, 0.0]))])?;
+                let mut origin = vec![("xyz", spaced(at_m))];
+                if rpy_rad != [0.0; 3] {
+                    origin.push(("rpy", spaced(rpy_rad)));
+                }
+                xml.leaf("origin", &origin)?;
                 xml.leaf("axis", &[("xyz", direction.to_owned())])?;
                 xml.leaf("dynamics", &[("damping", joint.damping_nms_per_rad.to_string())])?;
                 xml.leaf(

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::chain::{Segment, check_segments, segment_genes};
+use super::creature::{BodyNode, check_creature, grow, hash_structure, joint_tree, node_genes};
 use super::gene::{Gene, GeneRange, GeneVisitor};
 use super::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
 use super::space::GenomeSpace;
@@ -23,6 +24,9 @@ pub struct BodyGenes {
     /// the three genes above have no effect and are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<Segment>,
+    /// The graph of a branching body of its own; empty for any other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub nodes: Vec<BodyNode>,
 }
 
 impl BodyGenes {
@@ -32,21 +36,37 @@ impl BodyGenes {
         twist_limit_rad: 0.0,
         density_kg_m3: 0.0,
         segments: Vec::new(),
+        nodes: Vec::new(),
     };
 
     /// Whether these genes determine the blocks of the body. Otherwise the trial does.
     pub fn has_own_blocks(&self) -> bool {
-        !self.segments.is_empty()
+        !self.segments.is_empty() || self.is_branching()
     }
 
-    /// The ids of the blocks, which tell bodies of different structures apart; empty without blocks of its own.
+    /// Whether the body grows from a graph.
+    pub fn is_branching(&self) -> bool {
+        !self.nodes.is_empty()
+    }
+
+    /// Number of blocks of a body of its own; 0 without.
+    pub fn block_count(&self) -> usize {
+        if self.is_branching() { grow(&self.nodes).len() } else { self.segments.len() }
+    }
+
+    /// Ids which tell bodies of different structures apart: of each block, or one for the tree of a creature; empty without a
+    /// body of its own.
     pub fn block_ids(&self) -> Vec<u64> {
+        if self.is_branching() {
+            return vec![xxhash_rust::xxh3::xxh3_64(joint_tree(&self.nodes).as_bytes())];
+        }
         self.segments.iter().map(|segment| segment.id).collect()
     }
 
     /// Hashes what belongs to a body of its own besides the values of its genes: the descent of its blocks, and the joint
     /// of its head, which has no effect yet.
     pub(super) fn hash_descent(&self, hash: &mut Xxh3Default) {
+        hash_structure(&self.nodes, hash);
         for segment in &self.segments {
             hash.update(&segment.id.to_le_bytes());
         }
@@ -62,6 +82,11 @@ impl BodyGenes {
         Self { segments, ..Self::ZEROED }
     }
 
+    /// Genes of a branching body of this graph.
+    pub fn of_nodes(nodes: Vec<BodyNode>) -> Self {
+        Self { nodes, ..Self::ZEROED }
+    }
+
     /// Checks every value.
     ///
     /// # Errors
@@ -75,11 +100,16 @@ impl BodyGenes {
             ];
             for (field, value) in unused {
                 if value != 0.0 {
-                    let allowed = "0, because each of the segments has its own";
+                    let allowed = "0, because each part of the body has its own";
                     return Err(Invalid::new(field, value, allowed));
                 }
             }
-            return check_segments(&self.segments);
+            return if self.is_branching() {
+                within("segments", self.segments.len(), 0..=0)?;
+                check_creature(&self.nodes)
+            } else {
+                check_segments(&self.segments)
+            };
         }
         within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
         within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
@@ -88,6 +118,10 @@ impl BodyGenes {
 
     /// Visits every gene, in a fixed order.
     pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+        if self.is_branching() {
+            node_genes(&mut self.nodes, space, visit);
+            return;
+        }
         if self.has_own_blocks() {
             let densities = [space.density_min_kg_m3, space.density_max_kg_m3];
             segment_genes(&mut self.segments, &space.bodies, densities, visit);
@@ -116,9 +150,14 @@ impl BodyGenes {
     pub(super) fn widen(&self, space: &mut GenomeSpace) {
         space.bodies.vary = self.has_own_blocks();
         if space.bodies.vary {
-            space.bodies.widen(&self.segments);
-            for segment in &self.segments {
-                let density_kg_m3 = segment.density_kg_m3;
+            if self.is_branching() {
+                space.bodies.widen_for_creature(&self.nodes);
+            } else {
+                space.bodies.widen(&self.segments);
+            }
+            let of_segments = self.segments.iter().map(|segment| segment.density_kg_m3);
+            let of_nodes = self.nodes.iter().map(|node| node.density_kg_m3);
+            for density_kg_m3 in of_segments.chain(of_nodes) {
                 space.density_min_kg_m3 = space.density_min_kg_m3.min(density_kg_m3);
                 space.density_max_kg_m3 = space.density_max_kg_m3.max(density_kg_m3);
             }

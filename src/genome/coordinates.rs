@@ -29,7 +29,7 @@ impl GenomeSpace {
     /// Genes of zeros, in the layout of this space.
     pub(super) fn zeroed(&self, shape: GenomeShape) -> Genome {
         let mut body = BodyGenes::ZEROED;
-        if self.bodies.vary {
+        if self.bodies.vary && !self.has_creatures() {
             body.segments = (0..=shape.joints).map(|i| Segment::newborn(i, &self.bodies)).collect();
         }
         Genome { body, controller: self.controller.zeroed(self, shape) }
@@ -165,8 +165,11 @@ impl GenomeSpace {
     }
 
     /// Draws a genome at random: signals by the report's random walk, other genes anywhere in their ranges. Where bodies
-    /// evolve, their number of blocks is random, too.
+    /// evolve, their number of blocks is random, too, and creatures are drawn until one can be built.
     pub fn random_genome(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
+        if self.has_creatures() {
+            return self.random_creature(rng);
+        }
         if !self.bodies.vary {
             return self.drawn(shape, false, rng);
         }

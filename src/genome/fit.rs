@@ -1,6 +1,7 @@
 //! Whether a genome fits into a space, and the space into which it fits.
 
 use super::chain::{BodySpace, Segment};
+use super::creature::{CreatureSpace, grow};
 use super::gene::{GeneRange, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
@@ -36,6 +37,16 @@ impl GenomeSpace {
         same("controller", genome.controller.kind(), self.controller)?;
         let shape = self.shape_of(genome, shape)?;
         same("controller joints", genome.controller.joints(), shape.joints)?;
+        if self.has_creatures() {
+            // Each creature has a layout of its own.
+            let mut found = Vec::new();
+            genome.controller.encoding().lengths(&mut |_, length| found.push(length));
+            return same(
+                "nodes with neurons",
+                found.first().unwrap_or(&0),
+                genome.body.nodes.len(),
+            );
+        }
         let mut expected = Vec::new();
         let zeroed = self.zeroed(shape);
         zeroed.controller.encoding().lengths(&mut |_, length| expected.push(length));
@@ -53,8 +64,16 @@ impl GenomeSpace {
     /// The shape that a genome must have: its own number of joints where bodies evolve.
     fn shape_of(&self, genome: &Genome, shape: GenomeShape) -> Result<GenomeShape, Invalid> {
         let segments = &genome.body.segments;
-        if !self.bodies.vary {
+        if !self.has_creatures() {
+            same("nodes", genome.body.nodes.len(), 0)?;
+        }
+        if !self.bodies.vary || self.has_creatures() {
             same("segments", segments.len(), 0)?;
+        }
+        if self.has_creatures() {
+            return self.creature_shape(genome, shape);
+        }
+        if !self.bodies.vary {
             return Ok(shape);
         }
         if !self.bodies.is_within_limits(segments) {
@@ -75,6 +94,25 @@ impl GenomeSpace {
             within("segments[0].strength", head.strength, space.strength_min..=1.0)?;
         }
         Ok(GenomeShape { joints: segments.len() - 1, ..shape })
+    }
+
+    /// The shape that a creature must have: as many joints as grow.
+    fn creature_shape(&self, genome: &Genome, shape: GenomeShape) -> Result<GenomeShape, Invalid> {
+        let nodes = &genome.body.nodes;
+        let grown = grow(nodes);
+        if !self.allows_creature(nodes) {
+            let CreatureSpace { parts_min, parts_max, .. } = self.creatures;
+            let allowed = format!(
+                "{parts_min} to {parts_max} parts of {} m³ together that lie apart, within all limits of genome.bodies",
+                self.bodies.volume_m3
+            );
+            return Err(Invalid::new(
+                "nodes",
+                format!("a graph of {} parts", grown.len()),
+                allowed,
+            ));
+        }
+        Ok(GenomeShape { joints: grown.len() - 1, ..shape })
     }
 
     /// Checks the genes whose range is of interest.

@@ -31,11 +31,13 @@ pub enum ControllerKind {
     Grown,
     /// Neurons in the limbs.
     LimbNeurons,
+    /// Neurons in the parts of a branching body.
+    PartNeurons,
 }
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Signal,
         Self::Wave,
         Self::Gait,
@@ -48,5 +50,6 @@ impl ControllerKind {
         Self::Rules,
         Self::Grown,
         Self::LimbNeurons,
+        Self::PartNeurons,
     ];
 }

@@ -7,6 +7,7 @@ mod body;
 mod chain;
 pub mod controllers;
 mod coordinates;
+mod creature;
 mod features;
 mod fit;
 mod gene;
@@ -21,6 +22,10 @@ pub use body::BodyGenes;
 pub use chain::{BodyChange, BodySpace, MOST_SEGMENTS, Segment};
 pub use controllers::{ControllerGenes, JointCommands};
 pub use coordinates::Coordinate;
+pub use creature::{
+    BodyNode, Connection, CreatureChange, CreatureSpace, GrownPart, MOST_PARTS, NeuronSet,
+    NodeJoint, Side, bare_plan as grown_body, grow, joint_tree,
+};
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;
 pub use kind::ControllerKind;

@@ -1,6 +1,7 @@
 //! The space genomes are drawn from: the range of every gene.
 
 use super::chain::BodySpace;
+use super::creature::CreatureSpace;
 use super::kind::ControllerKind;
 use super::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
 use super::network_space::NetworkSpace;
@@ -24,6 +25,9 @@ setting_group! {
         /// Ranges of bodies that evolve.
         #[serde(default, skip_serializing_if = "is_default")]
         bodies: BodySpace = BodySpace::default();
+        /// What branching bodies may consist of.
+        #[serde(default, skip_serializing_if = "is_default")]
+        creatures: CreatureSpace = CreatureSpace::default();
         /// A torque, of a signal or a wave, stays within plus and minus this, in N·m. The report has 1000.
         torque_range_nm: f32 = 1000.0;
         /// Greatest difference between neighbouring points of a random signal, in N·m. The report has 1000.
@@ -58,6 +62,7 @@ impl SettingGroup for GenomeSpace {
             wave,
             network,
             bodies,
+            creatures,
             torque_range_nm,
             torque_step_nm,
             points_per_s,
@@ -69,6 +74,9 @@ impl SettingGroup for GenomeSpace {
         let mut unused = controller.unused_settings();
         if bodies.vary {
             unused.extend(["bend_limits_rad", "twist_limits_rad"]);
+        }
+        if *controller == ControllerKind::PartNeurons {
+            unused.extend(BodySpace::OF_CHAINS);
         }
         walk.without_effect(unused);
         walk.section(Self::CONTROLLER);
@@ -94,6 +102,7 @@ impl SettingGroup for GenomeSpace {
         walk.group("wave", wave);
         walk.group("network", network);
         walk.group("bodies", bodies);
+        walk.group("creatures", creatures);
         walk.section(Section {
             title: "Random snakes",
             about: "Where joint limits and densities of snakes come from, unless they have fixed values.",

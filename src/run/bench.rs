@@ -119,8 +119,9 @@ fn steps_per_s(
 /// The same world and torques as `evaluate`, without health checks, pose copies and trace, as any program would
 /// drive this snake with rapier. Returns the world at the end.
 fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
-    let mut simulation = Simulation::new(&trial.world_plan(genome));
-    let mut control = ControlLoop::new(&genome.controller, &trial.physics, trial.agent.senses);
+    let plan = trial.world_plan(genome);
+    let mut simulation = Simulation::new(&plan);
+    let mut control = ControlLoop::new(genome, &plan, trial.agent.senses);
     let mut torques = vec![JointTorque::default(); simulation.body().joints.len()];
     for step in 0..trial.steps() {
         control.act(step, &simulation, &mut torques);

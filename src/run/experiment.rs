@@ -353,7 +353,7 @@ impl Experiment {
 /// is none.
 fn bands<'a>(plan: &RunPlan, strategy: &'a dyn Strategy, genomes: &[Genome]) -> Cow<'a, [u32]> {
     if plan.settings.genome.bodies.vary {
-        genomes.iter().map(|genome| genome.body.segments.len() as u32).collect()
+        genomes.iter().map(|genome| genome.body.block_count() as u32).collect()
     } else {
         strategy.species().into()
     }

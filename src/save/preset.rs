@@ -68,6 +68,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "neat",
     "bodies",
     "squishy",
+    "creatures",
 ];
 
 /// The shipped presets, the default first.

@@ -1,6 +1,6 @@
 //! Settings of the snake's body: its limbs, its joints, its skin.
 
-use super::own_body::own_body;
+use super::own_body::{creature_body, own_body};
 use crate::check::Invalid;
 use crate::control::ActiveSenses;
 use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
@@ -259,6 +259,9 @@ impl AgentSettings {
 
     /// The body that these settings and a genome make together: the one place where both meet.
     pub fn body_plan(&self, genome: &Genome) -> BodyPlan {
+        if genome.body.is_branching() {
+            return creature_body(self, &genome.body.nodes);
+        }
         if genome.body.has_own_blocks() {
             return own_body(self, &genome.body.segments);
         }
@@ -275,6 +278,7 @@ impl AgentSettings {
         let joint = |index| JointPlan {
             parent: index,
             child: index + 1,
+            mount: None,
             bend_limit_rad: given(&self.bend_limit_rad, index, genome.body.bend_limit_rad),
             twist_limit_rad: given(&self.twist_limit_rad, index, genome.body.twist_limit_rad),
             max_bend_torque_nm: self.max_bend_torque_nm.at(index),

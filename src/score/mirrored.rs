@@ -23,7 +23,7 @@ impl MirroredRollout {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
         Self {
-            control: ControlLoop::new(&genome.controller, &plan.physics, trial.agent.senses),
+            control: ControlLoop::new(genome, &plan, trial.agent.senses),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             last_step: super::trial::steps_in(trial.duration_s, &plan.physics),
             world: Simulation::new(&plan),

@@ -1,7 +1,7 @@
 //! The built body of a genome with blocks of its own.
 
 use super::AgentSettings;
-use crate::genome::Segment;
+use crate::genome::{BodyNode, Segment, grow, grown_body};
 use crate::world::{BodyPlan, JointPlan, PartPlan};
 
 /// The body of some blocks, with the torques, the damping and the softness of the agent's joints.
@@ -20,13 +20,13 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
     let limbs: Vec<PartPlan> = segments.iter().enumerate().map(limb).collect();
     let joint = |(index, pair): (usize, &[PartPlan])| {
         let (front, rear, genes) = (&pair[0], &pair[1], &segments[index + 1]);
-        let section_m2 = (front.width_m * front.height_m).min(rear.width_m * rear.height_m);
-        let scale = section_m2 * front.height_m.min(rear.height_m);
+        let scale = strength_of([front, rear]);
         let smallest_side =
             |limb: &PartPlan| limb.size_m().into_iter().fold(f32::INFINITY, f32::min);
         JointPlan {
             parent: index,
             child: index + 1,
+            mount: None,
             bend_limit_rad: genes.bend_limit_rad,
             twist_limit_rad: genes.twist_limit_rad,
             max_bend_torque_nm: agent.max_bend_torque_nm.at(index) * scale * genes.strength,
@@ -44,17 +44,49 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
         springs: Vec::new(),
         angular_damping_per_s: agent.angular_damping_per_s,
     };
+    keep_torque_budget(&mut body, agent.torque_budget_nm);
+    body.with_soft_limbs(|limb| {
+        segments[limb].youngs_modulus_pa.map(|modulus_pa| agent.elasticity(modulus_pa))
+    })
+}
+
+/// The body of a creature: what grows from the nodes, with torques and damping by the same rule.
+pub(super) fn creature_body(agent: &AgentSettings, nodes: &[BodyNode]) -> BodyPlan {
+    let grown = grow(nodes);
+    let mut body = grown_body(nodes, &grown);
+    body.angular_damping_per_s = agent.angular_damping_per_s;
+    for joint in &mut body.joints {
+        let ends = [&body.parts[joint.parent], &body.parts[joint.child]];
+        let (scale, node) = (strength_of(ends), &nodes[grown[joint.child].node]);
+        let [bends, twists] = node.joint.turns();
+        let torque_nm = |turns: bool, most_nm: f32| {
+            if turns { most_nm * scale * node.strength } else { 0.0 }
+        };
+        joint.max_bend_torque_nm = torque_nm(bends, agent.max_bend_torque_nm.at(0));
+        joint.max_twist_torque_nm = torque_nm(twists, agent.max_twist_torque_nm.at(0));
+        joint.damping_nms_per_rad = agent.joint_damping_nms_per_rad.at(0) * scale;
+        joint.cfm_m_s_per_n = agent.joint_cfm_m_s_per_n.at(0);
+    }
+    keep_torque_budget(&mut body, agent.torque_budget_nm);
+    body
+}
+
+/// Torque and damping of the joint of two parts, relative to a joint of the report's blocks.
+fn strength_of([front, rear]: [&PartPlan; 2]) -> f32 {
+    let section_m2 = (front.width_m * front.height_m).min(rear.width_m * rear.height_m);
+    section_m2 * front.height_m.min(rear.height_m)
+}
+
+/// Reduces all torques alike, if their sum exceeds the budget in N·m.
+fn keep_torque_budget(body: &mut BodyPlan, budget_nm: f32) {
     let sum_nm = body.torque_nm();
-    if sum_nm > agent.torque_budget_nm {
-        let share = agent.torque_budget_nm / sum_nm;
+    if sum_nm > budget_nm {
+        let share = budget_nm / sum_nm;
         for joint in &mut body.joints {
             joint.max_bend_torque_nm *= share;
             joint.max_twist_torque_nm *= share;
         }
     }
-    body.with_soft_limbs(|limb| {
-        segments[limb].youngs_modulus_pa.map(|modulus_pa| agent.elasticity(modulus_pa))
-    })
 }
 
 /// Length of a block relative to the height of its neighbours below which these pass through each other: a bend of the

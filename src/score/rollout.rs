@@ -135,7 +135,7 @@ impl Rollout {
         let settled = if plan.settles { simulation.settle() } else { Ok(()) };
         let poses: Vec<Pose> = simulation.poses().collect();
         let mut rollout = Self {
-            control: ControlLoop::new(&genome.controller, &plan.physics, trial.agent.senses),
+            control: ControlLoop::new(genome, &plan, trial.agent.senses),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             way: WayUp::begin(&plan.body, &poses, &plan.stairs),
             poses,

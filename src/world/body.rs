@@ -9,12 +9,13 @@
 
 use std::ops::Range;
 
-use super::{Pose, Rotation, Vector};
+use super::{Mount, Pose, Rotation, Vector};
 
 /// The whole body. Part 0 is the head, or its foremost part: nearest to the stairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPlan {
-    /// The parts, limb by limb from the head. The world inserts them in this order and lays them out in a row.
+    /// The parts, limb by limb from the head. The world inserts them in this order and lays them out in a row, unless joints
+    /// have mounts.
     pub parts: Vec<PartPlan>,
     /// The joints between limbs, which the controller drives, from the head. A joint's parent comes before its child.
     pub joints: Vec<JointPlan>,
@@ -44,8 +45,8 @@ pub struct PartPlan {
     pub density_kg_m3: f32,
 }
 
-/// One universal joint between the rear face of its parent and the front face of its child: bend about
-/// the parent's x axis (snapping a stick), twist about its y axis (wringing a sponge), no other relative
+/// One universal joint between the rear face of its parent, or the place of its mount, and the front face of its child: bend
+/// about the parent's x axis (snapping a stick), twist about its y axis (wringing a sponge), no other relative
 /// motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPlan {
@@ -53,6 +54,8 @@ pub struct JointPlan {
     pub parent: usize,
     /// Index of the part behind the joint; larger than `parent`.
     pub child: usize,
+    /// Where it holds its child; none at the rear face of its parent, straight behind it.
+    pub mount: Option<Mount>,
     /// Largest bend to either side, in radians.
     pub bend_limit_rad: f32,
     /// Largest twist to either side, in radians.
@@ -102,8 +105,11 @@ impl PartPlan {
 }
 
 impl BodyPlan {
-    /// Length of the straight body from head to tail, in metres.
+    /// Length of the straight body from head to tail, in metres; of a branching body its extent along y before its trial.
     pub fn length_m(&self) -> f32 {
+        if self.is_branching() {
+            return self.branching_length_m();
+        }
         self.parts.iter().map(|part| part.length_m).sum()
     }
 
@@ -176,6 +182,9 @@ impl BodyPlan {
 
     /// Distance of the middle part's centre from the front of the straight body, in metres.
     pub fn front_to_middle_m(&self) -> f32 {
+        if self.is_branching() {
+            return -self.rest_poses()[self.middle_part].translation.y;
+        }
         let before: f32 = self.parts.iter().take(self.middle_part).map(|part| part.length_m).sum();
         before + self.parts.get(self.middle_part).map_or(0.0, |part| part.length_m / 2.0)
     }

@@ -11,6 +11,7 @@ mod damping;
 mod effort;
 mod energy;
 mod health;
+mod mount;
 mod physics;
 mod pull;
 mod simulation;
@@ -24,6 +25,7 @@ pub use body::{BodyPlan, JointPlan, PartPlan, SpringPlan};
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
+pub use mount::{Mount, joint_turn};
 #[cfg(test)]
 pub use physics::TESTED_RATES;
 pub use physics::{PhysicsSettings, STEP_RATES_HZ};

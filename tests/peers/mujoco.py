@@ -29,9 +29,11 @@ sys.path = [entry for entry in sys.path if os.path.abspath(entry or os.getcwd())
 
 
 def limb_bodies(mujoco, model):
-    """The numbers of the bodies of limbs and of parts of soft ones, head first."""
+    """The numbers of the bodies of limbs and of parts of soft ones, in the order of their numbers: MuJoCo's own order follows
+    one branch of a body to its end before the next."""
     names = [model.body(index).name for index in range(model.nbody)]
-    return [index for index, name in enumerate(names) if name.startswith("limb ")]
+    limbs = [index for index, name in enumerate(names) if name.startswith("limb ")]
+    return sorted(limbs, key=lambda index: [int(word) for word in names[index].split() if word.isdigit()])
 
 
 class World:
@@ -44,13 +46,23 @@ class World:
         self.limbs = limb_bodies(mujoco, self.model)
         # For each joint the places in that list of what it connects: a soft limb is several bodies.
         places = {body: place for place, body in enumerate(self.limbs)}
-        hinges = range(self.model.njnt)
-        rears = [self.model.jnt_bodyid[hinge] for hinge in hinges if self.model.joint(hinge).name.startswith("bend ")]
-        self.joints = [(places[self.model.body_parentid[rear]], places[rear]) for rear in rears]
+        names = [self.model.joint(hinge).name for hinge in range(self.model.njnt)]
+        bends = [hinge for hinge, name in enumerate(names) if name.startswith("bend ")]
+        rears = [self.model.jnt_bodyid[hinge] for hinge in sorted(bends, key=lambda hinge: int(names[hinge].split()[1]))]
+        # With the rotation of each joint's axes against the limb in front of it.
+        self.joints = [(places[self.model.body_parentid[rear]], places[rear], self.turn(rear)) for rear in rears]
+        if self.model.nkey:
+            mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
         self.substeps = substeps
         # Share of the angular momentum that the air takes in a substep.
         self.air = -math.expm1(-air_per_s * self.model.opt.timestep) / self.model.opt.timestep
         self.look()
+
+    def turn(self, body):
+        """The rotation of a body against its parent in the middle of the ranges of its joints."""
+        turn = self.numpy.zeros(9)
+        self.mujoco.mju_quat2Mat(turn, self.model.body_quat[body])
+        return turn.reshape(3, 3)
 
     def look(self):
         """Computes poses and velocities. Contacts stay those of the last substep."""
@@ -66,12 +78,13 @@ class World:
         return found[:3], found[3:]
 
     def step(self, torques):
-        """One step of control. A torque acts about the axes of the limb in front of the joint, as in `snakes`: the twist
-        of MuJoCo's hinges acts about the rear limb's axis. That is why the motors of the model are not used."""
+        """One step of control. A torque acts about the axes of the joint, which stand still in the limb in front of it, as in
+        `snakes`: the twist of MuJoCo's hinges acts about the rear limb's axis. That is why the motors of the model are not
+        used."""
         data, numpy = self.data, self.numpy
         couples = numpy.zeros((len(self.limbs), 3))
-        for (front, rear), (bend, twist) in zip(self.joints, torques):
-            axes = data.xmat[self.limbs[front]].reshape(3, 3)
+        for (front, rear, turn), (bend, twist) in zip(self.joints, torques):
+            axes = data.xmat[self.limbs[front]].reshape(3, 3) @ turn
             couple = axes @ (bend, twist, 0.0)
             couples[front] -= couple
             couples[rear] += couple

@@ -217,8 +217,8 @@ fn without_senses_the_rules_never_choose_anew() {
         let genome = genome(individual, &trial);
         let waves = |trial: &Trial| {
             let world = Rollout::new(&genome, trial);
-            let mut control =
-                ControlLoop::new(&genome.controller, &trial.physics, trial.agent.senses);
+            let plan = trial.world_plan(&genome);
+            let mut control = ControlLoop::new(&genome, &plan, trial.agent.senses);
             let mut world = world.simulation().clone();
             let mut torques = vec![JointTorque::default(); world.joint_states().len()];
             for step in 0..trial.steps() {

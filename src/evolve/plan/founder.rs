@@ -122,7 +122,10 @@ mod tests {
                 let asked = begin(&founded).ask();
                 assert_eq!(asked.len(), random.len());
                 let what = format!("{strategy}, {controller}");
-                if matches!(strategy, StrategyKind::BodyGa | StrategyKind::BodyMapElites) {
+                if matches!(
+                    strategy,
+                    StrategyKind::BodyGa | StrategyKind::BodyMapElites | StrategyKind::CreatureGa
+                ) {
                     assert_eq!(asked[0], genome, "{what}");
                     let fresh = asked[1..].iter().filter(|other| random.contains(other)).count();
                     assert_eq!(fresh, 10, "every second one");

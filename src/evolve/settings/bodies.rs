@@ -46,6 +46,11 @@ impl Settings {
                 .check_softness(self.genome.density_max_kg_m3)
                 .map_err(|error| error.inside("trial.agent"));
         }
+        if self.genome.has_creatures() && self.genome.bodies.soft {
+            let allowed =
+                "false with genome.controller part_neurons: the parts of creatures are rigid";
+            return Err(Invalid::new("genome.bodies.soft", true, allowed));
+        }
         self.trial.check_own_bodies().map_err(|error| error.inside("trial"))?;
         if self.genome.bodies.soft {
             let sides_m = [self.genome.bodies.thickness_min_m; 2];

@@ -4,6 +4,7 @@ mod bodies;
 mod body_search;
 mod by_name;
 mod cma_es;
+mod creatures;
 mod ga;
 mod halving;
 mod learning;
@@ -17,6 +18,7 @@ mod strategy_kind;
 pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};
 pub use by_name::{check_effects, fields, with_field, with_fields};
 pub use cma_es::{CmaEsSettings, RestartKind};
+pub use creatures::CreatureGaSettings;
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
 pub use halving::HalvingSettings;
 pub use learning::{ExplorationSettings, QLearningSettings, XcsRunSettings, ZcsRunSettings};
@@ -92,6 +94,9 @@ setting_group! {
         /// Islands.
         #[serde(default, skip_serializing_if = "is_default")]
         islands: IslandSettings = IslandSettings::default();
+        /// The genetic algorithm over creatures.
+        #[serde(default, skip_serializing_if = "is_default")]
+        creature_ga: CreatureGaSettings = CreatureGaSettings::default();
         /// Exploration of all learners.
         #[serde(default, skip_serializing_if = "is_default")]
         exploration: ExplorationSettings = ExplorationSettings::default();
@@ -251,6 +256,21 @@ strategy_kinds! {
         },
         ..StrategyInfo::PLAIN
     };
+    /// A genetic algorithm over graphs that grow into creatures.
+    CreatureGa = StrategyInfo {
+        name: "creature_ga",
+        title: "Genetic algorithm of creatures",
+        words: "Breeds graphs that grow into branching bodies with neurons in each part, after Karl Sims.",
+        color: [0xa0, 0x70, 0x30],
+        settings: &["creature_ga"],
+        only_controllers: &[ControllerKind::PartNeurons],
+        varies_bodies: true,
+        check_size: |evolution, size| {
+            let (population, genes) = (evolution.population, CreatureGaSettings::MOST_GENES);
+            size.check_count("evolution.population", population, genes, LARGEST_STATE_GENES)
+        },
+        ..StrategyInfo::PLAIN
+    };
 }
 
 named_by_info!(StrategyKind);
@@ -273,6 +293,7 @@ impl SettingGroup for EvolutionSettings {
             body_ga,
             body_map_elites,
             islands,
+            creature_ga,
             exploration,
         } = self;
         walk.section(Self::RUN);
@@ -291,7 +312,7 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 13] = [
+        let groups: [(&str, &mut dyn SettingGroup); 14] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
@@ -304,6 +325,7 @@ impl SettingGroup for EvolutionSettings {
             ("body_ga", body_ga),
             ("body_map_elites", body_map_elites),
             ("islands", islands),
+            ("creature_ga", creature_ga),
             ("exploration", exploration),
         ];
         for (name, group) in groups {

@@ -11,7 +11,8 @@ use crate::schema::Choices;
 impl StrategyKind {
     /// Whether the strategy can improve controllers of this kind.
     pub fn improves(self, controller: ControllerKind) -> bool {
-        if self.info().varies_bodies && !BODY_CONTROLLERS.contains(&controller) {
+        let of_chains = self.info().varies_bodies && self.info().only_controllers.is_empty();
+        if of_chains && !BODY_CONTROLLERS.contains(&controller) {
             return false;
         }
         let is_partner = |kind: Self| kind.info().only_controllers.contains(&controller);
@@ -25,7 +26,7 @@ impl StrategyKind {
     }
 }
 
-/// The controllers whose waves follow the blocks of a body that changes.
+/// The controllers whose waves follow the blocks of a chain that changes.
 const BODY_CONTROLLERS: [ControllerKind; 2] = [ControllerKind::Wave, ControllerKind::Gait];
 
 impl Settings {
@@ -63,6 +64,9 @@ impl Settings {
         if self.evolution.strategy.info().varies_bodies != varies {
             self.evolution.strategy =
                 if varies { StrategyKind::BodyGa } else { StrategyKind::CmaEs };
+        }
+        if self.genome.has_creatures() {
+            self.evolution.strategy = StrategyKind::CreatureGa;
         }
     }
 

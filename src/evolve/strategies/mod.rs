@@ -8,6 +8,7 @@ mod body_ga;
 mod body_map_elites;
 mod cma;
 mod cma_es;
+mod creature_ga;
 mod ga;
 mod halving;
 mod islands;
@@ -47,6 +48,7 @@ fn constructors(settings: &Settings) -> Constructors {
         StrategyKind::BodyGa => Constructors::of::<body_ga::BodyGa>(),
         StrategyKind::BodyMapElites => Constructors::of::<body_map_elites::BodyMapElites>(),
         StrategyKind::Islands => Constructors::of::<islands::Islands>(),
+        StrategyKind::CreatureGa => Constructors::of::<creature_ga::CreatureGa>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }
 }

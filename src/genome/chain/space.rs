@@ -202,6 +202,15 @@ impl SettingGroup for BodySpace {
 }
 
 impl BodySpace {
+    /// The settings that have no effect on branching bodies, by their paths in the space of genomes.
+    pub(in crate::genome) const OF_CHAINS: [&str; 5] = [
+        "bodies.limbs_min",
+        "bodies.limbs_max",
+        "bodies.soft",
+        "bodies.modulus_min_pa",
+        "bodies.modulus_max_pa",
+    ];
+
     /// The numbers of blocks that a body may have.
     pub fn limbs(&self) -> std::ops::RangeInclusive<u32> {
         self.limbs_min..=self.limbs_max

@@ -15,6 +15,8 @@ mod limb_neurons;
 mod modular;
 mod neuron;
 mod neuron_choices;
+mod neuron_function;
+mod part_neurons;
 mod reflex;
 mod rules;
 mod servo;
@@ -38,6 +40,11 @@ pub use limb_neurons::{LIMB_NEURONS, LimbNeurons};
 pub use modular::{MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork};
 pub use neuron::{LimbNeuron, NEURON_INPUTS, NeuronInput};
 pub use neuron_choices::{NEURON_SOURCES, NeuronKind, NeuronSource};
+pub use neuron_function::{NeuronFunction, NeuronMoment, NeuronState};
+pub use part_neurons::{
+    MOST_CREATURE_NEURONS, MOST_PART_NEURONS, NodeNeurons, PartInput, PartNeuron, PartNeurons,
+    PartSense, PartSource,
+};
 pub use reflex::{REFLEX_INPUTS, ReflexGait};
 pub use rules::RuleGenes;
 pub use servo::ServoGenes;
@@ -114,6 +121,8 @@ registry! {
     Grown(GrownGenes),
     /// Neurons in the limbs.
     LimbNeurons(LimbNeurons),
+    /// Neurons in the parts of a branching body.
+    PartNeurons(PartNeurons),
 }
 
 named_by_info!(ControllerKind);

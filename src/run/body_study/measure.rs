@@ -44,7 +44,7 @@ pub(super) fn measured(
         seed: plan.seed,
         evaluations: u32::try_from(experiment.evaluated()).unwrap_or(u32::MAX),
         share: best.map(|best| best.evaluation.fitness),
-        blocks: best.map_or(0, |best| best.genome.body.segments.len() as u32),
+        blocks: best.map_or(0, |best| best.genome.body.block_count() as u32),
         changes,
         late_changes,
         cells: archive.elites().len() as u32,

@@ -148,18 +148,19 @@ fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     for (joint, torque) in body.joints.iter().zip(&lane.readings().torques) {
         let Some(front) = poses.get(joint.parent) else { continue };
         let [width_m, length_m, height_m] = body.parts[joint.parent].size_m();
-        let at = *front * Vec3::new(0.0, -length_m / 2.0, 0.0) + lane.offset();
+        let at = *front * joint.anchor_m(length_m) + lane.offset();
+        let turn = joint.axes(front.rotation);
         let radius_m = width_m.max(height_m) * TORQUE_RADIUS;
         // About x, from the top; drawn at the limb's sides, where it is visible.
         let share = torque.bend_nm / joint.max_bend_torque_nm.max(1.0e-6);
         for side in [-1.0, 1.0] {
-            let centre = at + front.rotation * Vec3::X * (side * (width_m / 2.0 + 0.1));
-            let (up, ahead) = (front.rotation * Vec3::Z, front.rotation * Vec3::NEG_Y);
+            let centre = at + turn * Vec3::X * (side * (width_m / 2.0 + 0.1));
+            let (up, ahead) = (turn * Vec3::Z, turn * Vec3::NEG_Y);
             bent_arrow(gizmos, centre, [up, ahead], radius_m * 0.75, share, palette);
         }
         // About y, from the top.
         let share = torque.twist_nm / joint.max_twist_torque_nm.max(1.0e-6);
-        let (up, aside) = (front.rotation * Vec3::Z, front.rotation * Vec3::X);
+        let (up, aside) = (turn * Vec3::Z, turn * Vec3::X);
         bent_arrow(gizmos, at, [up, aside], radius_m * 1.1, share, palette);
     }
 }

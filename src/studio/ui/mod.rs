@@ -6,6 +6,7 @@ pub mod icons;
 pub mod lane_dot;
 pub mod notifications;
 pub mod number_field;
+pub mod outlines;
 pub mod plot_axes;
 pub mod text_prompt;
 pub mod text_rows;

@@ -58,9 +58,9 @@ impl Simulation {
         }
         let mut joints_j = 0.0;
         for joint in &self.body.joints {
-            let to_parent = before[joint.parent].rotation.inverse();
+            let to_joint = joint.axes(before[joint.parent].rotation).inverse();
             let [first, mean, last] = std::array::from_fn(|moment| {
-                to_parent * (turns[joint.child][moment] - turns[joint.parent][moment])
+                to_joint * (turns[joint.child][moment] - turns[joint.parent][moment])
             });
             let squares = square_over_step(first.x, mean.x, last.x)
                 + square_over_step(first.y, mean.y, last.y);

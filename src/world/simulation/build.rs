@@ -54,7 +54,8 @@ pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &
     }
 }
 
-/// Inserts the parts in the order of the plan as a straight row that lies on the ground, head first.
+/// Inserts the parts in the order of the plan: as a straight row that lies on the ground, head first, or as the tree that a
+/// branching body is.
 pub(super) fn insert_parts(
     physics: &mut PhysicsWorld,
     plan: &WorldPlan,
@@ -66,10 +67,20 @@ pub(super) fn insert_parts(
     let (half_sin, half_cos) = libm::sincosf(plan.start_turn_rad / 2.0);
     let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
     let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
+    let mut branching = Vec::new();
+    if plan.body.is_branching() {
+        let front = Vector::new(0.0, plan.body.length_m() / 2.0, 0.0);
+        branching = plan.body.rest_poses();
+        for pose in &mut branching {
+            pose.translation = middle + turn * (pose.translation + front);
+            pose.rotation = turn * pose.rotation;
+        }
+    }
     plan.body
         .parts
         .iter()
-        .map(|part| {
+        .enumerate()
+        .map(|(index, part)| {
             let straight_y_m = front_y_m - part.length_m / 2.0;
             front_y_m -= part.length_m;
             let centre = if plan.start_turn_rad == 0.0 {
@@ -79,8 +90,8 @@ pub(super) fn insert_parts(
                 let along_m = straight_y_m - plan.start_y_m;
                 middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
             };
-            let body =
-                RigidBodyBuilder::dynamic().pose(Pose::from_parts(centre, turn)).can_sleep(false);
+            let pose = branching.get(index).copied().unwrap_or(Pose::from_parts(centre, turn));
+            let body = RigidBodyBuilder::dynamic().pose(pose).can_sleep(false);
             let collider = ColliderBuilder::cuboid(
                 part.width_m / 2.0,
                 part.length_m / 2.0,
@@ -132,7 +143,8 @@ pub(super) fn insert_joints(
     let joints = body.joints.iter().map(|joint| {
         let [parent, child] = [joint.parent, joint.child].map(|part| body.parts[part].mass_kg());
         let solved = settings.joint_damping_in_solver();
-        let mut built = universal_joint(joint, solved, half_m(joint.parent), half_m(joint.child));
+        let anchor = joint.anchor_m(body.parts[joint.parent].length_m);
+        let mut built = universal_joint(joint, solved, anchor, half_m(joint.child));
         built.softness =
             joint_coefficients(joint.cfm_m_s_per_n, settings.substep_s(), parent, child);
         ([joint.parent, joint.child], built)
@@ -171,7 +183,7 @@ pub(super) fn spring_joint(
     joint
 }
 
-/// A universal joint between the rear face of the parent and the front face of the child.
+/// A universal joint between a place of the parent, in a chain its rear face, and the front face of the child.
 ///
 /// Rapier has no such multibody joint, so it is an impulse joint with all axes locked but
 /// the rotations about x (bend) and y (twist). Its lock keeps the z part of the relative quaternion at
@@ -187,12 +199,12 @@ pub(super) fn spring_joint(
 fn universal_joint(
     plan: &JointPlan,
     solved: f32,
-    parent_half_m: f32,
+    anchor: Vector,
     child_half_m: f32,
 ) -> GenericJoint {
     let locked = JointAxesMask::LIN_AXES | JointAxesMask::ANG_Z;
     let mut joint = GenericJointBuilder::new(locked)
-        .local_anchor1(Vector::new(0.0, -parent_half_m, 0.0))
+        .local_frame1(Pose::from_parts(anchor, plan.axes(Rotation::IDENTITY)))
         .local_anchor2(Vector::new(0.0, child_half_m, 0.0))
         .limits(JointAxis::AngX, [-plan.bend_limit_rad, plan.bend_limit_rad])
         .limits(JointAxis::AngY, [-plan.twist_limit_rad, plan.twist_limit_rad])

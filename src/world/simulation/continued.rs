@@ -54,13 +54,13 @@ impl WorldPlan {
 }
 
 impl BodyPlan {
-    /// Whether parts have the same sizes, and joints and springs connect the same parts.
+    /// Whether parts have the same sizes, and joints and springs connect the same parts in the same places.
     fn has_shape_of(&self, other: &Self) -> bool {
         let sizes = |body: &Self| {
             body.parts.iter().map(|part| (part.limb, part.size_m())).collect::<Vec<_>>()
         };
         let ends = |body: &Self| {
-            let joints = body.joints.iter().map(|joint| (joint.parent, joint.child));
+            let joints = body.joints.iter().map(|joint| (joint.parent, joint.child, joint.mount));
             let springs = body.springs.iter().map(|spring| (spring.parent, spring.child));
             (joints.collect::<Vec<_>>(), springs.collect::<Vec<_>>())
         };

@@ -1,7 +1,7 @@
 //! Checks the state after a step against the limits of the trial.
 
 use super::Simulation;
-use crate::world::{Disqualification, Effort, Vector};
+use crate::world::{Disqualification, Effort, Mount, Vector};
 
 /// Height below which a snake has fallen through the ground, in metres; only a broken contact allows that.
 const LOWEST_Z_M: f32 = -2.0;
@@ -14,11 +14,17 @@ impl Simulation {
     }
 
     /// Squared distance between the two anchors of a joint or a spring, in m².
-    fn drift_squared(&self, [parent, child]: [usize; 2]) -> f32 {
+    fn drift_squared(&self, [parent, child]: [usize; 2], mount: Option<Mount>) -> f32 {
         let centre = |part: usize| self.physics.bodies[self.parts[part]].translation();
-        let parent_rear = centre(parent) - self.centre_to_front(parent);
+        let on_parent = match mount {
+            Some(mount) => {
+                let turn = *self.physics.bodies[self.parts[parent]].rotation();
+                centre(parent) + turn * mount.at_m
+            }
+            None => centre(parent) - self.centre_to_front(parent),
+        };
         let child_front = centre(child) + self.centre_to_front(child);
-        parent_rear.distance_squared(child_front)
+        on_parent.distance_squared(child_front)
     }
 
     /// Checks the state after a step against the [`HealthLimits`] and returns its speeds and distances.
@@ -46,13 +52,15 @@ impl Simulation {
                 return Err(Disqualification::LeftArena);
             }
             // The order of these checks is part of the bits of a run: it decides which reason is reported.
-            let joints = self.body.joints.iter().map(|of| ([of.parent, of.child], of.gap_scale));
-            let springs = self.body.springs.iter().map(|of| ([of.parent, of.child], of.gap_scale));
-            let to_parents = joints.chain(springs).filter(|([_, child], _)| *child == index);
+            let joints = self.body.joints.iter();
+            let joints = joints.map(|of| ([of.parent, of.child], of.mount, of.gap_scale));
+            let springs = self.body.springs.iter();
+            let springs = springs.map(|of| ([of.parent, of.child], None, of.gap_scale));
+            let to_parents = joints.chain(springs).filter(|([_, child], ..)| *child == index);
             let mut drift_squared = 0.0_f32;
-            for (ends, gap_scale) in to_parents {
+            for (ends, mount, gap_scale) in to_parents {
                 let limit_m = self.health.joint_drift_m * gap_scale;
-                let of_joint = self.drift_squared(ends);
+                let of_joint = self.drift_squared(ends, mount);
                 if of_joint > limit_m * limit_m {
                     return Err(Disqualification::JointBroke);
                 }

@@ -65,9 +65,9 @@ impl Simulation {
         self.body.joints.iter().map(|joint| {
             let [parent, child] =
                 [joint.parent, joint.child].map(|limb| &self.physics.bodies[self.parts[limb]]);
-            let into_parent = parent.rotation().inverse();
-            let turn = into_parent * *child.rotation();
-            let rate = into_parent * (child.angvel() - parent.angvel());
+            let into_joint = joint.axes(*parent.rotation()).inverse();
+            let turn = into_joint * *child.rotation();
+            let rate = into_joint * (child.angvel() - parent.angvel());
             // A quaternion and its negative are the same rotation; w ≥ 0 gives the smaller angle.
             let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
             let angle_rad = |part: f32| 2.0 * libm::atan2f(sign * part, sign * turn.w);

@@ -19,6 +19,7 @@ fn plan(limbs: usize) -> WorldPlan {
     let joint = |parent| JointPlan {
         parent,
         child: parent + 1,
+        mount: None,
         bend_limit_rad: 1.0,
         twist_limit_rad: 0.9,
         max_bend_torque_nm: 1000.0,

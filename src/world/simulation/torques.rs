@@ -17,14 +17,14 @@ impl Simulation {
             let bend_nm = torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
             let twist_nm =
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
-            let parent = *self.physics.bodies[self.parts[joint.parent]].rotation();
-            let couple = parent * Vector::new(bend_nm, twist_nm, 0.0);
-            let rates_rad_s = self.joint_rates(joint, parent);
+            let axes = joint.axes(*self.physics.bodies[self.parts[joint.parent]].rotation());
+            let couple = axes * Vector::new(bend_nm, twist_nm, 0.0);
+            let rates_rad_s = self.joint_rates(joint, axes);
             let [bend, twist] = rates_rad_s;
             let damping_nms = joint.damping_nms_per_rad * self.damping_as_torque;
-            let damping = parent * (Vector::new(bend, twist, 0.0) * -damping_nms);
+            let damping = axes * (Vector::new(bend, twist, 0.0) * -damping_nms);
             let torque = JointTorque { bend_nm, twist_nm };
-            self.applied[index] = AppliedTorque { parent, torque, rates_rad_s };
+            self.applied[index] = AppliedTorque { axes, torque, rates_rad_s };
             self.torques_in_world[joint.parent] -= couple;
             self.torques_in_world[joint.child] += couple;
             self.damping_in_world[joint.parent] -= damping;
@@ -45,8 +45,8 @@ impl Simulation {
     /// whole step about the axes at its start.
     pub(super) fn energy_j(&self) -> f32 {
         let joints = self.body.joints.iter().zip(&self.applied);
-        let power_w = joints.map(|(joint, AppliedTorque { parent, torque, rates_rad_s })| {
-            let after = self.joint_rates(joint, *parent);
+        let power_w = joints.map(|(joint, AppliedTorque { axes, torque, rates_rad_s })| {
+            let after = self.joint_rates(joint, *axes);
             let [bend, twist] = [0, 1].map(|axis| (rates_rad_s[axis] + after[axis]) / 2.0);
             (torque.bend_nm * bend).abs() + (torque.twist_nm * twist).abs()
         });

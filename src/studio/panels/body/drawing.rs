@@ -3,8 +3,9 @@
 use bevy_egui::egui;
 
 use crate::plot::Role;
+use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
-use crate::world::{BodyPlan, PartPlan};
+use crate::world::BodyPlan;
 
 /// Largest height of both views together, in points.
 const HEIGHT: f32 = 130.0;
@@ -17,9 +18,8 @@ pub(super) fn drawing(
     body: &BodyPlan,
     selected: Option<usize>,
 ) -> Option<usize> {
-    let most = |of: fn(&PartPlan) -> f32| body.parts.iter().map(of).fold(0.0_f32, f32::max);
-    let length_m = body.length_m();
-    let [width_m, height_m] = [most(|limb| limb.width_m), most(|limb| limb.height_m)];
+    let outlines = Outlines::of(body);
+    let [width_m, length_m, height_m] = outlines.size_m();
     if length_m <= 0.0 || width_m + height_m <= 0.0 {
         return None;
     }
@@ -40,26 +40,27 @@ pub(super) fn drawing(
         let at = egui::pos2(area.left() + SPACE, top - SPACE / 2.0);
         painter.text(at, egui::Align2::LEFT_TOP, view, font, palette.text_weak);
         top += name / 2.0;
-        let middle = top + of_view_m * scale / 2.0;
-        let mut x = left;
-        for block in 0..body.limbs() {
-            let size_m = body.limb_size_m(block);
-            let half = size_m[side] * scale / 2.0;
-            let rect = egui::Rect::from_min_max(
-                egui::pos2(x, middle - half),
-                egui::pos2(x + size_m[1] * scale, middle + half),
-            );
-            x = rect.right();
+        for (block, corners) in outlines.seen(side).into_iter().enumerate() {
+            let points: Vec<egui::Pos2> = corners
+                .into_iter()
+                .map(|[along_m, down_m]| egui::pos2(left + along_m * scale, top + down_m * scale))
+                .collect();
+            let hull = egui::Rect::from_points(&points);
             let color = palette.role(if block % 2 == 0 { Role::Red } else { Role::Blue });
             let is_soft = body.parts_of(block).len() > 1;
-            // Soft blocks are round.
-            let corner = if is_soft { half.min(rect.width() / 2.0) * 0.8 } else { 2.0 };
-            painter.rect_filled(rect.shrink(0.5), corner, color);
+            let frame = egui::Stroke::new(1.0, palette.field);
+            if is_soft {
+                // Soft blocks are round.
+                let corner = hull.height().min(hull.width()) / 2.0 * 0.8;
+                painter.rect_filled(hull.shrink(0.5), corner, color);
+            } else {
+                painter.add(egui::Shape::convex_polygon(points.clone(), color, frame));
+            }
             if selected == Some(block) {
                 let stroke = egui::Stroke::new(2.0, palette.text);
-                painter.rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
+                painter.add(egui::Shape::closed_line(points, stroke));
             }
-            let hit = rect.expand2(egui::vec2(0.0, SPACE / 2.0));
+            let hit = hull.expand2(egui::vec2(0.0, SPACE / 2.0));
             if response.clicked()
                 && response.interact_pointer_pos().is_some_and(|at| hit.contains(at))
             {

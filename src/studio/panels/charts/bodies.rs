@@ -1,5 +1,6 @@
 //! The ancestry of the best body as a row of pictures, one at every change of its structure.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::view::{ChartHit, ChartView, HitShape};
@@ -48,11 +49,21 @@ pub(super) fn view(
         let length_m = f64::from(body.length_m());
         tallest_m = tallest_m.max(length_m);
         let mut top_m = length_m;
+        // Of a creature the boxes around its parts.
+        let boxes_m = if body.is_branching() { body.rest_boxes_m() } else { Vec::new() };
         for index in 0..body.limbs() {
             let [width_m, limb_m, _] = body.limb_size_m(index).map(f64::from);
             let half = HALF_METRE * width_m;
             let bottom_m = top_m - limb_m;
-            blocks[index % 2].push([x - half, x + half, bottom_m, top_m]);
+            let shown = match boxes_m.get(index) {
+                Some([least, most]) => {
+                    let across = [least.x, most.x].map(|x_m| x + 2.0 * HALF_METRE * f64::from(x_m));
+                    let along = [least.y, most.y].map(|y_m| length_m + f64::from(y_m));
+                    [across[0], across[1], along[0], along[1]]
+                }
+                None => [x - half, x + half, bottom_m, top_m],
+            };
+            blocks[index % 2].push(shown);
             top_m = bottom_m;
         }
         let unit = settings.trial.fitness.unit();
@@ -140,6 +151,14 @@ fn of_line(ancestry: &Ancestry) -> Vec<Structure> {
 fn in_words(parent: &Genome, child: &Genome) -> String {
     match BodyChange::between(parent, child) {
         Some(change) => change.words().to_owned(),
+        None if child.body.is_branching() => {
+            let [before, after] = [parent, child].map(|of| of.body.block_count());
+            match after.cmp(&before) {
+                Ordering::Greater => format!("{} more parts", after - before),
+                Ordering::Less => format!("{} fewer parts", before - after),
+                Ordering::Equal => "other joints".to_owned(),
+            }
+        }
         None => "another structure".to_owned(),
     }
 }

@@ -83,7 +83,7 @@ pub(super) fn limb_card(
     let count = body.limbs();
     let part = match limb {
         0 => ", the head",
-        last if last + 1 == count => ", the tail",
+        last if last + 1 == count && !body.is_branching() => ", the tail",
         _ => "",
     };
     let title = format!("Limb {} of {count}{part}", limb + 1);
@@ -199,10 +199,13 @@ fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
         Some([line(state.bend_rad, torque.bend_nm), line(state.twist_rad, torque.twist_nm)])
     };
     let mut rows = Vec::new();
-    for index in 0..lane.body().joints.len() {
-        let names = if index + 1 == limb {
+    let body = lane.body();
+    for (index, of) in body.joints.iter().enumerate() {
+        let [front, rear] = [of.parent, of.child].map(|part| body.parts[part].limb);
+        let names = if rear == limb {
             ["Front bend", "Front twist"]
-        } else if index == limb {
+        } else if front == limb && !body.is_branching() {
+            // A limb of a creature may hold several others, whose own cards have these joints.
             ["Rear bend", "Rear twist"]
         } else {
             continue;

@@ -1,0 +1,28 @@
+//! Settings of the genetic algorithm over creatures.
+
+use crate::schema::{number, setting_group};
+
+setting_group! {
+    /// Settings of the genetic algorithm over creatures, after Sims (1994).
+    pub struct CreatureGaSettings in "Genetic algorithm of creatures":
+        "Graphs of parts and neurons are mutated, crossed and grafted."
+    {
+        /// Share of a generation that survives and breeds. Sims has a fifth.
+        survivors: f32 = 0.2,
+            number("Survivors", 0.01..=0.9)
+                .hint("Share of best creatures that pass unchanged into the next generation and breed")
+                .slider(0.02, 0.5);
+
+        /// Standard deviation of a gene's mutation, as a share of its range.
+        mutation_step: f32 = 0.1,
+            number("Step of mutation", 1.0e-4..=0.5)
+                .hint("As a share of each gene's range. About one gene in ten mutates in a child")
+                .slider(0.001, 0.5)
+                .logarithmic_from(0.001);
+    }
+}
+
+impl CreatureGaSettings {
+    /// Number of genes of a creature with as many nodes and neurons as there may be, a little rounded up.
+    pub(super) const MOST_GENES: usize = 2000;
+}

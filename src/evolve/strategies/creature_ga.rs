@@ -1,0 +1,319 @@
+//! A genetic algorithm over graphs that grow into creatures, after Karl Sims, "Evolving Virtual Creatures" (1994): a fifth
+//! survives, and offspring in proportion to the fitness fills the generation.
+
+use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
+use crate::evolve::parents::{IndividualId, Parents};
+use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::settings::CreatureGaSettings;
+use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
+use crate::genome::{CreatureChange, Genome, GenomeShape, GenomeSpace};
+use crate::rng::{Purpose, stream, uniform};
+use crate::score::Evaluation;
+
+/// Attempts to make a child that can be built, before it is a copy of its parent.
+const ATTEMPTS: usize = 20;
+/// Chance of the worst survivor to be a parent, relative to the best.
+const LEAST_CHANCE: f64 = 0.1;
+
+/// A survivor of the last generation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Survivor {
+    /// Its genes.
+    genome: Genome,
+    /// Chance to be a parent, relative to the others.
+    chance: f64,
+}
+
+/// The genetic algorithm.
+#[derive(Debug, Clone)]
+pub struct CreatureGa {
+    settings: CreatureGaSettings,
+    space: GenomeSpace,
+    shape: GenomeShape,
+    seed: u64,
+    /// The next generation; the first is 1.
+    generation: u32,
+    population: usize,
+    founder: Option<Arc<Founder>>,
+    /// The survivors of the last generation, best first; empty at the beginning.
+    survivors: Vec<Survivor>,
+    /// Their ids; empty if they are unknown.
+    ids: Vec<IndividualId>,
+}
+
+/// How an individual is made; the numbers are indices of survivors.
+enum CreatureOrigin {
+    Random,
+    Founder,
+    FounderChild,
+    Survivor(usize),
+    Child(usize, usize, CreatureChange),
+}
+
+impl CreatureGa {
+    fn with(plan: &RunPlan, finished: u32, survivors: Vec<Survivor>) -> Self {
+        Self {
+            settings: plan.settings.evolution.creature_ga.clone(),
+            space: plan.settings.genome.clone(),
+            shape: plan.settings.trial.genome_shape(),
+            seed: plan.seed,
+            generation: finished + 1,
+            population: plan.settings.evolution.population as usize,
+            founder: plan.founder.clone().filter(|_| finished == 0),
+            survivors,
+            ids: Vec::new(),
+        }
+    }
+
+    /// How an individual is made, and the stream from which its random numbers continue.
+    fn origin(&self, individual: usize) -> (CreatureOrigin, ChaCha8Rng) {
+        let of = |purpose| stream(self.seed, self.generation, individual as u32, purpose);
+        let mut rng = of(Purpose::Mutation);
+        // At least one individual has to change.
+        let kept = self.survivors.len().min(self.population - 1);
+        let origin = match (&self.founder, self.survivors.is_empty()) {
+            (Some(_), true) if individual == 0 => CreatureOrigin::Founder,
+            (Some(_), true) if individual.is_multiple_of(2) => CreatureOrigin::FounderChild,
+            (_, true) => return (CreatureOrigin::Random, of(Purpose::Birth)),
+            _ if individual < kept => CreatureOrigin::Survivor(individual),
+            _ => {
+                let change = CreatureChange::draw(&mut rng);
+                let (first, second) = (self.parent(&mut rng), self.parent(&mut rng));
+                let is_alone = change == CreatureChange::Mutation || first == second;
+                let change = if is_alone { CreatureChange::Mutation } else { change };
+                CreatureOrigin::Child(first, second, change)
+            }
+        };
+        (origin, rng)
+    }
+
+    /// Draws a survivor by its chance.
+    fn parent(&self, rng: &mut ChaCha8Rng) -> usize {
+        let all: f64 = self.survivors.iter().map(|survivor| survivor.chance).sum();
+        let mut left = uniform(rng) * all;
+        let drawn = self.survivors.iter().position(|survivor| {
+            left -= survivor.chance;
+            left < 0.0
+        });
+        drawn.unwrap_or(0)
+    }
+
+    fn individual(&self, individual: usize) -> Genome {
+        let (origin, mut rng) = self.origin(individual);
+        match origin {
+            CreatureOrigin::Random => self.random(&mut rng),
+            CreatureOrigin::Founder | CreatureOrigin::FounderChild => match &self.founder {
+                Some(founder) if individual == 0 => founder.genome().clone(),
+                Some(founder) => {
+                    self.child([founder.genome(); 2], CreatureChange::Mutation, &mut rng)
+                }
+                None => self.random(&mut rng),
+            },
+            CreatureOrigin::Survivor(index) => self.survivors[index].genome.clone(),
+            CreatureOrigin::Child(first, second, change) => {
+                let parents = [first, second].map(|index| &self.survivors[index].genome);
+                self.child(parents, change, &mut rng)
+            }
+        }
+    }
+
+    /// A child that can be built; a copy of the first parent if none was found.
+    fn child(&self, parents: [&Genome; 2], change: CreatureChange, rng: &mut ChaCha8Rng) -> Genome {
+        let step = self.settings.mutation_step.into();
+        let mut attempt = || self.space.changed_creature(parents, change, step, rng);
+        let child = (0..ATTEMPTS).find_map(|_| attempt());
+        child.unwrap_or_else(|| parents[0].clone())
+    }
+
+    fn random(&self, rng: &mut ChaCha8Rng) -> Genome {
+        self.space.random_genome(self.shape, rng)
+    }
+}
+
+/// Chances of survivors to be parents, given their fitness, best first: in proportion to the fitness above that of the worst,
+/// which has a tenth of the chance of the best.
+fn chances(fitness: &[f32]) -> Vec<f64> {
+    let best = fitness.first().copied().unwrap_or_default();
+    let worst = fitness.last().copied().unwrap_or_default();
+    let range = f64::from(best - worst);
+    let chance = |fitness: f32| {
+        let share = if range > 0.0 { f64::from(fitness - worst) / range } else { 1.0 };
+        LEAST_CHANCE + (1.0 - LEAST_CHANCE) * if share.is_finite() { share } else { 0.0 }
+    };
+    fitness.iter().copied().map(chance).collect()
+}
+
+impl Strategy for CreatureGa {
+    fn begin(plan: &RunPlan) -> Self {
+        Self::with(plan, 0, Vec::new())
+    }
+
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
+        let resumed = Self::with(plan, finished, state.read()?);
+        within("survivors", resumed.survivors.len(), 0..=resumed.population)?;
+        for survivor in &resumed.survivors {
+            within("chance", survivor.chance, LEAST_CHANCE..=1.0)?;
+            plan.settings.trial.check_genome(&survivor.genome)?;
+            resumed.space.check_genome(&survivor.genome, resumed.shape)?;
+        }
+        Ok(resumed)
+    }
+
+    fn ask(&self) -> Vec<Genome> {
+        (0..self.population).map(|individual| self.individual(individual)).collect()
+    }
+
+    fn population(&self) -> usize {
+        self.population
+    }
+
+    fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
+        let share = f64::from(self.settings.survivors);
+        let count = libm::round(share * genomes.len() as f64) as usize;
+        let mut order = full_ranking(evaluations);
+        order.truncate(count.max(1));
+        // A disqualified creature breeds only if there are too few others.
+        let healthy = |index: &usize| evaluations[*index].disqualified.is_none();
+        if order.iter().any(healthy) {
+            order.retain(healthy);
+        }
+        let fitness: Vec<f32> = order.iter().map(|&index| evaluations[index].fitness).collect();
+        let survivors = order.iter().zip(chances(&fitness));
+        self.survivors = survivors
+            .map(|(&index, chance)| Survivor { genome: genomes[index].clone(), chance })
+            .collect();
+        self.ids = IndividualId::all(self.generation, &order);
+        self.generation += 1;
+    }
+
+    fn state(&self) -> StrategyState {
+        StrategyState::of(&self.survivors)
+    }
+
+    fn apply_settings(&mut self, plan: &RunPlan) {
+        self.settings = plan.settings.evolution.creature_ga.clone();
+        self.population = plan.settings.evolution.population as usize;
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let of = |individual| {
+            let id = |index: usize| self.ids.get(index).copied();
+            let parents = match self.origin(individual).0 {
+                CreatureOrigin::Random | CreatureOrigin::Founder | CreatureOrigin::FounderChild => {
+                    Some(Parents::None)
+                }
+                CreatureOrigin::Survivor(index)
+                | CreatureOrigin::Child(index, _, CreatureChange::Mutation) => {
+                    id(index).map(Parents::One)
+                }
+                CreatureOrigin::Child(first, second, _) => {
+                    id(first).zip(id(second)).map(|(first, second)| Parents::Two(first, second))
+                }
+            };
+            parents.unwrap_or(Parents::Unknown)
+        };
+        (0..self.population).map(of).collect()
+    }
+
+    fn parent_pool(&self) -> Vec<IndividualId> {
+        self.ids.clone()
+    }
+
+    fn restore_parents(&mut self, pool: &[IndividualId]) {
+        self.ids = pool.get(..self.survivors.len()).unwrap_or_default().to_vec();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::{Settings, StrategyKind};
+    use crate::genome::{ControllerKind, grow};
+
+    fn ga() -> CreatureGa {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::CreatureGa;
+        settings.evolution.population = 60;
+        settings.genome.bodies.vary = true;
+        settings.genome.controller = ControllerKind::PartNeurons;
+        settings.check().expect("they go together");
+        CreatureGa::begin(&RunPlan::new("test", 1, settings))
+    }
+
+    fn parts(genome: &Genome) -> usize {
+        grow(&genome.body.nodes).len()
+    }
+
+    fn advance(ga: &mut CreatureGa) -> f32 {
+        let genomes = ga.ask();
+        let evaluations: Vec<Evaluation> = genomes
+            .iter()
+            .map(|genome| Evaluation::of_fitness(-(parts(genome) as f32 - 8.0).abs()))
+            .collect();
+        ga.tell(&genomes, &evaluations);
+        evaluations.iter().map(|of| of.fitness).sum::<f32>() / evaluations.len() as f32
+    }
+
+    #[test]
+    fn a_fifth_survives_and_the_population_follows_the_fitness() {
+        let mut ga = ga();
+        let first = advance(&mut ga);
+        assert_eq!(ga.survivors.len(), 12);
+        let kept: Vec<Genome> = ga.survivors.iter().map(|of| of.genome.clone()).collect();
+        assert_eq!(ga.ask()[..12], kept);
+        let last = (0..6).map(|_| advance(&mut ga)).last().expect("six");
+        assert!(last > first + 1.0, "{first}, then {last}");
+        assert_eq!(parts(&ga.survivors[0].genome), 8);
+    }
+
+    #[test]
+    fn the_chance_to_be_a_parent_grows_with_the_fitness() {
+        let found = chances(&[4.0, 3.0, 2.0, 0.0]);
+        for (found, expected) in found.into_iter().zip([1.0, 0.775, 0.55, 0.1]) {
+            assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+        }
+        assert_eq!(chances(&[2.0, 2.0]), [1.0, 1.0]);
+        assert!(chances(&[f32::NEG_INFINITY, f32::NEG_INFINITY]).iter().all(|of| *of >= 0.1));
+    }
+
+    #[test]
+    fn disqualified_creatures_do_not_breed_beside_healthy_ones() {
+        let mut ga = ga();
+        let genomes = ga.ask();
+        let mut evaluations: Vec<Evaluation> =
+            (0..60).map(|_| Evaluation::of_fitness(9.0)).collect();
+        for evaluation in &mut evaluations[3..] {
+            evaluation.disqualified = Some(crate::world::Disqualification::FellOver);
+        }
+        ga.tell(&genomes, &evaluations);
+        assert_eq!(ga.survivors.len(), 3);
+    }
+
+    #[test]
+    fn a_state_that_does_not_fit_is_refused() {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::CreatureGa;
+        settings.evolution.population = 20;
+        settings.genome.bodies.vary = true;
+        settings.genome.controller = ControllerKind::PartNeurons;
+        let plan = RunPlan::new("test", 1, settings);
+        let mut ga = CreatureGa::begin(&plan);
+        advance(&mut ga);
+        CreatureGa::resume(&plan, 1, &ga.state()).expect("its own");
+        let error = |change: fn(&mut Survivor)| {
+            let mut survivors = ga.survivors.clone();
+            change(&mut survivors[1]);
+            let state = StrategyState::of(&survivors);
+            CreatureGa::resume(&plan, 1, &state).expect_err("refused").to_string()
+        };
+        assert_eq!(error(|of| of.chance = 7.0), "chance is 7; allowed: 0.1 to 1");
+        let heavy = error(|of| of.genome.body.nodes[0].density_kg_m3 *= 1.0e9);
+        assert!(heavy.contains("density_kg_m3"), "{heavy}");
+    }
+}

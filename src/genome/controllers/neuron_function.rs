@@ -1,0 +1,290 @@
+//! What a neuron of a creature computes: the 23 functions of Sims (1994).
+
+use serde::{Deserialize, Serialize};
+
+/// Time constant of a neuron that smooths, in s.
+const SMOOTH_S: f64 = 0.25;
+/// Largest output of a neuron, and largest state.
+const LARGEST_OUTPUT: f64 = 10.0;
+/// Largest exponent, so that no output overflows.
+const LARGEST_EXPONENT: f64 = 5.0;
+
+/// The function of a neuron. Its inputs are a, b and c, of which it has as many as it needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NeuronFunction {
+    /// a + b + c.
+    Sum,
+    /// a b.
+    Product,
+    /// a / b; 0 for b = 0.
+    Divide,
+    /// 1 if a + b + c > 0, otherwise 0.
+    SumThreshold,
+    /// 1 if a > b, otherwise -1.
+    GreaterThan,
+    /// -1, 0 or 1.
+    SignOf,
+    /// The least of a, b and c.
+    Min,
+    /// The greatest of them.
+    Max,
+    /// |a|.
+    Abs,
+    /// b if a > 0, otherwise c.
+    If,
+    /// From b at a = 0 to c at a = 1.
+    Interpolate,
+    /// sin a.
+    Sin,
+    /// cos a.
+    Cos,
+    /// The arc tangent of a.
+    Atan,
+    /// ln(|a| + 10⁻⁶).
+    Log,
+    /// exp a, with an exponent of at most 5 to either side.
+    Expt,
+    /// tanh(a + b + c): the neuron of McCulloch and Pitts with a smooth step.
+    Sigmoid,
+    /// The integral of a over time.
+    Integrate,
+    /// The rate of a.
+    Differentiate,
+    /// a, smoothed.
+    Smooth,
+    /// Keeps a as long as b > 0, and its last value afterwards.
+    Memory,
+    /// A sine wave; a shifts its phase.
+    OscillateWave,
+    /// A saw tooth from -1 to 1; a shifts its phase.
+    OscillateSaw,
+}
+
+/// The memory of a neuron between two updates.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NeuronState(f64);
+
+/// The moment of an update.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NeuronMoment {
+    /// Periods of the neuron's oscillation since the start.
+    pub periods: f64,
+    /// Time since the last update, in s.
+    pub step_s: f64,
+}
+
+impl NeuronFunction {
+    /// All functions.
+    pub const ALL: [Self; 23] = [
+        Self::Sum,
+        Self::Product,
+        Self::Divide,
+        Self::SumThreshold,
+        Self::GreaterThan,
+        Self::SignOf,
+        Self::Min,
+        Self::Max,
+        Self::Abs,
+        Self::If,
+        Self::Interpolate,
+        Self::Sin,
+        Self::Cos,
+        Self::Atan,
+        Self::Log,
+        Self::Expt,
+        Self::Sigmoid,
+        Self::Integrate,
+        Self::Differentiate,
+        Self::Smooth,
+        Self::Memory,
+        Self::OscillateWave,
+        Self::OscillateSaw,
+    ];
+    /// The functions of Miconi and Channon (2005), a smooth step, and an oscillator.
+    pub const STANDARD: [Self; 2] = [Self::Sigmoid, Self::OscillateWave];
+
+    /// Number of inputs.
+    pub fn inputs(self) -> usize {
+        match self {
+            Self::Sum
+            | Self::SumThreshold
+            | Self::Min
+            | Self::Max
+            | Self::If
+            | Self::Interpolate
+            | Self::Sigmoid => 3,
+            Self::Product | Self::Divide | Self::GreaterThan | Self::Memory => 2,
+            Self::SignOf
+            | Self::Abs
+            | Self::Sin
+            | Self::Cos
+            | Self::Atan
+            | Self::Log
+            | Self::Expt
+            | Self::Integrate
+            | Self::Differentiate
+            | Self::Smooth
+            | Self::OscillateWave
+            | Self::OscillateSaw => 1,
+        }
+    }
+
+    /// Whether it has a frequency.
+    pub fn oscillates(self) -> bool {
+        matches!(self, Self::OscillateWave | Self::OscillateSaw)
+    }
+
+    /// The output for these inputs, between ±10. What is not a number becomes 0.
+    pub fn respond(
+        self,
+        [a, b, c]: [f64; 3],
+        moment: NeuronMoment,
+        NeuronState(state): &mut NeuronState,
+    ) -> f64 {
+        let bounded = |value: f64| {
+            if value.is_nan() { 0.0 } else { value.clamp(-LARGEST_OUTPUT, LARGEST_OUTPUT) }
+        };
+        let NeuronMoment { periods, step_s } = moment;
+        let fraction = |value: f64| value - libm::floor(value);
+        let response = match self {
+            Self::Sum => a + b + c,
+            Self::Product => a * b,
+            Self::Divide => {
+                if b == 0.0 {
+                    0.0
+                } else {
+                    a / b
+                }
+            }
+            Self::SumThreshold => f64::from(u8::from(a + b + c > 0.0)),
+            Self::GreaterThan => {
+                if a > b {
+                    1.0
+                } else {
+                    -1.0
+                }
+            }
+            Self::SignOf => {
+                if a == 0.0 {
+                    0.0
+                } else {
+                    a.signum()
+                }
+            }
+            Self::Min => a.min(b).min(c),
+            Self::Max => a.max(b).max(c),
+            Self::Abs => a.abs(),
+            Self::If => {
+                if a > 0.0 {
+                    b
+                } else {
+                    c
+                }
+            }
+            Self::Interpolate => b + (c - b) * a.clamp(0.0, 1.0),
+            Self::Sin => libm::sin(a),
+            Self::Cos => libm::cos(a),
+            Self::Atan => libm::atan(a),
+            Self::Log => libm::log(a.abs() + 1.0e-6),
+            Self::Expt => libm::exp(a.clamp(-LARGEST_EXPONENT, LARGEST_EXPONENT)),
+            Self::Sigmoid => libm::tanh(a + b + c),
+            Self::Integrate => {
+                *state = bounded(*state + a * step_s);
+                *state
+            }
+            Self::Differentiate => {
+                let rate = (a - *state) / step_s;
+                *state = bounded(a);
+                rate
+            }
+            Self::Smooth => {
+                *state = bounded(*state + (a - *state) * (1.0 - libm::exp(-step_s / SMOOTH_S)));
+                *state
+            }
+            Self::Memory => {
+                if b > 0.0 {
+                    *state = bounded(a);
+                }
+                *state
+            }
+            Self::OscillateWave => libm::sin(std::f64::consts::TAU * fraction(periods) + a),
+            Self::OscillateSaw => {
+                2.0 * fraction(fraction(periods) + a / std::f64::consts::TAU) - 1.0
+            }
+        };
+        bounded(response)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOMENT: NeuronMoment = NeuronMoment { periods: 7.25, step_s: 0.5 };
+
+    #[test]
+    fn each_function_computes_what_its_name_says() {
+        use NeuronFunction as F;
+        for (function, inputs, expected) in [
+            (F::Sum, [1.0, 2.0, 3.0], 6.0),
+            (F::Product, [2.0, 3.0, 0.0], 6.0),
+            (F::Divide, [6.0, 3.0, 0.0], 2.0),
+            (F::Divide, [6.0, 0.0, 0.0], 0.0),
+            (F::SumThreshold, [1.0, -0.5, 0.0], 1.0),
+            (F::SumThreshold, [0.0; 3], 0.0),
+            (F::GreaterThan, [1.0, 2.0, 0.0], -1.0),
+            (F::SignOf, [-3.0, 0.0, 0.0], -1.0),
+            (F::Min, [3.0, 1.0, 2.0], 1.0),
+            (F::Max, [3.0, 1.0, 2.0], 3.0),
+            (F::Abs, [-3.0, 0.0, 0.0], 3.0),
+            (F::If, [1.0, 2.0, 3.0], 2.0),
+            (F::If, [-1.0, 2.0, 3.0], 3.0),
+            (F::Interpolate, [0.5, 2.0, 3.0], 2.5),
+            (F::Sin, [0.5, 0.0, 0.0], libm::sin(0.5)),
+            (F::Cos, [0.5, 0.0, 0.0], libm::cos(0.5)),
+            (F::Atan, [0.5, 0.0, 0.0], libm::atan(0.5)),
+            (F::Log, [1.0 - 1.0e-6, 0.0, 0.0], 0.0),
+            (F::Expt, [100.0, 0.0, 0.0], 10.0),
+            (F::Expt, [1.0, 0.0, 0.0], libm::exp(1.0)),
+            (F::Sigmoid, [1.0, 2.0, -2.5], libm::tanh(0.5)),
+            (F::OscillateWave, [0.0; 3], 1.0),
+            (F::OscillateSaw, [0.0; 3], -0.5),
+        ] {
+            let found = function.respond(inputs, MOMENT, &mut NeuronState::default());
+            assert!((found - expected).abs() < 1e-12, "{function:?} of {inputs:?} is {found}");
+        }
+    }
+
+    #[test]
+    fn functions_with_a_memory_follow_time() {
+        use NeuronFunction as F;
+        let course = |function: F, values: &[[f64; 2]]| -> Vec<f64> {
+            let mut state = NeuronState::default();
+            let respond = |[a, b]: &[f64; 2]| function.respond([*a, *b, 0.0], MOMENT, &mut state);
+            values.iter().map(respond).collect()
+        };
+        assert_eq!(course(F::Integrate, &[[1.0, 0.0], [1.0, 0.0], [-4.0, 0.0]]), [0.5, 1.0, -1.0]);
+        assert_eq!(
+            course(F::Differentiate, &[[1.0, 0.0], [1.0, 0.0], [2.0, 0.0]]),
+            [2.0, 0.0, 2.0]
+        );
+        assert_eq!(course(F::Memory, &[[3.0, 1.0], [5.0, -1.0], [5.0, 1.0]]), [3.0, 3.0, 5.0]);
+        let smooth = course(F::Smooth, &[[1.0, 0.0]; 20]);
+        assert!(smooth[..5].windows(2).all(|pair| pair[0] < pair[1]) && smooth[19] > 0.999);
+    }
+
+    #[test]
+    fn no_input_makes_an_output_that_is_not_bounded() {
+        let values = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.0e300, -1.0e300, 0.0, -0.0];
+        for function in NeuronFunction::ALL {
+            let mut state = NeuronState::default();
+            for a in values {
+                for b in values {
+                    let output = function.respond([a, b, 1.0], MOMENT, &mut state);
+                    assert!(output.abs() <= LARGEST_OUTPUT, "{function:?} of {a}, {b}: {output}");
+                }
+            }
+        }
+    }
+}

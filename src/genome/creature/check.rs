@@ -1,0 +1,128 @@
+//! Whether a creature can be built.
+
+use super::growth::{bare_plan, grow};
+use super::node::{BodyNode, MOST_NODES};
+use crate::check::{Invalid, within};
+use crate::genome::chain::{INERTIA_RATIO, MASS_RATIO, inertia_kg_m2, ratio};
+use crate::world::BodyPlan;
+
+/// Greatest height of the centre of mass before a trial, in metres. A taller body could win by falling over.
+const HIGHEST_M: f32 = 1.5;
+
+/// Checks every value of a graph, and that the creature that grows from it can be built.
+///
+/// # Errors
+/// The first thing that is not allowed.
+pub fn check_creature(nodes: &[BodyNode]) -> Result<(), Invalid> {
+    within("nodes", nodes.len(), 1..=MOST_NODES)?;
+    for (index, node) in nodes.iter().enumerate() {
+        node.check(nodes.len()).map_err(|error| error.inside(&format!("nodes[{index}]")))?;
+    }
+    check_built(&bare_plan(nodes, &grow(nodes)), INERTIA_RATIO)
+}
+
+/// Checks that a grown body can be built: see `check_creature`.
+///
+/// # Errors
+/// It has a single part, neighbours differ too much, or it is too tall.
+pub(super) fn check_built(body: &BodyPlan, largest_inertia: f64) -> Result<(), Invalid> {
+    if body.joints.is_empty() {
+        return Err(Invalid::new("nodes", "a graph of which one part grows", "at least two parts"));
+    }
+    for (index, part) in body.parts.iter().enumerate() {
+        for size_m in part.size_m() {
+            within(&format!("size of part {}", index + 1), size_m, 0.1..=10.0)?;
+        }
+    }
+    for joint in &body.joints {
+        let [parent, child] = [joint.parent, joint.child].map(|part| &body.parts[part]);
+        let mass = |part: &crate::world::PartPlan| f64::from(part.mass_kg());
+        let inertia = |part| inertia_kg_m2(mass(part), part.size_m());
+        for (what, found, most) in [
+            ("masses", ratio(mass(parent), mass(child)), MASS_RATIO),
+            ("moments of inertia", ratio(inertia(parent), inertia(child)), largest_inertia),
+        ] {
+            // Sizes are rounded to 32 bits.
+            if found > most * 1.000_01 {
+                let field = format!("{what} of parts {} and {}", joint.parent + 1, joint.child + 1);
+                let value = format!("in the ratio {found:.1}");
+                return Err(Invalid::new(field, value, format!("a ratio of 1 to {most}")));
+            }
+        }
+    }
+    let poses = body.rest_poses();
+    let moment: f32 =
+        poses.iter().zip(&body.parts).map(|(pose, part)| pose.translation.z * part.mass_kg()).sum();
+    let height_m = moment / body.mass_kg();
+    if height_m > HIGHEST_M {
+        let field = "height of the centre of mass";
+        return Err(Invalid::new(field, format!("{height_m:.2} m"), format!("0 to {HIGHEST_M} m")));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::growth::tests::{node, to};
+    use super::super::node::Side;
+    use super::*;
+
+    fn refusal(nodes: &[BodyNode]) -> String {
+        check_creature(nodes).expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn what_cannot_be_built_is_refused_with_its_reason() {
+        let leaf = || node(1, Vec::new());
+        let pair = |side| vec![node(1, vec![to(1, side)]), leaf()];
+        check_creature(&pair(Side::Rear)).expect("two parts in a row");
+        assert!(refusal(&[leaf()]).starts_with("nodes is a graph of which one part grows"));
+        assert!(refusal(&[]).starts_with("nodes is 0; allowed: 1 to 16"));
+        let many = vec![leaf(); 17];
+        assert!(refusal(&many).starts_with("nodes is 17; allowed: 1 to 16"));
+        let tower = [node(5, vec![to(0, Side::Rear)]), leaf()];
+        check_creature(&tower).expect("a chain");
+        let mut tall = pair(Side::Rear);
+        tall[0].height_m = 4.0;
+        tall[1].height_m = 4.0;
+        assert!(refusal(&tall).starts_with("height of the centre of mass is 2.00 m"));
+        let mut light = pair(Side::Rear);
+        light[0].connections[0].scale = 0.5;
+        light[1].density_kg_m3 = 2.0;
+        assert!(refusal(&light).starts_with("masses of parts 1 and 2 is in the ratio 10.0"));
+    }
+
+    #[test]
+    fn hostile_values_are_refused_with_their_place() {
+        let error = |change: fn(&mut Vec<BodyNode>)| {
+            let mut nodes = vec![node(1, vec![to(1, Side::Rear)]), node(1, Vec::new())];
+            change(&mut nodes);
+            refusal(&nodes)
+        };
+        for (change, expected) in [
+            (
+                (|nodes| nodes[1].width_m = f32::NAN) as fn(&mut Vec<BodyNode>),
+                "nodes[1].width_m is NaN; allowed: 0.1 to 10",
+            ),
+            (|nodes| nodes[0].copies = 9, "nodes[0].copies is 9; allowed: 1 to 5"),
+            (
+                |nodes| nodes[0].connections[0].to = 7,
+                "nodes[0].connections[0].to is 7; allowed: 0 to 1",
+            ),
+            (
+                |nodes| nodes[0].connections[0].scale = 100.0,
+                "nodes[0].connections[0].scale is 100; allowed: 0.5 to 1.5",
+            ),
+            (
+                |nodes| nodes[0].connections[0].turn_rad[1] = f32::INFINITY,
+                "nodes[0].connections[0].turn_rad[1] is inf; allowed: -1.2 to 1.2",
+            ),
+            (
+                |nodes| nodes[0].connections = vec![to(1, Side::Rear); 4],
+                "nodes[0].connections is 4; allowed: 0 to 3",
+            ),
+        ] {
+            assert_eq!(error(change), expected);
+        }
+    }
+}

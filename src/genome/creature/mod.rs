@@ -1,0 +1,22 @@
+//! Branching bodies after Sims (1994): a directed graph of nodes, which grows into a tree of parts.
+//!
+//! A node is a plan for a part, and a connection says where another part grows from it. A node may be reached several times,
+//! also from itself, so that a small graph can have many legs.
+
+mod check;
+mod genes;
+mod growth;
+mod node;
+mod overlap;
+mod repair;
+mod space;
+mod tree;
+mod variation;
+
+pub(super) use check::check_creature;
+pub(super) use genes::{hash_structure, node_genes};
+pub use growth::{GrownPart, MOST_PARTS, bare_plan, grow};
+pub use node::{BodyNode, Connection, MOST_NODES, NodeJoint, Side};
+pub use space::{CreatureSpace, NeuronSet};
+pub use tree::joint_tree;
+pub use variation::CreatureChange;

@@ -1,0 +1,187 @@
+//! A node of the graph: the plan of a part, and what grows from it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
+use crate::genome::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
+
+/// Largest number of nodes of a graph: a part of its own for each.
+pub const MOST_NODES: usize = 16;
+/// Largest number of connections of a node.
+pub const MOST_CONNECTIONS: usize = 3;
+/// Largest number of parts of one node along a path from the first part.
+pub const MOST_COPIES: u32 = 5;
+
+/// Range of a size in a file, in metres: that of the sizes in settings.
+pub(super) const SIZE_RANGE_M: std::ops::RangeInclusive<f32> = 0.1..=10.0;
+/// Largest angle between a part and the side that it grows from, beside a right angle, in radians.
+pub(super) const LARGEST_TILT_RAD: f32 = 1.2;
+/// Range of the factor of size from a part to one that grows from it.
+pub(super) const SCALE_RANGE: [f32; 2] = [0.5, 1.5];
+
+/// The plan of a part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyNode {
+    /// Size along the part, away from its joint, in metres. Like the other sizes it is that of a part whose factor of size is 1.
+    pub length_m: f32,
+    /// Size across it, in metres.
+    pub width_m: f32,
+    /// Height, in metres.
+    pub height_m: f32,
+    /// Density, in kg/m³.
+    pub density_kg_m3: f32,
+    /// The axes about which its joint turns. The joint of the first part waits until the node grows from another.
+    pub joint: NodeJoint,
+    /// Largest bend to either side of the middle of the range, in radians.
+    pub bend_limit_rad: f32,
+    /// Largest twist to either side of the middle, in radians.
+    pub twist_limit_rad: f32,
+    /// Bend in the built pose, from -1 to 1 times the limit: at 0 the joint turns as far up as down.
+    pub bend_start: f32,
+    /// Twist in the built pose, likewise.
+    pub twist_start: f32,
+    /// Share of the torque that its joint could have by its cross-section, from 0 to 1.
+    pub strength: f32,
+    /// How many parts along a path from the first may be of this node.
+    pub copies: u32,
+    /// What grows from it.
+    pub connections: Vec<Connection>,
+}
+
+/// The axes about which a joint turns. Universal, bend-twist and twist-bend joints of Sims are one here: the engine's joint
+/// locks the third axis and knows no order of the other two. His spherical joint is left out, because every joint of this
+/// program has two driven axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NodeJoint {
+    /// None: it holds the part in its place.
+    Rigid,
+    /// It bends.
+    Revolute,
+    /// It twists.
+    Twist,
+    /// It bends and twists.
+    Universal,
+}
+
+/// A side of a part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Opposite its joint.
+    Rear,
+    /// At smaller x.
+    Left,
+    /// At larger x.
+    Right,
+    /// Above.
+    Top,
+    /// Below.
+    Bottom,
+    /// Where its joint is. Only the first part has room there; for others it counts as the rear.
+    Front,
+}
+
+/// A connection: where a part grows from another.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Connection {
+    /// Index of the node of the part that grows.
+    pub to: u32,
+    /// The side that it grows from.
+    pub side: Side,
+    /// Place on that side, from its middle to an edge: -1 to 1 along x, on the left and right along y; and -1 to 1 along z, above
+    /// and below along y.
+    pub place: [f32; 2],
+    /// Rotations of the part against the right angle that it would have with the side, in radians: upwards about its x axis,
+    /// sideways about its z axis, and about its own length.
+    pub turn_rad: [f32; 3],
+    /// Factor of size, which all that grows from the part inherits.
+    pub scale: f32,
+    /// Whether a second part grows as the mirror image of the first, on the other side of the plane x = 0 of the part.
+    pub is_mirrored: bool,
+    /// Whether it only counts where no other connection of the part can be followed any more, as that of a hand at the end of an
+    /// arm.
+    pub is_terminal: bool,
+}
+
+impl NodeJoint {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Rigid, Self::Revolute, Self::Twist, Self::Universal];
+
+    /// Whether it bends, and whether it twists.
+    pub fn turns(self) -> [bool; 2] {
+        match self {
+            Self::Rigid => [false, false],
+            Self::Revolute => [true, false],
+            Self::Twist => [false, true],
+            Self::Universal => [true, true],
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rigid => "rigid",
+            Self::Revolute => "revolute",
+            Self::Twist => "twist",
+            Self::Universal => "universal",
+        }
+    }
+}
+
+impl Side {
+    /// All sides.
+    pub const ALL: [Self; 6] =
+        [Self::Rear, Self::Left, Self::Right, Self::Top, Self::Bottom, Self::Front];
+}
+
+impl BodyNode {
+    /// Size across x, along y and along z, in metres.
+    pub fn size_m(&self) -> [f32; 3] {
+        [self.width_m, self.length_m, self.height_m]
+    }
+
+    /// The same, to be changed.
+    pub(super) fn sizes_mut(&mut self) -> [&mut f32; 3] {
+        [&mut self.width_m, &mut self.length_m, &mut self.height_m]
+    }
+
+    /// Checks every value; the graph has this many nodes.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub(super) fn check(&self, nodes: usize) -> Result<(), Invalid> {
+        within("length_m", self.length_m, SIZE_RANGE_M)?;
+        within("width_m", self.width_m, SIZE_RANGE_M)?;
+        within("height_m", self.height_m, SIZE_RANGE_M)?;
+        within("density_kg_m3", self.density_kg_m3, DENSITY_RANGE_KG_M3)?;
+        within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
+        within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
+        within("bend_start", self.bend_start, -1.0..=1.0)?;
+        within("twist_start", self.twist_start, -1.0..=1.0)?;
+        within("strength", self.strength, 0.0..=1.0)?;
+        within("copies", self.copies, 1..=MOST_COPIES)?;
+        within("connections", self.connections.len(), 0..=MOST_CONNECTIONS)?;
+        for (index, connection) in self.connections.iter().enumerate() {
+            let place = format!("connections[{index}]");
+            connection.check(nodes).map_err(|error| error.inside(&place))?;
+        }
+        Ok(())
+    }
+}
+
+impl Connection {
+    fn check(&self, nodes: usize) -> Result<(), Invalid> {
+        within("to", self.to as usize, 0..=nodes.saturating_sub(1))?;
+        for (index, place) in self.place.into_iter().enumerate() {
+            within(&format!("place[{index}]"), place, -1.0..=1.0)?;
+        }
+        for (index, turn_rad) in self.turn_rad.into_iter().enumerate() {
+            let most = LARGEST_TILT_RAD;
+            within(&format!("turn_rad[{index}]"), turn_rad, -most..=most)?;
+        }
+        within("scale", self.scale, SCALE_RANGE[0]..=SCALE_RANGE[1])
+    }
+}

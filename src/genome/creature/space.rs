@@ -1,0 +1,59 @@
+//! The space of branching bodies, beside the sizes and limits that they have in common with chains.
+
+use super::growth::{MOST_DEPTH, MOST_PARTS};
+use crate::check::{Invalid, within};
+use crate::genome::controllers::NeuronFunction;
+use crate::schema::{choice, choices, setting_group, whole};
+
+setting_group! {
+    /// What a creature may consist of.
+    pub struct CreatureSpace in "Creatures":
+        "Parts and neurons of branching bodies. Their sizes, joints and volume are those of evolving bodies."
+    {
+        /// Least number of parts. A chain has at most seven.
+        parts_min: u32 = 2,
+            whole("Minimum parts", 2..=MOST_DEPTH as u32 + 1)
+                .hint("Smallest number of parts that a creature may have")
+                .slider(2.0, 7.0);
+
+        /// Greatest number of parts.
+        parts_max: u32 = MOST_PARTS as u32,
+            whole("Maximum parts", 2..=MOST_PARTS as u32)
+                .hint("Largest number of parts that a creature may have")
+                .slider(2.0, 16.0);
+
+        /// The functions of its neurons.
+        neurons: NeuronSet = NeuronSet::Standard,
+            choice("Neurons")
+                .hint("Functions that neurons compute");
+    }
+
+    fn check_together(&self) -> Result<(), Invalid> {
+        within("parts_max", self.parts_max, self.parts_min..=MOST_PARTS as u32)
+    }
+}
+
+choices! {
+    /// A set of functions of neurons.
+    pub enum NeuronSet {
+        Standard = "standard", "Standard", "Neurons with a smooth step, and oscillators (Miconi and Channon 2005).";
+        Sims = "sims", "Sims", "The 23 functions of Karl Sims (1994): sums, products, comparisons, memories, oscillators.";
+    }
+}
+
+impl CreatureSpace {
+    /// The numbers of parts that a creature may have.
+    pub fn parts(&self) -> std::ops::RangeInclusive<usize> {
+        self.parts_min as usize..=self.parts_max as usize
+    }
+}
+
+impl NeuronSet {
+    /// Its functions.
+    pub fn functions(self) -> &'static [NeuronFunction] {
+        match self {
+            Self::Standard => &NeuronFunction::STANDARD,
+            Self::Sims => &NeuronFunction::ALL,
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Branching bodies: where a joint holds its child on its parent, and how such a body stands before its trial.
+
+use super::{BodyPlan, JointPlan, PartPlan, Pose, Rotation, Vector};
+
+/// Where a joint holds a part of a branching body. The child always begins at the joint with its front face, and extends
+/// backwards from there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mount {
+    /// Place of the joint on the parent, in metres from the parent's centre, along its axes.
+    pub at_m: Vector,
+    /// Rotation of the child against its parent in the middle of the joint's range. The joint bends about the x axis of the
+    /// rotated frame and twists about its y axis.
+    pub turn: Rotation,
+    /// Bend and twist at the start, from the middle of the range, in radians. A joint whose range has another middle than the
+    /// built pose has asymmetric limits; about the middle they are symmetric, as the engine needs them for equal bits
+    /// everywhere.
+    pub start_rad: [f32; 2],
+}
+
+/// The rotation of a universal joint at a bend and a twist, in radians: its quaternion has no z part.
+pub fn joint_turn([bend_rad, twist_rad]: [f32; 2]) -> Rotation {
+    let [x, y] = [bend_rad, twist_rad].map(|angle_rad| libm::tanf(angle_rad / 2.0));
+    Rotation::from_xyzw(x, y, 0.0, 1.0).normalize()
+}
+
+impl PartPlan {
+    /// Half the size along each axis of a frame that sees the part turned, in metres.
+    pub(super) fn reach_m(&self, turn: Rotation) -> Vector {
+        let axes = [Vector::X, Vector::Y, Vector::Z].into_iter().zip(self.size_m());
+        axes.map(|(axis, size_m)| (turn * axis).abs() * (size_m / 2.0)).sum()
+    }
+}
+
+impl JointPlan {
+    /// The axes of the joint in a frame in which its parent is turned so: the bend is about x, the twist about y.
+    pub fn axes(&self, parent: Rotation) -> Rotation {
+        self.mount.map_or(parent, |mount| parent * mount.turn)
+    }
+
+    /// Place of the joint on its parent, in metres from the centre of a part of this length.
+    pub fn anchor_m(&self, parent_length_m: f32) -> Vector {
+        let rear = || Vector::new(0.0, -parent_length_m / 2.0, 0.0);
+        self.mount.map_or_else(rear, |mount| mount.at_m)
+    }
+}
+
+impl BodyPlan {
+    /// Whether its parts form a tree instead of a row.
+    pub fn is_branching(&self) -> bool {
+        self.joints.iter().any(|joint| joint.mount.is_some())
+    }
+
+    /// The poses of the parts of a body before its trial. Its foremost point lies at y = 0, its lowest at z = 0, its centre of
+    /// mass at x = 0.
+    pub fn rest_poses(&self) -> Vec<Pose> {
+        let mut poses = vec![Pose::from_parts(Vector::ZERO, Rotation::IDENTITY); self.parts.len()];
+        let joints = self.joints.iter().map(|joint| ([joint.parent, joint.child], joint.mount));
+        let springs = self.springs.iter().map(|spring| ([spring.parent, spring.child], None));
+        let mut all: Vec<_> = joints.chain(springs).collect();
+        all.sort_by_key(|([_, child], _)| *child);
+        for ([front, rear], mount) in all {
+            let parent = poses[front];
+            let half = |part: usize| Vector::new(0.0, self.parts[part].length_m / 2.0, 0.0);
+            let (anchor, turn) = match mount {
+                Some(mount) => (mount.at_m, mount.turn * joint_turn(mount.start_rad)),
+                None => (-half(front), Rotation::IDENTITY),
+            };
+            let turn = parent.rotation * turn;
+            let at = parent.translation + parent.rotation * anchor;
+            poses[rear] = Pose::from_parts(at - turn * half(rear), turn);
+        }
+        let (mut front_y_m, mut lowest_z_m) = (f32::NEG_INFINITY, f32::INFINITY);
+        let mut moment_x = 0.0;
+        for (pose, part) in poses.iter().zip(&self.parts) {
+            let reach = part.reach_m(pose.rotation);
+            front_y_m = front_y_m.max(pose.translation.y + reach.y);
+            lowest_z_m = lowest_z_m.min(pose.translation.z - reach.z);
+            moment_x += pose.translation.x * part.mass_kg();
+        }
+        let shift = Vector::new(moment_x / self.mass_kg(), front_y_m, lowest_z_m);
+        poses.iter_mut().for_each(|pose| pose.translation -= shift);
+        poses
+    }
+
+    /// The least and the greatest corner of a box around each part before its trial, in metres: see [`Self::rest_poses`].
+    pub fn rest_boxes_m(&self) -> Vec<[Vector; 2]> {
+        let parts = self.rest_poses().into_iter().zip(&self.parts);
+        let around = |(pose, part): (Pose, &PartPlan)| {
+            let reach = part.reach_m(pose.rotation);
+            [pose.translation - reach, pose.translation + reach]
+        };
+        parts.map(around).collect()
+    }
+
+    /// Extent of a branching body along y before its trial, in metres.
+    pub(super) fn branching_length_m(&self) -> f32 {
+        // The front lies at 0.
+        -self.rest_boxes_m().into_iter().map(|[rear, _]| rear.y).fold(0.0, f32::min)
+    }
+
+    /// Index of the part whose centre is nearest to the centre of mass of a branching body before its trial; the first of
+    /// several.
+    pub fn branching_middle(&self) -> usize {
+        let poses = self.rest_poses();
+        let moments = poses.iter().zip(&self.parts);
+        let moment: Vector = moments.map(|(pose, part)| pose.translation * part.mass_kg()).sum();
+        let centre = moment / self.mass_kg();
+        let off = |index: &usize| poses[*index].translation.distance_squared(centre);
+        (0..poses.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
+    }
+}
