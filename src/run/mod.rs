@@ -5,6 +5,7 @@ mod background_task;
 pub mod bench;
 pub mod body_study;
 pub mod compare;
+pub mod creature_study;
 mod evaluator;
 pub mod evaluators;
 pub mod exam;

@@ -33,13 +33,12 @@ mod preset_list;
 mod record;
 mod run;
 mod run_name;
+mod study;
 mod v5;
 mod whole_file;
 mod whole_folder;
 
-pub use body_study::{
-    BodyStudyRun, BodyStudyRuns, MAX_BODY_STUDY_RUNS, load_body_study, store_body_study,
-};
+pub use body_study::{BodyStudyRun, CreatureStudyRun};
 pub use champion::{
     LoadedChampion, champion_text, load_champion, load_champion_and_note, parse_champion,
     shipped_champion, store_champion,
@@ -79,6 +78,7 @@ pub use record::{
 };
 pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};
+pub use study::{MAX_STUDY_RUNS, StudiedRun, StudyRuns, load_study, store_study};
 pub use v5::RecordedV5;
 pub use whole_file::UnfinishedFile;
 pub use whole_folder::UnfinishedFolder;

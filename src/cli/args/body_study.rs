@@ -9,4 +9,8 @@ pub struct BodyStudyArgs {
     /// Evaluations that each run may spend
     #[arg(long, value_name = "M", default_value_t = 6000)]
     pub evaluations: u32,
+    /// Study creatures instead of chains of blocks: whether they move on flat ground within 20,000 evaluations and climb low
+    /// stairs within 60,000, and how different they are after --evaluations
+    #[arg(long)]
+    pub creatures: bool,
 }

@@ -204,8 +204,11 @@ impl GenomeSpace {
             CreatureChange::Crossover => (crossed(&parent, &Graph::of(second), rng), AFTER_MATING),
             CreatureChange::Grafting => (grafted(parent, &Graph::of(second), rng)?, AFTER_MATING),
         };
-        self.mutate_graph(&mut graph, rate, rng);
-        graph.remove_unreachable();
+        // Half of the children keep their structure, so that a body has time to learn to move.
+        if chance(0.5, rng) {
+            self.mutate_graph(&mut graph, rate, rng);
+            graph.remove_unreachable();
+        }
         let genome = self.with_small_changes(&graph.into_genome(), step * rate, rng);
         self.finished(Graph::of(&genome))
     }
@@ -250,8 +253,8 @@ impl GenomeSpace {
                 bodies.twist_limit_max_rad,
             )
             .random(rng),
-            bend_start: 0.0,
-            twist_start: 0.0,
+            bend_start: GeneRange::Between(-1.0, 1.0).random(rng),
+            twist_start: GeneRange::Between(-1.0, 1.0).random(rng),
             strength: GeneRange::Between(bodies.strength_min, 1.0).random(rng),
             copies: if chance(0.5, rng) { 1 } else { rng.random_range(2..=MOST_COPIES) },
             connections: Vec::new(),

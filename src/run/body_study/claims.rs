@@ -5,7 +5,7 @@ use crate::evolve::{Archive, Settings, body_archive, feasible_cells};
 use crate::run::markdown::markdown_table;
 use crate::run::report::Quartiles;
 use crate::run::sign_test::PairedDifference;
-use crate::save::{BodyStudyRun, BodyStudyRuns};
+use crate::save::{BodyStudyRun, StudyRuns};
 use crate::schema::Choices;
 
 /// Factor by which protection must raise the number of late changes of structure.
@@ -18,7 +18,7 @@ const MORE_DIVERSITY: f64 = 1.3;
 const SPLIT_CHANGE: f64 = 0.05;
 
 /// The results as Markdown: what was measured of each arm, and each claim with its verdict.
-pub fn claims(runs: &BodyStudyRuns, settings: &Settings) -> String {
+pub fn claims(runs: &StudyRuns<BodyStudyRun>, settings: &Settings) -> String {
     let overview = markdown_table(&overview(runs), 1);
     let found = [protection(runs), filled(runs, settings), diversity(runs), split(runs)];
     let head = ["claim", "must", "measured", "met"].map(str::to_owned).to_vec();
@@ -30,7 +30,7 @@ pub fn claims(runs: &BodyStudyRuns, settings: &Settings) -> String {
     )
 }
 
-fn overview(runs: &BodyStudyRuns) -> Vec<Vec<String>> {
+fn overview(runs: &StudyRuns<BodyStudyRun>) -> Vec<Vec<String>> {
     let head = ["arm", "runs", "share", "blocks", "changes", "late changes", "cells", "QD score"];
     let row = |arm: &Arm| {
         let of_arm = runs.of_arm(arm.name());
@@ -68,7 +68,7 @@ fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 
 /// The values of the runs of two arms with the same seeds.
 fn pairs(
-    runs: &BodyStudyRuns,
+    runs: &StudyRuns<BodyStudyRun>,
     arms: [Arm; 2],
     value: impl Fn(&BodyStudyRun) -> f64,
 ) -> Vec<[f64; 2]> {
@@ -86,7 +86,7 @@ fn compared(pairs: &[[f64; 2]]) -> PairedDifference {
     PairedDifference::of(&known)
 }
 
-fn protection(runs: &BodyStudyRuns) -> Vec<String> {
+fn protection(runs: &StudyRuns<BodyStudyRun>) -> Vec<String> {
     let claim = "protection: changes of structure in the second half, and the share";
     let must = format!("{MORE_CHANGES} times as many or more, share not lower");
     let arms = [Arm::Protected, Arm::Unprotected];
@@ -110,7 +110,7 @@ fn protection(runs: &BodyStudyRuns) -> Vec<String> {
     vec![claim.to_owned(), must, measured, verdict(is_met)]
 }
 
-fn filled(runs: &BodyStudyRuns, settings: &Settings) -> Vec<String> {
+fn filled(runs: &StudyRuns<BodyStudyRun>, settings: &Settings) -> Vec<String> {
     let claim = "MAP-Elites: feasible cells that are filled";
     let must = format!("{:.0} % or more", FILLED * 100.0);
     let bodies = &settings.genome.bodies;
@@ -126,7 +126,7 @@ fn filled(runs: &BodyStudyRuns, settings: &Settings) -> Vec<String> {
     vec![claim.to_owned(), must, measured, verdict(median >= FILLED * 100.0)]
 }
 
-fn diversity(runs: &BodyStudyRuns) -> Vec<String> {
+fn diversity(runs: &StudyRuns<BodyStudyRun>) -> Vec<String> {
     let claim = "MAP-Elites: QD score, relative to all that the GA evaluated";
     let must = format!("{MORE_DIVERSITY} or more");
     let scores = pairs(runs, [Arm::Archive, Arm::Protected], |run| run.qd_score);
@@ -138,7 +138,7 @@ fn diversity(runs: &BodyStudyRuns) -> Vec<String> {
     vec![claim.to_owned(), must, measured, verdict(median >= MORE_DIVERSITY)]
 }
 
-fn split(runs: &BodyStudyRuns) -> Vec<String> {
+fn split(runs: &StudyRuns<BodyStudyRun>) -> Vec<String> {
     let claim = "a split of a block changes the share little (GA, protected)";
     let must = format!("median {SPLIT_CHANGE} or less");
     let of_arm = runs.of_arm(Arm::Protected.name());
@@ -159,7 +159,7 @@ fn split(runs: &BodyStudyRuns) -> Vec<String> {
 }
 
 /// The records of the CSV file, the header first: one per run.
-pub fn study_records(runs: &BodyStudyRuns) -> Vec<Vec<String>> {
+pub fn study_records(runs: &StudyRuns<BodyStudyRun>) -> Vec<Vec<String>> {
     let head = [
         "arm",
         "seed",
@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn every_claim_is_held_against_its_bound() {
         let settings = Settings::default();
-        let mut runs = BodyStudyRuns::new(String::new(), 100);
+        let mut runs = StudyRuns::new(String::new(), 100);
         let text = claims(&runs, &settings);
         assert_eq!(text.matches("not measured").count(), 4, "{text}");
         for seed in 1..=6 {

@@ -261,6 +261,19 @@ const CASES: &[Case] = &[
         "controller=gait; strategy=body_ga; bodies.vary=true; limbs_max=4; bodies.soft=true; modulus_min_pa=500; \
          modulus_max_pa=30000; substeps=4; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
     ),
+    // Many of their joints have asymmetric limits.
+    (
+        "creatures",
+        [3, 12, 4],
+        "controller=part_neurons; strategy=creature_ga; bodies.vary=true; creatures.parts_min=3; creatures.parts_max=9; \
+         creature_ga.survivors=0.4; creature_ga.mutation_step=0.2; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
+    ),
+    (
+        "creatures with the neurons of Sims",
+        [3, 12, 4],
+        "controller=part_neurons; strategy=creature_ga; bodies.vary=true; creatures.neurons=sims; creatures.parts_min=4; \
+         network.weight_range=3; volume_m3=8; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
+    ),
 ];
 
 /// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.

@@ -1,0 +1,198 @@
+//! The arms of the study, and their runs.
+
+use crate::check::{Invalid, within};
+use crate::evolve::{Champion, RunPlan, Settings};
+use crate::genome::{NeuronSet, joint_tree};
+use crate::run::evaluator::Evaluator;
+use crate::run::experiment::Experiment;
+use crate::run::headless::HeadlessError;
+use crate::run::run_control::{Cancelled, RunControl};
+use crate::run::whole_runs::whole_runs;
+use crate::save::CreatureStudyRun;
+use crate::schema::{Choices, choices};
+use crate::score::Fitness;
+
+choices! {
+    /// What the creatures of a run have to do.
+    pub enum CreatureArm {
+        Flat = "flat", "Flat ground", "Move as far as possible on flat ground. A run ends with the first generation that reaches the goal.";
+        Stairs = "stairs", "Low stairs", "Climb stairs of 0.25 m. A run ends with the first generation that reaches the goal.";
+        Standard = "standard", "Standard neurons", "Climb the same stairs, with all evaluations.";
+        Sims = "sims", "Neurons of Sims", "The same with the 23 functions of Sims.";
+    }
+}
+
+/// Way on flat ground that a creature must make, in metres.
+pub const GOAL_WAY_M: f32 = 5.0;
+/// Steps that a creature must climb.
+pub const GOAL_STEPS: u32 = 3;
+/// Maximum number of evaluations of a run.
+const MAX_EVALUATIONS: u32 = 1_000_000;
+
+impl CreatureArm {
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        self.choice().name
+    }
+
+    /// Evaluations that a run may spend, given those of the runs that compare neurons.
+    pub fn evaluations(self, compared: u32) -> u32 {
+        match self {
+            Self::Flat => 20_000,
+            Self::Stairs => 60_000,
+            Self::Standard | Self::Sims => compared,
+        }
+    }
+
+    /// The plan of a run.
+    ///
+    /// # Errors
+    /// The budget is too small for one generation, or the trial's duration is out of range.
+    pub fn plan(self, settings: &Settings, seed: u64, compared: u32) -> Result<RunPlan, Invalid> {
+        let mut settings = settings.clone();
+        let population = settings.evolution.population;
+        within("evaluations", compared, population..=MAX_EVALUATIONS)?;
+        settings.evolution.generations = self.evaluations(compared) / population;
+        // The budget counts every simulation.
+        settings.trial.repeats.champion_trials = 0;
+        match self {
+            Self::Flat => {
+                settings.trial.stairs.steps = 0;
+                settings.trial.fitness = Fitness::CentreOfMass;
+            }
+            Self::Sims => settings.genome.creatures.neurons = NeuronSet::Sims,
+            Self::Stairs | Self::Standard => {}
+        }
+        settings.check()?;
+        Ok(RunPlan::new("creatures", seed, settings))
+    }
+
+    /// Whether a creature has done what the arm is about.
+    fn is_reached(self, champion: &Champion) -> bool {
+        match self {
+            Self::Flat => way_m(champion) >= GOAL_WAY_M,
+            Self::Stairs | Self::Standard | Self::Sims => steps(champion) >= GOAL_STEPS,
+        }
+    }
+
+    fn stops_at_goal(self) -> bool {
+        matches!(self, Self::Flat | Self::Stairs)
+    }
+}
+
+/// Way of the middle of a creature towards the stairs, in metres.
+fn way_m(champion: &Champion) -> f32 {
+    champion.evaluation.centre_y_m - champion.trial.middle_start_y_m(&champion.genome)
+}
+
+fn steps(champion: &Champion) -> u32 {
+    champion.evaluation.behaviour.map_or(0, |behaviour| behaviour.steps_climbed)
+}
+
+/// A run that is to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedCreatures {
+    /// Its arm.
+    pub arm: CreatureArm,
+    /// Its plan.
+    pub plan: RunPlan,
+}
+
+/// A run that was made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FinishedCreatures {
+    /// Its arm.
+    pub arm: CreatureArm,
+    /// Its measurements.
+    pub run: CreatureStudyRun,
+}
+
+/// Makes all runs, as many at the same time as `evaluator` has workers. Calls `spent` with the numbers of evaluations, and
+/// `done` with each finished run, one at a time.
+///
+/// # Errors
+/// `control` was cancelled, workers could not be started, or `done` failed.
+pub fn train_creatures(
+    planned: &[PlannedCreatures],
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+    spent: impl Fn(u64) + Sync,
+    done: impl FnMut(FinishedCreatures) -> Result<(), HeadlessError> + Send,
+) -> Result<(), HeadlessError> {
+    let work = |index: usize, single: &dyn Evaluator| -> Result<FinishedCreatures, Cancelled> {
+        let PlannedCreatures { arm, plan } = &planned[index];
+        let run = measured(*arm, plan, single, control, &spent)?;
+        Ok(FinishedCreatures { arm: *arm, run })
+    };
+    whole_runs(planned.len(), evaluator, control, work, done)
+}
+
+fn measured(
+    arm: CreatureArm,
+    plan: &RunPlan,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+    spent: &(dyn Fn(u64) + Sync),
+) -> Result<CreatureStudyRun, Cancelled> {
+    let mut experiment = Experiment::new(plan.clone());
+    let mut reached_after = None;
+    while !experiment.is_over() {
+        let report = experiment.run_generation(evaluator, control)?;
+        let evaluations = report.evaluations.into();
+        let is_reached = report.champion.as_ref().is_some_and(|champion| arm.is_reached(champion));
+        spent(evaluations);
+        if is_reached && reached_after.is_none() {
+            reached_after = u32::try_from(experiment.evaluated()).ok();
+            if arm.stops_at_goal() {
+                spent(plan.budget().saturating_sub(experiment.evaluated()));
+                break;
+            }
+        }
+    }
+    let best = experiment.best();
+    Ok(CreatureStudyRun {
+        seed: plan.seed,
+        evaluations: u32::try_from(experiment.evaluated()).unwrap_or(u32::MAX),
+        reached_after,
+        fitness: best.map(|best| best.evaluation.fitness),
+        way_m: best.map_or(0.0, way_m),
+        steps: best.map_or(0, steps),
+        parts: best.map_or(0, |best| best.genome.body.block_count() as u32),
+        tree: best.map_or(String::new(), |best| joint_tree(&best.genome.body.nodes)),
+        run_hash: format!("{:016x}", experiment.run_hash()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::LocalPool;
+    use crate::save::load_preset;
+
+    #[test]
+    fn each_arm_has_its_own_world_and_a_run_ends_where_it_reaches_the_goal() {
+        let mut settings = load_preset("creatures").expect("shipped").settings;
+        settings.evolution.population = 20;
+        settings.trial.duration_s = 8.0;
+        let plan = |arm: CreatureArm| arm.plan(&settings, 1, 40).expect("allowed");
+        assert_eq!(plan(CreatureArm::Flat).budget(), 20_000);
+        assert_eq!(plan(CreatureArm::Stairs).budget(), 60_000);
+        assert_eq!(plan(CreatureArm::Sims).budget(), 40);
+        assert_ne!(plan(CreatureArm::Sims).settings, plan(CreatureArm::Standard).settings);
+        assert!(CreatureArm::Flat.plan(&settings, 1, 10).is_err());
+        let arm = CreatureArm::Flat;
+        let planned = [PlannedCreatures { arm, plan: plan(arm) }];
+        let mut finished = Vec::new();
+        let pool = LocalPool::new(1).expect("threads");
+        let control = RunControl::default();
+        let done = |run| {
+            finished.push(run);
+            Ok(())
+        };
+        train_creatures(&planned, &pool, &control, |_| {}, done).expect("made");
+        let FinishedCreatures { run, .. } = &finished[0];
+        assert_eq!(run.reached_after, Some(run.evaluations), "{run:?}");
+        assert!(run.way_m >= GOAL_WAY_M && run.evaluations < 20_000, "{run:?}");
+        assert!(run.tree.starts_with("O(") && run.parts >= 2, "{run:?}");
+    }
+}
