@@ -4,18 +4,20 @@ use std::path::Path;
 
 use super::error::CliError;
 use super::output::print;
+use crate::genome::joint_tree;
 use crate::save::load_champion;
 use crate::world::{BodyPlan, JointPlan};
 
 /// Prints the blocks and joints of a champion, from the head.
 pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
     let champion = load_champion(file)?.champion;
-    let body = champion.body();
-    let is_own = champion.genome.body.has_own_blocks();
-    if json { print_lines(&body, is_own) } else { print(&table(&body, is_own)) }
+    let (body, genes) = (champion.body(), &champion.genome.body);
+    let is_own = genes.has_own_blocks();
+    let tree = genes.is_branching().then(|| joint_tree(&genes.nodes));
+    if json { print_lines(&body, is_own, tree) } else { print(&table(&body, is_own, tree)) }
 }
 
-fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
+fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<(), CliError> {
     for index in 0..body.limbs() {
         let joint = joint_before(body, index);
         let [width_m, length_m, height_m] = body.limb_size_m(index);
@@ -43,6 +45,7 @@ fn print_lines(body: &BodyPlan, is_own: bool) -> Result<(), CliError> {
         "blocks": body.limbs(),
         "parts": body.parts.len(),
         "evolved": is_own,
+        "tree": tree,
         "length_m": body.length_m(),
         "mass_kg": body.mass_kg(),
         "volume_m3": body.volume_m3(),
@@ -57,11 +60,12 @@ fn joint_before(body: &BodyPlan, limb: usize) -> Option<&JointPlan> {
     body.joints.iter().find(|joint| joint.child == first)
 }
 
-fn table(body: &BodyPlan, is_own: bool) -> String {
-    let origin = match (body.is_branching(), is_own) {
-        (true, _) => "a creature",
-        (false, true) => "a body of its own",
-        (false, false) => "the body of its trial",
+fn table(body: &BodyPlan, is_own: bool, tree: Option<String>) -> String {
+    let origin = match (&tree, is_own) {
+        // Each letter is a part: of a rigid joint F, a revolute one R, one that twists T, a universal one U.
+        (Some(tree), _) => format!("a creature with the joints {tree}"),
+        (None, true) => "a body of its own".to_owned(),
+        (None, false) => "the body of its trial".to_owned(),
     };
     let mut text = format!(
         "{} blocks, {origin}: {:.2} m long, {:.1} kg, {:.2} m³, {:.0} N·m of torque in all joints\n\n",
@@ -116,7 +120,7 @@ mod tests {
     #[test]
     fn a_body_is_a_line_of_sums_and_a_line_for_each_block() {
         let champion = crate::save::shipped_champion().expect("well formed").champion;
-        let text = table(&champion.body(), false);
+        let text = table(&champion.body(), false, None);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 3 + 5, "{text}");
         assert!(lines[0].starts_with("5 blocks, the body of its trial: 10.00 m long, "), "{text}");

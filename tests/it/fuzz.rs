@@ -8,7 +8,9 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::FileFailurePersistence;
 use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
-use snakes_and_stairs::genome::{BodyChange, ControllerKind, GenomeSpace, MOST_SEGMENTS};
+use snakes_and_stairs::genome::{
+    BodyChange, ControllerKind, CreatureChange, GenomeSpace, MOST_PARTS, MOST_SEGMENTS,
+};
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::{
     fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_lineage,
@@ -168,6 +170,33 @@ fn every_list_of_blocks_gives_a_body_or_one_line() {
             for (number, (change, _)) in (0..).zip(BodyChange::RATES) {
                 let mut rng = stream(1, 1, number, Purpose::Mutation);
                 if let Some(child) = space.with_body_change(genome, change, &mut rng) {
+                    child.body.check().expect("within the limits");
+                }
+            }
+        })
+    });
+}
+
+/// A champion with the nodes of this graph. Its neurons belong to those of three nodes, and to four joints.
+fn with_nodes(nodes: &str) -> String {
+    let champion = include_str!("../../fuzz/corpus/champion/creatures");
+    let (before, rest) = champion.split_once("nodes: [").expect("nodes");
+    let (_, behind) = rest.split_once("        controller:").expect("their end");
+    format!("{before}nodes: {nodes},\n),\ncontroller:{behind}")
+}
+
+/// Graphs that are accepted grow into bodies of a bounded size, and their children can be built.
+#[test]
+fn every_graph_of_nodes_gives_a_creature_or_one_line() {
+    read_corpus("creature", |path, nodes| {
+        parse_champion(path, &with_nodes(nodes)).map(|loaded| {
+            let genome = &loaded.champion.genome;
+            assert!(loaded.champion.body().parts.len() <= MOST_PARTS);
+            let space = GenomeSpace::default().widened_for(genome);
+            for number in 0..6 {
+                let mut rng = stream(1, 1, number, Purpose::Mutation);
+                let change = CreatureChange::draw(&mut rng);
+                if let Some(child) = space.changed_creature([genome; 2], change, 0.2, &mut rng) {
                     child.body.check().expect("within the limits");
                 }
             }

@@ -30,9 +30,13 @@ const WITH_BODIES: &str = "--set controller=gait --set bodies.vary=true --set li
 const WITH_SOFT_BLOCKS: &str = "--set youngs_modulus_pa=2000";
 const WITH_SOFT_BODIES: &str = "--set bodies.soft=true";
 
-/// Number of runs that are killed: each of nine strategies seven times, three of which vary bodies, and two of them again with
+/// What lets creatures evolve in such a run.
+const WITH_CREATURES: &str =
+    "--set controller=part_neurons --set bodies.vary=true --set parts_max=4";
+
+/// Number of runs that are killed: each of ten strategies seven times, four of which vary bodies, and two of them again with
 /// soft blocks.
-const ROUNDS: usize = 77;
+const ROUNDS: usize = 84;
 
 /// The only run in a folder of saves, if there is one yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
@@ -80,7 +84,7 @@ fn kill_after(generations: usize, delay: Duration, folder: &Path, arguments: &st
 #[test]
 fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let saves = folder();
-    let of_bodies = ["body_ga", "body_map_elites", "islands"];
+    let of_bodies = ["body_ga", "body_map_elites", "islands", "creature_ga"];
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
     let soft = ["soft cma_es", "soft body_ga"];
     let strategies: Vec<&str> = strategies.into_iter().chain(of_bodies).chain(soft).collect();
@@ -95,6 +99,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
         let bodies = match strategy {
             // Only they have settings for the number of candidates that take effect.
             "islands" => format!("{WITH_BODIES} --set candidates=4"),
+            "creature_ga" => WITH_CREATURES.to_owned(),
             of if of_bodies.contains(&of) => WITH_BODIES.to_owned(),
             _ => String::new(),
         };

@@ -231,3 +231,49 @@ fn hostile_bodies_are_refused_with_field_value_and_range() {
     // One block more than the controller has joints for.
     assert_refused("bodies", &with(1), &["controller joints is 4 joints", "allowed: 5"]);
 }
+
+#[test]
+fn hostile_creatures_are_refused_with_field_value_and_range() {
+    let body = "        body: ";
+    for (mark, value, parts) in [
+        ("length_m: ", "NaN", ["nodes[0].length_m is NaN", "allowed: 0.1 to 10"]),
+        ("height_m: ", "1.0e30", ["nodes[0].height_m is ", "allowed: 0.1 to 10"]),
+        ("copies: ", "4000000000", ["nodes[0].copies is 4000000000", "allowed: 1 to 5"]),
+        ("to: ", "99", ["nodes[0].connections[0].to is 99", "allowed: 0 to "]),
+        ("scale: ", "-1.0", ["nodes[0].connections[0].scale is -1", "allowed: 0.5 to 1.5"]),
+        ("bend_start: ", "inf", ["nodes[0].bend_start is inf", "allowed: -1 to 1"]),
+        ("joint: ", "spherical", ["spherical", "rigid"]),
+        ("bend_limit_rad: ", "0.5", ["bend_limit_rad is 0.5", "allowed: 0, because"]),
+    ] {
+        assert_refuses_behind(body, "creatures", mark, value, &parts);
+    }
+    for (mark, value, parts) in [
+        ("bias: ", "NaN", ["part_neurons.nodes[0].neurons[0].bias is NaN", "allowed: -100 to 100"]),
+        ("weight: ", "1.0e9", ["inputs[0].weight is 1000000000", "allowed: -100 to 100"]),
+        ("joints: ", "40", ["controller joints is 40 joints", "allowed: 4"]),
+        ("function: ", "cosine", ["cosine", "sum"]),
+    ] {
+        assert_refuses("creatures", mark, value, &parts);
+    }
+    // A graph that grows without an end, but for the largest number of parts: the neurons have other joints.
+    let text = champion("creatures");
+    let start = text.find("nodes: [").expect("nodes") + "nodes: [".len();
+    let bomb = "(length_m: 1.0, width_m: 1.0, height_m: 1.0, density_kg_m3: 9.0, joint: universal, bend_limit_rad: 1.0, \
+                twist_limit_rad: 1.0, bend_start: 0.0, twist_start: 0.0, strength: 1.0, copies: 5, connections: [";
+    let rear = "(to: 0, side: rear, place: (0.0, 0.0), turn_rad: (0.0, 0.0, 0.0), scale: 1.0, is_mirrored: true, \
+                is_terminal: false), ";
+    let with = |nodes: String| format!("{}{nodes}{}", &text[..start], &text[start..]);
+    let node = |connections: usize| format!("{bomb}{}]), ", rear.repeat(connections));
+    assert_refused("creatures", &with(node(3)), &["controller joints is 4 joints", "allowed: "]);
+    assert_refused("creatures", &with(node(4)), &["nodes[0].connections is 4", "allowed: 0 to 3"]);
+    assert_refused(
+        "creatures",
+        &with(node(200_000)),
+        &["connections is 200000", "allowed: 0 to 3"],
+    );
+    assert_refused(
+        "creatures",
+        &with(node(1).repeat(100_000)),
+        &["nodes is 10000", "allowed: 1 to 16"],
+    );
+}

@@ -103,9 +103,33 @@ def soft_structure(checks, model, expected):
     checks.equal("pairs of parts", model.npair, expected["pairs"])
 
 
+def tree_structure(checks, model, expected):
+    """Check 1 for creatures, whose bodies MuJoCo orders branch by branch: masses, inertias, places, limits and torques by
+    name."""
+    limbs, joints = range(1, len(expected["limbs"]) + 1), range(1, len(expected["joints"]) + 1)
+    checks.equal("bodies", sorted(names(model.body, model.nbody)), sorted(["world", *(f"limb {limb}" for limb in limbs)]))
+    bodies = [model.body(f"limb {limb}").id for limb in limbs]
+    checks.relative("masses", model.body_mass[bodies], [limb["kg"] for limb in expected["limbs"]], 1e-6)
+    checks.relative("inertias", [principal(model, body) for body in bodies], [limb["kg_m2"] for limb in expected["limbs"]], 1e-6)
+    for axis in ("bend", "twist"):
+        hinges = [model.joint(f"{axis} {joint}").id for joint in joints]
+        # A locked axis needs a range that is not empty, and a motor that it may have no torque.
+        limits = [max(joint[f"{axis}_limit_rad"], 1e-4) for joint in expected["joints"]]
+        checks.near("limits", model.jnt_range[hinges, 1], limits, 1e-6)
+        torques = [max(joint[f"{axis}_nm"], 1e-6) for joint in expected["joints"]]
+        motors = [model.actuator(f"{axis} {joint}").id for joint in joints]
+        checks.relative("torques", model.actuator_ctrlrange[motors, 1], torques, 1e-6)
+    data = raised(model, 0.0)
+    mujoco.mj_forward(model, data)
+    checks.near("places at the start", data.xpos[bodies], [limb["at_m"] for limb in expected["limbs"]], PLACE_M)
+    checks.near("centre of mass", data.subtree_com[0], expected["centre_m"], 1e-5)
+
+
 def raised(model, height_m):
     """The start, high above the ground."""
     data = mujoco.MjData(model)
+    if model.nkey:
+        mujoco.mj_resetDataKeyframe(model, data, 0)
     data.qpos[2] += height_m
     return data
 
@@ -235,19 +259,25 @@ def urdf(checks, model, expected):
     limbs, joints = len(expected["limbs"]), len(expected["joints"])
     order = ["world", "limb_1"]
     order += [name for joint in range(1, joints + 1) for name in (f"joint_{joint}", f"limb_{joint + 1}")]
-    checks.equal("URDF: links", names(model.body, model.nbody), order)
     axes = [f"{axis}_{joint + 1}" for joint in range(joints) for axis in ("bend", "twist")]
-    checks.equal("URDF: joints", names(model.joint, model.njnt), ["", *axes])
+    # The links of a creature are ordered branch by branch.
+    sort = sorted if "start_rad" in expected else list
+    checks.equal("URDF: links", sort(names(model.body, model.nbody)), sort(order))
+    checks.equal("URDF: joints", sort(names(model.joint, model.njnt)), sort(["", *axes]))
     checks.equal("URDF: degrees of freedom", model.nv, 6 + 2 * joints)
     bodies = [model.body(f"limb_{limb + 1}").id for limb in range(limbs)]
     checks.relative("URDF: masses", model.body_mass[bodies], [limb["kg"] for limb in expected["limbs"]], 1e-6)
     inertias = [principal(model, body) for body in bodies]
     checks.relative("URDF: inertias", inertias, [limb["kg_m2"] for limb in expected["limbs"]], 1e-6)
     limits = [joint[f"{axis}_limit_rad"] for joint in expected["joints"] for axis in ("bend", "twist")]
-    checks.near("URDF: limits", model.jnt_range[1:, 1], limits, 1e-6)
+    hinges = [model.joint(axis).id for axis in axes]
+    checks.near("URDF: limits", model.jnt_range[hinges, 1], limits, 1e-6)
     torques = [joint[f"{axis}_nm"] for joint in expected["joints"] for axis in ("bend", "twist")]
-    checks.relative("URDF: torques", model.jnt_actfrcrange[1:, 1], torques, 1e-6)
+    strong = numpy.maximum(torques, 1e-9)
+    checks.relative("URDF: torques", numpy.maximum(model.jnt_actfrcrange[hinges, 1], 1e-9), strong, 1e-6)
     data = mujoco.MjData(model)
+    for joint, bend_rad in enumerate(expected.get("start_rad", [])):
+        data.qpos[model.joint(f"bend_{joint + 1}").qposadr[0]] = bend_rad
     mujoco.mj_forward(model, data)
     centres = data.xipos[bodies]
     checks.near("URDF: places at the start", centres, [limb["at_m"] for limb in expected["limbs"]], PLACE_M)
@@ -261,6 +291,13 @@ def main(folder):
         expected = json.loads(path.read_text(encoding="utf-8"))
         text = path.with_suffix(".xml").read_text(encoding="utf-8")
         model = mujoco.MjModel.from_xml_string(text)
+        if "start_rad" in expected:
+            tree_structure(checks, model, expected)
+            free_fall(checks, model, expected)
+            free_limbs(checks, model, expected)
+            robot = freed(path.with_suffix(".urdf").read_text(encoding="utf-8"))
+            urdf(checks, robot, expected)
+            continue
         if "hinges" in expected:
             soft_structure(checks, model, expected)
             free_fall(checks, model, expected)

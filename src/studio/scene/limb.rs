@@ -19,6 +19,8 @@ pub(crate) struct LimbShape {
     pub has_front: bool,
     /// Whether another limb is behind it; false for the tail.
     pub has_rear: bool,
+    /// Whether the hinge about which it bends belongs to it, as in a creature, instead of the limb in front of it.
+    pub has_own_hinge: bool,
     /// Number of its parts: a soft limb has several, and rounder edges.
     pub parts: usize,
 }
@@ -163,6 +165,10 @@ impl LimbShape {
         let (thickness, half) = (self.thickness_m(), self.size.y / 2.0);
         let [front, rear] = self.cuts_m();
         solid.tone(Vec3::ONE);
+        if self.has_own_hinge {
+            let (joint, drum) = (Vec3::Y * half, Vec3::X * (self.size.x * 0.34));
+            solid.cylinder(joint - drum, joint + drum, thickness * OWN_HINGE);
+        }
         if self.has_rear {
             // The drum fills the gap of a high arch.
             let joint = Vec3::Y * -half;
@@ -184,12 +190,13 @@ impl LimbShape {
                 solid.ball(eye + gaze * self.eye_m() * 0.5, self.eye_m() * 0.64);
             }
         }
-        if self.has_rear {
+        if self.has_rear || self.has_own_hinge {
             // The axis of bending: a bright pin that stands out at both sides.
             solid.tone(AXIS_TONE);
-            let joint = Vec3::Y * -half;
+            let joint = Vec3::Y * if self.has_own_hinge { half } else { -half };
             let end = Vec3::X * (self.size.x / 2.0 + PIN_END_M);
-            solid.cylinder(joint - end, joint + end, thickness * 0.085);
+            let radius = if self.has_own_hinge { OWN_HINGE * 0.5 } else { 0.085 };
+            solid.cylinder(joint - end, joint + end, thickness * radius);
         }
         solid
     }
@@ -219,6 +226,8 @@ impl LimbShape {
     }
 }
 
+/// Radius of the hinge of a limb of a creature, as a fraction of its thickness.
+const OWN_HINGE: f32 = 0.12;
 /// How much thicker a collar is than the head, as a fraction of the head's thickness.
 const COLLAR_OUT: f32 = 0.07;
 
@@ -228,7 +237,13 @@ mod tests {
     use crate::studio::scene::mesh_builder::tests::closed_volume;
 
     const SIZE: Vec3 = Vec3::new(1.0, 2.0, 1.0);
-    const HEAD: LimbShape = LimbShape { size: SIZE, has_front: false, has_rear: true, parts: 1 };
+    const HEAD: LimbShape = LimbShape {
+        size: SIZE,
+        has_front: false,
+        has_rear: true,
+        has_own_hinge: false,
+        parts: 1,
+    };
 
     fn reach(solid: &MeshBuilder, along: impl Fn(&Vec3) -> f32) -> [f32; 2] {
         let places = || solid.positions.iter().map(&along);
@@ -284,7 +299,13 @@ mod tests {
         let short = Vec3::new(1.0, 0.1, 1.0);
         for has_front in [false, true] {
             for has_rear in [false, true] {
-                let shape = LimbShape { size: short, has_front, has_rear, parts: 1 };
+                let shape = LimbShape {
+                    size: short,
+                    has_front,
+                    has_rear,
+                    has_own_hinge: has_front && !has_rear,
+                    parts: 1,
+                };
                 assert!(closed_volume(&shape.block()) > 0.0);
                 let parts = [shape.block(), shape.white(), shape.dark(), shape.collar()];
                 let positions = parts.iter().flat_map(|solid| &solid.positions);

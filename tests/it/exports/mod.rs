@@ -4,11 +4,13 @@
 //! instead. `SNAKES_PEER_PYTHON` names the Python, which needs the packages in `tests/peers/requirements.txt`; Node needs
 //! those of `npm install --prefix tests/peers`.
 
+mod creatures;
 #[cfg(all(feature = "studio", target_os = "linux"))]
 mod films;
 mod models;
 mod page;
 mod scenes;
+mod soft;
 mod tables;
 
 use std::io::Write;

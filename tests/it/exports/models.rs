@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -13,9 +13,7 @@ use snakes_and_stairs::export::{ExportOrder, ExportProgress, ExportSource, Expor
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::LoadedChampion;
 use snakes_and_stairs::score::{Trial, evaluate};
-use snakes_and_stairs::world::{
-    JointTorque, SOFTEST_M4_S2, STIFFEST_M4_S2, Simulation, Vector, WorldPlan, modulus_at_pa,
-};
+use snakes_and_stairs::world::{JointTorque, Simulation, Vector, WorldPlan};
 
 use super::{peer_python, peer_script, succeed};
 use crate::program::{folder, snakes};
@@ -28,7 +26,7 @@ const FINER: u32 = 4;
 const SETTLED_S: f32 = 4.0;
 
 /// A random number between two bounds, even on a logarithmic scale.
-fn log_between(rng: &mut ChaCha8Rng, [least, most]: [f32; 2]) -> f32 {
+pub(super) fn log_between(rng: &mut ChaCha8Rng, [least, most]: [f32; 2]) -> f32 {
     least * libm::powf(most / least, rng.random_range(0.0..=1.0))
 }
 
@@ -56,7 +54,7 @@ fn random_sizes(rng: &mut ChaCha8Rng) -> Vec<[f32; 3]> {
 }
 
 /// A random body, on random stairs, as settings.
-fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
+pub(super) fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
     let sizes = random_sizes(rng);
     let joints = sizes.len() - 1;
     let list = |values: Vec<f32>| format!("{values:?}");
@@ -104,23 +102,6 @@ fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
     ];
     let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
     with_fields(&Settings::default(), fields).expect("allowed").trial
-}
-
-/// The same trial with soft limbs: each of a random modulus, from as soft as allowed to rigid.
-fn softened(trial: &Trial, rng: &mut ChaCha8Rng) -> Trial {
-    let agent = &trial.agent;
-    let modulus = |limb: usize| {
-        let sides_m = [agent.limb_width_m.at(limb), agent.limb_height_m.at(limb)];
-        let density = agent.density_kg_m3.as_ref().map_or(2.5, |density| density.at(limb));
-        let bending_m4_s2 = log_between(rng, [SOFTEST_M4_S2 * 1.01, STIFFEST_M4_S2 * 1.5]);
-        modulus_at_pa(bending_m4_s2, sides_m, density)
-    };
-    let moduli: Vec<f32> = (0..agent.limbs as usize).map(modulus).collect();
-    let settings = Settings { trial: trial.clone(), ..Settings::default() };
-    let moduli = format!("{moduli:?}");
-    let parts = rng.random_range(2..=4).to_string();
-    let fields = [("youngs_modulus_pa", moduli.as_str()), ("soft_parts", parts.as_str())];
-    with_fields(&settings, fields).expect("allowed").trial
 }
 
 /// Moves all limbs of a world upwards.
@@ -194,7 +175,7 @@ fn sines_nm(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Vec<Vec<f32>> {
 }
 
 /// The expected model of a world, and the motion of its body in this engine.
-fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
+pub(super) fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
     let start = Simulation::new(plan);
     let masses = start.physics().bodies.iter().map(|(_, limb)| {
         let inertia = limb.mass_properties().local_mprops.principal_inertia();
@@ -260,55 +241,8 @@ fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaCha8Rng) -> 
     })
 }
 
-/// The expected model of a body with soft limbs, and its motion in this engine without gravity.
-fn soft_description(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
-    let body = &plan.body;
-    let names: Vec<String> = (0..body.parts.len())
-        .map(|index| {
-            let limb = body.parts[index].limb;
-            let parts = body.parts_of(limb);
-            match parts.len() {
-                1 => format!("limb {}", limb + 1),
-                _ => format!("limb {} part {}", limb + 1, index - parts.start + 1),
-            }
-        })
-        .collect();
-    let hinges = body.parts.iter().enumerate().flat_map(|(index, part)| {
-        let spring = body.springs.iter().find(|spring| spring.child == index);
-        let of_spring = spring.into_iter().flat_map(|spring| {
-            let name = &names[index];
-            ["x", "y", "z"].into_iter().enumerate().map(move |(axis, letter)| {
-                let [stiffness, damping] =
-                    [spring.stiffness_nm_per_rad[axis], spring.damping_nms_per_rad[axis]];
-                json!([format!("spring {letter} {name}"), stiffness, damping])
-            })
-        });
-        let joint = body.joints.iter().find(|joint| joint.child == index);
-        let of_joint = joint.into_iter().flat_map(|joint| {
-            ["bend", "twist"].map(|axis| {
-                json!([format!("{axis} {}", part.limb), 0.0, joint.damping_nms_per_rad])
-            })
-        });
-        of_joint.chain(of_spring).collect::<Vec<_>>()
-    });
-    let hinges: Vec<Value> = hinges.collect();
-    let apart = |a: usize, b: usize| {
-        let is_joined = body.joints.iter().any(|joint| (joint.parent, joint.child) == (a, b));
-        let limbs = [body.parts[a].limb, body.parts[b].limb];
-        limbs[0] != limbs[1] && !is_joined && !body.contact_free_pairs.contains(&limbs)
-    };
-    let count = body.parts.len();
-    let pairs = (0..count).flat_map(|b| (0..b).map(move |a| (a, b)));
-    let mut expected = description(plan, plan, rng);
-    expected["substeps"] = json!(plan.explicit_steps());
-    expected["bodies"] = json!(names);
-    expected["hinges"] = json!(hinges);
-    expected["pairs"] = json!(pairs.filter(|&(a, b)| apart(a, b)).count());
-    expected
-}
-
 /// Exports a genome's body in a trial.
-fn export(name: &str, champion: &Champion, path: &Path) {
+pub(super) fn export(name: &str, champion: &Champion, path: &Path) {
     let loaded = LoadedChampion {
         champion: champion.clone(),
         engine: Engine::THIS,
@@ -323,7 +257,7 @@ fn export(name: &str, champion: &Champion, path: &Path) {
 }
 
 /// A random snake that nothing has found.
-fn champion(trial: Trial, rng: &mut ChaCha8Rng) -> Champion {
+pub(super) fn champion(trial: Trial, rng: &mut ChaCha8Rng) -> Champion {
     let genome = Settings::default().genome.random_genome(trial.genome_shape(), rng);
     let evaluation = evaluate(&genome, &trial);
     let origin = Origin { preset: "test".to_owned(), seed: 1, generation: 1, individual: 0 };
@@ -358,22 +292,20 @@ fn pendulum_trial(trial: &Trial) -> Trial {
     with_fields(&Settings::default(), fields).expect("allowed").trial
 }
 
-#[test]
-fn a_hundred_random_bodies_move_in_mujoco_as_here() {
-    let test = "a_hundred_random_bodies_move_in_mujoco_as_here";
+/// Writes this number of random bodies with their descriptions, and lets MuJoCo compare them. `write` exports a body to the
+/// files that a path with each ending names, and returns its description.
+pub(super) fn compared_in_mujoco(
+    test: &str,
+    seed: u64,
+    write: impl Fn(&str, &dyn Fn(&str) -> PathBuf, &mut ChaCha8Rng) -> Value,
+) {
     let Some(mut python) = peer_python("mujoco, numpy", test) else { return };
     let folder = folder();
     for body in 0..BODIES {
-        let mut rng = stream(1, 1, body, Purpose::Birth);
-        let champion = champion(random_trial(&mut rng), &mut rng);
-        let pendulum = self::champion(pendulum_trial(&champion.trial), &mut rng);
-        let plan = |champion: &Champion| champion.trial.world_plan(&champion.genome);
+        let mut rng = stream(seed, 1, body, Purpose::Birth);
         let name = format!("body {body}");
         let path = |ending: &str| folder.path().join(format!("{name}{ending}"));
-        export(&name, &champion, &path(".xml"));
-        export(&name, &champion, &path(".urdf"));
-        export(&name, &pendulum, &path("-pendulum.xml"));
-        let expected = description(&plan(&champion), &plan(&pendulum), &mut rng);
+        let expected = write(&name, &path, &mut rng);
         fs::write(path(".json"), expected.to_string()).expect("written");
     }
     let said =
@@ -383,24 +315,17 @@ fn a_hundred_random_bodies_move_in_mujoco_as_here() {
 }
 
 #[test]
-fn a_hundred_random_soft_bodies_move_in_mujoco_as_here() {
-    let test = "a_hundred_random_soft_bodies_move_in_mujoco_as_here";
-    let Some(mut python) = peer_python("mujoco, numpy", test) else { return };
-    let folder = folder();
-    for body in 0..BODIES {
-        let mut rng = stream(2, 1, body, Purpose::Birth);
-        let rigid = random_trial(&mut rng);
-        let champion = champion(softened(&rigid, &mut rng), &mut rng);
-        let name = format!("body {body}");
-        let path = |ending: &str| folder.path().join(format!("{name}{ending}"));
-        export(&name, &champion, &path(".xml"));
-        let plan = champion.trial.world_plan(&champion.genome);
-        fs::write(path(".json"), soft_description(&plan, &mut rng).to_string()).expect("written");
-    }
-    let said =
-        succeed(python.current_dir(folder.path()).arg(peer_script("models.py")).arg(folder.path()));
-    println!("{said}");
-    assert!(said.contains(&format!("{BODIES} bodies")), "{said}");
+fn a_hundred_random_bodies_move_in_mujoco_as_here() {
+    let test = "a_hundred_random_bodies_move_in_mujoco_as_here";
+    compared_in_mujoco(test, 1, |name, path, rng| {
+        let champion = champion(random_trial(rng), rng);
+        let pendulum = self::champion(pendulum_trial(&champion.trial), rng);
+        let plan = |champion: &Champion| champion.trial.world_plan(&champion.genome);
+        export(name, &champion, &path(".xml"));
+        export(name, &champion, &path(".urdf"));
+        export(name, &pendulum, &path("-pendulum.xml"));
+        description(&plan(&champion), &plan(&pendulum), rng)
+    });
 }
 
 #[test]

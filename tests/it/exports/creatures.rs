@@ -1,0 +1,41 @@
+//! Creatures as models for MuJoCo and URDF.
+
+use serde_json::json;
+use snakes_and_stairs::evolve::{Champion, Origin};
+use snakes_and_stairs::genome::NodeJoint;
+use snakes_and_stairs::save::load_preset;
+use snakes_and_stairs::score::evaluate;
+
+use super::models::{compared_in_mujoco, description, export};
+
+/// With joints about a single axis, in which both engines have the same coordinates.
+#[test]
+fn a_hundred_random_creatures_move_in_mujoco_as_here() {
+    let test = "a_hundred_random_creatures_move_in_mujoco_as_here";
+    let mut settings = load_preset("creatures").expect("shipped").settings;
+    settings.trial.duration_s = 0.1;
+    settings.trial.agent.angular_damping_per_s = 0.0;
+    (settings.trial.physics.substeps, settings.trial.physics.iterations) = (4, 16);
+    compared_in_mujoco(test, 3, |name, path, rng| {
+        let trial = settings.trial.clone();
+        let mut genome = settings.genome.random_genome(trial.genome_shape(), rng);
+        for node in &mut genome.body.nodes {
+            node.joint = NodeJoint::Revolute;
+            // Half of the range is left to either side for the motion.
+            node.bend_start *= 0.5;
+        }
+        let evaluation = evaluate(&genome, &trial);
+        let origin = Origin { preset: "test".to_owned(), seed: 1, generation: 1, individual: 0 };
+        let champion = Champion { genome, trial, evaluation, chosen_by: None, origin };
+        let plan = champion.trial.world_plan(&champion.genome);
+        export(name, &champion, &path(".xml"));
+        export(name, &champion, &path(".urdf"));
+        let mut expected = description(&plan, &plan, rng);
+        let start = |joint: &snakes_and_stairs::world::JointPlan| {
+            joint.mount.map_or(0.0, |mount| mount.start_rad[0])
+        };
+        let starts: Vec<f32> = plan.body.joints.iter().map(start).collect();
+        expected["start_rad"] = json!(starts);
+        expected
+    });
+}
