@@ -261,7 +261,7 @@ strategy_kinds! {
         name: "creature_ga",
         title: "Genetic algorithm of creatures",
         words: "Breeds graphs that grow into branching bodies with neurons in each part, after Karl Sims.",
-        color: [0xa0, 0x70, 0x30],
+        color: [0x80, 0x40, 0x00],
         settings: &["creature_ga"],
         only_controllers: &[ControllerKind::PartNeurons],
         varies_bodies: true,
