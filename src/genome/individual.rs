@@ -7,6 +7,7 @@ use super::body::BodyGenes;
 use super::controllers::ControllerGenes;
 use super::gene::GeneVisitor;
 use super::space::GenomeSpace;
+use crate::check::{Invalid, within};
 
 /// One individual. Champion files store it as it stands here.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,6 +24,24 @@ impl Genome {
     pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
         self.body.genes(space, visit);
         self.controller.encoding_mut().genes(space, visit);
+    }
+
+    /// Checks that neurons of parts belong to a branching body, and each node of such a body has its neurons.
+    ///
+    /// # Errors
+    /// The first of both that does not hold.
+    pub fn check_neurons(&self) -> Result<(), Invalid> {
+        let nodes = self.body.nodes.len();
+        match &self.controller {
+            ControllerGenes::PartNeurons(genes) => {
+                within("part_neurons.nodes", genes.nodes.len(), nodes..=nodes)
+            }
+            other if nodes > 0 => {
+                let allowed = "part_neurons, which grow with a branching body";
+                Err(Invalid::new("controller", other.kind(), allowed))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Number of genes.

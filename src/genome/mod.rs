@@ -23,8 +23,8 @@ pub use chain::{BodyChange, BodySpace, MOST_SEGMENTS, Segment};
 pub use controllers::{ControllerGenes, JointCommands};
 pub use coordinates::Coordinate;
 pub use creature::{
-    BodyNode, Connection, CreatureChange, CreatureSpace, GrownPart, MOST_PARTS, NeuronSet,
-    NodeJoint, Side, bare_plan as grown_body, grow, joint_tree,
+    BodyNode, BodySide, Connection, CreatureChange, CreatureSpace, GrownPart, MOST_PARTS,
+    NeuronSet, NodeJoint, bare_plan as grown_body, grow, joint_tree,
 };
 pub use gene::{Feature, GenomeShape};
 pub use individual::Genome;

@@ -142,6 +142,7 @@ impl Trial {
     /// Checks that a genome can be built and controlled in this trial.
     pub fn check_genome(&self, genome: &Genome) -> Result<(), Invalid> {
         genome.body.check()?;
+        genome.check_neurons()?;
         let body = self.agent.body_plan(genome);
         let (joints, expected) = (genome.controller.joints(), body.joints.len());
         if joints != expected {

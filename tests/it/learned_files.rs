@@ -264,7 +264,7 @@ fn hostile_creatures_are_refused_with_field_value_and_range() {
                 is_terminal: false), ";
     let with = |nodes: String| format!("{}{nodes}{}", &text[..start], &text[start..]);
     let node = |connections: usize| format!("{bomb}{}]), ", rear.repeat(connections));
-    assert_refused("creatures", &with(node(3)), &["controller joints is 4 joints", "allowed: "]);
+    assert_refused("creatures", &with(node(3)), &["part_neurons.nodes is 3", "allowed: 4 to 4"]);
     assert_refused("creatures", &with(node(4)), &["nodes[0].connections is 4", "allowed: 0 to 3"]);
     assert_refused(
         "creatures",

@@ -209,12 +209,17 @@ def free_limbs(checks, model, expected):
     model.opt.gravity[:] = 0.0
     data = raised(model, 20.0)
     bends = [model.joint(f"bend {joint + 1}").qposadr[0] for joint in range(len(expected["joints"]))]
-    there = []
+    there, touching = [], False
     for torques in expected["bend_torques_nm"]:
         data.ctrl[0::2] = torques
         for _ in range(expected["substeps"] * finer):
             mujoco.mj_step(model, data)
+            touching |= data.ncon > 0
         there.append(numpy.array(data.qpos[bends]))
+    if "start_rad" in expected and touching:
+        # Branches that hit each other part in two engines: their contacts differ.
+        checks.worst["creatures whose branches touch"] = checks.worst.get("creatures whose branches touch", 0) + 1
+        return
     limits = numpy.array([joint["bend_limit_rad"] for joint in expected["joints"]])
     here = numpy.array(expected["bends_rad"])
     checks.equal("free limbs stay within their limits", bool(numpy.all(numpy.abs(here) < limits)), True)

@@ -64,7 +64,7 @@ pub(super) fn check_built(body: &BodyPlan, largest_inertia: f64) -> Result<(), I
 #[cfg(test)]
 mod tests {
     use super::super::growth::tests::{node, to};
-    use super::super::node::Side;
+    use super::super::node::BodySide;
     use super::*;
 
     fn refusal(nodes: &[BodyNode]) -> String {
@@ -75,18 +75,18 @@ mod tests {
     fn what_cannot_be_built_is_refused_with_its_reason() {
         let leaf = || node(1, Vec::new());
         let pair = |side| vec![node(1, vec![to(1, side)]), leaf()];
-        check_creature(&pair(Side::Rear)).expect("two parts in a row");
+        check_creature(&pair(BodySide::Rear)).expect("two parts in a row");
         assert!(refusal(&[leaf()]).starts_with("nodes is a graph of which one part grows"));
         assert!(refusal(&[]).starts_with("nodes is 0; allowed: 1 to 16"));
         let many = vec![leaf(); 17];
         assert!(refusal(&many).starts_with("nodes is 17; allowed: 1 to 16"));
-        let tower = [node(5, vec![to(0, Side::Rear)]), leaf()];
+        let tower = [node(5, vec![to(0, BodySide::Rear)]), leaf()];
         check_creature(&tower).expect("a chain");
-        let mut tall = pair(Side::Rear);
+        let mut tall = pair(BodySide::Rear);
         tall[0].height_m = 4.0;
         tall[1].height_m = 4.0;
         assert!(refusal(&tall).starts_with("height of the centre of mass is 2.00 m"));
-        let mut light = pair(Side::Rear);
+        let mut light = pair(BodySide::Rear);
         light[0].connections[0].scale = 0.5;
         light[1].density_kg_m3 = 2.0;
         assert!(refusal(&light).starts_with("masses of parts 1 and 2 is in the ratio 10.0"));
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn hostile_values_are_refused_with_their_place() {
         let error = |change: fn(&mut Vec<BodyNode>)| {
-            let mut nodes = vec![node(1, vec![to(1, Side::Rear)]), node(1, Vec::new())];
+            let mut nodes = vec![node(1, vec![to(1, BodySide::Rear)]), node(1, Vec::new())];
             change(&mut nodes);
             refusal(&nodes)
         };
@@ -118,7 +118,7 @@ mod tests {
                 "nodes[0].connections[0].turn_rad[1] is inf; allowed: -1.2 to 1.2",
             ),
             (
-                |nodes| nodes[0].connections = vec![to(1, Side::Rear); 4],
+                |nodes| nodes[0].connections = vec![to(1, BodySide::Rear); 4],
                 "nodes[0].connections is 4; allowed: 0 to 3",
             ),
         ] {

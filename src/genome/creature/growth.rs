@@ -1,6 +1,6 @@
 //! Growth: from the graph of nodes to the tree of parts.
 
-use super::node::{BodyNode, Connection, Side};
+use super::node::{BodyNode, BodySide, Connection};
 use super::overlap::{PlacedBox, overlap};
 use crate::world::{BodyPlan, JointPlan, Mount, PartPlan, Pose, Rotation, Vector, joint_turn};
 
@@ -127,15 +127,17 @@ fn mount_of(
     let about = |x: f32, z: f32| Rotation::from_xyzw(x, 0.0, z, half_turn);
     // The part extends backwards from its joint; each side turns that direction outwards.
     let (at_m, side) = match connection.side {
-        Side::Front if parent.parent.is_some() => {
+        BodySide::Front if parent.parent.is_some() => {
             ([u * half_x, -half_y, v * half_z], Rotation::IDENTITY)
         }
-        Side::Rear => ([u * half_x, -half_y, v * half_z], Rotation::IDENTITY),
-        Side::Front => ([u * half_x, half_y, v * half_z], Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0)),
-        Side::Left => ([-half_x, u * half_y, v * half_z], about(0.0, -half_turn)),
-        Side::Right => ([half_x, u * half_y, v * half_z], about(0.0, half_turn)),
-        Side::Top => ([u * half_x, v * half_y, half_z], about(-half_turn, 0.0)),
-        Side::Bottom => ([u * half_x, v * half_y, -half_z], about(half_turn, 0.0)),
+        BodySide::Rear => ([u * half_x, -half_y, v * half_z], Rotation::IDENTITY),
+        BodySide::Front => {
+            ([u * half_x, half_y, v * half_z], Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))
+        }
+        BodySide::Left => ([-half_x, u * half_y, v * half_z], about(0.0, -half_turn)),
+        BodySide::Right => ([half_x, u * half_y, v * half_z], about(0.0, half_turn)),
+        BodySide::Top => ([u * half_x, v * half_y, half_z], about(-half_turn, 0.0)),
+        BodySide::Bottom => ([u * half_x, v * half_y, -half_z], about(half_turn, 0.0)),
     };
     let [up, aside, along] = connection.turn_rad.map(|turn_rad| {
         let (sin, cos) = libm::sincosf(turn_rad / 2.0);
@@ -240,7 +242,7 @@ pub(super) mod tests {
         }
     }
 
-    pub fn to(node: u32, side: Side) -> Connection {
+    pub fn to(node: u32, side: BodySide) -> Connection {
         Connection {
             to: node,
             side,
@@ -263,8 +265,8 @@ pub(super) mod tests {
 
     #[test]
     fn a_node_that_follows_itself_grows_a_chain_with_a_hand_at_its_end() {
-        let hand = Connection { is_terminal: true, scale: 0.5, ..to(1, Side::Rear) };
-        let nodes = [node(4, vec![to(0, Side::Rear), hand]), node(1, Vec::new())];
+        let hand = Connection { is_terminal: true, scale: 0.5, ..to(1, BodySide::Rear) };
+        let nodes = [node(4, vec![to(0, BodySide::Rear), hand]), node(1, Vec::new())];
         let grown = grow(&nodes);
         assert_eq!(grown.iter().map(|part| part.node).collect::<Vec<_>>(), [0, 0, 0, 0, 1]);
         let parents: Vec<_> = grown.iter().map(|part| part.parent).collect();
@@ -278,7 +280,8 @@ pub(super) mod tests {
 
     #[test]
     fn a_graph_without_recursion_grows_each_connection() {
-        let nodes = [node(1, vec![to(1, Side::Left), to(1, Side::Right)]), node(1, Vec::new())];
+        let nodes =
+            [node(1, vec![to(1, BodySide::Left), to(1, BodySide::Right)]), node(1, Vec::new())];
         assert_eq!(grow(&nodes).len(), 3);
         let poses = poses(&nodes);
         assert_near(poses[1].translation, [-1.5, -1.0, 0.25]);
@@ -290,9 +293,9 @@ pub(super) mod tests {
 
     #[test]
     fn a_mirrored_leg_stands_and_moves_as_the_mirror_image_of_the_first() {
-        let mut leg = to(1, Side::Left);
+        let mut leg = to(1, BodySide::Left);
         (leg.place, leg.turn_rad, leg.is_mirrored) = ([0.3, -0.2], [0.4, 0.3, 0.2], true);
-        let mut foot = to(2, Side::Bottom);
+        let mut foot = to(2, BodySide::Bottom);
         (foot.place, foot.turn_rad) = ([0.5, 0.1], [-0.3, 0.2, 0.6]);
         let mut nodes = [node(1, vec![leg]), node(1, vec![foot]), node(1, Vec::new())];
         (nodes[1].bend_start, nodes[1].twist_start) = (0.5, -0.5);
@@ -312,12 +315,12 @@ pub(super) mod tests {
     #[test]
     fn sides_face_outwards() {
         for (side, outwards) in [
-            (Side::Rear, [0.0, -1.0, 0.0]),
-            (Side::Front, [0.0, 1.0, 0.0]),
-            (Side::Left, [-1.0, 0.0, 0.0]),
-            (Side::Right, [1.0, 0.0, 0.0]),
-            (Side::Top, [0.0, 0.0, 1.0]),
-            (Side::Bottom, [0.0, 0.0, -1.0]),
+            (BodySide::Rear, [0.0, -1.0, 0.0]),
+            (BodySide::Front, [0.0, 1.0, 0.0]),
+            (BodySide::Left, [-1.0, 0.0, 0.0]),
+            (BodySide::Right, [1.0, 0.0, 0.0]),
+            (BodySide::Top, [0.0, 0.0, 1.0]),
+            (BodySide::Bottom, [0.0, 0.0, -1.0]),
         ] {
             let nodes = [node(1, vec![to(1, side)]), node(1, Vec::new())];
             let poses = poses(&nodes);
@@ -329,7 +332,7 @@ pub(super) mod tests {
 
     #[test]
     fn an_asymmetric_joint_stands_as_its_connection_says() {
-        let mut nodes = [node(1, vec![to(1, Side::Rear)]), node(1, Vec::new())];
+        let mut nodes = [node(1, vec![to(1, BodySide::Rear)]), node(1, Vec::new())];
         (nodes[1].bend_start, nodes[1].twist_start) = (0.8, -0.6);
         let poses = poses(&nodes);
         assert_near(poses[1].rotation * Vector::Y, [0.0, 1.0, 0.0]);
@@ -339,13 +342,13 @@ pub(super) mod tests {
     #[test]
     fn what_would_lie_inside_another_part_does_not_grow() {
         let leaf = node(1, Vec::new());
-        let twins = [node(1, vec![to(1, Side::Left), to(1, Side::Left)]), leaf.clone()];
+        let twins = [node(1, vec![to(1, BodySide::Left), to(1, BodySide::Left)]), leaf.clone()];
         assert_eq!(grow(&twins).len(), 2);
         // The mirror image of a part in the middle is the part itself.
-        let middle = Connection { is_mirrored: true, ..to(1, Side::Rear) };
+        let middle = Connection { is_mirrored: true, ..to(1, BodySide::Rear) };
         assert_eq!(grow(&[node(1, vec![middle]), leaf]).len(), 2);
         // A square: the fifth part would lie in the first.
-        let mut around = to(0, Side::Left);
+        let mut around = to(0, BodySide::Left);
         around.place = [-1.0, 0.0];
         let mut square = node(5, vec![around]);
         (square.width_m, square.length_m) = (1.0, 2.0);
@@ -355,10 +358,10 @@ pub(super) mod tests {
     #[test]
     fn growth_is_bounded_whatever_the_graph() {
         let all = |side| Connection { is_mirrored: true, ..to(0, side) };
-        let bomb = node(5, vec![all(Side::Left), all(Side::Rear), all(Side::Top)]);
+        let bomb = node(5, vec![all(BodySide::Left), all(BodySide::Rear), all(BodySide::Top)]);
         assert!((8..=MOST_PARTS).contains(&grow(&[bomb]).len()));
         let chain: Vec<_> =
-            (0..16).map(|next| node(5, vec![to((next + 1) % 16, Side::Rear)])).collect();
+            (0..16).map(|next| node(5, vec![to((next + 1) % 16, BodySide::Rear)])).collect();
         assert_eq!(grow(&chain).len(), MOST_DEPTH + 1);
         assert!(grow(&[]).is_empty());
     }

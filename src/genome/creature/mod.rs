@@ -16,7 +16,7 @@ mod variation;
 pub(super) use check::check_creature;
 pub(super) use genes::{hash_structure, node_genes};
 pub use growth::{GrownPart, MOST_PARTS, bare_plan, grow};
-pub use node::{BodyNode, Connection, MOST_NODES, NodeJoint, Side};
+pub use node::{BodyNode, BodySide, Connection, MOST_NODES, NodeJoint};
 pub use space::{CreatureSpace, NeuronSet};
 pub use tree::joint_tree;
 pub use variation::CreatureChange;

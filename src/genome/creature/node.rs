@@ -68,7 +68,7 @@ pub enum NodeJoint {
 /// A side of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Side {
+pub enum BodySide {
     /// Opposite its joint.
     Rear,
     /// At smaller x.
@@ -90,7 +90,7 @@ pub struct Connection {
     /// Index of the node of the part that grows.
     pub to: u32,
     /// The side that it grows from.
-    pub side: Side,
+    pub side: BodySide,
     /// Place on that side, from its middle to an edge: -1 to 1 along x, on the left and right along y; and -1 to 1 along z, above
     /// and below along y.
     pub place: [f32; 2],
@@ -131,7 +131,7 @@ impl NodeJoint {
     }
 }
 
-impl Side {
+impl BodySide {
     /// All sides.
     pub const ALL: [Self; 6] =
         [Self::Rear, Self::Left, Self::Right, Self::Top, Self::Bottom, Self::Front];

@@ -33,19 +33,19 @@ pub fn joint_tree(nodes: &[BodyNode]) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::growth::tests::{node, to};
-    use super::super::node::Side;
+    use super::super::node::BodySide;
     use super::*;
 
     #[test]
     fn the_order_of_connections_does_not_change_the_tree() {
         let mut hinge = node(1, Vec::new());
         hinge.joint = NodeJoint::Revolute;
-        let arm = node(1, vec![to(2, Side::Rear)]);
+        let arm = node(1, vec![to(2, BodySide::Rear)]);
         let tree = |connections| joint_tree(&[node(1, connections), arm.clone(), hinge.clone()]);
-        let one = tree(vec![to(1, Side::Left), to(2, Side::Right)]);
+        let one = tree(vec![to(1, BodySide::Left), to(2, BodySide::Right)]);
         assert_eq!(one, "O(R U(R))");
-        assert_eq!(tree(vec![to(2, Side::Left), to(1, Side::Rear)]), one);
-        assert_ne!(tree(vec![to(2, Side::Left)]), one);
+        assert_eq!(tree(vec![to(2, BodySide::Left), to(1, BodySide::Rear)]), one);
+        assert_ne!(tree(vec![to(2, BodySide::Left)]), one);
         assert_eq!(joint_tree(&[]), "");
     }
 }

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::growth::grow;
 use super::node::{
-    BodyNode, Connection, MOST_CONNECTIONS, MOST_COPIES, MOST_NODES, NodeJoint, Side,
+    BodyNode, BodySide, Connection, MOST_CONNECTIONS, MOST_COPIES, MOST_NODES, NodeJoint,
 };
 use crate::genome::body::BodyGenes;
 use crate::genome::controllers::{
@@ -160,7 +160,7 @@ impl GenomeSpace {
     fn plain_creature(&self, rng: &mut ChaCha8Rng) -> Genome {
         let rear = |to| Connection {
             to,
-            side: Side::Rear,
+            side: BodySide::Rear,
             place: [0.0; 2],
             turn_rad: [0.0; 3],
             scale: 1.0,
@@ -337,7 +337,7 @@ impl GenomeSpace {
                     connection.to = rng.random_range(0..count) as u32;
                 }
                 if chance(REDRAWN * rate, rng) {
-                    connection.side = drawn(&Side::ALL, rng);
+                    connection.side = drawn(&BodySide::ALL, rng);
                 }
                 if chance(REDRAWN * rate, rng) {
                     connection.is_mirrored = !connection.is_mirrored;
@@ -388,7 +388,7 @@ fn new_connection(nodes: usize, rng: &mut ChaCha8Rng) -> Connection {
     let (place, turn_rad) = ([within(1.0), within(1.0)], [within(0.6), within(0.6), within(0.6)]);
     Connection {
         to: rng.random_range(0..nodes) as u32,
-        side: drawn(&Side::ALL, rng),
+        side: drawn(&BodySide::ALL, rng),
         place,
         turn_rad,
         scale: GeneRange::Ratio(0.7, 1.2).random(rng),

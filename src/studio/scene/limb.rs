@@ -237,13 +237,8 @@ mod tests {
     use crate::studio::scene::mesh_builder::tests::closed_volume;
 
     const SIZE: Vec3 = Vec3::new(1.0, 2.0, 1.0);
-    const HEAD: LimbShape = LimbShape {
-        size: SIZE,
-        has_front: false,
-        has_rear: true,
-        has_own_hinge: false,
-        parts: 1,
-    };
+    const HEAD: LimbShape =
+        LimbShape { size: SIZE, has_front: false, has_rear: true, has_own_hinge: false, parts: 1 };
 
     fn reach(solid: &MeshBuilder, along: impl Fn(&Vec3) -> f32) -> [f32; 2] {
         let places = || solid.positions.iter().map(&along);
