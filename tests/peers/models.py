@@ -209,6 +209,9 @@ def free_limbs(checks, model, expected):
     model.opt.gravity[:] = 0.0
     data = raised(model, 20.0)
     bends = [model.joint(f"bend {joint + 1}").qposadr[0] for joint in range(len(expected["joints"]))]
+    if "start_rad" in expected:
+        # Contacts are seen 2 cm before they push: that is how early the other engine foresees them.
+        model.pair_margin[:], model.pair_gap[:] = 0.02, 0.02
     there, touching = [], False
     for torques in expected["bend_torques_nm"]:
         data.ctrl[0::2] = torques
@@ -217,7 +220,7 @@ def free_limbs(checks, model, expected):
             touching |= data.ncon > 0
         there.append(numpy.array(data.qpos[bends]))
     if "start_rad" in expected and touching:
-        # Branches that hit each other part in two engines: their contacts differ.
+        # Branches that come close to each other may touch in one engine and not in the other, and contacts differ.
         checks.worst["creatures whose branches touch"] = checks.worst.get("creatures whose branches touch", 0) + 1
         return
     limits = numpy.array([joint["bend_limit_rad"] for joint in expected["joints"]])
