@@ -16,7 +16,7 @@ fn a_hundred_random_creatures_move_in_mujoco_as_here() {
     settings.trial.duration_s = 0.1;
     settings.trial.agent.angular_damping_per_s = 0.0;
     (settings.trial.physics.substeps, settings.trial.physics.iterations) = (4, 16);
-    compared_in_mujoco(test, 3, |name, path, rng| {
+    let said = compared_in_mujoco(test, 3, |name, path, rng| {
         let trial = settings.trial.clone();
         let mut genome = settings.genome.random_genome(trial.genome_shape(), rng);
         for node in &mut genome.body.nodes {
@@ -38,4 +38,5 @@ fn a_hundred_random_creatures_move_in_mujoco_as_here() {
         expected["start_rad"] = json!(starts);
         expected
     });
+    println!("{said}");
 }

@@ -76,10 +76,11 @@ fn soft_description(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
 #[test]
 fn a_hundred_random_soft_bodies_move_in_mujoco_as_here() {
     let test = "a_hundred_random_soft_bodies_move_in_mujoco_as_here";
-    compared_in_mujoco(test, 2, |name, path, rng| {
+    let said = compared_in_mujoco(test, 2, |name, path, rng| {
         let rigid = random_trial(rng);
         let champion = champion(softened(&rigid, rng), rng);
         export(name, &champion, &path(".xml"));
         soft_description(&champion.trial.world_plan(&champion.genome), rng)
     });
+    println!("{said}");
 }
