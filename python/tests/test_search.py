@@ -11,7 +11,7 @@ from snakes_and_stairs import Problem, Search
 
 SMALL = {**SHORT, "evolution.population": 8, "evolution.generations": 3}
 #: Presets whose genomes are more than numbers.
-MORE_THAN_NUMBERS = ["bodies", "neat", "q-learning", "xcs", "zcs"]
+MORE_THAN_NUMBERS = ["bodies", "creatures", "neat", "q-learning", "xcs", "zcs"]
 ARRAYS = [name for name in sns.presets() if name not in MORE_THAN_NUMBERS]
 #: Strategies whose genomes are arrays in the space of the preset climb.
 STRATEGIES = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"]
