@@ -88,6 +88,12 @@ impl BodyPanel {
         drawing(ui, body, None);
         let (blocks, length_m, mass_kg) = (body.limbs(), body.length_m(), body.mass_kg());
         ui.label(format!("{blocks} blocks, {length_m:.1} m long, {mass_kg:.1} kg"));
+        if body.is_branching() {
+            return explain(
+                ui,
+                "This body grows from a graph of nodes. Only chains of blocks can be edited here.",
+            );
+        }
         explain(
             ui,
             "Change sizes, joints and strength of every block, add blocks and remove them: the stage shows the changed \

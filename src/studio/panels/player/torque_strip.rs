@@ -11,7 +11,7 @@ use super::timeline::TimelineSpan;
 use crate::score::KeyframeHistory;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
-use crate::world::JointTorque;
+use crate::world::{BodyPlan, JointTorque};
 
 /// The strip with its cached lines.
 #[derive(Default)]
@@ -89,7 +89,7 @@ impl TorqueStrip {
         painter.rect_filled(played, 4.0, palette.field.lerp_to_gamma(palette.accent_soft, 0.5));
         seconds(&painter, rect, end_s, &x_of, palette);
         let of_whole = Rect::from_x_y_ranges(whole.left()..=plot.left(), plot.y_range());
-        names(ui, of_whole, lane.body().joints.len(), is_wide);
+        names(ui, of_whole, lane.body(), is_wide);
         let mut climb = Vec::new();
         match lane.history() {
             Some(history) => {
@@ -168,13 +168,16 @@ impl TorqueStrip {
 
 /// Writes the names of the joints beside their rows, from head to tail; short ones beside a narrow strip. Rows that are
 /// lower than a line of text share a name with their neighbours.
-fn names(ui: &egui::Ui, area: Rect, joints: usize, is_wide: bool) {
+fn names(ui: &egui::Ui, area: Rect, body: &BodyPlan, is_wide: bool) {
+    let joints = body.joints.len();
     let row_height = area.height() / joints.max(1) as f32;
     let every = (theme::SMALL_SIZE / row_height.max(0.1)).ceil().max(1.0) as usize;
     let font = egui::FontId::proportional(theme::SMALL_SIZE);
     let painter = ui.painter_at(area.expand2(egui::vec2(0.0, theme::SMALL_SIZE)));
     for joint in (0..joints).step_by(every) {
         let end = match joint {
+            // A creature has no ends.
+            _ if body.is_branching() => "",
             0 => "head",
             _ if joint + every >= joints => "tail",
             _ => "",
@@ -271,6 +274,7 @@ fn hover_text(lane: &Lane, time_s: f64, is_known: bool) -> String {
             // Avoids "-0".
             let [bend_nm, twist_nm] = [torque.bend_nm, torque.twist_nm].map(|nm| nm.round() + 0.0);
             let end = match joint {
+                _ if lane.body().is_branching() => "",
                 1 => " (head)",
                 _ if joint == torques.len() => " (tail)",
                 _ => "",
