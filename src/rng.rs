@@ -57,6 +57,11 @@ pub fn uniform(rng: &mut ChaCha8Rng) -> f64 {
     rng.random_range(0.0..1.0)
 }
 
+/// One of a list that is not empty, all equally likely.
+pub fn drawn<T: Copy>(all: &[T], rng: &mut ChaCha8Rng) -> T {
+    all[rng.random_range(0..all.len())]
+}
+
 /// A normally distributed number of mean 0 and variance 1, by the method of Box and Muller (1958).
 pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
     // From (0, 1], where the logarithm is finite.

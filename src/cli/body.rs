@@ -6,7 +6,7 @@ use super::error::CliError;
 use super::output::print;
 use crate::genome::joint_tree;
 use crate::save::load_champion;
-use crate::world::{BodyPlan, JointPlan};
+use crate::world::BodyPlan;
 
 /// Prints the blocks and joints of a champion, from the head.
 pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
@@ -19,7 +19,7 @@ pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
 
 fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<(), CliError> {
     for index in 0..body.limbs() {
-        let joint = joint_before(body, index);
+        let joint = body.joint_before(index);
         let [width_m, length_m, height_m] = body.limb_size_m(index);
         let spring = body.spring_of(index);
         let line = serde_json::json!({
@@ -54,12 +54,6 @@ fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<()
     print(&format!("{line}\n"))
 }
 
-/// The joint in front of a block; the head has none.
-fn joint_before(body: &BodyPlan, limb: usize) -> Option<&JointPlan> {
-    let first = body.parts_of(limb).start;
-    body.joints.iter().find(|joint| joint.child == first)
-}
-
 fn table(body: &BodyPlan, is_own: bool, tree: Option<String>) -> String {
     let origin = match (&tree, is_own) {
         // Each letter is a part: of a rigid joint F, a revolute one R, one that twists T, a universal one U.
@@ -81,7 +75,7 @@ fn table(body: &BodyPlan, is_own: bool, tree: Option<String>) -> String {
         to("joined to")
     );
     for index in 0..body.limbs() {
-        let joint = joint_before(body, index);
+        let joint = body.joint_before(index);
         let joined_to = joint.map_or(String::new(), |joint| (joint.parent + 1).to_string());
         let joint = joint.map(|joint| {
             let [bend, twist] =

@@ -219,12 +219,8 @@ fn rgba([red, green, blue]: [f32; 3]) -> String {
 pub(super) fn head_start(plan: &WorldPlan) -> ([f32; 3], f32) {
     let body = &plan.body;
     if body.is_branching() {
-        let head = body.rest_poses()[0].translation;
-        let (sin, cos) = libm::sincosf(plan.start_turn_rad);
-        let (aside_m, ahead_m) = (head.x, head.y + body.length_m() / 2.0);
-        let x_m = plan.start_x_m + cos * aside_m - sin * ahead_m;
-        let y_m = plan.start_y_m + sin * aside_m + cos * ahead_m;
-        return ([x_m, y_m, head.z], plan.start_turn_rad);
+        let head_m = plan.start_poses()[0].translation;
+        return (head_m.to_array(), plan.start_turn_rad);
     }
     let head_length_m = body.parts.first().map_or(0.0, |head| head.length_m);
     let ahead_m = (body.length_m() - head_length_m) / 2.0;

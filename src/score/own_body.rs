@@ -2,7 +2,7 @@
 
 use super::AgentSettings;
 use crate::genome::{BodyNode, Segment, grow, grown_body};
-use crate::world::{BodyPlan, JointPlan, PartPlan};
+use crate::world::{BodyPlan, JointPlan, PartPlan, neighbours_pass};
 
 /// The body of some blocks, with the torques, the damping and the softness of the agent's joints.
 ///
@@ -21,8 +21,6 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
     let joint = |(index, pair): (usize, &[PartPlan])| {
         let (front, rear, genes) = (&pair[0], &pair[1], &segments[index + 1]);
         let scale = strength_of([front, rear]);
-        let smallest_side =
-            |limb: &PartPlan| limb.size_m().into_iter().fold(f32::INFINITY, f32::min);
         JointPlan {
             parent: index,
             child: index + 1,
@@ -32,7 +30,7 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
             max_bend_torque_nm: agent.max_bend_torque_nm.at(index) * scale * genes.strength,
             max_twist_torque_nm: agent.max_twist_torque_nm.at(index) * scale * genes.strength,
             damping_nms_per_rad: agent.joint_damping_nms_per_rad.at(index) * scale,
-            gap_scale: smallest_side(front).min(smallest_side(rear)),
+            gap_scale: front.smallest_side_m().min(rear.smallest_side_m()),
             cfm_m_s_per_n: agent.joint_cfm_m_s_per_n.at(index),
         }
     };
@@ -89,17 +87,12 @@ fn keep_torque_budget(body: &mut BodyPlan, budget_nm: f32) {
     }
 }
 
-/// Length of a block relative to the height of its neighbours below which these pass through each other: a bend of the
-/// joints between them would press their edges together, and block them.
-const SHORT_MIDDLE: f32 = 0.6;
-
 /// The neighbours of each short block, as pairs.
 fn contact_free_pairs(limbs: &[PartPlan]) -> Vec<[usize; 2]> {
     let triples = limbs.windows(3).enumerate();
     triples
         .filter(|(_, triple)| {
-            let height_m = triple[0].height_m.max(triple[2].height_m);
-            triple[1].length_m < SHORT_MIDDLE * height_m
+            neighbours_pass(triple[1].length_m, [triple[0].height_m, triple[2].height_m])
         })
         .map(|(index, _)| [index, index + 2])
         .collect()

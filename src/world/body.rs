@@ -92,10 +92,24 @@ pub struct SpringPlan {
     pub gap_scale: f32,
 }
 
+/// Length of a part relative to the height of its neighbours below which these pass through each other.
+const SHORT_MIDDLE: f32 = 0.6;
+
+/// Whether the neighbours of a part of this length pass through each other, given their heights, all in metres: a bend of the
+/// joints between them would press their edges together, and block them.
+pub fn neighbours_pass(middle_length_m: f32, heights_m: [f32; 2]) -> bool {
+    middle_length_m < SHORT_MIDDLE * heights_m[0].max(heights_m[1])
+}
+
 impl PartPlan {
     /// Size across x, along y and along z, in metres.
     pub fn size_m(&self) -> [f32; 3] {
         [self.width_m, self.length_m, self.height_m]
+    }
+
+    /// Its smallest side, in metres.
+    pub fn smallest_side_m(&self) -> f32 {
+        self.size_m().into_iter().fold(f32::INFINITY, f32::min)
     }
 
     /// Mass of the part, in kg.
@@ -129,6 +143,12 @@ impl BodyPlan {
         let parts = &self.parts[self.parts_of(limb)];
         let length_m = parts.iter().map(|part| part.length_m).sum();
         parts.first().map_or([0.0; 3], |first| [first.width_m, length_m, first.height_m])
+    }
+
+    /// The joint in front of a limb; none of the head.
+    pub fn joint_before(&self, limb: usize) -> Option<&JointPlan> {
+        let first = self.parts_of(limb).start;
+        self.joints.iter().find(|joint| joint.child == first)
     }
 
     /// The first spring within a limb, which is like its others; none in a rigid one.

@@ -21,7 +21,7 @@ mod stairs;
 mod surface;
 mod torque;
 
-pub use body::{BodyPlan, JointPlan, PartPlan, SpringPlan};
+pub use body::{BodyPlan, JointPlan, PartPlan, SpringPlan, neighbours_pass};
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};

@@ -17,6 +17,21 @@ pub struct Mount {
     pub start_rad: [f32; 2],
 }
 
+impl Mount {
+    /// The pose of a child of this length, in metres, before a trial, given that of its parent.
+    pub fn place(&self, parent: &Pose, length_m: f32) -> Pose {
+        let turn = parent.rotation * (self.turn * joint_turn(self.start_rad));
+        let at = parent.translation + parent.rotation * self.at_m;
+        Pose::from_parts(at - turn * Vector::new(0.0, length_m / 2.0, 0.0), turn)
+    }
+
+    /// The mount of a part of a chain or of a soft limb: straight behind a part of this length, in metres.
+    fn straight_behind(length_m: f32) -> Self {
+        let at_m = Vector::new(0.0, -length_m / 2.0, 0.0);
+        Self { at_m, turn: Rotation::IDENTITY, start_rad: [0.0; 2] }
+    }
+}
+
 /// The rotation of a universal joint at a bend and a twist, in radians: its quaternion has no z part.
 pub fn joint_turn([bend_rad, twist_rad]: [f32; 2]) -> Rotation {
     let [x, y] = [bend_rad, twist_rad].map(|angle_rad| libm::tanf(angle_rad / 2.0));
@@ -39,8 +54,7 @@ impl JointPlan {
 
     /// Place of the joint on its parent, in metres from the centre of a part of this length.
     pub fn anchor_m(&self, parent_length_m: f32) -> Vector {
-        let rear = || Vector::new(0.0, -parent_length_m / 2.0, 0.0);
-        self.mount.map_or_else(rear, |mount| mount.at_m)
+        self.mount.unwrap_or_else(|| Mount::straight_behind(parent_length_m)).at_m
     }
 }
 
@@ -59,15 +73,9 @@ impl BodyPlan {
         let mut all: Vec<_> = joints.chain(springs).collect();
         all.sort_by_key(|([_, child], _)| *child);
         for ([front, rear], mount) in all {
-            let parent = poses[front];
-            let half = |part: usize| Vector::new(0.0, self.parts[part].length_m / 2.0, 0.0);
-            let (anchor, turn) = match mount {
-                Some(mount) => (mount.at_m, mount.turn * joint_turn(mount.start_rad)),
-                None => (-half(front), Rotation::IDENTITY),
-            };
-            let turn = parent.rotation * turn;
-            let at = parent.translation + parent.rotation * anchor;
-            poses[rear] = Pose::from_parts(at - turn * half(rear), turn);
+            let [front_m, rear_m] = [front, rear].map(|part| self.parts[part].length_m);
+            let mount = mount.unwrap_or_else(|| Mount::straight_behind(front_m));
+            poses[rear] = mount.place(&poses[front], rear_m);
         }
         let (mut front_y_m, mut lowest_z_m) = (f32::NEG_INFINITY, f32::INFINITY);
         let mut moment_x = 0.0;

@@ -101,7 +101,7 @@ impl BodyPlan {
             };
             let part = PartPlan { length_m: limb.length_m / elastic.parts as f32, ..limb.clone() };
             let [stiffness_nm_per_rad, damping_nms_per_rad] = elastic.springs(limb);
-            let smallest_side_m = part.size_m().into_iter().fold(f32::INFINITY, f32::min);
+            let smallest_side_m = part.smallest_side_m();
             for index in 0..elastic.parts as usize {
                 if index > 0 {
                     let parent = self.parts.len() - 1;

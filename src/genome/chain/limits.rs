@@ -1,5 +1,7 @@
 //! How much neighbouring blocks may differ, so that the engine holds the joint between them together.
 
+use std::fmt::Display;
+
 use super::segment::Segment;
 use crate::check::Invalid;
 
@@ -24,29 +26,39 @@ pub fn ratio(a: f64, b: f64) -> f64 {
     a.max(b) / a.min(b)
 }
 
+/// Checks that two joined blocks or parts differ little enough, given their masses in kg and their largest moments of inertia
+/// in kg·m²; `pair` names them.
+///
+/// # Errors
+/// The ratio that is too large.
+pub fn check_pair(
+    pair: impl Display,
+    [masses, inertias]: [[f64; 2]; 2],
+    largest_inertia: f64,
+) -> Result<(), Invalid> {
+    for (what, [front, rear], most) in
+        [("masses", masses, MASS_RATIO), ("moments of inertia", inertias, largest_inertia)]
+    {
+        let found = ratio(front, rear);
+        // Sizes are rounded to 32 bits.
+        if found > most * 1.000_01 {
+            let value = format!("in the ratio {found:.1}");
+            let allowed = format!("a ratio of 1 to {most}");
+            return Err(Invalid::new(format!("{what} of {pair}"), value, allowed));
+        }
+    }
+    Ok(())
+}
+
 /// Checks the ratios of all neighbours.
 ///
 /// # Errors
 /// The first pair that differs too much.
 pub fn check_neighbours(segments: &[Segment]) -> Result<(), Invalid> {
-    for (index, pair) in segments.windows(2).enumerate() {
-        let [front, rear] = pair else { continue };
-        let checks = [
-            ("masses", ratio(front.mass_kg(), rear.mass_kg()), MASS_RATIO),
-            (
-                "moments of inertia",
-                ratio(front.inertia_kg_m2(), rear.inertia_kg_m2()),
-                INERTIA_RATIO,
-            ),
-        ];
-        for (what, found, most) in checks {
-            // Sizes are rounded to 32 bits.
-            if found > most * 1.000_01 {
-                let field = format!("{what} of segments[{index}] and segments[{}]", index + 1);
-                let value = format!("in the ratio {found:.1}");
-                return Err(Invalid::new(field, value, format!("a ratio of 1 to {most}")));
-            }
-        }
-    }
-    Ok(())
+    segments.windows(2).enumerate().try_for_each(|(index, pair)| {
+        let of = |measure: fn(&Segment) -> f64| [measure(&pair[0]), measure(&pair[1])];
+        let names = format_args!("segments[{index}] and segments[{}]", index + 1);
+        let values = [of(Segment::mass_kg), of(Segment::inertia_kg_m2)];
+        check_pair(names, values, INERTIA_RATIO)
+    })
 }

@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use super::limits::{check_neighbours, inertia_kg_m2};
 use crate::check::{Invalid, within};
-use crate::genome::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
+use crate::genome::limits::{
+    DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA, SIZE_RANGE_M,
+};
 use crate::world::check_softness;
 
 /// Largest number of blocks in a body.
 pub const MOST_SEGMENTS: u32 = 12;
-/// The range of every size in a file, in metres: that of the sizes in settings.
-const SIZE_RANGE_M: std::ops::RangeInclusive<f32> = 0.1..=10.0;
 
 /// A block of an evolving body, with the joint in front of it. The joint of the first block, the head, has genes, too:
 /// they wait until a change of the body puts a block before it.

@@ -11,6 +11,7 @@ use super::neuron_choices::{
 use crate::check::{Invalid, within};
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
 use crate::genome::network_space::WEIGHT_RANGE;
+use crate::rng::drawn;
 
 /// Inputs of a neuron.
 pub const NEURON_INPUTS: usize = 3;
@@ -39,11 +40,6 @@ pub struct NeuronInput {
     pub source: NeuronSource,
     /// The factor of that value in the sum.
     pub weight: f32,
-}
-
-/// One of a list, all equally likely.
-fn drawn<T: Copy>(all: &[T], rng: &mut ChaCha8Rng) -> T {
-    all[rng.random_range(0..all.len())]
 }
 
 /// Whether a gene mutates.

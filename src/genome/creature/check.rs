@@ -3,7 +3,8 @@
 use super::growth::{bare_plan, grow};
 use super::node::{BodyNode, MOST_NODES};
 use crate::check::{Invalid, within};
-use crate::genome::chain::{INERTIA_RATIO, MASS_RATIO, inertia_kg_m2, ratio};
+use crate::genome::chain::{INERTIA_RATIO, check_pair, inertia_kg_m2};
+use crate::genome::limits::SIZE_RANGE_M;
 use crate::world::BodyPlan;
 
 /// Greatest height of the centre of mass before a trial, in metres. A taller body could win by falling over.
@@ -31,24 +32,15 @@ pub(super) fn check_built(body: &BodyPlan, largest_inertia: f64) -> Result<(), I
     }
     for (index, part) in body.parts.iter().enumerate() {
         for size_m in part.size_m() {
-            within(&format!("size of part {}", index + 1), size_m, 0.1..=10.0)?;
+            within(&format!("size of part {}", index + 1), size_m, SIZE_RANGE_M)?;
         }
     }
     for joint in &body.joints {
-        let [parent, child] = [joint.parent, joint.child].map(|part| &body.parts[part]);
-        let mass = |part: &crate::world::PartPlan| f64::from(part.mass_kg());
-        let inertia = |part| inertia_kg_m2(mass(part), part.size_m());
-        for (what, found, most) in [
-            ("masses", ratio(mass(parent), mass(child)), MASS_RATIO),
-            ("moments of inertia", ratio(inertia(parent), inertia(child)), largest_inertia),
-        ] {
-            // Sizes are rounded to 32 bits.
-            if found > most * 1.000_01 {
-                let field = format!("{what} of parts {} and {}", joint.parent + 1, joint.child + 1);
-                let value = format!("in the ratio {found:.1}");
-                return Err(Invalid::new(field, value, format!("a ratio of 1 to {most}")));
-            }
-        }
+        let ends = [joint.parent, joint.child];
+        let masses = ends.map(|part| f64::from(body.parts[part].mass_kg()));
+        let inertia = |end: usize| inertia_kg_m2(masses[end], body.parts[ends[end]].size_m());
+        let names = format_args!("parts {} and {}", ends[0] + 1, ends[1] + 1);
+        check_pair(names, [masses, [inertia(0), inertia(1)]], largest_inertia)?;
     }
     let poses = body.rest_poses();
     let moment: f32 =

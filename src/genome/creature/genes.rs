@@ -3,9 +3,10 @@
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::growth::{bare_plan, grow};
-use super::node::{BodyNode, LARGEST_TILT_RAD, SCALE_RANGE, SIZE_RANGE_M};
+use super::node::{BodyNode, LARGEST_TILT_RAD, SCALE_RANGE};
 use crate::genome::chain::BodySpace;
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
+use crate::genome::limits::SIZE_RANGE_M;
 use crate::genome::space::GenomeSpace;
 
 /// Visits the genes of all nodes.

@@ -2,7 +2,9 @@
 
 use super::node::{BodyNode, BodySide, Connection};
 use super::overlap::{PlacedBox, overlap};
-use crate::world::{BodyPlan, JointPlan, Mount, PartPlan, Pose, Rotation, Vector, joint_turn};
+use crate::world::{
+    BodyPlan, JointPlan, Mount, PartPlan, Pose, Rotation, Vector, joint_turn, neighbours_pass,
+};
 
 /// Largest number of parts of a creature. No more grow.
 pub const MOST_PARTS: usize = 16;
@@ -78,7 +80,8 @@ pub fn grow(nodes: &[BodyNode]) -> Vec<GrownPart> {
                 mount: mount_of(connection, &part, &nodes[node], is_mirrored),
                 is_mirrored,
             };
-            let placed = placed(&child, &buds[index].placed.pose);
+            let pose = child.mount.place(&buds[index].placed.pose, child.size_m[1]);
+            let placed = PlacedBox { pose, size_m: child.size_m };
             let is_inside = |(other, bud): (usize, &Bud)| {
                 other != index
                     && overlap([&bud.placed, &placed])
@@ -94,14 +97,6 @@ pub fn grow(nodes: &[BodyNode]) -> Vec<GrownPart> {
         index += 1;
     }
     parts
-}
-
-/// Where a part stands in the built pose, given the pose of the one that it grows from.
-fn placed(part: &GrownPart, parent: &Pose) -> PlacedBox {
-    let turn = parent.rotation * part.mount.turn * joint_turn(part.mount.start_rad);
-    let at = parent.translation + parent.rotation * part.mount.at_m;
-    let to_front = Vector::new(0.0, part.size_m[1] / 2.0, 0.0);
-    PlacedBox { pose: Pose::from_parts(at - turn * to_front, turn), size_m: part.size_m }
 }
 
 /// The connections of a node that a part of it follows, given the number of parts of each node on its path.
@@ -174,7 +169,6 @@ pub fn bare_plan(nodes: &[BodyNode], grown: &[GrownPart]) -> BodyPlan {
     let joint = |(child, part): (usize, &GrownPart)| {
         let node = &nodes[part.node];
         let [bends, twists] = node.joint.turns();
-        let smallest = |part: &GrownPart| part.size_m.into_iter().fold(f32::INFINITY, f32::min);
         let parent = part.parent?;
         Some(JointPlan {
             parent,
@@ -185,7 +179,7 @@ pub fn bare_plan(nodes: &[BodyNode], grown: &[GrownPart]) -> BodyPlan {
             max_bend_torque_nm: 0.0,
             max_twist_torque_nm: 0.0,
             damping_nms_per_rad: 0.0,
-            gap_scale: smallest(part).min(smallest(&grown[parent])),
+            gap_scale: parts[child].smallest_side_m().min(parts[parent].smallest_side_m()),
             cfm_m_s_per_n: 0.0,
         })
     };
@@ -201,12 +195,9 @@ pub fn bare_plan(nodes: &[BodyNode], grown: &[GrownPart]) -> BodyPlan {
     body
 }
 
-/// Length of a part relative to the height of its neighbours below which these pass through each other, as in a chain.
-const SHORT_MIDDLE: f32 = 0.6;
-
 /// Whether a part is so short that its neighbours pass through each other.
 fn is_short(front: &GrownPart, middle: &GrownPart, rear: &GrownPart) -> bool {
-    middle.size_m[1] < SHORT_MIDDLE * front.size_m[2].max(rear.size_m[2])
+    neighbours_pass(middle.size_m[1], [front.size_m[2], rear.size_m[2]])
 }
 
 /// The pairs of a part and the child of a short child of it.

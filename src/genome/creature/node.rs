@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
-use crate::genome::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
+use crate::genome::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, SIZE_RANGE_M};
 
 /// Largest number of nodes of a graph: a part of its own for each.
 pub const MOST_NODES: usize = 16;
@@ -12,8 +12,6 @@ pub const MOST_CONNECTIONS: usize = 3;
 /// Largest number of parts of one node along a path from the first part.
 pub const MOST_COPIES: u32 = 5;
 
-/// Range of a size in a file, in metres: that of the sizes in settings.
-pub(super) const SIZE_RANGE_M: std::ops::RangeInclusive<f32> = 0.1..=10.0;
 /// Largest angle between a part and the side that it grows from, beside a right angle, in radians.
 pub(super) const LARGEST_TILT_RAD: f32 = 1.2;
 /// Range of the factor of size from a part to one that grows from it.

@@ -13,7 +13,7 @@ use super::props::{Props, recolor};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::{BodyPlan, Pose};
+use crate::world::{JointPlan, Pose};
 
 /// Index of a part in its lane's snake.
 #[derive(Component, Debug)]
@@ -129,11 +129,12 @@ fn build(
             if lane.is_ghost() {
                 continue;
             }
+            let bends = |joint: &JointPlan| joint.bend_limit_rad > 0.0;
             let shape = LimbShape {
                 size: Vec3::from(body.limb_size_m(limb)),
                 has_front: limb > 0,
                 has_rear: limb + 1 < body.limbs() && !body.is_branching(),
-                has_own_hinge: body.is_branching() && bends(body, limb),
+                has_own_hinge: body.is_branching() && body.joint_before(limb).is_some_and(bends),
                 parts: parts.len(),
             };
             let shapes = shapes.of(shape, &mut meshes, &mut bind_poses);
@@ -166,12 +167,6 @@ fn build(
             }
         }
     }
-}
-
-/// Whether the joint in front of a limb bends.
-fn bends(body: &BodyPlan, limb: usize) -> bool {
-    let first = body.parts_of(limb).start;
-    body.joints.iter().any(|joint| joint.child == first && joint.bend_limit_rad > 0.0)
 }
 
 /// Moves the parts. Unchanged transforms are not written, so Bevy does not propagate them again.

@@ -5,7 +5,7 @@ use rapier3d::prelude::*;
 use super::WorldPlan;
 use crate::world::contact::{ContactLaws, joint_coefficients};
 use crate::world::surface::ContactLaw;
-use crate::world::{BodyPlan, JointPlan, PhysicsWorld, SpringPlan, Surface};
+use crate::world::{BodyPlan, JointPlan, PartPlan, PhysicsWorld, SpringPlan, Surface};
 
 /// Gives the collider of the ground or of a step its material.
 fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
@@ -54,43 +54,50 @@ pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &
     }
 }
 
-/// Inserts the parts in the order of the plan: as a straight row that lies on the ground, head first, or as the tree that a
-/// branching body is.
+impl WorldPlan {
+    /// The poses of the parts before the first step: a straight row that lies on the ground, head first, or the tree that a
+    /// branching body is.
+    pub fn start_poses(&self) -> Vec<Pose> {
+        let body = &self.body;
+        let middle = Vector::new(self.start_x_m, self.start_y_m, 0.0);
+        let (sin, cos) = libm::sincosf(self.start_turn_rad);
+        let (half_sin, half_cos) = libm::sincosf(self.start_turn_rad / 2.0);
+        let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
+        let half_length_m = body.length_m() / 2.0;
+        if body.is_branching() {
+            let front = Vector::new(0.0, half_length_m, 0.0);
+            let place = |pose: Pose| {
+                Pose::from_parts(middle + turn * (pose.translation + front), turn * pose.rotation)
+            };
+            return body.rest_poses().into_iter().map(place).collect();
+        }
+        let axis_z_m = body.axis_height_m();
+        let mut front_y_m = self.start_y_m + half_length_m;
+        let place = |part: &PartPlan| {
+            let straight_y_m = front_y_m - part.length_m / 2.0;
+            front_y_m -= part.length_m;
+            let centre = if self.start_turn_rad == 0.0 {
+                // Without the detour over the middle of the snake, whose rounding would change the bits.
+                Vector::new(self.start_x_m, straight_y_m, axis_z_m)
+            } else {
+                let along_m = straight_y_m - self.start_y_m;
+                middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
+            };
+            Pose::from_parts(centre, turn)
+        };
+        body.parts.iter().map(place).collect()
+    }
+}
+
+/// Inserts the parts in the order of the plan, in their poses at the start.
 pub(super) fn insert_parts(
     physics: &mut PhysicsWorld,
     plan: &WorldPlan,
     law: &ContactLaw,
 ) -> Vec<RigidBodyHandle> {
-    let axis_z_m = plan.body.axis_height_m();
-    let middle = Vector::new(plan.start_x_m, plan.start_y_m, 0.0);
-    let (sin, cos) = libm::sincosf(plan.start_turn_rad);
-    let (half_sin, half_cos) = libm::sincosf(plan.start_turn_rad / 2.0);
-    let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
-    let mut front_y_m = plan.start_y_m + plan.body.length_m() / 2.0;
-    let mut branching = Vec::new();
-    if plan.body.is_branching() {
-        let front = Vector::new(0.0, plan.body.length_m() / 2.0, 0.0);
-        branching = plan.body.rest_poses();
-        for pose in &mut branching {
-            pose.translation = middle + turn * (pose.translation + front);
-            pose.rotation = turn * pose.rotation;
-        }
-    }
-    plan.body
-        .parts
-        .iter()
-        .enumerate()
-        .map(|(index, part)| {
-            let straight_y_m = front_y_m - part.length_m / 2.0;
-            front_y_m -= part.length_m;
-            let centre = if plan.start_turn_rad == 0.0 {
-                // Without the detour over the middle of the snake, whose rounding would change the bits.
-                Vector::new(plan.start_x_m, straight_y_m, axis_z_m)
-            } else {
-                let along_m = straight_y_m - plan.start_y_m;
-                middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
-            };
-            let pose = branching.get(index).copied().unwrap_or(Pose::from_parts(centre, turn));
+    let parts = plan.body.parts.iter().zip(plan.start_poses());
+    parts
+        .map(|(part, pose)| {
             let body = RigidBodyBuilder::dynamic().pose(pose).can_sleep(false);
             let collider = ColliderBuilder::cuboid(
                 part.width_m / 2.0,
