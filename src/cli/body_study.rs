@@ -9,19 +9,15 @@ use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use crate::check::{Invalid, within};
 use crate::evolve::{RunPlan, Settings};
-use crate::run::body_study::{Arm, FinishedArm, PlannedArm, claims, study_records, train_arms};
-use crate::run::creature_study::{
-    CreatureArm, FinishedCreatures, PlannedCreatures, creature_claims, creature_records,
-    train_creatures,
-};
-use crate::run::headless::{HeadlessError, say};
+use crate::run::body_study::{Arm, claims, study_records};
+use crate::run::creature_study::{CreatureArm, creature_claims, creature_records};
+use crate::run::headless::say;
 use crate::run::progress_bar::bar_of;
-use crate::run::{Evaluator, RunControl};
+use crate::run::study::{PlannedArm, StudyArm, train_arms};
 use crate::save::{
-    BodyStudyRun, CreatureStudyRun, MAX_STUDY_RUNS, SaveError, StudiedRun, StudyRuns, load_preset,
-    load_study, settings_fingerprint, store_csv, store_study,
+    MAX_STUDY_RUNS, SaveError, StudiedRun, StudyRuns, load_preset, load_study,
+    settings_fingerprint, store_csv, store_study,
 };
-use crate::schema::Choices;
 
 /// Seed of the first run unless one is given: no setting was chosen by it or by those after it.
 const FIRST_SEED: u64 = 101;
@@ -38,7 +34,23 @@ pub fn body_study(args: &Args, wanted: &BodyStudyArgs) -> Result<(), CliError> {
     if wanted.creatures { of_creatures(&study) } else { of_chains(&study) }
 }
 
-/// What a study is made of, beside its runs.
+fn of_chains(study: &Study<'_>) -> Result<(), CliError> {
+    let (files, runs) = study.continued::<Arm>(|run| {
+        let share = run.share.map_or("–".to_owned(), |share| format!("{share:.3}"));
+        format!("share {share}, {} blocks", run.blocks)
+    })?;
+    study.report(files, &study_records(&runs), || claims(&runs, study.settings))
+}
+
+fn of_creatures(study: &Study<'_>) -> Result<(), CliError> {
+    let (files, runs) = study.continued::<CreatureArm>(|run| {
+        let fitness = run.fitness.map_or("–".to_owned(), |fitness| format!("{fitness:.3}"));
+        format!("fitness {fitness}, {} steps, {}", run.steps, run.tree)
+    })?;
+    study.report(files, &creature_records(&runs), || creature_claims(&runs))
+}
+
+/// The arguments, the files and the settings of a study.
 struct Study<'a> {
     args: &'a Args,
     wanted: &'a BodyStudyArgs,
@@ -48,86 +60,36 @@ struct Study<'a> {
     settings: &'a Settings,
 }
 
-fn of_chains(study: &Study<'_>) -> Result<(), CliError> {
-    let planned = study.plans(Arm::OPTIONS, |arm, settings, seed, evaluations| {
-        Ok(PlannedArm { arm, plan: arm.plan(settings, seed, evaluations)? })
-    })?;
-    let (files, runs) = study.continued(
-        &planned,
-        |planned| (planned.arm.name(), &planned.plan),
-        |run: &BodyStudyRun| {
-            let share = run.share.map_or("–".to_owned(), |share| format!("{share:.3}"));
-            format!("share {share}, {} blocks", run.blocks)
-        },
-        |left, evaluator, control, spent, done| {
-            let done = |FinishedArm { arm, run }| done(arm.name(), run);
-            train_arms(left, evaluator, control, spent, done)
-        },
-    )?;
-    study.report(files, &study_records(&runs), || claims(&runs, study.settings))
-}
-
-fn of_creatures(study: &Study<'_>) -> Result<(), CliError> {
-    let planned = study.plans(CreatureArm::OPTIONS, |arm, settings, seed, evaluations| {
-        Ok(PlannedCreatures { arm, plan: arm.plan(settings, seed, evaluations)? })
-    })?;
-    let (files, runs) = study.continued(
-        &planned,
-        |planned| (planned.arm.name(), &planned.plan),
-        |run: &CreatureStudyRun| {
-            let fitness = run.fitness.map_or("–".to_owned(), |fitness| format!("{fitness:.3}"));
-            format!("fitness {fitness}, {} steps, {}", run.steps, run.tree)
-        },
-        |left, evaluator, control, spent, done| {
-            let done = |FinishedCreatures { arm, run }| done(arm.name(), run);
-            train_creatures(left, evaluator, control, spent, done)
-        },
-    )?;
-    study.report(files, &creature_records(&runs), || creature_claims(&runs))
-}
-
-/// What takes a finished run, with the name of its arm.
-type Done<'a, R> = &'a mut (dyn FnMut(&'static str, R) -> Result<(), HeadlessError> + Send);
+/// The paths of a study's two files, and all of its runs.
+type Finished<R> = ([PathBuf; 2], StudyRuns<R>);
 
 impl Study<'_> {
     /// The runs of all arms, seed by seed, so that an interrupted study has about as many of each.
-    fn plans<A: Copy, P>(
-        &self,
-        arms: &[A],
-        plan: impl Fn(A, &Settings, u64, u32) -> Result<P, Invalid>,
-    ) -> Result<Vec<P>, CliError> {
+    fn plans<A: StudyArm>(&self) -> Result<Vec<PlannedArm<A>>, CliError> {
         let mut planned = Vec::new();
         for seed in seeds_from(self.args.seed_or(FIRST_SEED)?, self.wanted.seeds)? {
-            for arm in arms {
-                let plan = plan(*arm, self.settings, seed, self.wanted.evaluations);
-                planned.push(plan.map_err(of_size_flag)?);
+            for &arm in A::OPTIONS {
+                let plan = arm.plan(self.settings, seed, self.wanted.evaluations);
+                planned.push(PlannedArm { arm, plan: plan.map_err(of_size_flag)? });
             }
         }
         within("runs", planned.len(), 1..=MAX_STUDY_RUNS)?;
         Ok(planned)
     }
 
-    /// Makes the planned runs that the study's file does not have yet. The names of its files and all runs.
-    fn continued<P: Clone, R: StudiedRun + Send>(
+    /// Makes the runs that the study's file does not have yet; `words` describes one.
+    fn continued<A: StudyArm>(
         &self,
-        planned: &[P],
-        place: impl Fn(&P) -> (&'static str, &RunPlan),
-        words: impl Fn(&R) -> String + Sync,
-        train: impl FnOnce(
-            &[P],
-            &dyn Evaluator,
-            &RunControl,
-            &(dyn Fn(u64) + Sync),
-            Done<'_, R>,
-        ) -> Result<(), HeadlessError>,
-    ) -> Result<([PathBuf; 2], StudyRuns<R>), CliError> {
+        words: impl Fn(&A::Run) -> String + Sync,
+    ) -> Result<Finished<A::Run>, CliError> {
+        let planned = self.plans::<A>()?;
         let folder = self.args.results_folder();
         folder.prepare()?;
         let files = ["ron", "csv"].map(|kind| folder.path().join(format!("{}.{kind}", self.name)));
         let ron = &files[0];
         let common = RunPlan::new(self.preset, 0, self.settings.clone());
         let fingerprint = settings_fingerprint(&common);
-        let mut runs: StudyRuns<R> = StudyRuns::new(fingerprint, self.wanted.evaluations);
+        let mut runs: StudyRuns<A::Run> = StudyRuns::new(fingerprint, self.wanted.evaluations);
         if ron.exists() && !self.args.restart {
             let earlier = load_study(ron)?;
             let now = (&runs.settings, runs.evaluations);
@@ -143,23 +105,28 @@ impl Study<'_> {
             }
             runs = earlier;
         }
-        let is_done = |planned: &P| {
-            let (arm, plan) = place(planned);
-            runs.of_arm(arm).iter().any(|run| run.seed() == plan.seed)
+        let is_done = |planned: &PlannedArm<A>| {
+            let known = runs.of_arm(planned.arm.name());
+            known.iter().any(|run| run.seed() == planned.plan.seed)
         };
-        let left: Vec<P> = planned.iter().filter(|of| !is_done(of)).cloned().collect();
+        let left: Vec<_> = planned.iter().filter(|of| !is_done(of)).cloned().collect();
         say(&format!("{} of {} runs left", left.len(), planned.len()));
         let control = cancel_on_interrupt();
         let evaluator = evaluator(self.args, "body-study", ron)?;
-        let bar = bar_of(left.iter().map(|of| place(of).1.budget()).sum(), "evaluations");
-        let mut done = |arm: &'static str, run: R| {
-            let (seed, words) = (run.seed(), words(&run));
-            bar.suspend(|| say(&format!("{arm:<12} seed {seed}: {words}")));
-            runs.add(arm, run);
-            // After each run, so that a kill loses none that is finished.
-            Ok(store_study(ron, &runs)?)
-        };
-        let result = train(&left, &*evaluator, &control, &|spent| bar.inc(spent), &mut done);
+        let bar = bar_of(left.iter().map(|of| of.plan.budget()).sum(), "evaluations");
+        let result = train_arms(
+            &left,
+            &*evaluator,
+            &control,
+            |spent| bar.inc(spent),
+            |arm, run| {
+                let (name, seed, words) = (arm.name(), run.seed(), words(&run));
+                bar.suspend(|| say(&format!("{name:<12} seed {seed}: {words}")));
+                runs.add(name, run);
+                // After each run, so that a kill loses none that is finished.
+                Ok(store_study(ron, &runs)?)
+            },
+        );
         bar.finish_and_clear();
         trusted(&*evaluator, result.map_err(|error| error.keeping(ron)))?;
         store_study(ron, &runs)?;

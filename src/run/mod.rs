@@ -28,6 +28,7 @@ mod report;
 pub mod robust;
 mod run_control;
 mod sign_test;
+pub mod study;
 pub mod table1;
 mod tune;
 pub mod verify;

@@ -281,6 +281,13 @@ impl Quartiles {
         };
         Some(Self { low: at(0.25), median: at(0.5), high: at(0.75) })
     }
+
+    /// The median with the quartiles of some values, such as "3 [1 4]"; a dash if there are no values.
+    pub fn words(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
+        Self::of(values).map_or("–".to_owned(), |Self { low, median, high }| {
+            format!("{median:.digits$} [{low:.digits$} {high:.digits$}]")
+        })
+    }
 }
 
 /// The hash of a generation: every evaluation's bits, in the order of the individuals.

@@ -3,7 +3,7 @@
 use super::size::{GenomeSize, LARGEST_POPULATION, LARGEST_STATE_GENES};
 use crate::check::Invalid;
 use crate::evolve::archives::FIXED_LAYOUT;
-use crate::schema::{choice, choices, number, setting_group, whole};
+use crate::schema::{SettingRow, choice, choices, number, setting_group, whole};
 
 setting_group! {
     /// Settings of the genetic algorithm over bodies.
@@ -29,10 +29,7 @@ setting_group! {
 
         /// Standard deviation of a gene's mutation, as a share of its range.
         mutation_step: f32 = 0.08,
-            number("Step of mutation", 1.0e-4..=0.5)
-                .hint("As a share of each gene's range. About one gene in ten mutates in a child")
-                .slider(0.001, 0.5)
-                .logarithmic_from(0.001);
+            step_of_mutation();
 
         /// Number of the best that are copied unchanged.
         kept_best: u32 = 2,
@@ -62,10 +59,7 @@ setting_group! {
 
         /// Standard deviation of a gene's mutation, as a share of its range.
         mutation_step: f32 = 0.08,
-            number("Step of mutation", 1.0e-4..=0.5)
-                .hint("As a share of each gene's range. About one gene in ten mutates in a child")
-                .slider(0.001, 0.5)
-                .logarithmic_from(0.001);
+            step_of_mutation();
     }
 }
 
@@ -81,6 +75,14 @@ impl BodyMapElitesSettings {
         let allowed = format!("2 to {most} with the genes of the largest body in each cell");
         Err(Invalid::new("evolution.body_map_elites.length_cells", self.length_cells, allowed))
     }
+}
+
+/// The step by which the genes of bodies of their own mutate, one in ten in a child.
+pub(super) fn step_of_mutation() -> SettingRow<f32> {
+    number("Step of mutation", 1.0e-4..=0.5)
+        .hint("As a share of each gene's range. About one gene in ten mutates in a child")
+        .slider(0.001, 0.5)
+        .logarithmic_from(0.001)
 }
 
 choices! {

@@ -1,5 +1,6 @@
 //! Settings of the genetic algorithm over creatures.
 
+use super::body_search::step_of_mutation;
 use crate::schema::{number, setting_group};
 
 setting_group! {
@@ -15,10 +16,7 @@ setting_group! {
 
         /// Standard deviation of a gene's mutation, as a share of its range.
         mutation_step: f32 = 0.1,
-            number("Step of mutation", 1.0e-4..=0.5)
-                .hint("As a share of each gene's range. About one gene in ten mutates in a child")
-                .slider(0.001, 0.5)
-                .logarithmic_from(0.001);
+            step_of_mutation();
     }
 }
 

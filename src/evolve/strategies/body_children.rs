@@ -51,14 +51,18 @@ impl BodyChildren {
         stream(self.seed, self.generation, individual as u32, purpose)
     }
 
-    /// An individual of the first generation: the founder, if there is one, every second one a child of it by this step,
-    /// the others drawn at random.
-    pub fn first(&self, individual: usize, step: f64) -> Genome {
+    /// An individual of the first generation: the founder, if there is one, every second one a child of it, the others drawn
+    /// at random.
+    pub fn first(
+        &self,
+        individual: usize,
+        child: impl FnOnce(&Genome, &mut ChaCha8Rng) -> Genome,
+    ) -> Genome {
         match &self.founder {
             Some(founder) if individual == 0 => founder.genome().clone(),
             Some(founder) if individual.is_multiple_of(2) => {
                 let mut rng = self.stream(individual, Purpose::Mutation);
-                self.varied(founder.genome(), step, &mut rng).genome
+                child(founder.genome(), &mut rng)
             }
             _ => {
                 let mut rng = self.stream(individual, Purpose::Birth);

@@ -91,7 +91,10 @@ impl BodyGa {
         match variation {
             BodyVariation::Random => {
                 let step = self.settings.mutation_step.into();
-                BodyMember { genome: self.children.first(individual, step), age: 0 }
+                let child = |founder: &Genome, rng: &mut ChaCha8Rng| {
+                    self.children.varied(founder, step, rng).genome
+                };
+                BodyMember { genome: self.children.first(individual, child), age: 0 }
             }
             BodyVariation::Elite(index) => {
                 let elite = &self.members[index];

@@ -49,7 +49,9 @@ impl BodyMapElites {
     fn individual(&self, individual: usize, elites: &[&Elite<Genome>]) -> Genome {
         let step = self.settings.mutation_step.into();
         if elites.is_empty() {
-            return self.children.first(individual, step);
+            return self
+                .children
+                .first(individual, |founder, rng| self.children.varied(founder, step, rng).genome);
         }
         let (parent, other, mut rng) = self.chosen(individual, elites);
         let Some(other) = other else {

@@ -2,17 +2,16 @@
 //! survives, and offspring in proportion to the fitness fills the generation.
 
 use rand_chacha::ChaCha8Rng;
-use std::sync::Arc;
-
 use serde::{Deserialize, Serialize};
 
+use super::body_children::BodyChildren;
 use crate::check::{Invalid, within};
 use crate::evolve::parents::{IndividualId, Parents};
-use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::CreatureGaSettings;
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::{CreatureChange, Genome, GenomeShape, GenomeSpace};
-use crate::rng::{Purpose, stream, uniform};
+use crate::genome::{CreatureChange, Genome};
+use crate::rng::{Purpose, uniform};
 use crate::score::Evaluation;
 
 /// Attempts to make a child that can be built, before it is a copy of its parent.
@@ -34,13 +33,8 @@ struct Survivor {
 #[derive(Debug, Clone)]
 pub struct CreatureGa {
     settings: CreatureGaSettings,
-    space: GenomeSpace,
-    shape: GenomeShape,
-    seed: u64,
-    /// The next generation; the first is 1.
-    generation: u32,
+    children: BodyChildren,
     population: usize,
-    founder: Option<Arc<Founder>>,
     /// The survivors of the last generation, best first; empty at the beginning.
     survivors: Vec<Survivor>,
     /// Their ids; empty if they are unknown.
@@ -49,9 +43,8 @@ pub struct CreatureGa {
 
 /// How an individual is made; the numbers are indices of survivors.
 enum CreatureOrigin {
-    Random,
-    Founder,
-    FounderChild,
+    /// Of the first generation.
+    First,
     Survivor(usize),
     Child(usize, usize, CreatureChange),
 }
@@ -60,12 +53,8 @@ impl CreatureGa {
     fn with(plan: &RunPlan, finished: u32, survivors: Vec<Survivor>) -> Self {
         Self {
             settings: plan.settings.evolution.creature_ga.clone(),
-            space: plan.settings.genome.clone(),
-            shape: plan.settings.trial.genome_shape(),
-            seed: plan.seed,
-            generation: finished + 1,
+            children: BodyChildren::new(plan, finished),
             population: plan.settings.evolution.population as usize,
-            founder: plan.founder.clone().filter(|_| finished == 0),
             survivors,
             ids: Vec::new(),
         }
@@ -73,22 +62,18 @@ impl CreatureGa {
 
     /// How an individual is made, and the stream from which its random numbers continue.
     fn origin(&self, individual: usize) -> (CreatureOrigin, ChaCha8Rng) {
-        let of = |purpose| stream(self.seed, self.generation, individual as u32, purpose);
-        let mut rng = of(Purpose::Mutation);
+        let mut rng = self.children.stream(individual, Purpose::Mutation);
         // At least one individual has to change.
         let kept = self.survivors.len().min(self.population - 1);
-        let origin = match (&self.founder, self.survivors.is_empty()) {
-            (Some(_), true) if individual == 0 => CreatureOrigin::Founder,
-            (Some(_), true) if individual.is_multiple_of(2) => CreatureOrigin::FounderChild,
-            (_, true) => return (CreatureOrigin::Random, of(Purpose::Birth)),
-            _ if individual < kept => CreatureOrigin::Survivor(individual),
-            _ => {
-                let change = CreatureChange::draw(&mut rng);
-                let (first, second) = (self.parent(&mut rng), self.parent(&mut rng));
-                let is_alone = change == CreatureChange::Mutation || first == second;
-                let change = if is_alone { CreatureChange::Mutation } else { change };
-                CreatureOrigin::Child(first, second, change)
-            }
+        let origin = if self.survivors.is_empty() {
+            CreatureOrigin::First
+        } else if individual < kept {
+            CreatureOrigin::Survivor(individual)
+        } else {
+            let change = CreatureChange::draw(&mut rng);
+            let (first, second) = (self.parent(&mut rng), self.parent(&mut rng));
+            let change = if first == second { CreatureChange::Mutation } else { change };
+            CreatureOrigin::Child(first, second, change)
         };
         (origin, rng)
     }
@@ -107,14 +92,9 @@ impl CreatureGa {
     fn individual(&self, individual: usize) -> Genome {
         let (origin, mut rng) = self.origin(individual);
         match origin {
-            CreatureOrigin::Random => self.random(&mut rng),
-            CreatureOrigin::Founder | CreatureOrigin::FounderChild => match &self.founder {
-                Some(founder) if individual == 0 => founder.genome().clone(),
-                Some(founder) => {
-                    self.child([founder.genome(); 2], CreatureChange::Mutation, &mut rng)
-                }
-                None => self.random(&mut rng),
-            },
+            CreatureOrigin::First => self.children.first(individual, |founder, rng| {
+                self.child([founder; 2], CreatureChange::Mutation, rng)
+            }),
             CreatureOrigin::Survivor(index) => self.survivors[index].genome.clone(),
             CreatureOrigin::Child(first, second, change) => {
                 let parents = [first, second].map(|index| &self.survivors[index].genome);
@@ -126,13 +106,9 @@ impl CreatureGa {
     /// A child that can be built; a copy of the first parent if none was found.
     fn child(&self, parents: [&Genome; 2], change: CreatureChange, rng: &mut ChaCha8Rng) -> Genome {
         let step = self.settings.mutation_step.into();
-        let mut attempt = || self.space.changed_creature(parents, change, step, rng);
+        let mut attempt = || self.children.space.changed_creature(parents, change, step, rng);
         let child = (0..ATTEMPTS).find_map(|_| attempt());
         child.unwrap_or_else(|| parents[0].clone())
-    }
-
-    fn random(&self, rng: &mut ChaCha8Rng) -> Genome {
-        self.space.random_genome(self.shape, rng)
     }
 }
 
@@ -160,7 +136,7 @@ impl Strategy for CreatureGa {
         for survivor in &resumed.survivors {
             within("chance", survivor.chance, LEAST_CHANCE..=1.0)?;
             plan.settings.trial.check_genome(&survivor.genome)?;
-            resumed.space.check_genome(&survivor.genome, resumed.shape)?;
+            resumed.children.space.check_genome(&survivor.genome, resumed.children.shape)?;
         }
         Ok(resumed)
     }
@@ -188,8 +164,8 @@ impl Strategy for CreatureGa {
         self.survivors = survivors
             .map(|(&index, chance)| Survivor { genome: genomes[index].clone(), chance })
             .collect();
-        self.ids = IndividualId::all(self.generation, &order);
-        self.generation += 1;
+        self.ids = IndividualId::all(self.children.generation, &order);
+        self.children.generation += 1;
     }
 
     fn state(&self) -> StrategyState {
@@ -205,9 +181,7 @@ impl Strategy for CreatureGa {
         let of = |individual| {
             let id = |index: usize| self.ids.get(index).copied();
             let parents = match self.origin(individual).0 {
-                CreatureOrigin::Random | CreatureOrigin::Founder | CreatureOrigin::FounderChild => {
-                    Some(Parents::None)
-                }
+                CreatureOrigin::First => Some(Parents::None),
                 CreatureOrigin::Survivor(index)
                 | CreatureOrigin::Child(index, _, CreatureChange::Mutation) => {
                     id(index).map(Parents::One)

@@ -5,6 +5,7 @@ use crate::evolve::{Archive, Settings, body_archive, feasible_cells};
 use crate::run::markdown::markdown_table;
 use crate::run::report::Quartiles;
 use crate::run::sign_test::PairedDifference;
+use crate::run::study::StudyArm;
 use crate::save::{BodyStudyRun, StudyRuns};
 use crate::schema::Choices;
 
@@ -35,10 +36,7 @@ fn overview(runs: &StudyRuns<BodyStudyRun>) -> Vec<Vec<String>> {
     let row = |arm: &Arm| {
         let of_arm = runs.of_arm(arm.name());
         let show = |value: &dyn Fn(&BodyStudyRun) -> Option<f64>, digits: usize| {
-            let quartiles = Quartiles::of(of_arm.iter().filter_map(|run| value(run)));
-            quartiles.map_or("–".to_owned(), |Quartiles { low, median, high }| {
-                format!("{median:.digits$} [{low:.digits$} {high:.digits$}]")
-            })
+            Quartiles::words(of_arm.iter().filter_map(|run| value(run)), digits)
         };
         vec![
             arm.choice().title.to_owned(),

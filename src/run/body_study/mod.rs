@@ -8,5 +8,5 @@ mod claims;
 mod measure;
 mod splits;
 
-pub use arm::{Arm, FinishedArm, PlannedArm, train_arms};
+pub use arm::Arm;
 pub use claims::{claims, study_records};

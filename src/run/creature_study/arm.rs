@@ -1,19 +1,18 @@
 //! The arms of the study, and their runs.
 
-use crate::check::{Invalid, within};
+use crate::check::Invalid;
 use crate::evolve::{Champion, RunPlan, Settings};
 use crate::genome::{NeuronSet, joint_tree};
 use crate::run::evaluator::Evaluator;
 use crate::run::experiment::Experiment;
-use crate::run::headless::HeadlessError;
 use crate::run::run_control::{Cancelled, RunControl};
-use crate::run::whole_runs::whole_runs;
+use crate::run::study::{StudyArm, budgeted};
 use crate::save::CreatureStudyRun;
-use crate::schema::{Choices, choices};
+use crate::schema::choices;
 use crate::score::Fitness;
 
 choices! {
-    /// What the creatures of a run have to do.
+    /// The task of the creatures of a run.
     pub enum CreatureArm {
         Flat = "flat", "Flat ground", "Move as far as possible on flat ground. A run ends with the first generation that reaches the goal.";
         Stairs = "stairs", "Low stairs", "Climb stairs of 0.25 m. A run ends with the first generation that reaches the goal.";
@@ -26,15 +25,7 @@ choices! {
 pub const GOAL_WAY_M: f32 = 5.0;
 /// Steps that a creature must climb.
 pub const GOAL_STEPS: u32 = 3;
-/// Maximum number of evaluations of a run.
-const MAX_EVALUATIONS: u32 = 1_000_000;
-
 impl CreatureArm {
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        self.choice().name
-    }
-
     /// Evaluations that a run may spend, given those of the runs that compare neurons.
     pub fn evaluations(self, compared: u32) -> u32 {
         match self {
@@ -42,29 +33,6 @@ impl CreatureArm {
             Self::Stairs => 60_000,
             Self::Standard | Self::Sims => compared,
         }
-    }
-
-    /// The plan of a run.
-    ///
-    /// # Errors
-    /// The budget is too small for one generation, or the trial's duration is out of range.
-    pub fn plan(self, settings: &Settings, seed: u64, compared: u32) -> Result<RunPlan, Invalid> {
-        let mut settings = settings.clone();
-        let population = settings.evolution.population;
-        within("evaluations", compared, population..=MAX_EVALUATIONS)?;
-        settings.evolution.generations = self.evaluations(compared) / population;
-        // The budget counts every simulation.
-        settings.trial.repeats.champion_trials = 0;
-        match self {
-            Self::Flat => {
-                settings.trial.stairs.steps = 0;
-                settings.trial.fitness = Fitness::CentreOfMass;
-            }
-            Self::Sims => settings.genome.creatures.neurons = NeuronSet::Sims,
-            Self::Stairs | Self::Standard => {}
-        }
-        settings.check()?;
-        Ok(RunPlan::new("creatures", seed, settings))
     }
 
     /// Whether a creature has done what the arm is about.
@@ -89,84 +57,68 @@ fn steps(champion: &Champion) -> u32 {
     champion.evaluation.behaviour.map_or(0, |behaviour| behaviour.steps_climbed)
 }
 
-/// A run that is to be made.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannedCreatures {
-    /// Its arm.
-    pub arm: CreatureArm,
-    /// Its plan.
-    pub plan: RunPlan,
-}
+impl StudyArm for CreatureArm {
+    type Run = CreatureStudyRun;
 
-/// A run that was made.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FinishedCreatures {
-    /// Its arm.
-    pub arm: CreatureArm,
-    /// Its measurements.
-    pub run: CreatureStudyRun,
-}
+    /// The plan of a run; `evaluations` are those of the runs that compare neurons.
+    fn plan(self, settings: &Settings, seed: u64, evaluations: u32) -> Result<RunPlan, Invalid> {
+        let mut settings = settings.clone();
+        match self {
+            Self::Flat => {
+                settings.trial.stairs.steps = 0;
+                settings.trial.fitness = Fitness::CentreOfMass;
+            }
+            Self::Sims => settings.genome.creatures.neurons = NeuronSet::Sims,
+            Self::Stairs | Self::Standard => {}
+        }
+        // All arms refuse a number that does not suffice for those that it is about.
+        budgeted("creatures", settings.clone(), seed, evaluations)?;
+        budgeted("creatures", settings, seed, self.evaluations(evaluations))
+    }
 
-/// Makes all runs, as many at the same time as `evaluator` has workers. Calls `spent` with the numbers of evaluations, and
-/// `done` with each finished run, one at a time.
-///
-/// # Errors
-/// `control` was cancelled, workers could not be started, or `done` failed.
-pub fn train_creatures(
-    planned: &[PlannedCreatures],
-    evaluator: &dyn Evaluator,
-    control: &RunControl,
-    spent: impl Fn(u64) + Sync,
-    done: impl FnMut(FinishedCreatures) -> Result<(), HeadlessError> + Send,
-) -> Result<(), HeadlessError> {
-    let work = |index: usize, single: &dyn Evaluator| -> Result<FinishedCreatures, Cancelled> {
-        let PlannedCreatures { arm, plan } = &planned[index];
-        let run = measured(*arm, plan, single, control, &spent)?;
-        Ok(FinishedCreatures { arm: *arm, run })
-    };
-    whole_runs(planned.len(), evaluator, control, work, done)
-}
-
-fn measured(
-    arm: CreatureArm,
-    plan: &RunPlan,
-    evaluator: &dyn Evaluator,
-    control: &RunControl,
-    spent: &(dyn Fn(u64) + Sync),
-) -> Result<CreatureStudyRun, Cancelled> {
-    let mut experiment = Experiment::new(plan.clone());
-    let mut reached_after = None;
-    while !experiment.is_over() {
-        let report = experiment.run_generation(evaluator, control)?;
-        let evaluations = report.evaluations.into();
-        let is_reached = report.champion.as_ref().is_some_and(|champion| arm.is_reached(champion));
-        spent(evaluations);
-        if is_reached && reached_after.is_none() {
-            reached_after = u32::try_from(experiment.evaluated()).ok();
-            if arm.stops_at_goal() {
-                spent(plan.budget().saturating_sub(experiment.evaluated()));
-                break;
+    fn measured(
+        self,
+        plan: &RunPlan,
+        evaluator: &dyn Evaluator,
+        control: &RunControl,
+        spent: &(dyn Fn(u64) + Sync),
+    ) -> Result<CreatureStudyRun, Cancelled> {
+        let mut experiment = Experiment::new(plan.clone());
+        let mut reached_after = None;
+        while !experiment.is_over() {
+            let report = experiment.run_generation(evaluator, control)?;
+            let evaluations = report.evaluations.into();
+            let is_reached =
+                report.champion.as_ref().is_some_and(|champion| self.is_reached(champion));
+            spent(evaluations);
+            if is_reached && reached_after.is_none() {
+                reached_after = u32::try_from(experiment.evaluated()).ok();
+                if self.stops_at_goal() {
+                    spent(plan.budget().saturating_sub(experiment.evaluated()));
+                    break;
+                }
             }
         }
+        let best = experiment.best();
+        Ok(CreatureStudyRun {
+            seed: plan.seed,
+            evaluations: u32::try_from(experiment.evaluated()).unwrap_or(u32::MAX),
+            reached_after,
+            fitness: best.map(|best| best.evaluation.fitness),
+            way_m: best.map_or(0.0, way_m),
+            steps: best.map_or(0, steps),
+            parts: best.map_or(0, |best| best.genome.body.block_count() as u32),
+            tree: best.map_or(String::new(), |best| joint_tree(&best.genome.body.nodes)),
+            run_hash: format!("{:016x}", experiment.run_hash()),
+        })
     }
-    let best = experiment.best();
-    Ok(CreatureStudyRun {
-        seed: plan.seed,
-        evaluations: u32::try_from(experiment.evaluated()).unwrap_or(u32::MAX),
-        reached_after,
-        fitness: best.map(|best| best.evaluation.fitness),
-        way_m: best.map_or(0.0, way_m),
-        steps: best.map_or(0, steps),
-        parts: best.map_or(0, |best| best.genome.body.block_count() as u32),
-        tree: best.map_or(String::new(), |best| joint_tree(&best.genome.body.nodes)),
-        run_hash: format!("{:016x}", experiment.run_hash()),
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::run::LocalPool;
+    use crate::run::study::{PlannedArm, train_arms};
     use crate::save::load_preset;
 
     #[test]
@@ -181,16 +133,16 @@ mod tests {
         assert_ne!(plan(CreatureArm::Sims).settings, plan(CreatureArm::Standard).settings);
         assert!(CreatureArm::Flat.plan(&settings, 1, 10).is_err());
         let arm = CreatureArm::Flat;
-        let planned = [PlannedCreatures { arm, plan: plan(arm) }];
+        let planned = [PlannedArm { arm, plan: plan(arm) }];
         let mut finished = Vec::new();
         let pool = LocalPool::new(1).expect("threads");
         let control = RunControl::default();
-        let done = |run| {
+        let done = |_, run| {
             finished.push(run);
             Ok(())
         };
-        train_creatures(&planned, &pool, &control, |_| {}, done).expect("made");
-        let FinishedCreatures { run, .. } = &finished[0];
+        train_arms(&planned, &pool, &control, |_| {}, done).expect("made");
+        let run: &CreatureStudyRun = &finished[0];
         assert_eq!(run.reached_after, Some(run.evaluations), "{run:?}");
         assert!(run.way_m >= GOAL_WAY_M && run.evaluations < 20_000, "{run:?}");
         assert!(run.tree.starts_with("O(") && run.parts >= 2, "{run:?}");

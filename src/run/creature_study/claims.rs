@@ -6,6 +6,7 @@ use super::arm::{CreatureArm, GOAL_STEPS, GOAL_WAY_M};
 use crate::run::markdown::markdown_table;
 use crate::run::report::Quartiles;
 use crate::run::sign_test::PairedDifference;
+use crate::run::study::StudyArm;
 use crate::save::{CreatureStudyRun, StudyRuns};
 use crate::schema::Choices;
 
@@ -37,10 +38,7 @@ fn overview(runs: &StudyRuns<CreatureStudyRun>) -> Vec<Vec<String>> {
     let row = |arm: &CreatureArm| {
         let of_arm = runs.of_arm(arm.name());
         let show = |value: &dyn Fn(&CreatureStudyRun) -> f64, digits: usize| {
-            let quartiles = Quartiles::of(of_arm.iter().map(|run| value(run)));
-            quartiles.map_or("–".to_owned(), |Quartiles { low, median, high }| {
-                format!("{median:.digits$} [{low:.digits$} {high:.digits$}]")
-            })
+            Quartiles::words(of_arm.iter().map(|run| value(run)), digits)
         };
         let reached = of_arm.iter().filter(|run| run.reached_after.is_some()).count();
         vec![

@@ -6,5 +6,5 @@
 mod arm;
 mod claims;
 
-pub use arm::{CreatureArm, FinishedCreatures, PlannedCreatures, train_creatures};
+pub use arm::CreatureArm;
 pub use claims::{creature_claims, creature_records};
