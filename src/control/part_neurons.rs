@@ -130,7 +130,7 @@ impl PartNeuronController {
     }
 }
 
-/// What a part senses. The joint that holds it has the number of the part less one. `side` is -1 for a mirror image.
+/// The value of a sense of a part. The joint that holds it has the number of the part less one. `side` is -1 for a mirror image.
 fn sensed(senses: &Perception, sense: PartSense, part: usize, side: f32) -> f32 {
     let joint = |kind| part.checked_sub(1).map_or(0.0, |joint| senses.value(kind, joint));
     match sense {

@@ -100,7 +100,7 @@ impl GenomeSpace {
     fn creature_shape(&self, genome: &Genome, shape: GenomeShape) -> Result<GenomeShape, Invalid> {
         let nodes = &genome.body.nodes;
         let grown = grow(nodes);
-        if !self.allows_creature(nodes) {
+        if !self.allows_creature(nodes, &grown) {
             let CreatureSpace { parts_min, parts_max, .. } = self.creatures;
             let allowed = format!(
                 "{parts_min} to {parts_max} parts of {} m³ together that lie apart, within all limits of genome.bodies",

@@ -1,5 +1,6 @@
 //! The ranges of controllers that sense their surroundings.
 
+use super::gene::GeneRange;
 use std::ops::RangeInclusive;
 
 use crate::schema::{number, setting_group, switch, whole};
@@ -63,6 +64,13 @@ setting_group! {
         limb_neurons_shared: bool = true,
             switch("Same neurons in all limbs")
                 .hint("Limb neurons are the same in every limb. Otherwise each limb evolves its own, which multiplies the genes");
+    }
+}
+
+impl NetworkSpace {
+    /// The range of weights and biases.
+    pub(super) fn weights(&self) -> GeneRange<'static> {
+        GeneRange::Between(-self.weight_range, self.weight_range)
     }
 }
 

@@ -25,7 +25,7 @@ setting_group! {
         /// Ranges of bodies that evolve.
         #[serde(default, skip_serializing_if = "is_default")]
         bodies: BodySpace = BodySpace::default();
-        /// What branching bodies may consist of.
+        /// Parts and neurons of branching bodies.
         #[serde(default, skip_serializing_if = "is_default")]
         creatures: CreatureSpace = CreatureSpace::default();
         /// A torque, of a signal or a wave, stays within plus and minus this, in N·m. The report has 1000.

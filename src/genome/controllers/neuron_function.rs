@@ -1,4 +1,4 @@
-//! What a neuron of a creature computes: the 23 functions of Sims (1994).
+//! The functions of a creature's neurons: the 23 of Sims (1994).
 
 use serde::{Deserialize, Serialize};
 

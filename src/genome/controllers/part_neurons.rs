@@ -29,7 +29,7 @@ pub struct PartNeurons {
     pub shared: Vec<PartNeuron>,
 }
 
-/// The neurons that each part of a node has, and what drives its joint.
+/// The neurons that each part of a node has, and the inputs that drive its joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NodeNeurons {
@@ -45,7 +45,7 @@ pub struct NodeNeurons {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartNeuron {
-    /// What it computes.
+    /// Its function.
     pub function: NeuronFunction,
     /// Added to its first input.
     pub bias: f32,
@@ -60,13 +60,13 @@ pub struct PartNeuron {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartInput {
-    /// What it reads.
+    /// The value that it reads.
     pub source: PartSource,
     /// Its factor.
     pub weight: f32,
 }
 
-/// What an input reads. The number of a neuron counts from 0; where there are fewer neurons it starts again from the first,
+/// A value that an input can read. The number of a neuron counts from 0; where there are fewer neurons it starts again from the first,
 /// and without any the value is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -159,8 +159,8 @@ impl PartInput {
         space: &GenomeSpace,
         visit: GeneVisitor<'_>,
     ) {
-        let range = GeneRange::Between(-space.network.weight_range, space.network.weight_range);
         let field = format_args!("{field}.weight");
+        let range = space.network.weights();
         visit(Gene { field, name, unit: "", range }, &mut self.weight);
     }
 }
@@ -196,12 +196,11 @@ impl PartNeuron {
         space: &GenomeSpace,
         visit: GeneVisitor<'_>,
     ) {
-        let weights = GeneRange::Between(-space.network.weight_range, space.network.weight_range);
         let gene = Gene {
             field: format_args!("{field}.bias"),
             name: format_args!("{name}, bias"),
             unit: "",
-            range: weights,
+            range: space.network.weights(),
         };
         visit(gene, &mut self.bias);
         if let Some(frequency_hz) = &mut self.frequency_hz {
@@ -222,6 +221,22 @@ impl PartNeuron {
     fn hash(&self, hash: &mut Xxh3Default) {
         hash.update(&[self.function as u8, self.inputs.len() as u8]);
         self.inputs.iter().for_each(|input| hash.update(&input.source.code()));
+    }
+}
+
+/// Checks a list of neurons, which a message calls by this name.
+fn check_neurons(name: &str, neurons: &[PartNeuron]) -> Result<(), Invalid> {
+    within(name, neurons.len(), 0..=MOST_PART_NEURONS)?;
+    neurons.iter().enumerate().try_for_each(|(index, neuron)| {
+        neuron.check().map_err(|error| error.inside(&format!("{name}[{index}]")))
+    })
+}
+
+impl NodeNeurons {
+    fn check(&self) -> Result<(), Invalid> {
+        check_neurons("neurons", &self.neurons)?;
+        self.bend.check().map_err(|error| error.inside("bend"))?;
+        self.twist.check().map_err(|error| error.inside("twist"))
     }
 }
 
@@ -294,23 +309,10 @@ impl ControllerEncoding for PartNeurons {
     fn check(&self) -> Result<(), Invalid> {
         let inside = |error: Invalid| error.inside("part_neurons");
         within("nodes", self.nodes.len(), 0..=MOST_NODES).map_err(inside)?;
-        within("shared", self.shared.len(), 0..=MOST_PART_NEURONS).map_err(inside)?;
-        for (index, node) in self.nodes.iter().enumerate() {
-            let place = format!("nodes[{index}]");
-            let inside = |error: Invalid| inside(error.inside(&place));
-            within("neurons", node.neurons.len(), 0..=MOST_PART_NEURONS).map_err(inside)?;
-            for (number, neuron) in node.neurons.iter().enumerate() {
-                let place = format!("neurons[{number}]");
-                neuron.check().map_err(|error| inside(error.inside(&place)))?;
-            }
-            node.bend.check().map_err(|error| inside(error.inside("bend")))?;
-            node.twist.check().map_err(|error| inside(error.inside("twist")))?;
-        }
-        for (index, neuron) in self.shared.iter().enumerate() {
-            let place = format!("shared[{index}]");
-            neuron.check().map_err(|error| inside(error.inside(&place)))?;
-        }
-        Ok(())
+        check_neurons("shared", &self.shared).map_err(inside)?;
+        self.nodes.iter().enumerate().try_for_each(|(index, node)| {
+            node.check().map_err(|error| inside(error.inside(&format!("nodes[{index}]"))))
+        })
     }
 
     fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {

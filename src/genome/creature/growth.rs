@@ -28,7 +28,7 @@ pub struct GrownPart {
     pub is_mirrored: bool,
 }
 
-/// What growth has to know of a part beside the part.
+/// A part that may still grow others, with the state of its growth.
 struct Bud {
     /// Number of parts of each node on the path from the first part, this one included.
     counts: Vec<u32>,

@@ -5,7 +5,9 @@
 
 mod check;
 mod genes;
+mod graph;
 mod growth;
+mod newborn;
 mod node;
 mod overlap;
 mod repair;

@@ -1,4 +1,4 @@
-//! A node of the graph: the plan of a part, and what grows from it.
+//! A node of the graph: the plan of a part, with the parts that grow from it.
 
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +43,7 @@ pub struct BodyNode {
     pub strength: f32,
     /// How many parts along a path from the first may be of this node.
     pub copies: u32,
-    /// What grows from it.
+    /// The parts that grow from it.
     pub connections: Vec<Connection>,
 }
 

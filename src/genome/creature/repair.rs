@@ -103,12 +103,15 @@ impl GenomeSpace {
         is_beyond
     }
 
-    /// Whether the parts that grow from these nodes keep all limits of this space, and lie apart.
-    pub(in crate::genome) fn allows_creature(&self, nodes: &[BodyNode]) -> bool {
-        let grown = grow(nodes);
+    /// Whether these nodes and the parts that have grown from them keep all limits of this space.
+    pub(in crate::genome) fn allows_creature(
+        &self,
+        nodes: &[BodyNode],
+        grown: &[GrownPart],
+    ) -> bool {
         let wanted_m3 = f64::from(self.bodies.volume_m3);
         if !self.creatures.parts().contains(&grown.len())
-            || (volume_m3(&grown) - wanted_m3).abs() > VOLUME_TOLERANCE * wanted_m3
+            || (volume_m3(grown) - wanted_m3).abs() > VOLUME_TOLERANCE * wanted_m3
         {
             return false;
         }
@@ -123,7 +126,7 @@ impl GenomeSpace {
                 (least_m * 0.9999..=most_m * 1.0001).contains(&size_m)
             })
         };
-        let body = bare_plan(nodes, &grown);
+        let body = bare_plan(nodes, grown);
         grown.iter().all(fits)
             && body.length_m() <= self.bodies.longest_m
             && check_built(&body, EVOLVED_INERTIA_RATIO).is_ok()

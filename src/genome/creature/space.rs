@@ -3,10 +3,12 @@
 use super::growth::{MOST_DEPTH, MOST_PARTS};
 use crate::check::{Invalid, within};
 use crate::genome::controllers::NeuronFunction;
+use crate::genome::kind::ControllerKind;
+use crate::genome::space::GenomeSpace;
 use crate::schema::{choice, choices, setting_group, whole};
 
 setting_group! {
-    /// What a creature may consist of.
+    /// The parts and neurons of a creature.
     pub struct CreatureSpace in "Creatures":
         "Parts and neurons of branching bodies. Their sizes, joints and volume are those of evolving bodies."
     {
@@ -38,6 +40,13 @@ choices! {
     pub enum NeuronSet {
         Standard = "standard", "Standard", "Neurons with a smooth step, and oscillators (Miconi and Channon 2005).";
         Sims = "sims", "Sims", "The 23 functions of Karl Sims (1994): sums, products, comparisons, memories, oscillators.";
+    }
+}
+
+impl GenomeSpace {
+    /// Whether genomes of this space are creatures.
+    pub fn has_creatures(&self) -> bool {
+        self.bodies.vary && self.controller == ControllerKind::PartNeurons
     }
 }
 

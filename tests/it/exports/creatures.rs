@@ -1,12 +1,11 @@
 //! Creatures as models for MuJoCo and URDF.
 
 use serde_json::json;
-use snakes_and_stairs::evolve::{Champion, Origin};
 use snakes_and_stairs::genome::NodeJoint;
 use snakes_and_stairs::save::load_preset;
-use snakes_and_stairs::score::evaluate;
+use snakes_and_stairs::world::JointPlan;
 
-use super::models::{compared_in_mujoco, description, export};
+use super::models::{champion_of, compared_in_mujoco, description, export};
 
 /// With joints about a single axis, in which both engines have the same coordinates.
 #[test]
@@ -24,16 +23,12 @@ fn a_hundred_random_creatures_move_in_mujoco_as_here() {
             // Half of the range is left to either side for the motion.
             node.bend_start *= 0.5;
         }
-        let evaluation = evaluate(&genome, &trial);
-        let origin = Origin { preset: "test".to_owned(), seed: 1, generation: 1, individual: 0 };
-        let champion = Champion { genome, trial, evaluation, chosen_by: None, origin };
+        let champion = champion_of(genome, trial);
         let plan = champion.trial.world_plan(&champion.genome);
         export(name, &champion, &path(".xml"));
         export(name, &champion, &path(".urdf"));
         let mut expected = description(&plan, &plan, rng);
-        let start = |joint: &snakes_and_stairs::world::JointPlan| {
-            joint.mount.map_or(0.0, |mount| mount.start_rad[0])
-        };
+        let start = |joint: &JointPlan| joint.mount.map_or(0.0, |mount| mount.start_rad[0]);
         let starts: Vec<f32> = plan.body.joints.iter().map(start).collect();
         expected["start_rad"] = json!(starts);
         expected

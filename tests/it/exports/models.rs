@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use snakes_and_stairs::Engine;
 use snakes_and_stairs::evolve::{Champion, Origin, Settings, with_fields};
 use snakes_and_stairs::export::{ExportOrder, ExportProgress, ExportSource, ExportedChampion};
+use snakes_and_stairs::genome::Genome;
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::LoadedChampion;
 use snakes_and_stairs::score::{Trial, evaluate};
@@ -259,6 +260,11 @@ pub(super) fn export(name: &str, champion: &Champion, path: &Path) {
 /// A random snake that nothing has found.
 pub(super) fn champion(trial: Trial, rng: &mut ChaCha8Rng) -> Champion {
     let genome = Settings::default().genome.random_genome(trial.genome_shape(), rng);
+    champion_of(genome, trial)
+}
+
+/// A genome with its evaluation.
+pub(super) fn champion_of(genome: Genome, trial: Trial) -> Champion {
     let evaluation = evaluate(&genome, &trial);
     let origin = Origin { preset: "test".to_owned(), seed: 1, generation: 1, individual: 0 };
     Champion { genome, trial, evaluation, chosen_by: None, origin }
