@@ -39,6 +39,10 @@ setting_group! {
         /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic, and where a
         /// child ends up says nothing about its parent.
         joint_damping_nms_per_rad: PerPart = 30.0.into();
+        /// Power that a joint axis takes to hold a torque of 1000 N·m, in W, moving or not. It grows with the square of the
+        /// torque, as the heat of an electric motor does.
+        #[serde(default, skip_serializing_if = "is_default")]
+        holding_power_w: f32 = 0.0;
         /// Constraint force mixing of the joints, in m/s per N: 0 is rigid, larger is softer.
         joint_cfm_m_s_per_n: PerPart = 0.0.into();
         /// Young's modulus of the limbs' material, in Pa, which makes them soft. None: they are rigid, unless the genome has
@@ -110,6 +114,7 @@ impl SettingGroup for AgentSettings {
             max_twist_torque_nm,
             torque_budget_nm,
             joint_damping_nms_per_rad,
+            holding_power_w,
             joint_cfm_m_s_per_n,
             youngs_modulus_pa,
             soft_parts,
@@ -217,6 +222,15 @@ impl SettingGroup for AgentSettings {
                 )
                 .slider(0.0, 500.0)
                 .logarithmic_from(1.0);
+            // Motors of robots this strong take some 100 W for it; at 10 kW eight axes take 20 times what the climber spends.
+            holding_power_w: number("Holding power", 0.0..=10_000.0).advanced()
+                .unit("W")
+                .hint(
+                    "Power that each axis of a joint takes to hold 1000 N·m, even if it does not move; it grows with the \
+                     square of the torque and counts as energy",
+                )
+                .slider(0.0, 1000.0)
+                .logarithmic_from(1.0);
             // At 0.1 m/s per N a report's snake comes apart under its own weight.
             joint_cfm_m_s_per_n: per_part("Joint softness (CFM)", 0.0..=0.1, each_joint).advanced()
                 .unit("m/s per N")
@@ -250,6 +264,11 @@ impl AgentSettings {
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {
         self.limbs.saturating_sub(1) as usize
+    }
+
+    /// Power that a joint axis takes per square of its torque, in W/(N·m)².
+    pub(super) fn holding_w_per_n2m2(&self) -> f32 {
+        self.holding_power_w / 1.0e6
     }
 
     /// Length of the straight snake, in metres: the same for every genome.
@@ -295,6 +314,7 @@ impl AgentSettings {
             joints: (0..self.joints()).map(joint).collect(),
             springs: Vec::new(),
             angular_damping_per_s: self.angular_damping_per_s,
+            holding_w_per_n2m2: self.holding_w_per_n2m2(),
         };
         match &self.youngs_modulus_pa {
             Some(modulus_pa) => {

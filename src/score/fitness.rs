@@ -183,6 +183,7 @@ mod tests {
             contact_free_pairs: Vec::new(),
             middle_part: 1,
             angular_damping_per_s: 0.0,
+            holding_w_per_n2m2: 0.0,
         };
         let pose = |x, y, z| Pose::from_parts(Vector::new(x, y, z), Rotation::IDENTITY);
         let score = |fitness, x, z| {

@@ -41,6 +41,7 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
         parts: limbs,
         springs: Vec::new(),
         angular_damping_per_s: agent.angular_damping_per_s,
+        holding_w_per_n2m2: agent.holding_w_per_n2m2(),
     };
     keep_torque_budget(&mut body, agent.torque_budget_nm);
     body.with_soft_limbs(|limb| {
@@ -53,6 +54,7 @@ pub(super) fn creature_body(agent: &AgentSettings, nodes: &[BodyNode]) -> BodyPl
     let grown = grow(nodes);
     let mut body = grown_body(nodes, &grown);
     body.angular_damping_per_s = agent.angular_damping_per_s;
+    body.holding_w_per_n2m2 = agent.holding_w_per_n2m2();
     for joint in &mut body.joints {
         let ends = [&body.parts[joint.parent], &body.parts[joint.child]];
         let (scale, node) = (strength_of(ends), &nodes[grown[joint.child].node]);

@@ -116,6 +116,7 @@ mod tests {
             contact_free_pairs: Vec::new(),
             middle_part: 0,
             angular_damping_per_s: 0.0,
+            holding_w_per_n2m2: 0.0,
         }
     }
 

@@ -28,6 +28,8 @@ pub struct BodyPlan {
     pub middle_part: usize,
     /// Rate at which the air takes the parts' angular velocity, in 1/s: after a time t, `exp(-rate t)` of it is left.
     pub angular_damping_per_s: f32,
+    /// Power that a joint axis takes for its torque alone, per square of the torque, in W/(N·m)².
+    pub holding_w_per_n2m2: f32,
 }
 
 /// One box-shaped part: a rigid limb, or a piece of a soft one.

@@ -4,7 +4,8 @@
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Effort {
     /// Energy that the joints spent, in J: the integral of |torque × joint rate| over both axes of all
-    /// joints. Energy that flows back from a joint driven against its torque counts as spent, too.
+    /// joints. Energy that flows back from a joint driven against its torque counts as spent, too. With a holding power, the
+    /// integral of its product with the square of the torque is added.
     pub energy_j: f32,
     /// Greatest speed of a limb's centre, in m/s.
     pub top_speed_m_s: f32,

@@ -9,6 +9,8 @@ pub(super) struct EnergyBalance {
     pub start_j: f64,
     /// Work of the joint torques, in J: positive where they drive, negative where they brake.
     pub joint_work_j: f64,
+    /// Energy that the joints spent on motion, in J, driving or braking.
+    pub motion_j: f32,
     /// What the damping of the joints took, in J.
     pub joint_damping_j: f64,
     /// What the damping of the limbs' rotation took, in J.

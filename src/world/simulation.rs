@@ -195,9 +195,13 @@ impl Simulation {
         self.apply(torques);
         self.advance();
         let mut effort = self.check_health()?;
-        effort.energy_j = self.energy_j();
+        let motion_j = self.motion_energy_j();
+        self.balance.motion_j += motion_j;
+        effort.energy_j = motion_j + self.holding_energy_j();
         let effort = self.effort.and(effort);
-        if !self.balance.has_unknown_work && self.energy_lost().is_from_nothing(effort.energy_j) {
+        if !self.balance.has_unknown_work
+            && self.energy_lost().is_from_nothing(self.balance.motion_j)
+        {
             return Err(Disqualification::EnergyFromNothing);
         }
         self.effort = effort;

@@ -190,6 +190,7 @@ pub fn bare_plan(nodes: &[BodyNode], grown: &[GrownPart]) -> BodyPlan {
         parts,
         springs: Vec::new(),
         angular_damping_per_s: 0.0,
+        holding_w_per_n2m2: 0.0,
     };
     body.middle_part = body.branching_middle();
     body

@@ -42,6 +42,7 @@ fn plan(limbs: usize) -> WorldPlan {
             contact_free_pairs: Vec::new(),
             middle_part: limbs / 2,
             angular_damping_per_s: 0.0,
+            holding_w_per_n2m2: 0.0,
         },
         settles: false,
         start_y_m: -7.23,

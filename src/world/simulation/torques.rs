@@ -41,9 +41,9 @@ impl Simulation {
         }
     }
 
-    /// Energy that the joints spent in the last step, in J, by the trapezoidal rule. A torque acts through the
+    /// Energy that the joints spent on motion in the last step, in J, by the trapezoidal rule. A torque acts through the
     /// whole step about the axes at its start.
-    pub(super) fn energy_j(&self) -> f32 {
+    pub(super) fn motion_energy_j(&self) -> f32 {
         let joints = self.body.joints.iter().zip(&self.applied);
         let power_w = joints.map(|(joint, AppliedTorque { axes, torque, rates_rad_s })| {
             let after = self.joint_rates(joint, *axes);
@@ -51,6 +51,19 @@ impl Simulation {
             (torque.bend_nm * bend).abs() + (torque.twist_nm * twist).abs()
         });
         power_w.sum::<f32>() * self.physics.integration_parameters.dt
+    }
+
+    /// Energy that the torques of the last step took by themselves, moving or not, in J: heat of a motor, which grows with the
+    /// square of its current.
+    pub(super) fn holding_energy_j(&self) -> f32 {
+        let holding_w_per_n2m2 = self.body.holding_w_per_n2m2;
+        if holding_w_per_n2m2 == 0.0 {
+            return 0.0;
+        }
+        let squares = self.applied.iter().map(|AppliedTorque { torque, .. }| {
+            torque.bend_nm * torque.bend_nm + torque.twist_nm * torque.twist_nm
+        });
+        squares.sum::<f32>() * holding_w_per_n2m2 * self.physics.integration_parameters.dt
     }
 
     /// Rates of a joint about the x and y axes of a rotation, in rad/s.

@@ -47,6 +47,31 @@ fn frictionless_joints_lose_nothing_of_the_work_that_drives_them() {
 }
 
 #[test]
+fn holding_power_counts_the_square_of_each_torque_and_never_as_work() {
+    let spent = |power_w: f32, bend_nm: f32, twist_nm: f32| {
+        let (_, mut simulation) = weightless(2);
+        simulation.body.holding_w_per_n2m2 = power_w / 1.0e6;
+        for _ in 0..120 {
+            simulation.step(&[JointTorque { bend_nm, twist_nm }]).expect("healthy");
+        }
+        (simulation.effort().energy_j, simulation.balance.motion_j, simulation.poses().last())
+    };
+    let without = spent(0.0, 4.0, 0.0);
+    assert_eq!(without.0, without.1);
+    for (power_w, bend_nm, twist_nm) in [(1.0e6, 4.0, 0.0), (1.0e6, 2.0, 2.0), (5.0e5, 4.0, 0.0)] {
+        let (energy_j, motion_j, end) = spent(power_w, bend_nm, twist_nm);
+        let seconds = 120.0 * weightless(2).0.physics.step_s();
+        let expected_j = (bend_nm * bend_nm + twist_nm * twist_nm) * power_w / 1.0e6 * seconds;
+        let held_j = energy_j - motion_j;
+        assert!((held_j - expected_j).abs() < 1.0e-3 * expected_j, "{held_j}, not {expected_j} J");
+        assert_eq!(
+            (motion_j, end),
+            (spent(0.0, bend_nm, twist_nm).1, spent(0.0, bend_nm, twist_nm).2)
+        );
+    }
+}
+
+#[test]
 fn a_joint_stopped_by_its_limits_loses_the_work_that_drove_it() {
     let (_, mut simulation) = weightless(2);
     for _ in 0..240 {
