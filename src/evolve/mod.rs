@@ -11,8 +11,8 @@ mod strategies;
 mod strategy;
 
 pub use archives::{
-    Archive, ArchiveAxis, AxisScale, Descriptor, Elite, Front, FrontMember, body_archive,
-    body_cell, feasible_cells,
+    Archive, ArchiveAxis, AxisScale, Descriptor, Elite, EliteGenes, Front, FrontMember,
+    body_archive, body_cell, feasible_cells,
 };
 pub use champion::{Champion, Origin};
 pub use parents::{IndividualId, Parents};

@@ -84,7 +84,7 @@ fn kill_after(generations: usize, delay: Duration, folder: &Path, arguments: &st
 #[test]
 fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let saves = folder();
-    let of_bodies = ["body_ga", "body_map_elites", "islands", "creature_ga"];
+    let of_bodies = ["body_ga", "body_novelty", "body_map_elites", "islands", "creature_ga"];
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
     let soft = ["soft cma_es", "soft body_ga"];
     let strategies: Vec<&str> = strategies.into_iter().chain(of_bodies).chain(soft).collect();

@@ -124,7 +124,10 @@ mod tests {
                 let what = format!("{strategy}, {controller}");
                 if matches!(
                     strategy,
-                    StrategyKind::BodyGa | StrategyKind::BodyMapElites | StrategyKind::CreatureGa
+                    StrategyKind::BodyGa
+                        | StrategyKind::BodyNovelty
+                        | StrategyKind::BodyMapElites
+                        | StrategyKind::CreatureGa
                 ) {
                     assert_eq!(asked[0], genome, "{what}");
                     let fresh = asked[1..].iter().filter(|other| random.contains(other)).count();

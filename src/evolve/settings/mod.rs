@@ -227,6 +227,17 @@ strategy_kinds! {
         },
         ..StrategyInfo::PLAIN
     };
+    /// Novelty search over behaviours and bodies. The genetic algorithm over bodies makes its children.
+    BodyNovelty = StrategyInfo {
+        name: "body_novelty",
+        title: "Novelty search of bodies",
+        words: "Rewards new behaviour, numbers of blocks and lengths, mixed with fitness in any proportion.",
+        color: [0xa0, 0xa0, 0x00],
+        settings: &["novelty", "body_ga"],
+        varies_bodies: true,
+        check_size: |evolution, size| NoveltySettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
     /// MAP-Elites over the number of blocks and the length of a body.
     BodyMapElites = StrategyInfo {
         name: "body_map_elites",

@@ -6,7 +6,7 @@ use crate::evolve::archives::{Descriptor, FIXED_LAYOUT};
 use crate::schema::{choice, number, setting_group, whole};
 
 setting_group! {
-    /// Settings of novelty search. Children are made as the genetic algorithm makes them.
+    /// Settings of novelty search. Children are made as the genetic algorithm makes them, or the one over bodies.
     pub struct NoveltySettings in "Novelty search":
         "Rewards new behaviour. Children are created with the settings of the genetic algorithm."
     {

@@ -22,7 +22,7 @@ use crate::score::Evaluation;
 /// An individual of the last generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct BodyMember {
+pub struct BodyMember {
     /// Its genes.
     genome: Genome,
     /// Generations since the last change of the structure of its body.
@@ -33,7 +33,8 @@ struct BodyMember {
 #[derive(Debug, Clone)]
 pub struct BodyGa {
     settings: BodyGaSettings,
-    children: BodyChildren,
+    /// The maker of the genomes.
+    pub children: BodyChildren,
     population: usize,
     /// The last generation, best first; empty at the beginning.
     members: Vec<BodyMember>,
@@ -127,11 +128,43 @@ impl BodyGa {
         (0..self.population).map(|individual| self.individual(individual)).collect()
     }
 
-    /// The order of a generation as parents: the elites by fitness alone, then by the protection of new bodies.
-    fn order(&self, ages: &[u32], evaluations: &[Evaluation]) -> Vec<usize> {
-        let ranked = full_ranking(evaluations);
+    /// The algorithm after the first `finished` generations of a run, of which the last is known.
+    ///
+    /// # Errors
+    /// It is larger than a generation, or an individual in it is not one of this plan.
+    pub fn resume_with(
+        plan: &RunPlan,
+        finished: u32,
+        members: Vec<BodyMember>,
+    ) -> Result<Self, Invalid> {
+        let resumed = Self::with(plan, finished, members);
+        within("members", resumed.members.len(), 0..=resumed.population)?;
+        for member in &resumed.members {
+            plan.settings.trial.check_genome(&member.genome)?;
+            resumed.children.space.check_genome(&member.genome, resumed.children.shape)?;
+        }
+        Ok(resumed)
+    }
+
+    /// The last generation, best first.
+    pub fn members(&self) -> &[BodyMember] {
+        &self.members
+    }
+
+    /// Ends a generation: `ranking` lists its indices, best first, which the protection of new bodies may change.
+    pub fn select(&mut self, ranking: &[usize]) {
+        let generation = self.generation();
+        let ages: Vec<u32> = generation.iter().map(|member| member.age).collect();
+        let order = self.order(&ages, ranking);
+        self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
+        self.ids = IndividualId::all(self.children.generation, &order);
+        self.children.generation += 1;
+    }
+
+    /// The order of a generation as parents: the elites by their rank alone, then by the protection of new bodies.
+    fn order(&self, ages: &[u32], ranked: &[usize]) -> Vec<usize> {
         match self.settings.protection {
-            BodyProtection::None => ranked,
+            BodyProtection::None => ranked.to_vec(),
             BodyProtection::Age => {
                 let elites = (self.settings.kept_best as usize).min(ranked.len());
                 let (best, others) = ranked.split_at(elites);
@@ -170,13 +203,7 @@ impl Strategy for BodyGa {
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
-        let resumed = Self::with(plan, finished, state.read()?);
-        within("members", resumed.members.len(), 0..=resumed.population)?;
-        for member in &resumed.members {
-            plan.settings.trial.check_genome(&member.genome)?;
-            resumed.children.space.check_genome(&member.genome, resumed.children.shape)?;
-        }
-        Ok(resumed)
+        Self::resume_with(plan, finished, state.read()?)
     }
 
     fn ask(&self) -> Vec<Genome> {
@@ -188,12 +215,7 @@ impl Strategy for BodyGa {
     }
 
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        let generation = self.generation();
-        let ages: Vec<u32> = generation.iter().map(|member| member.age).collect();
-        let order = self.order(&ages, evaluations);
-        self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
-        self.ids = IndividualId::all(self.children.generation, &order);
-        self.children.generation += 1;
+        self.select(&full_ranking(evaluations));
     }
 
     fn state(&self) -> StrategyState {
@@ -292,12 +314,13 @@ mod tests {
         let ages = [9, 8, 0, 9];
         let order = |protection| {
             ga(|settings| (settings.protection, settings.kept_best) = (protection, 1))
-                .order(&ages, &evaluations)
+                .order(&ages, &full_ranking(&evaluations))
         };
         assert_eq!(order(BodyProtection::None), [0, 1, 2, 3]);
         // Behind the best, the second and the young one are the first front.
         assert_eq!(order(BodyProtection::Age), [0, 1, 2, 3]);
-        let older = ga(|settings| settings.kept_best = 1).order(&[0, 5, 7, 2], &evaluations);
+        let older =
+            ga(|settings| settings.kept_best = 1).order(&[0, 5, 7, 2], &full_ranking(&evaluations));
         assert_eq!(older, [0, 1, 3, 2], "the third is both worse and older than the second");
     }
 }

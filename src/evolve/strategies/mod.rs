@@ -27,17 +27,20 @@ use super::strategy::{Strategy, StrategyState};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
 use crate::genome::controllers::Policy;
+use body_ga::BodyGa;
+use ga::Ga;
 use learned::JointSystems;
 use learning::Learning;
+use novelty::Novelty;
 
 /// The constructors of the strategy of these settings.
 fn constructors(settings: &Settings) -> Constructors {
     match settings.evolution.strategy {
         StrategyKind::Halving => Constructors::of::<halving::Halving>(),
-        StrategyKind::Ga => Constructors::of::<ga::Ga>(),
+        StrategyKind::Ga => Constructors::of::<Ga>(),
         StrategyKind::CmaEs => Constructors::of::<cma_es::CmaEs>(),
         StrategyKind::MapElites => Constructors::of::<map_elites::MapElites>(),
-        StrategyKind::Novelty => Constructors::of::<novelty::Novelty>(),
+        StrategyKind::Novelty => Constructors::of::<Novelty<Ga>>(),
         StrategyKind::Xcs if settings.genome.controller == ControllerKind::JointDecisions => {
             Constructors::of::<Learning<JointSystems>>()
         }
@@ -45,7 +48,8 @@ fn constructors(settings: &Settings) -> Constructors {
             Constructors::of::<Learning<Policy>>()
         }
         StrategyKind::Neat => Constructors::of::<neat::Neat>(),
-        StrategyKind::BodyGa => Constructors::of::<body_ga::BodyGa>(),
+        StrategyKind::BodyGa => Constructors::of::<BodyGa>(),
+        StrategyKind::BodyNovelty => Constructors::of::<Novelty<BodyGa>>(),
         StrategyKind::BodyMapElites => Constructors::of::<body_map_elites::BodyMapElites>(),
         StrategyKind::Islands => Constructors::of::<islands::Islands>(),
         StrategyKind::CreatureGa => Constructors::of::<creature_ga::CreatureGa>(),

@@ -1,9 +1,14 @@
 //! Novelty search: unseen behaviour is rewarded (Lehman and Stanley, Evolutionary Computation 19 (2011)), to a
 //! configurable share beside fitness.
 
+use std::fmt::Debug;
+
 use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use super::body_ga::{BodyGa, BodyMember};
 use super::ga::{Ga, GaMember};
 use crate::check::{Invalid, within};
 use crate::evolve::archives::Descriptor;
@@ -11,48 +16,138 @@ use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::NoveltySettings;
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::Genome;
+use crate::genome::{BodySpace, Genome};
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 use crate::world::Stairs;
 
-/// A behaviour as a point: the final position of the agent and its two descriptors, each from 0 to 1.
-type BehaviourPoint = [f64; 3];
+/// A behaviour: the final position of the agent and its two descriptors, each from 0 to 1.
+type Behaviour = [f64; 3];
+
+/// A genetic algorithm to which novelty search tells which individuals are the best.
+pub trait Breeder: Strategy + Sized {
+    /// An individual of the last generation.
+    type Member: Clone + Serialize + DeserializeOwned;
+    /// An individual as a point, whose distance to the others is its novelty. Each coordinate is from 0 to 1.
+    type Point: Copy + Debug + AsRef<[f64]> + Send + Serialize + DeserializeOwned;
+
+    /// The algorithm after the first `finished` generations of a run, of which the last is known.
+    ///
+    /// # Errors
+    /// It is larger than a generation, or an individual in it is not one of this plan.
+    fn resume_with(
+        plan: &RunPlan,
+        finished: u32,
+        members: Vec<Self::Member>,
+    ) -> Result<Self, Invalid>;
+    /// The last generation, best first.
+    fn members(&self) -> &[Self::Member];
+    /// Ends a generation: `ranking` lists its indices, best first.
+    fn select(&mut self, ranking: &[usize]);
+    /// The random numbers of the present generation for a purpose.
+    fn stream(&self, purpose: Purpose) -> ChaCha8Rng;
+    /// The point of an individual.
+    fn point(behaviour: Behaviour, genome: &Genome, bodies: &BodySpace) -> Self::Point;
+}
+
+impl Breeder for Ga {
+    type Member = GaMember;
+    type Point = Behaviour;
+
+    fn resume_with(plan: &RunPlan, finished: u32, members: Vec<GaMember>) -> Result<Self, Invalid> {
+        Self::resume_with(plan, finished, members)
+    }
+
+    fn members(&self) -> &[GaMember] {
+        self.members()
+    }
+
+    fn select(&mut self, ranking: &[usize]) {
+        self.select(ranking);
+    }
+
+    fn stream(&self, purpose: Purpose) -> ChaCha8Rng {
+        self.search.stream(0, purpose)
+    }
+
+    fn point(behaviour: Behaviour, _: &Genome, _: &BodySpace) -> Behaviour {
+        behaviour
+    }
+}
+
+impl Breeder for BodyGa {
+    type Member = BodyMember;
+    /// The behaviour, the number of blocks and the length.
+    type Point = [f64; 5];
+
+    fn resume_with(
+        plan: &RunPlan,
+        finished: u32,
+        members: Vec<BodyMember>,
+    ) -> Result<Self, Invalid> {
+        Self::resume_with(plan, finished, members)
+    }
+
+    fn members(&self) -> &[BodyMember] {
+        self.members()
+    }
+
+    fn select(&mut self, ranking: &[usize]) {
+        self.select(ranking);
+    }
+
+    fn stream(&self, purpose: Purpose) -> ChaCha8Rng {
+        self.children.stream(0, purpose)
+    }
+
+    fn point([end, first, second]: Behaviour, genome: &Genome, bodies: &BodySpace) -> [f64; 5] {
+        let segments = &genome.body.segments;
+        let share = |of: f64, [least, most]: [f64; 2]| {
+            ((of - least) / (most - least).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+        };
+        let limbs = [bodies.limbs_min, bodies.limbs_max].map(f64::from);
+        let length_m: f64 = segments.iter().map(|segment| f64::from(segment.length_m)).sum();
+        let blocks = share(segments.len() as f64, limbs);
+        [end, first, second, blocks, share(length_m, [0.0, f64::from(bodies.longest_m)])]
+    }
+}
 
 /// The state of novelty search.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct NoveltyState {
+struct NoveltyState<M, P> {
     /// The last generation, best first.
-    members: Vec<GaMember>,
-    /// The archived behaviours.
-    archive: Vec<BehaviourPoint>,
+    members: Vec<M>,
+    /// The archived points.
+    archive: Vec<P>,
 }
 
 /// Novelty search: a genetic algorithm with another order of the best.
 #[derive(Debug, Clone)]
-pub struct Novelty {
+pub struct Novelty<B: Breeder> {
     settings: NoveltySettings,
-    ga: Ga,
-    archive: Vec<BehaviourPoint>,
+    breeder: B,
+    archive: Vec<B::Point>,
     start_y_m: f32,
     stairs: Stairs,
+    bodies: BodySpace,
 }
 
-impl Novelty {
-    fn with(plan: &RunPlan, ga: Ga, archive: Vec<BehaviourPoint>) -> Self {
+impl<B: Breeder> Novelty<B> {
+    fn with(plan: &RunPlan, breeder: B, archive: Vec<B::Point>) -> Self {
         let trial = &plan.settings.trial;
         Self {
             settings: plan.settings.evolution.novelty.clone(),
-            ga,
+            breeder,
             archive,
             start_y_m: trial.start_y_m,
             stairs: trial.stairs.clone(),
+            bodies: plan.settings.genome.bodies.clone(),
         }
     }
 
     /// The behaviour of an agent; none if it was disqualified.
-    fn behaviour(&self, evaluation: &Evaluation) -> Option<BehaviourPoint> {
+    fn behaviour(&self, evaluation: &Evaluation) -> Option<Behaviour> {
         if evaluation.disqualified.is_some() {
             return None;
         }
@@ -67,14 +162,15 @@ impl Novelty {
         Some([end, first, second])
     }
 
-    /// Mean distance of each behaviour to its nearest neighbours among all of them and the archive. Individuals without
-    /// a behaviour are the least novel.
-    fn novelties(&self, behaviours: &[Option<BehaviourPoint>]) -> Vec<f64> {
-        let novelty = |(index, behaviour): (usize, &Option<BehaviourPoint>)| {
-            let Some(behaviour) = behaviour else { return f64::NEG_INFINITY };
-            let others = behaviours.iter().enumerate().filter(|(other, _)| *other != index);
+    /// Mean distance of each point to its nearest neighbours among all of them and the archive. Individuals without
+    /// a point are the least novel.
+    fn novelties(&self, points: &[Option<B::Point>]) -> Vec<f64> {
+        let novelty = |(index, point): (usize, &Option<B::Point>)| {
+            let Some(point) = point else { return f64::NEG_INFINITY };
+            let others = points.iter().enumerate().filter(|(other, _)| *other != index);
             let all = others.filter_map(|(_, other)| other.as_ref()).chain(&self.archive);
-            let mut distances: Vec<f64> = all.map(|other| distance(behaviour, other)).collect();
+            let mut distances: Vec<f64> =
+                all.map(|other| distance(point.as_ref(), other.as_ref())).collect();
             let neighbours = self.settings.neighbours as usize;
             if neighbours < distances.len() {
                 distances.select_nth_unstable_by(neighbours, f64::total_cmp);
@@ -83,29 +179,29 @@ impl Novelty {
             distances.sort_by(f64::total_cmp);
             distances.iter().sum::<f64>() / distances.len().max(1) as f64
         };
-        behaviours.iter().enumerate().map(novelty).collect()
+        points.iter().enumerate().map(novelty).collect()
     }
 
-    /// Adds some behaviours, chosen at random, to the archive.
-    fn remember(&mut self, behaviours: &[Option<BehaviourPoint>]) {
-        let mut rng = self.ga.search.stream(0, Purpose::Archive);
-        let mut candidates: Vec<BehaviourPoint> = behaviours.iter().flatten().copied().collect();
+    /// Adds some points, chosen at random, to the archive.
+    fn remember(&mut self, points: &[Option<B::Point>]) {
+        let mut rng = self.breeder.stream(Purpose::Archive);
+        let mut candidates: Vec<B::Point> = points.iter().flatten().copied().collect();
         for _ in 0..self.settings.remembered {
             if candidates.is_empty() {
                 break;
             }
-            let behaviour = candidates.swap_remove(rng.random_range(0..candidates.len()));
+            let point = candidates.swap_remove(rng.random_range(0..candidates.len()));
             if self.archive.len() < self.settings.archive_limit as usize {
-                self.archive.push(behaviour);
+                self.archive.push(point);
             } else {
                 let index = rng.random_range(0..self.archive.len());
-                self.archive[index] = behaviour;
+                self.archive[index] = point;
             }
         }
     }
 }
 
-fn distance(a: &BehaviourPoint, b: &BehaviourPoint) -> f64 {
+fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
@@ -118,32 +214,35 @@ fn ranks_in(order: &[usize]) -> Vec<f64> {
     ranks
 }
 
-impl Strategy for Novelty {
+impl<B: Breeder> Strategy for Novelty<B> {
     fn begin(plan: &RunPlan) -> Self {
-        Self::with(plan, Ga::begin(plan), Vec::new())
+        Self::with(plan, B::begin(plan), Vec::new())
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
-        let NoveltyState { members, archive } = state.read()?;
+        let NoveltyState::<B::Member, B::Point> { members, archive } = state.read()?;
         let most = plan.settings.evolution.novelty.archive_limit as usize;
         within("archive", archive.len(), 0..=most)?;
-        archive.iter().flatten().try_for_each(|&x| within("archive", x, 0.0..=1.0))?;
-        Ok(Self::with(plan, Ga::resume_with(plan, finished, members)?, archive))
+        let coordinates = archive.iter().flat_map(AsRef::as_ref);
+        coordinates.into_iter().try_for_each(|&x| within("archive", x, 0.0..=1.0))?;
+        Ok(Self::with(plan, B::resume_with(plan, finished, members)?, archive))
     }
 
     fn ask(&self) -> Vec<Genome> {
-        self.ga.ask()
+        self.breeder.ask()
     }
 
     fn population(&self) -> usize {
-        self.ga.population()
+        self.breeder.population()
     }
 
     /// Mixes ranks, because novelty and fitness have no common unit.
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        let behaviours: Vec<Option<BehaviourPoint>> =
-            evaluations.iter().map(|evaluation| self.behaviour(evaluation)).collect();
-        let novelties = self.novelties(&behaviours);
+    fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
+        let point = |(genome, evaluation): (&Genome, &Evaluation)| {
+            Some(B::point(self.behaviour(evaluation)?, genome, &self.bodies))
+        };
+        let points: Vec<Option<B::Point>> = genomes.iter().zip(evaluations).map(point).collect();
+        let novelties = self.novelties(&points);
         let mut by_novelty: Vec<usize> = (0..evaluations.len()).collect();
         by_novelty.sort_by(|&a, &b| novelties[b].total_cmp(&novelties[a]));
         let (by_fitness, by_novelty) =
@@ -156,42 +255,43 @@ impl Strategy for Novelty {
             .collect();
         let mut order: Vec<usize> = (0..evaluations.len()).collect();
         order.sort_by(|&a, &b| mixed[a].total_cmp(&mixed[b]));
-        self.remember(&behaviours);
-        self.ga.select(&order);
+        self.remember(&points);
+        self.breeder.select(&order);
     }
 
     fn state(&self) -> StrategyState {
-        let (members, archive) = (self.ga.members().to_vec(), self.archive.clone());
+        let (members, archive) = (self.breeder.members().to_vec(), self.archive.clone());
         StrategyState::of(&NoveltyState { members, archive })
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
         self.settings = plan.settings.evolution.novelty.clone();
         self.archive.truncate(self.settings.archive_limit as usize);
-        self.ga.apply_settings(plan);
+        self.breeder.apply_settings(plan);
     }
 
     fn parents(&self) -> Vec<Parents> {
-        self.ga.parents()
+        self.breeder.parents()
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
-        self.ga.parent_pool()
+        self.breeder.parent_pool()
     }
 
     fn restore_parents(&mut self, pool: &[IndividualId]) {
-        self.ga.restore_parents(pool);
+        self.breeder.restore_parents(pool);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Settings;
-    use crate::score::Behaviour;
+    use crate::evolve::{BodyProtection, Settings, StrategyKind};
+    use crate::genome::ControllerKind;
+    use crate::score::Behaviour as Measured;
 
     fn evaluation(centre_y_m: f32, contact_duty: f32) -> Evaluation {
-        let behaviour = Some(Behaviour { contact_duty, ..Behaviour::default() });
+        let behaviour = Some(Measured { contact_duty, ..Measured::default() });
         Evaluation { behaviour, ..Evaluation::of_fitness(centre_y_m) }
     }
 
@@ -206,8 +306,8 @@ mod tests {
             archive_limit: 2,
             ..NoveltySettings::default()
         };
-        let mut search = Novelty::begin(&RunPlan::new("test", 1, settings));
-        let asked = search.ga.generation();
+        let mut search = Novelty::<Ga>::begin(&RunPlan::new("test", 1, settings));
+        let asked = search.breeder.generation();
         let genomes = search.ask();
         let evaluations = [
             evaluation(0.0, 0.2),
@@ -223,9 +323,9 @@ mod tests {
         let mut fresh = Settings::default();
         fresh.evolution.population = 4;
         let ga = Ga::begin(&RunPlan::new("test", 1, fresh));
-        let mut search = Novelty { archive: Vec::new(), ga, ..search };
+        let mut search = Novelty { archive: Vec::new(), breeder: ga, ..search };
         search.tell(&genomes, &evaluations);
-        let best = &search.ga.members()[0];
+        let best = &search.breeder.members()[0];
         asked.iter().position(|member| member == best).expect("one of them")
     }
 
@@ -233,5 +333,42 @@ mod tests {
     fn pure_novelty_prefers_unusual_behaviour_and_weight_zero_the_fittest() {
         assert_eq!(first(1.0), 1);
         assert_eq!(first(0.0), 3);
+    }
+
+    #[test]
+    fn a_body_like_no_other_is_the_most_novel_among_equal_behaviours() {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::BodyNovelty;
+        settings.evolution.population = 40;
+        settings.evolution.novelty.weight = 1.0;
+        settings.evolution.novelty.neighbours = 5;
+        settings.evolution.body_ga.protection = BodyProtection::None;
+        settings.genome.bodies.vary = true;
+        settings.genome.controller = ControllerKind::Gait;
+        settings.check().expect("they go together");
+        let plan = RunPlan::new("test", 1, settings);
+        let mut search = Novelty::<BodyGa>::begin(&plan);
+        let mut genomes = search.ask();
+        let blocks = |genome: &Genome| genome.body.segments.len();
+        let few = genomes.iter().position(|genome| blocks(genome) == 2).expect("one in eleven");
+        let many = genomes.iter().position(|genome| blocks(genome) > 8).expect("several");
+        let common = genomes[many].clone();
+        (0..genomes.len()).filter(|index| *index != few).for_each(|index| {
+            genomes[index] = common.clone();
+        });
+        let points = genomes.iter().map(|genome| BodyGa::point([0.5; 3], genome, &search.bodies));
+        let points: Vec<_> = points.collect();
+        assert!(points.iter().flatten().all(|of| (0.0..=1.0).contains(of)));
+        assert!(points[few][3] == 0.0 && points[many][3] >= 0.7, "{:?}", points[many]);
+        let novelties = search.novelties(&points.into_iter().map(Some).collect::<Vec<_>>());
+        let most = (0..40).max_by(|&a, &b| novelties[a].total_cmp(&novelties[b]));
+        assert_eq!(most, Some(few));
+        let evaluations = vec![evaluation(0.0, 0.2); 40];
+        let wanted = search.breeder.ask()[few].clone();
+        search.tell(&genomes, &evaluations);
+        assert_eq!(search.ask()[0], wanted, "kept unchanged");
+        let state = search.state();
+        let again = Novelty::<BodyGa>::resume(&plan, 1, &state).expect("its own");
+        assert_eq!(again.ask(), search.ask());
     }
 }

@@ -250,6 +250,13 @@ const CASES: &[Case] = &[
          body_map_elites.mutation_step=0.15; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
     ),
     (
+        "bodies, novelty search",
+        [3, 12, 4],
+        "controller=gait; strategy=body_novelty; bodies.vary=true; novelty.weight=0.7; novelty.neighbours=5; \
+         novelty.first=frequency; holding_power_w=100; energy_cost_per_kj=0.01; trial.fitness=share; start_y_m=-3; \
+         trial.duration_s=3",
+    ),
+    (
         "soft blocks of four parts and rigid ones, CMA-ES",
         [3, 8, 3],
         "controller=gait; strategy=cma_es; youngs_modulus_pa=[3000, 1000000, 6000, 20000, 3000]; soft_parts=4; \

@@ -50,7 +50,7 @@ fn advance(strategy: &mut dyn Strategy, generation: u32) {
 }
 
 /// Allowed changes of each strategy.
-const ALLOWED: [(StrategyKind, &[(&str, &str)]); 9] = [
+const ALLOWED: [(StrategyKind, &[(&str, &str)]); 10] = [
     (
         StrategyKind::BodyMapElites,
         &[
@@ -70,6 +70,15 @@ const ALLOWED: [(StrategyKind, &[(&str, &str)]); 9] = [
             ("body_ga.kept_best", "5"),
             ("population", "7"),
             ("population", "30"),
+        ],
+    ),
+    (
+        StrategyKind::BodyNovelty,
+        &[
+            ("novelty.weight", "0.9"),
+            ("novelty.neighbours", "3"),
+            ("body_ga.tournament_size", "7"),
+            ("body_ga.mutation_step", "0.2"),
         ],
     ),
     (StrategyKind::Islands, &[("generations", "40")]),
