@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use super::archive_pictures::ArchivePictures;
 use super::legend::click_hint;
 use crate::evolve::{Archive, ArchiveAxis, Elite};
 use crate::studio::commands::pick::Pick;
@@ -16,6 +17,7 @@ pub(crate) fn archive_map(
     ui: &mut egui::Ui,
     archive: &Archive,
     unit: &str,
+    pictures: &ArchivePictures,
     shown: &[ShownLane],
     height: f32,
     commands: &mut Vec<Command>,
@@ -45,7 +47,9 @@ pub(crate) fn archive_map(
     painter.rect_filled(map, 0.0, palette.empty_cell);
     for (cell, elite) in archive.elites() {
         let share = (elite.fitness - min) / (max - min).max(f32::MIN_POSITIVE);
-        painter.rect_filled(cell_rect(map, archive, cell), 0.0, theme::palette::ramp(share));
+        let (rect, color) = (cell_rect(map, archive, cell), theme::palette::ramp(share));
+        painter.rect_filled(rect, 0.0, color);
+        pictures.draw(painter, cell, rect, color);
     }
     let on_stage = shown.iter().filter_map(|shown| {
         let is_it = |of: &Elite| shown.champion.is(of.generation, of.individual);
@@ -84,7 +88,10 @@ pub(crate) fn archive_map(
         );
     }
     if let Some(cell) = hovered {
-        response.on_hover_text_at_pointer(hover_text(archive, cell, unit));
+        response.on_hover_ui_at_pointer(|ui| {
+            pictures.large(ui, cell);
+            ui.label(hover_text(archive, cell, unit));
+        });
     }
 }
 
@@ -172,7 +179,10 @@ mod tests {
     fn clicked(archive: &Archive, cell: u32) -> (Vec<Command>, bool) {
         let size = egui::vec2(theme::PANEL_WIDTH, 500.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| archive_map(ui, archive, " m", &[], theme::MAP_HEIGHT, commands),
+            |ui, commands| {
+                let pictures = ArchivePictures::default();
+                archive_map(ui, archive, " m", &pictures, &[], theme::MAP_HEIGHT, commands);
+            },
             Vec::new(),
         );
         harness.run();

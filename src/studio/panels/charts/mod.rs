@@ -3,6 +3,7 @@
 
 mod ancestors;
 mod archive_map;
+mod archive_pictures;
 mod bands;
 mod blocks;
 mod bodies;
@@ -37,6 +38,7 @@ use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
 
 use archive_map::archive_map;
+use archive_pictures::ArchivePictures;
 use blocks::BLOCKS;
 use chart_kind::ChartKind;
 use learning_curves::CurvesPanel;
@@ -51,6 +53,8 @@ pub(super) struct ChartsPanel {
     known: Option<(ChartKind, Version, Option<ChartView>)>,
     /// Cached figure of the archive or the front, which draw themselves.
     figure: Option<(ChartKind, Version, Arc<Figure>)>,
+    /// Cached pictures of the bodies in the archive.
+    pictures: Option<(Version, ArchivePictures)>,
     torques: TorqueComparison,
     curves: Option<CurvesPanel>,
     has_listed_runs: bool,
@@ -64,6 +68,7 @@ impl ChartsPanel {
             kind: if comparison.is_some() { ChartKind::Methods } else { ChartKind::default() },
             known: None,
             figure: None,
+            pictures: None,
             torques: TorqueComparison::default(),
             curves: comparison.map(CurvesPanel::new),
             has_listed_runs: false,
@@ -179,7 +184,13 @@ impl ChartsPanel {
                 explain(ui, "No snake has ended ahead of its starting position yet.");
             }
             (ChartKind::Archive, _, Some(archive)) => {
-                archive_map(ui, archive, unit, shown, height, commands);
+                if !matches!(&self.pictures, Some((at, _)) if *at == version) {
+                    let pictures = ArchivePictures::of(archive, &run.settings().trial.agent);
+                    self.pictures = Some((version, pictures));
+                }
+                if let Some((_, pictures)) = &self.pictures {
+                    archive_map(ui, archive, unit, pictures, shown, height, commands);
+                }
             }
             (ChartKind::Archive, ..) if !run.settings().evolution.strategy.info().has_archive => {
                 explain(

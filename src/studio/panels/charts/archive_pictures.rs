@@ -1,0 +1,118 @@
+//! Pictures of the bodies in an archive, one in each cell and a large one at the pointer.
+
+use std::collections::BTreeMap;
+
+use bevy_egui::egui;
+
+use crate::evolve::{Archive, EliteGenes};
+use crate::plot::Role;
+use crate::score::AgentSettings;
+use crate::studio::ui::outlines::Outlines;
+use crate::studio::ui::theme;
+
+/// Smallest width of a cell with a picture, in points: in a smaller one it would be a smudge.
+const LEAST_WIDTH: f32 = 16.0;
+/// Share of a cell's width that the longest body takes.
+const FILLED: f32 = 0.9;
+/// Size of the large picture at most, in points.
+const LARGE: egui::Vec2 = egui::vec2(200.0, 60.0);
+
+/// The bodies of an archive's elites, by cell. Empty if all elites have the same body.
+#[derive(Debug, Default)]
+pub(super) struct ArchivePictures {
+    bodies: BTreeMap<u32, Outlines>,
+    longest_m: f32,
+}
+
+impl ArchivePictures {
+    /// Those of elites with bodies of their own.
+    pub fn of(archive: &Archive, agent: &AgentSettings) -> Self {
+        let body = |genes: &EliteGenes| match genes {
+            EliteGenes::Point(_) => None,
+            EliteGenes::Genome(genome) => Some(Outlines::of(&agent.body_plan(genome))),
+        };
+        let bodies: BTreeMap<u32, Outlines> = archive
+            .elites()
+            .filter_map(|(cell, elite)| Some((cell, body(&elite.genes)?)))
+            .collect();
+        let longest_m = bodies.values().map(|body| body.size_m()[1]).fold(0.0, f32::max);
+        Self { bodies, longest_m }
+    }
+
+    /// Draws the body of a cell from the side, the head on the right, all bodies on one scale. `ground` is the cell's colour.
+    pub fn draw(
+        &self,
+        painter: &egui::Painter,
+        cell: u32,
+        rect: egui::Rect,
+        ground: egui::Color32,
+    ) {
+        let Some(body) = self.bodies.get(&cell).filter(|_| rect.width() >= LEAST_WIDTH) else {
+            return;
+        };
+        let scale = FILLED * rect.width() / self.longest_m.max(f32::MIN_POSITIVE);
+        // A tall body is drawn smaller rather than into the next cell.
+        let scale = scale.min(FILLED * rect.height() / body.size_m()[2].max(f32::MIN_POSITIVE));
+        let ink = theme::palette::text_on(ground);
+        let shades = [ink.gamma_multiply(0.9), ink.gamma_multiply(0.5)];
+        side_view(painter, body, rect.center(), scale, shades);
+    }
+
+    /// Draws the body of a cell large, in its colours.
+    pub fn large(&self, ui: &mut egui::Ui, cell: u32) {
+        let Some(body) = self.bodies.get(&cell) else { return };
+        let [_, length_m, height_m] = body.size_m();
+        let scale = (LARGE.x / self.longest_m.max(f32::MIN_POSITIVE))
+            .min(LARGE.y / height_m.max(f32::MIN_POSITIVE));
+        let size = egui::vec2(length_m, height_m) * scale;
+        let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
+        let palette = theme::of(ui);
+        let colors = [palette.role(Role::Red), palette.role(Role::Blue)];
+        side_view(ui.painter(), body, area.center(), scale, colors);
+    }
+}
+
+/// Draws limbs in two colours in turn, the head on the right, where the stairs are.
+fn side_view(
+    painter: &egui::Painter,
+    body: &Outlines,
+    center: egui::Pos2,
+    scale: f32,
+    colors: [egui::Color32; 2],
+) {
+    let [_, length_m, height_m] = body.size_m();
+    let corner = center + egui::vec2(length_m, -height_m) * (scale / 2.0);
+    for (limb, corners) in body.seen(2).into_iter().enumerate() {
+        let point = |[along_m, down_m]: [f32; 2]| corner + egui::vec2(-along_m, down_m) * scale;
+        let points = corners.into_iter().map(point).collect();
+        painter.add(egui::Shape::convex_polygon(points, colors[limb % 2], egui::Stroke::NONE));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::state::current_run::{bodies_run, explored_run};
+
+    #[test]
+    fn every_elite_with_a_body_of_its_own_has_a_picture() {
+        let run = bodies_run();
+        let exploration = run.exploration().expect("explored");
+        let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
+        let pictures = ArchivePictures::of(archive, &run.settings().trial.agent);
+        assert_eq!(pictures.bodies.len(), archive.elites().len());
+        for (cell, body) in &pictures.bodies {
+            let [column, _] = archive.place(*cell);
+            assert_eq!(body.seen(2).len() as u32, column + 2, "the columns are numbers of blocks");
+        }
+        assert!((4.0..=12.01).contains(&pictures.longest_m), "{} m", pictures.longest_m);
+    }
+
+    #[test]
+    fn snakes_with_a_common_body_have_none() {
+        let run = explored_run();
+        let archive = run.exploration().and_then(|of| of.archive.as_ref()).expect("one");
+        let pictures = ArchivePictures::of(archive, &run.settings().trial.agent);
+        assert!(pictures.bodies.is_empty());
+    }
+}
